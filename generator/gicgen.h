@@ -1,0 +1,662 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gicgen: every type of the generator and, file by file in the order of the pipeline, every function
+ * that one file offers to another. Dependencies run downwards only: a file uses what stands above it.
+ *
+ *     .veh -> document -> model -> graph -> sequence -> formulation -> expressions -> emission -> .c/.h
+ *
+ * Conventions. Memory comes from a Pool that lives as long as the program's main context: nothing is
+ * freed one by one. Bad input ends in diag_fail(), which prints one message and exits with status 1.
+ * Vectors are double[3], matrices row-major, Euler parameters (e0, e1, e2, e3). SI units.
+ */
+#ifndef GICGEN_H
+#define GICGEN_H
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#define GICGEN_VERSION "0.1.0"
+
+/* ---- util.c: memory, text, random numbers, small vector algebra ------------------------------- */
+
+typedef struct Pool Pool;
+
+Pool *pool_new(void);                            /* an empty pool; exits with a message when memory is out */
+void pool_free(Pool *pool);                      /* frees the pool and all that came from it */
+void *pool_alloc(Pool *pool, size_t size);       /* zeroed, aligned for any type */
+void *pool_grow(Pool *pool, void *old, size_t old_size, size_t size); /* copy into a larger block */
+char *pool_print(Pool *pool, const char *format, ...) __attribute__((format(printf, 2, 3)));
+char *pool_vprint(Pool *pool, const char *format, va_list args);
+
+/* Make room for one more element behind the first `count` of `array`; sizes double. */
+#define POOL_PUSH(pool, array, count) \
+    ((((count) & ((count) - 1)) == 0 \
+          ? (void)((array) = pool_grow((pool), (array), (size_t)(count) * sizeof *(array), \
+                                       (size_t)((count) ? 2 * (count) : 1) * sizeof *(array))) \
+          : (void)0), \
+     &(array)[(count)++])
+
+/* A growing text; `s` is always terminated. */
+typedef struct Text {
+    Pool *pool;
+    char *s;
+    size_t size, room;
+} Text;
+
+void text_print(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void text_add(Text *text, const char *s, size_t size);
+
+/* splitmix64: the same sequence on every machine. */
+typedef struct Random {
+    uint64_t state;
+} Random;
+
+uint64_t random_bits(Random *random);
+double random_uniform(Random *random, double low, double high);
+
+double vec_dot(const double a[3], const double b[3]);
+void vec_cross(const double a[3], const double b[3], double out[3]); /* out may not alias */
+double vec_norm(const double a[3]);
+void mat_from_euler(const double p[4], double A[9]);            /* A(p) of method.md section 1 */
+void euler_relative(const double p0[4], const double p[4], double out[4]);     /* of A(p0)^T A(p) */
+void mat_apply(const double A[9], const double x[3], double out[3]);           /* A x */
+void mat_apply_transposed(const double A[9], const double x[3], double out[3]); /* A^T x */
+
+/* Write a whole file under a temporary name beside it and rename it: readers see all of it or the old one.
+ * "-" is standard output. Exits with a message naming the file when it can't be written. */
+void file_write(const char *path, const char *bytes, size_t size);
+/* All bytes of a file ("-": standard input), terminated. Exits with a message when it can't be read. */
+char *file_read(Pool *pool, const char *path, size_t *size);
+
+/* ---- diag.c: messages for people ---------------------------------------------------------------- */
+
+/* A place in an input file. line and column count from 1; 0: the file as a whole. */
+typedef struct Place {
+    const struct Source *source;
+    int line, column;
+} Place;
+
+typedef struct Source {
+    const char *path; /* as the user gave it */
+    const char *bytes;
+    size_t size;
+} Source;
+
+/* Print `path:line:col: error: <message>`, the source line with a caret under the column, and
+ * `  remedy: <remedy>` (remedy may be NULL), all to stderr; exit with status 1. */
+_Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The same as a warning; returns. */
+void diag_warn(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The place of a byte of a source: its line, and its column in characters (UTF-8). */
+Place diag_place(const Source *source, size_t offset);
+/* Of `count` words the one most like `word` (edit distance), or NULL when none is near. */
+const char *diag_nearest(const char *word, const char *const *words, int count);
+
+/* ---- doc.c: YAML into a tree that knows its places ---------------------------------------------- */
+
+typedef enum ItemKind { ITEM_SCALAR, ITEM_LIST, ITEM_MAP } ItemKind;
+
+typedef struct Item {
+    ItemKind kind;
+    Place at;
+    const char *text;     /* scalar: its text (may hold any byte but is terminated) */
+    bool quoted;          /* scalar: quoted, so never a number */
+    int count;            /* list: elements; map: pairs */
+    struct Item **value;  /* list: the elements; map: the values */
+    struct Item **key;    /* map: the keys, all scalars */
+} Item;
+
+/* Parse a file ("-": standard input) into a tree. YAML errors, aliases to ancestors, duplicate keys, nesting deeper
+ * than 64 and more than one document end in diag_fail. */
+const Item *doc_read(Pool *pool, const char *path);
+/* Value of a key of a map, or NULL. */
+const Item *doc_find(const Item *map, const char *key);
+
+/* Checked access for readers of `.veh` and scene files; each ends in diag_fail naming what was expected. `what` names
+ * the thing in messages ("mass of body 'chassis'"). */
+double doc_number(const Item *item, const char *what);
+bool doc_bool(const Item *item, const char *what);
+const char *doc_word(const Item *item, const char *what);
+void doc_vector(const Item *item, const char *what, double *out, int size);
+/* Every key of `map` must be one of `allowed`; the message lists them and suggests the nearest. */
+void doc_check_keys(const Item *map, const char *what, const char *const *allowed, int count);
+
+/* ---- read.c, dump.c: the model, as models/FORMAT.md defines it ----------------------------------- */
+
+enum { BODY_BASE = 0, BODY_GROUND = -1 };
+
+typedef struct Body {
+    const char *name;
+    Place at;
+    double mass, com[3] /* own frame */, inertia[6] /* xx yy zz xy xz yz, own axes, about com */;
+    double position[3], euler[4]; /* body frame at design, model frame */
+} Body;
+
+typedef enum JointType {
+    JOINT_REVOLUTE,
+    JOINT_SPHERICAL,
+    JOINT_PRISMATIC,
+    JOINT_DISTANCE,
+    JOINT_REVOLUTE_SPHERICAL,
+    JOINT_TYPES
+} JointType;
+
+typedef struct Joint {
+    const char *name;
+    Place at;
+    JointType type;
+    int body[2];
+    double point[2][3], axis[2][3]; /* each in the frame of its body; axes are unit vectors */
+    double length, offset;          /* at design, where the type has them */
+} Joint;
+
+typedef enum CoordinateType {
+    COORDINATE_LENGTH,
+    COORDINATE_TRANSLATION,
+    COORDINATE_ANGLE,
+    COORDINATE_TYPES
+} CoordinateType;
+
+typedef struct Coordinate {
+    const char *name;
+    Place at;
+    CoordinateType type;
+    int body[2];
+    double point[2][3], axis[3] /* frame of body[0] */;
+    double reference[2][3]; /* angle: e_1 in the frame of body[0], f_1 in that of body[1] */
+    double design, offset, range[2];
+    bool driven;
+    int input; /* driven: index of its value in inputs; rate and acceleration follow */
+} Coordinate;
+
+typedef struct Input {
+    const char *name, *unit;
+    double initial;
+} Input;
+
+typedef enum ForceType { FORCE_COORDINATE, FORCE_POINTS, FORCE_TYPES } ForceType;
+
+typedef struct Force {
+    const char *name;
+    Place at;
+    ForceType type;
+    int coordinate; /* FORCE_COORDINATE */
+    int body[2];    /* FORCE_POINTS; BODY_GROUND possible */
+    double point[2][3];
+    double stiffness, damping, free;
+} Force;
+
+typedef struct Wheel {
+    const char *name;
+    Place at;
+    int body;
+    double center[3]; /* frame of body */
+    double radius, stiffness, damping, fade;
+} Wheel;
+
+typedef enum OutputType {
+    OUTPUT_POSITION,
+    OUTPUT_VELOCITY,
+    OUTPUT_ACCELERATION,
+    OUTPUT_ORIENTATION,
+    OUTPUT_ROLL_PITCH_YAW,
+    OUTPUT_ANGULAR_VELOCITY,
+    OUTPUT_COORDINATE,
+    OUTPUT_FORCE,
+    OUTPUT_DRIVE_FORCE,
+    OUTPUT_WHEEL,
+    OUTPUT_ENERGY,
+    OUTPUT_TYPES
+} OutputType;
+
+enum { OUTPUT_MAX_COMPONENTS = 4 };
+
+typedef struct Output {
+    const char *name;
+    Place at;
+    OutputType type;
+    int body;        /* where the type has one */
+    double point[3]; /* frame of body */
+    int in;          /* body in whose frame components are given, BODY_GROUND: world */
+    int index;       /* coordinate, force element or wheel */
+    int count;       /* components */
+    const char *component[OUTPUT_MAX_COMPONENTS]; /* full names: "chassis.x" */
+    const char *unit[OUTPUT_MAX_COMPONENTS];
+} Output;
+
+typedef struct Model {
+    const Source *source;
+    const char *name, *description;
+    double gravity[3];
+    bool free_base; /* body 0 is the base: the chassis, or ground with mass 0 */
+    int bodies, joints, coordinates, forces, wheels, inputs, outputs, output_components;
+    Body *body;
+    Joint *joint;
+    Coordinate *coordinate;
+    Force *force;
+    Wheel *wheel;
+    Input *input;
+    Output *output;
+} Model;
+
+extern const char *const joint_type_name[JOINT_TYPES];           /* as in the file: "revolute" */
+extern const int joint_equations[JOINT_TYPES];                   /* FORMAT.md section 4 */
+extern const char *const coordinate_type_name[COORDINATE_TYPES];
+extern const char *const output_type_name[OUTPUT_TYPES];
+
+/* Read and resolve a `.veh` file. Any mistake ends in diag_fail. */
+const Model *model_read(Pool *pool, const char *path);
+
+/* ---- graph.c, sequence.c, draw.c: which subsets can be solved, and in which order ------------------ */
+
+/* A decoupled subset (method.md section 3): as many equations as unknowns once the bodies before it are known. */
+typedef struct Subset {
+    int stage;                /* from 1 */
+    int bodies, *body;        /* unknown bodies, canonical order; the base alone in stage 1 of a free base */
+    int joints, *joint;       /* their joints, canonical order */
+    int coordinates, *coordinate; /* dual coordinates whose definition is among the equations, canonical order */
+    int knowns, *known;       /* bodies other than the base, solved before, that a joint or coordinate refers to */
+    int deps, *dep;           /* coordinates that its bodies' motion relative to the base depends on: own ones first */
+    int class;                /* isomorphism class, index into Sequence.class; -1 for the base */
+} Subset;
+
+/* Subsets that are alike in topology and joint types: position i of every list of one member corresponds to
+ * position i of every other member's. */
+typedef struct Class {
+    const char *name; /* identifier, from the first member's bodies */
+    int members, *member; /* indices into Sequence.subset */
+} Class;
+
+typedef struct Sequence {
+    int stages, subsets, classes;
+    Subset *subset; /* in computational order */
+    Class *class;
+    int *body_subset; /* [bodies] subset that yields a body */
+    int unknowns, equations, dof; /* of the whole model: method.md section 1 (7 a body, normalizations counted) */
+} Sequence;
+
+/* Find the finest sequence over whole bodies and joints. Over- and under-determined models end in diag_fail
+ * naming the bodies, joints and coordinates concerned and what to add or remove. */
+const Sequence *sequence_find(Pool *pool, const Model *model);
+/* Stages, subsets, unknowns, equations, joints, classes as a table for people. */
+void sequence_print(Text *out, const Model *model, const Sequence *sequence);
+/* Graphviz source of the weighted graph with its stages (the paper's Figs. 2 and 3). */
+void graph_draw(Text *out, const Model *model, const Sequence *sequence);
+
+/* picture.c: a Graphviz source as an SVG file, by Graphviz's `dot`. Exits with a message when that is missing or fails. */
+void picture_write(Pool *pool, const char *path, const Text *dot);
+
+/* dump.c: FORMAT.md section 11. */
+void model_dump(Text *out, const Model *model, const Sequence *sequence);
+
+/* ---- expr.c: the expression graph ------------------------------------------------------------------- */
+
+/* A node of the graph. Equal nodes are one node, so comparing two Ex compares expressions. */
+typedef uint32_t Ex;
+
+/* X(name, arity, C text with %0 %1 %2 for the arguments, counted as) */
+#define OP_LIST(X) \
+    X(OP_LITERAL, 0, "", "") \
+    X(OP_CONSTANT, 0, "", "") \
+    X(OP_INPUT, 0, "", "") \
+    X(OP_NEG, 1, "-%0", "") \
+    X(OP_ADD, 2, "%0 + %1", "add") \
+    X(OP_SUB, 2, "%0 - %1", "add") \
+    X(OP_MUL, 2, "%0 * %1", "multiply") \
+    X(OP_DIV, 2, "%0 / %1", "divide") \
+    X(OP_SQRT, 1, "GIC_SQRT(%0)", "root") \
+    X(OP_ABS, 1, "GIC_FABS(%0)", "") \
+    X(OP_SIN, 1, "GIC_SIN(%0)", "function") \
+    X(OP_COS, 1, "GIC_COS(%0)", "function") \
+    X(OP_ASIN, 1, "GIC_ASIN(%0)", "function") \
+    X(OP_ATAN2, 2, "GIC_ATAN2(%0, %1)", "function") \
+    X(OP_MIN, 2, "GIC_MIN(%0, %1)", "") \
+    X(OP_MAX, 2, "GIC_MAX(%0, %1)", "") \
+    X(OP_POSITIVE, 3, "(%0 > GIC_R(0) ? %1 : %2)", "") \
+    X(OP_ROAD, 2, "", "function") \
+    X(OP_ROAD_PART, 1, "", "")
+
+typedef enum Op {
+#define OP_ENUM(name, arity, text, counted) name,
+    OP_LIST(OP_ENUM)
+#undef OP_ENUM
+    OP_COUNT
+} Op;
+
+/* When a node's value is known: always the same; the same for one member of a class; at run time only. */
+typedef enum Level { LEVEL_LITERAL, LEVEL_CONSTANT, LEVEL_VARIABLE } Level;
+
+typedef struct Node {
+    uint8_t op, level;
+    Ex arg[3];        /* OP_ROAD_PART: arg[1] is 0, 1 or 2 for h, dh/dx, dh/dy */
+    const char *name; /* OP_INPUT: the C expression that reads it */
+} Node;
+
+/* Every node carries `samples` numeric values: sample s is one admissible configuration of class member
+ * s / (samples / members). Constants are folded, sums and products simplified as nodes are made. */
+typedef struct Dag {
+    Pool *pool;
+    int members, samples;
+    int nodes, room;
+    Node *node;
+    double *value; /* [nodes][samples] */
+    Ex *table;     /* hash table */
+    uint32_t mask;
+} Dag;
+
+Dag *dag_new(Pool *pool, int members, int samples);
+Ex ex_literal(Dag *dag, double value);
+Ex ex_constant(Dag *dag, const double *value);                 /* [members] */
+Ex ex_input(Dag *dag, const char *name, const double *sample); /* [samples], or NULL: not needed */
+Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c);                    /* unused arguments: 0 */
+Ex ex_neg(Dag *dag, Ex a);
+Ex ex_add(Dag *dag, Ex a, Ex b);
+Ex ex_sub(Dag *dag, Ex a, Ex b);
+Ex ex_mul(Dag *dag, Ex a, Ex b);
+Ex ex_div(Dag *dag, Ex a, Ex b);
+Ex ex_sqrt(Dag *dag, Ex a);
+Ex ex_dot(Dag *dag, const Ex a[3], const Ex b[3]);
+void ex_cross(Dag *dag, const Ex a[3], const Ex b[3], Ex out[3]);
+void ex_add3(Dag *dag, const Ex a[3], const Ex b[3], Ex out[3]); /* out may alias in these three */
+void ex_sub3(Dag *dag, const Ex a[3], const Ex b[3], Ex out[3]);
+void ex_scale3(Dag *dag, Ex s, const Ex a[3], Ex out[3]);
+void ex_zero3(Dag *dag, Ex out[3]);
+void ex_apply(Dag *dag, const Ex A[9], const Ex x[3], Ex out[3]);            /* A x; out may not alias x */
+void ex_apply_transposed(Dag *dag, const Ex A[9], const Ex x[3], Ex out[3]); /* A^T x */
+void ex_rotation(Dag *dag, const Ex p[4], Ex A[9]);                          /* A(p), p normalized */
+bool ex_is(const Dag *dag, Ex e, double value);                              /* the literal `value`? */
+double ex_value(const Dag *dag, Ex e, int sample);
+void ex_set_sample(Dag *dag, Ex input, int sample, double value);
+/* Recompute samples first .. first + count - 1 of every node after inputs changed. */
+void dag_evaluate(Dag *dag, int first, int count);
+/* sin and cos without libm: the same digits on every machine. */
+void portable_sincos(double x, double *sine, double *cosine);
+
+/* Operations needed at run time for some roots, by kind. */
+typedef struct Count {
+    int add, multiply, divide, root, function;
+} Count;
+
+Count dag_count(const Dag *dag, const Ex *root, int roots);
+
+/* ---- linear.c: straight-line factorizations ------------------------------------------------------------ */
+
+/* P A Q = L U of a small matrix of expressions, n x n. entry[n k + j], in pivot order: left of the diagonal the multipliers of L, on it the
+ * reciprocal of the pivot, right of it U. Symmetric: L D L^T, entry right of the diagonal is the transposed multiplier. */
+typedef struct Factors {
+    int n;
+    bool symmetric;
+    int *row, *column; /* [n] row and column of the k-th pivot */
+    Ex *entry;         /* [n][n] */
+    Ex *pivot;         /* [n] */
+} Factors;
+
+/* Pivot order from the samples: cheapest at run time among the entries that are numerically good at every usable sample (Markowitz count
+ * with threshold). column_scale [n] makes the unknowns comparable; usable [samples]. Returns NULL where no pivot of relative size
+ * 1e-9 is left at some usable sample: *rank is the number of pivots found then, row_left [n] marks the rows without one. */
+Factors *linear_factor(Dag *dag, int n, const Ex *A, const double *column_scale, const bool *usable, int *rank,
+                       bool *row_left);
+/* Symmetric positive definite: pivots on the diagonal, cheapest first. Uses the upper triangle of A. */
+Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A);
+/* x = A^-1 b; x may alias b. */
+void linear_solve(Dag *dag, const Factors *factors, const Ex *b, Ex *x);
+/* Dense numeric solve with row-scaled partial pivoting, in place: b [n] becomes x. False when singular. A is destroyed. */
+bool linear_solve_numeric(int n, double *A, double *b);
+
+/* ---- motion.c: how bodies move relative to the base ------------------------------------------------------ */
+
+/* Motion of a body relative to the base, components in the base frame. c: position of the body's reference point, a body-fixed
+ * point that makes the equations of its subset sparse; velocity and acceleration are that point's. alpha and
+ * acceleration are those at w'' = 0. S: [deps][6] angular and linear velocity of unit rates of the coordinates. */
+typedef struct Motion {
+    Ex c[3], A[9], omega[3], velocity[3], alpha[3], acceleration[3];
+    Ex *S;
+    int deps;
+} Motion;
+
+/* Place of a Motion in memory, as generated code keeps it: numbers per body before S, and offsets. */
+enum { MOTION_C = 0, MOTION_A = 3, MOTION_OMEGA = 12, MOTION_VELOCITY = 15, MOTION_ALPHA = 18, MOTION_ACCELERATION = 21, MOTION_S = 24 };
+
+/* The base itself: at rest at the origin. */
+void motion_base(Dag *dag, Motion *motion);
+/* A motion read from memory at the C expression `array` ("m0"), numbers from `offset` on. */
+void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int deps);
+
+/* A body-fixed vector: a point's position (`point`, arm from the reference point) or an axis (arm is the vector itself). */
+typedef struct Vector {
+    Ex v[3], arm[3], rate[3], bias[3];
+    bool point;
+} Vector;
+
+/* s: in the body frame, from the reference point (point) or as it is (axis). */
+Vector vector_point(Dag *dag, const Motion *motion, const Ex s[3]);
+Vector vector_axis(Dag *dag, const Motion *motion, const Ex u[3]);
+
+/* ---- rows.c: constraint equations ------------------------------------------------------------------------ */
+
+/* One scalar equation Phi = 0 or Psi = 0 between the two ends of a joint or coordinate. Its derivative is
+ * J[0] . twist_0 + J[1] . twist_1 + dual w' = 0, its second derivative the same with accelerations plus `bias` = 0. */
+typedef struct Row {
+    Ex value, J[2][6], dual, bias;
+    Ex guard; /* positive on the right branch, or 0: needs none */
+} Row;
+
+/* Numbers of a joint or dual coordinate as expressions; frames as in Joint and Coordinate, points from reference points. */
+typedef struct Fixture {
+    Ex point[2][3], axis[2][3];
+    Ex side[2][2][3]; /* the two directions perpendicular to the axis at design, each in both bodies */
+    Ex square, offset; /* length at design squared; offset */
+} Fixture;
+
+enum { ROWS_MAX = 5, FIXTURE_NUMBERS = sizeof(Fixture) / sizeof(Ex) };
+
+/* The same as numbers, in the order of Fixture's members; origin: reference points [bodies][3], body frames. */
+void fixture_of_joint(const Model *model, const Joint *joint, const double (*origin)[3], double number[FIXTURE_NUMBERS]);
+void fixture_of_coordinate(const Model *model, const Coordinate *coordinate, const double (*origin)[3],
+                           double number[FIXTURE_NUMBERS]);
+int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2], Row row[ROWS_MAX]);
+/* x, rate: value and rate of the coordinate. */
+Row coordinate_row(Dag *dag, CoordinateType type, const Fixture *fixture, const Motion *const end[2], Ex x, Ex rate);
+
+/* ---- sample.c: admissible configurations to choose pivots at ---------------------------------------------- */
+
+/* Configurations reached by continuation along straight lines of the coordinates, in `steps` steps from the design. Configuration 0 is
+ * the design. Poses are relative to the base and of reference points. */
+typedef struct Sampling {
+    int configurations, steps, bodies, coordinates;
+    double *target; /* [configurations][coordinates] */
+    double *pose;   /* [steps + 1][configurations][bodies][12]: c, A */
+    bool *usable;   /* [bodies][configurations]: the body could be followed all the way */
+    double **S;     /* [bodies] -> [configurations][deps of its subset][6], at the ends of the paths */
+    double *swing;  /* [coordinates] largest rotation, or move relative to the subset's size, of a unit change */
+} Sampling;
+
+Sampling *sampling_new(Pool *pool, const Model *model, const Sequence *sequence, const double (*origin)[3]);
+double sampling_coordinate(const Sampling *sampling, const Model *model, int step, int configuration, int coordinate);
+double *sampling_pose(const Sampling *sampling, int step, int configuration, int body);
+
+/* ---- block.c: straight-line code before it is text ------------------------------------------------------------ */
+
+/* `target` = value once everything is computed; or a status returned where value is not above `least` (of |value| with `magnitude`). */
+typedef struct Store {
+    const char *target;
+    Ex value;
+} Store;
+
+typedef struct Check {
+    Ex value;
+    double least;
+    bool magnitude;
+    const char *status;
+} Check;
+
+typedef struct Block {
+    Dag *dag;
+    int stores, checks;
+    Store *store;
+    Check *check;
+} Block;
+
+void block_store(Block *block, Ex value, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void block_check(Block *block, Ex value, bool magnitude, double least, const char *status);
+Count block_count(const Block *block);
+
+/* ---- subset.c, follow.c, inertia.c: recovery of one class of decoupled subsets ------------------------------------------------------- */
+
+/* Where a subset keeps its numbers. start: what the next call begins from (pose 7 a body, S, factors); motion: one Motion a body;
+ * inertia: what it adds to the equations of motion, see INERTIA_*. */
+typedef struct Layout {
+    int bodies, deps, factors;
+    int start_size, start_S, start_factors;
+    int motion_size; /* of one body */
+    int inertia_size;
+} Layout;
+
+/* inertia: first and second moments about the base origin in the base frame, force and moment of the quadratic-velocity terms, then 7
+ * numbers a coordinate (force and moment of its unit acceleration, quadratic-velocity force along it), then the
+ * upper triangle of the coordinates' mass matrix. */
+enum { INERTIA_FIRST = 0, INERTIA_SECOND = 3, INERTIA_FORCE = 9, INERTIA_MOMENT = 12, INERTIA_COORDINATE = 15 };
+
+int inertia_mass(int deps, int j, int k); /* place of M_jk, j <= k */
+
+/* The formulas of a class. C names: k constants of the member, m0, m1, ... motions of the knowns, x, rate, change: value, rate and
+ * change since the start of the deps, turn: angular velocity of the base, q: pose, s and f: S and factors of the start. */
+typedef struct Formula {
+    Dag *dag;
+    Layout layout;
+    double size;   /* largest distance between points of a subset, m */
+    Block predict; /* q from the start and `change`; reach: squared relative size of that move */
+    Block chord;   /* one correction of q with the start's factors; step: its squared relative size */
+    Block solve;   /* factors, S, last correction, motion and inertia */
+    Block residual; /* worst: largest constraint residual at q, relative to size */
+} Formula;
+
+/* All classes [classes]. Fills the sampling on the way. Singular subsets end in diag_fail. */
+Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence *sequence, const double (*origin)[3],
+                            Sampling *sampling);
+/* Reference points of all bodies [bodies][3], body frames: where a joint to something known sits. */
+double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3];
+
+/* ---- whole.c: the whole mechanism, once all subsets are recovered ---------------------------------------------- */
+
+/* Where the numbers of every subset stand in the work space, and where states stand in the state. */
+typedef struct Plan {
+    const Model *model;
+    const Sequence *sequence;
+    Formula **formula;       /* [classes] */
+    const double (*origin)[3];
+    int *start_offset, *inertia_offset; /* [subsets] */
+    int *motion_offset;      /* [bodies] */
+    int start_size, inertia_size, motion_size;
+    int free_coordinates;
+    int *coordinate_state, *coordinate_rate; /* [coordinates] index in the state, -1: driven */
+    int states;              /* r e w v omega w', or w w' */
+    int unknowns;            /* accelerations: alpha and a of a free base, then the free coordinates */
+    int *coordinate_unknown; /* [coordinates] -1: driven */
+} Plan;
+
+Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Formula **formula, const double (*origin)[3]);
+
+/* Inputs of every global block, as C names: y state, e recovered Euler parameters of the base, x and xd values and rates of all
+ * coordinates, u inputs, m motions, n inertias. Fixed base: r, v, turn are 0 and R the identity. */
+typedef struct Whole {
+    const Plan *plan;
+    const Model *model;
+    Dag *dag;
+    Motion *motion;              /* [bodies] relative to the base */
+    Ex r[3], e[4], R[9], v[3];   /* base: position, Euler parameters, rotation to the world, world velocity */
+    Ex turn[3];                  /* angular velocity of the base, base frame */
+    Ex gravity[3];               /* base frame */
+    Ex *x, *xd;                  /* [coordinates] */
+} Whole;
+
+Whole *whole_new(Pool *pool, const Plan *plan);
+/* A point of a body (or of ground) relative to the base, in the base frame; s in the body frame. */
+Vector whole_point(Whole *whole, int body, const double s[3]);
+/* World position and velocity of a point given relative to the base. */
+void whole_position(Whole *whole, const Vector *point, Ex out[3]);
+void whole_velocity(Whole *whole, const Vector *point, Ex out[3]);
+/* Velocity in the base frame of a point moving with the base and relative to it. */
+void whole_velocity_in_base(Whole *whole, const Vector *point, Ex out[3]);
+/* A body's inertia matrix in base axes (xx yy zz xy xz yz). */
+void whole_inertia(Whole *whole, int body, Ex J[6]);
+/* Derivative by coordinate `j` of the point's velocity relative to the base, 0 where it does not depend on it. */
+void whole_unit_velocity(Whole *whole, int body, const Vector *point, int coordinate, Ex linear[3], Ex angular[3]);
+/* Coordinates that a body's motion depends on. */
+const Subset *whole_subset(const Whole *whole, int body);
+
+/* ---- loads.c: applied forces -------------------------------------------------------------------------------------- */
+
+/* Generalised forces: moment about the base origin and force on everything, base frame; force along every coordinate. */
+typedef struct Loads {
+    Ex moment[3], force[3];
+    Ex *along;      /* [coordinates] */
+    Ex *element;    /* [forces] Q or T of FORMAT.md section 7 */
+    Ex (*wheel)[4]; /* [wheels] fz, deflection, deflection rate, road height */
+    Ex potential, potential_rate, power; /* of springs; of dampers and tires, W */
+} Loads;
+
+Loads *loads_make(Whole *whole);
+
+/* ---- dynamics.c, outputs.c: the blocks that end the pipeline ----------------------------------------------- */
+
+/* rate[] of the whole state; checks the pivots of the mass matrix. */
+Block *dynamics_block(Whole *whole);
+/* out[] of all outputs, from a Whole and rate[]. */
+Block *outputs_block(Whole *whole);
+/* pose[7 i]: world poses of all body frames. s: the Newton start. */
+Block *poses_block(Whole *whole);
+/* tau[]: residual of the equations of motion for accelerations acc[] (order of the unknowns), body by body. */
+Block *inverse_block(Whole *whole);
+/* energy[3]: both sides of the energy balance at rate[] and the sum of magnitudes; acc[]: the unknowns at rate[]. */
+Block *energy_block(Whole *whole);
+/* Accelerations at rate[]: alpha, a (base frame, less gravity), w2 of all coordinates [coordinates]. */
+void whole_accelerations(Whole *whole, Ex alpha[3], Ex a[3], Ex **w2);
+/* Force that drives a driven coordinate, at rate[]. */
+Ex whole_drive_force(Whole *whole, int coordinate);
+/* Absolute acceleration less gravity, base frame, of a point; alpha, a: of the base (a less gravity), w2: of all coordinates. */
+void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2, Ex out[3]);
+void whole_angular_acceleration(Whole *whole, int body, const Ex alpha[3], const Ex *w2, Ex out[3]);
+
+/* ---- emit.c: blocks as C text ------------------------------------------------------------------------------------------ */
+
+/* Constants of a class in the order of their slots in k[]. */
+typedef struct Constants {
+    int count;
+    Ex *e;
+} Constants;
+
+/* The statements of a block, each line led by `indent` spaces: temporaries in depth-first order from the results, checks as soon
+ * as their values are there, stores at the end (a target may be read before). Constants met on the way get slots. */
+void block_emit(Text *out, const Block *block, Constants *constants, int indent);
+/* A number as C source that reads back bit-exactly: R(0.5). */
+const char *emit_number(Pool *pool, double value);
+
+/* ---- template.c: fixed text with insertion points -------------------------------------------------------------------------- */
+
+/* Files built into the program: templates and the freestanding runtime. Ends with name NULL. */
+typedef struct Embedded {
+    const char *name, *bytes;
+    size_t size;
+} Embedded;
+
+extern const Embedded embedded[];
+
+/* Where a template's line is nothing but `@name@` in a comment, `insert` prints what belongs there, with that line's indent. */
+typedef void Insert(void *context, const char *name, Text *out, int indent);
+
+/* Expand the template `name` (from the folder `templates`, or built in where that is NULL): every word PREFIX becomes `prefix`,
+ * UPPER the same in capitals, CLASS becomes `class`. */
+void template_expand(Pool *pool, Text *out, const char *templates, const char *name, const char *prefix, const char *class,
+                     Insert *insert, void *context);
+
+/* ---- generate.c: all of it ------------------------------------------------------------------------------------------------- */
+
+/* The generated C and its header. `header`: the name by which the C includes it, NULL: it doesn't. `templates` as above. */
+void generate(Pool *pool, const Model *model, const Sequence *sequence, const char *templates, const char *header, Text *c,
+              Text *h);
+
+#endif

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT
+ * A `.veh` file into a Model, as models/FORMAT.md defines it. Sections are read in the order in which they refer to
+ * each other, whatever their order in the file. */
+#include "read.h"
+
+#include <string.h>
+
+enum { FORMAT_VERSION = 1 };
+
+enum {
+    FILE_GICGEN,
+    FILE_MODEL,
+    FILE_DESCRIPTION,
+    FILE_GRAVITY,
+    FILE_BASE,
+    FILE_POINTS,
+    FILE_BODIES,
+    FILE_JOINTS,
+    FILE_COORDINATES,
+    FILE_INPUTS,
+    FILE_FORCES,
+    FILE_WHEELS,
+    FILE_OUTPUTS,
+    FILE_KEYS
+};
+
+static const Key file_key[FILE_KEYS] = {
+    [FILE_GICGEN] = {"gicgen", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
+    [FILE_MODEL] = {"model", KEY_NAME, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [FILE_DESCRIPTION] = {"description", KEY_TEXT, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_GRAVITY] = {"gravity", KEY_VECTOR, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_BASE] = {"base", KEY_NAME, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [FILE_POINTS] = {"points", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_BODIES] = {"bodies", KEY_ITEM, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [FILE_JOINTS] = {"joints", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_COORDINATES] = {"coordinates", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_INPUTS] = {"inputs", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_FORCES] = {"forces", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_WHEELS] = {"wheels", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_OUTPUTS] = {"outputs", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+};
+
+static const Section file_section = {file_key, FILE_KEYS, NULL, 0, NULL};
+
+/* Before anything else: a file of another version may have keys that this reader would call unknown. */
+static void version_check(const Item *file)
+{
+    if (file->kind != ITEM_MAP)
+        diag_fail(file->at, "begin with `gicgen: 1`; models/FORMAT.md describes the rest",
+                  "a model is a map of keys and values");
+    const Item *item = doc_find(file, "gicgen");
+    if (!item)
+        diag_fail(file->at, "begin the file with `gicgen: 1`", "the model lacks the key 'gicgen'");
+    double version = doc_number(item, "the format version");
+    if (version > FORMAT_VERSION)
+        diag_fail(item->at, "get a newer gicgen, or write `gicgen: 1` and what models/FORMAT.md describes",
+                  "format version %s is too new: this gicgen reads version %d", item->text, FORMAT_VERSION);
+    if (version != FORMAT_VERSION)
+        diag_fail(item->at, "write `gicgen: 1`", "there is no format version %s", item->text);
+}
+
+static void points_read(Reader *reader, const Item *map)
+{
+    Entry *entry = section_entries(reader, map, "point", &reader->points);
+    reader->point = pool_alloc(reader->pool, sizeof *reader->point * (size_t)(reader->points + 1));
+    for (int i = 0; i < reader->points; ++i) {
+        reader->point[i].name = entry[i].name;
+        doc_vector(entry[i].item, entry[i].what, reader->point[i].x, 3);
+    }
+}
+
+const Model *model_read(Pool *pool, const char *path)
+{
+    Model *model = pool_alloc(pool, sizeof *model);
+    Reader reader = {.pool = pool, .model = model};
+    const Item *file = doc_read(pool, path);
+    version_check(file);
+    Value value[FILE_KEYS];
+    section_read(&reader, &file_section, 0, &(Entry){"", "the model", file->at, file}, value);
+    *model = (Model){
+        .source = file->at.source,
+        .name = value[FILE_MODEL].text,
+        .description = value[FILE_DESCRIPTION].item ? value[FILE_DESCRIPTION].text : "",
+        .gravity = {0, 0, -9.81},
+    };
+    model_name_check(model->name, value[FILE_MODEL].item->at);
+    if (value[FILE_GRAVITY].item)
+        memcpy(model->gravity, value[FILE_GRAVITY].number, sizeof model->gravity);
+    points_read(&reader, value[FILE_POINTS].item);
+    bodies_read(&reader, value[FILE_BASE].item, value[FILE_BODIES].item);
+    joints_read(&reader, value[FILE_JOINTS].item);
+    coordinates_read(&reader, value[FILE_COORDINATES].item);
+    inputs_read(&reader, value[FILE_INPUTS].item);
+    forces_read(&reader, value[FILE_FORCES].item);
+    wheels_read(&reader, value[FILE_WHEELS].item);
+    outputs_read(&reader, value[FILE_OUTPUTS].item);
+    return model;
+}

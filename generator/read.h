@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Private to read.c and read_*.c. A section of a `.veh` file is a table of keys; the same table checks what a person
+ * wrote (unknown, missing and misplaced keys, kinds, bounds) and reads it.
+ */
+#ifndef GICGEN_READ_H
+#define GICGEN_READ_H
+
+#include "gicgen.h"
+
+/* What the value of a key is, and where section_read leaves it in a Value. Vectors and points: model frame. */
+typedef enum KeyKind {
+    KEY_TYPE,          /* one of the section's types, for section_type */
+    KEY_ITEM,          /* read by the section itself: item */
+    KEY_TEXT,          /* text */
+    KEY_NAME,          /* text */
+    KEY_NUMBER,        /* number[0] */
+    KEY_FLAG,          /* flag */
+    KEY_RANGE,         /* number[0] < number[1] */
+    KEY_VECTOR,        /* number[0..2] */
+    KEY_AXIS,          /* number[0..2], unit length */
+    KEY_EULER,         /* number[0..3] */
+    KEY_POINT,         /* number[0..2] */
+    KEY_POINTS,        /* number[0..2], number[3..5] */
+    KEY_BODY,          /* index[0]; ground only where it is the base */
+    KEY_BODIES,        /* index[0] and index[1], different; likewise */
+    KEY_FORCE_BODIES,  /* the same, ground always allowed */
+    KEY_FRAME,         /* a body or `world`: index[0], BODY_GROUND for world */
+    KEY_COORDINATE,    /* index[0] */
+    KEY_FORCE,         /* index[0] */
+    KEY_WHEEL,         /* index[0] */
+    KEY_KINDS
+} KeyKind;
+
+typedef enum Bound { BOUND_NONE, BOUND_NOT_NEGATIVE, BOUND_POSITIVE } Bound;
+
+/* Sections whose entries come in several forms (types) say by bits which forms know a key and which need it. */
+#define FORM(form) (1u << (form))
+#define ALL_FORMS (~0u)
+
+typedef struct Key {
+    const char *name;
+    KeyKind kind;
+    unsigned allowed, required;
+    Bound bound;     /* numbers */
+    double fallback; /* numbers: when the key is absent */
+} Key;
+
+typedef struct Section {
+    const Key *key;
+    int keys;
+    const char *const *type; /* what the key `type` may be, where there is one */
+    int types;
+    const char *const *form; /* names of the forms, for messages; NULL: there is one form */
+} Section;
+
+typedef struct Value {
+    const Item *item; /* NULL: the key is absent */
+    double number[6];
+    int index[2];
+    const char *text;
+    bool flag;
+} Value;
+
+typedef struct Point {
+    const char *name;
+    double x[3];
+} Point;
+
+typedef struct Reader {
+    Pool *pool;
+    Model *model;
+    Point *point;
+    int points;
+} Reader;
+
+/* One entry of a map of named things. */
+typedef struct Entry {
+    const char *name, *what; /* "hinge", "joint 'hinge'" */
+    Place at;                /* of the name */
+    const Item *item;
+} Entry;
+
+/* ---- read_keys.c ---- */
+
+/* The entries of a map of `thing`s ("joint"), in the order of the file, their names checked; none when map is NULL. */
+Entry *section_entries(Reader *reader, const Item *map, const char *thing, int *count);
+/* The form that an entry's `type` selects. */
+int section_type(Reader *reader, const Section *section, const Entry *entry);
+/* Check an entry against the keys of a form and read them: value[k] belongs to section->key[k]. */
+void section_read(Reader *reader, const Section *section, int form, const Entry *entry, Value *value);
+/* The prefix of all generated names must be an identifier that C and C++ leave free. */
+void model_name_check(const char *name, Place at);
+/* A text that ends up in a comment and in a string of the generated code: one line. */
+void text_check(const char *text, const char *what, Place at);
+/* `vector` divided by its norm, without overflow; false when it is zero. */
+bool vector_normalize(double *vector, int size);
+/* Names that differ only in case or in `.` against `_` would give the same name in generated code. */
+void generated_names_check(Reader *reader, const char *thing, const char *const *name, const Place *at, int count);
+
+/* ---- read_bodies.c ---- */
+
+void bodies_read(Reader *reader, const Item *base, const Item *bodies);
+/* A point or a direction of the model frame in the frame of a body (BODY_GROUND: unchanged). */
+void body_point(const Reader *reader, int body, const double x[3], Place at, double out[3]);
+void body_direction(const Reader *reader, int body, const double x[3], double out[3]);
+
+/* ---- read_links.c: joints and dual coordinates; read_loads.c: inputs, forces, wheels; read_outputs.c ---- */
+
+void joints_read(Reader *reader, const Item *map);
+void coordinates_read(Reader *reader, const Item *map);
+void inputs_read(Reader *reader, const Item *map);
+void forces_read(Reader *reader, const Item *map);
+void wheels_read(Reader *reader, const Item *map);
+void outputs_read(Reader *reader, const Item *map);
+
+/* x_b - x_a of two points of the model frame and its norm; both ends in one place end in diag_fail. */
+double points_distance(const Value *points, const char *what, double d[3]);
+
+#endif

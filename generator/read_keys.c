@@ -1,0 +1,356 @@
+/* SPDX-License-Identifier: MIT
+ * Reading one section entry by its table of keys: every kind of value a key can have, and the checks of names. */
+#include "read.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NAME_LENGTH = 40 };
+
+/* What to write, for remedies. */
+static const char *const kind_example[KEY_KINDS] = {
+    [KEY_TYPE] = "name",
+    [KEY_ITEM] = "{...}",
+    [KEY_TEXT] = "text",
+    [KEY_NAME] = "name",
+    [KEY_NUMBER] = "number",
+    [KEY_FLAG] = "true",
+    [KEY_RANGE] = "[low, high]",
+    [KEY_VECTOR] = "[x, y, z]",
+    [KEY_AXIS] = "[x, y, z]",
+    [KEY_EULER] = "[e0, e1, e2, e3]",
+    [KEY_POINT] = "[x, y, z]",
+    [KEY_POINTS] = "[[x, y, z], [x, y, z]]",
+    [KEY_BODY] = "body",
+    [KEY_BODIES] = "[a, b]",
+    [KEY_FORCE_BODIES] = "[a, b]",
+    [KEY_FRAME] = "body",
+    [KEY_COORDINATE] = "coordinate",
+    [KEY_FORCE] = "force",
+    [KEY_WHEEL] = "wheel",
+};
+
+/* Keywords of C11 and C++20: the runtime compiles as either. */
+static const char *const keyword[] = {
+    "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case", "catch", "char",
+    "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl", "concept", "const",
+    "const_cast", "consteval", "constexpr", "constinit", "continue", "decltype", "default", "delete", "do", "double",
+    "dynamic_cast", "else", "enum", "explicit", "export", "extern", "false", "float", "for", "friend", "goto", "if",
+    "inline", "int", "long", "main", "mutable", "namespace", "new", "noexcept", "not", "not_eq", "nullptr", "operator",
+    "or", "or_eq", "private", "protected", "public", "register", "reinterpret_cast", "requires", "restrict", "return",
+    "short", "signed", "sizeof", "static", "static_assert", "static_cast", "struct", "switch", "template", "this",
+    "thread_local", "throw", "true", "try", "typedef", "typeid", "typename", "union", "unsigned", "using", "virtual",
+    "void", "volatile", "wchar_t", "while", "xor", "xor_eq",
+};
+
+static void name_check(const char *name, const char *what, Place at)
+{
+    size_t length = strlen(name);
+    bool good = length > 0 && !(name[0] >= '0' && name[0] <= '9') && name[0] != '_';
+    for (size_t i = 0; i < length; ++i)
+        good = good && (unsigned char)name[i] < 128 && (isalnum((unsigned char)name[i]) || name[i] == '_');
+    if (!good)
+        diag_fail(at, "use letters, digits and `_`, beginning with a letter", "'%s' is not a name for %s", name, what);
+    if (length > NAME_LENGTH)
+        diag_fail(at, "take a shorter name", "the name '%s' of %s is longer than %d characters", name, what,
+                  NAME_LENGTH);
+}
+
+void model_name_check(const char *name, Place at)
+{
+    name_check(name, "the model", at);
+    for (size_t i = 0; i < sizeof keyword / sizeof *keyword; ++i)
+        if (!strcmp(name, keyword[i]))
+            diag_fail(at, "take another name, such as my_model", "the model name '%s' is reserved in C or C++", name);
+    if (!strcmp(name, "gic") || !strncmp(name, "gic_", 4))
+        diag_fail(at, "take a name that does not begin with gic", "the model name '%s' belongs to the runtime", name);
+}
+
+void text_check(const char *text, const char *what, Place at)
+{
+    for (const char *c = text; *c; ++c)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            diag_fail(at, "write it in one line, without tabs", "%s must be one line of text", what);
+    if (strstr(text, "/*") || strstr(text, "*/"))
+        diag_fail(at, "leave comment marks away", "%s would begin or end a comment in the generated code", what);
+}
+
+bool vector_normalize(double *vector, int size)
+{
+    double largest = 0, sum = 0;
+    for (int i = 0; i < size; ++i)
+        largest = fmax(largest, fabs(vector[i]));
+    if (largest == 0)
+        return false;
+    int exponent;
+    frexp(largest, &exponent); /* a power of two scales without rounding */
+    for (int i = 0; i < size; ++i) {
+        vector[i] = ldexp(vector[i], -exponent);
+        sum += vector[i] * vector[i];
+    }
+    double norm = sqrt(sum);
+    for (int i = 0; i < size; ++i)
+        vector[i] /= norm;
+    return true;
+}
+
+Entry *section_entries(Reader *reader, const Item *map, const char *thing, int *count)
+{
+    *count = 0;
+    if (!map)
+        return NULL;
+    if (map->kind != ITEM_MAP)
+        diag_fail(map->at, "write `name: {...}` for each one, or {} for none",
+                  "a map is wanted here, with a name for each %s", thing);
+    Entry *entry = pool_alloc(reader->pool, sizeof *entry * (size_t)(map->count + 1));
+    for (int i = 0; i < map->count; ++i) {
+        const Item *key = map->key[i];
+        name_check(key->text, pool_print(reader->pool, "a %s", thing), key->at);
+        entry[i] = (Entry){key->text, pool_print(reader->pool, "%s '%s'", thing, key->text), key->at, map->value[i]};
+    }
+    *count = map->count;
+    return entry;
+}
+
+/* `word` must be one of the names that `count` structures of `stride` bytes begin with; returns its index. */
+static int find(Reader *reader, const Item *item, const char *what, const char *thing, const void *first, int count,
+                size_t stride)
+{
+    const char *word = doc_word(item, what);
+    const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(count + 1));
+    Text list = {.pool = reader->pool};
+    for (int i = 0; i < count; ++i) {
+        name[i] = *(const char *const *)(const void *)((const char *)first + (size_t)i * stride);
+        if (!strcmp(name[i], word))
+            return i;
+        text_print(&list, "%s%s", i ? ", " : "", name[i]);
+    }
+    const char *nearest = diag_nearest(word, name, count);
+    const char *remedy = nearest ? pool_print(reader->pool, "did you mean '%s'?", nearest)
+                         : count ? pool_print(reader->pool, "one of: %s", list.s)
+                                 : pool_print(reader->pool, "the model has no %s; define one first", thing);
+    diag_fail(item->at, remedy, "%s: there is no %s '%s'", what, thing, word);
+}
+
+static int find_body(Reader *reader, const Item *item, const char *what, bool ground)
+{
+    const Model *model = reader->model;
+    const char *word = doc_word(item, what);
+    if (model->free_base && !strcmp(word, "ground")) {
+        if (!ground)
+            diag_fail(item->at, pool_print(reader->pool, "name a body (the base is '%s'), or write `base: ground`",
+                                           model->body[BODY_BASE].name),
+                      "%s: with a free base only force elements may refer to ground", what);
+        return BODY_GROUND;
+    }
+    return find(reader, item, what, "body", model->body, model->bodies, sizeof *model->body);
+}
+
+static void find_bodies(Reader *reader, const Item *item, const char *what, bool ground, int index[2])
+{
+    if (item->kind != ITEM_LIST || item->count != 2)
+        diag_fail(item->at, "write [a, b]", "%s must be a list of two bodies", what);
+    for (int i = 0; i < 2; ++i)
+        index[i] = find_body(reader, item->value[i], what, ground);
+    if (index[0] == index[1])
+        diag_fail(item->value[1]->at, "name two different bodies", "%s: both are '%s'", what, item->value[1]->text);
+}
+
+static void read_point(Reader *reader, const Item *item, const char *what, double x[3])
+{
+    if (item->kind == ITEM_SCALAR) {
+        if (!isalpha((unsigned char)item->text[0]))
+            diag_fail(item->at, "write [x, y, z] or the name of a point", "%s must be a point", what);
+        int i = find(reader, item, what, "point", reader->point, reader->points, sizeof *reader->point);
+        memcpy(x, reader->point[i].x, sizeof reader->point[i].x);
+    } else
+        doc_vector(item, what, x, 3);
+}
+
+static void read_number(const Key *key, const Item *item, const char *what, double *number)
+{
+    *number = doc_number(item, what);
+    if (key->bound == BOUND_POSITIVE && !(*number > 0))
+        diag_fail(item->at, "write a positive number", "%s must be greater than zero, not %s", what, item->text);
+    if (key->bound == BOUND_NOT_NEGATIVE && *number < 0)
+        diag_fail(item->at, "write zero or a positive number", "%s must not be negative (%s)", what, item->text);
+}
+
+static void read_value(Reader *reader, const Key *key, const Item *item, const char *what, Value *value)
+{
+    const Model *model = reader->model;
+    switch (key->kind) {
+    case KEY_TEXT:
+    case KEY_NAME:
+        value->text = doc_word(item, what);
+        text_check(value->text, what, item->at);
+        break;
+    case KEY_NUMBER:
+        read_number(key, item, what, value->number);
+        break;
+    case KEY_FLAG:
+        value->flag = doc_bool(item, what);
+        break;
+    case KEY_RANGE:
+        doc_vector(item, what, value->number, 2);
+        if (!(value->number[0] < value->number[1]))
+            diag_fail(item->at, "write [low, high]", "%s: the low end must be below the high end", what);
+        break;
+    case KEY_VECTOR:
+        doc_vector(item, what, value->number, 3);
+        break;
+    case KEY_AXIS:
+        doc_vector(item, what, value->number, 3);
+        if (!vector_normalize(value->number, 3))
+            diag_fail(item->at, "write a direction, such as [0, 0, 1]", "%s has no direction: it is zero", what);
+        break;
+    case KEY_EULER:
+        doc_vector(item, what, value->number, 4);
+        break;
+    case KEY_POINT:
+        read_point(reader, item, what, value->number);
+        break;
+    case KEY_POINTS:
+        if (item->kind != ITEM_LIST || item->count != 2)
+            diag_fail(item->at, "write [p_a, p_b]; each is [x, y, z] or the name of a point",
+                      "%s must be a list of two points", what);
+        read_point(reader, item->value[0], what, value->number);
+        read_point(reader, item->value[1], what, value->number + 3);
+        break;
+    case KEY_BODY:
+        value->index[0] = find_body(reader, item, what, false);
+        break;
+    case KEY_BODIES:
+        find_bodies(reader, item, what, false, value->index);
+        break;
+    case KEY_FORCE_BODIES:
+        find_bodies(reader, item, what, true, value->index);
+        break;
+    case KEY_FRAME:
+        if (!strcmp(doc_word(item, what), "world") || !strcmp(item->text, "ground"))
+            value->index[0] = BODY_GROUND;
+        else
+            value->index[0] = find_body(reader, item, what, false);
+        break;
+    case KEY_COORDINATE:
+        value->index[0] =
+            find(reader, item, what, "coordinate", model->coordinate, model->coordinates, sizeof *model->coordinate);
+        break;
+    case KEY_FORCE:
+        value->index[0] = find(reader, item, what, "force element", model->force, model->forces, sizeof *model->force);
+        break;
+    case KEY_WHEEL:
+        value->index[0] = find(reader, item, what, "wheel", model->wheel, model->wheels, sizeof *model->wheel);
+        break;
+    case KEY_TYPE:
+    case KEY_ITEM:
+    case KEY_KINDS:
+        break;
+    }
+}
+
+/* Names of the keys that some of `forms` know, and for remedies the same in one text. */
+static const char **key_names(Reader *reader, const Section *section, unsigned forms, int *count, const char **list)
+{
+    const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(section->keys + 1));
+    Text text = {.pool = reader->pool};
+    *count = 0;
+    for (int k = 0; k < section->keys; ++k)
+        if (section->key[k].allowed & forms) {
+            text_print(&text, "%s%s", *count ? ", " : "", section->key[k].name);
+            name[(*count)++] = section->key[k].name;
+        }
+    *list = text.s;
+    return name;
+}
+
+static void check_known_keys(Reader *reader, const Section *section, const Entry *entry)
+{
+    int count;
+    const char *list, **name = key_names(reader, section, ALL_FORMS, &count, &list);
+    doc_check_keys(entry->item, entry->what, name, count);
+}
+
+int section_type(Reader *reader, const Section *section, const Entry *entry)
+{
+    check_known_keys(reader, section, entry);
+    const Item *item = doc_find(entry->item, "type");
+    Text list = {.pool = reader->pool};
+    for (int i = 0; i < section->types; ++i)
+        text_print(&list, "%s%s", i ? ", " : "", section->type[i]);
+    if (!item)
+        diag_fail(entry->at, pool_print(reader->pool, "add `type:` with one of: %s", list.s), "%s lacks the key 'type'",
+                  entry->what);
+    const char *word = doc_word(item, pool_print(reader->pool, "type of %s", entry->what));
+    for (int i = 0; i < section->types; ++i)
+        if (!strcmp(section->type[i], word))
+            return i;
+    const char *nearest = diag_nearest(word, section->type, section->types);
+    const char *remedy = nearest ? pool_print(reader->pool, "did you mean '%s'?", nearest)
+                                 : pool_print(reader->pool, "one of: %s", list.s);
+    diag_fail(item->at, remedy, "%s: there is no type '%s'", entry->what, word);
+}
+
+void section_read(Reader *reader, const Section *section, int form, const Entry *entry, Value *value)
+{
+    check_known_keys(reader, section, entry);
+    const char *what = entry->what;
+    if (section->form)
+        what = pool_print(reader->pool, "%s (%s)", what, section->form[form]);
+    int count;
+    const char *list;
+    key_names(reader, section, FORM(form), &count, &list);
+    for (int k = 0; k < section->keys; ++k) {
+        const Key *key = section->key + k;
+        const Item *item = doc_find(entry->item, key->name);
+        value[k] = (Value){.item = item, .number = {key->fallback}};
+        if (!item && key->required & FORM(form))
+            diag_fail(entry->at, pool_print(reader->pool, "add `%s: %s`", key->name, kind_example[key->kind]),
+                      "%s lacks the key '%s'", what, key->name);
+    }
+    for (int i = 0; i < entry->item->count; ++i) {
+        const Item *name = entry->item->key[i];
+        int k = 0;
+        while (strcmp(section->key[k].name, name->text))
+            ++k;
+        const Key *key = section->key + k;
+        if (!(key->allowed & FORM(form)))
+            diag_fail(name->at, pool_print(reader->pool, "its keys are: %s", list), "the key '%s' does not apply to %s",
+                      name->text, what);
+        read_value(reader, key, value[k].item, pool_print(reader->pool, "%s of %s", key->name, entry->what), value + k);
+    }
+}
+
+typedef struct Folded {
+    const char *name, *folded;
+    Place at;
+    int index;
+} Folded;
+
+static int compare_folded(const void *a, const void *b)
+{
+    const Folded *x = a, *y = b;
+    int order = strcmp(x->folded, y->folded);
+    return order ? order : x->index - y->index;
+}
+
+void generated_names_check(Reader *reader, const char *thing, const char *const *name, const Place *at, int count)
+{
+    if (count < 2)
+        return;
+    Folded *sorted = pool_alloc(reader->pool, sizeof *sorted * (size_t)count);
+    for (int i = 0; i < count; ++i) {
+        char *folded = pool_print(reader->pool, "%s", name[i]);
+        for (char *c = folded; *c; ++c)
+            *c = (char)(*c == '.' ? '_' : toupper((unsigned char)*c));
+        sorted[i] = (Folded){name[i], folded, at[i], i};
+    }
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_folded);
+    for (int i = 1; i < count; ++i)
+        if (!strcmp(sorted[i].folded, sorted[i - 1].folded))
+            diag_fail(sorted[i].at, "rename one of them; case, and `.` against `_`, make no difference there",
+                      "the %ss '%s' and '%s' have the same name in generated code", thing, sorted[i - 1].name,
+                      sorted[i].name);
+}

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT
+ * Outputs (FORMAT.md section 9): what each refers to, the names and units of its components. */
+#include "read.h"
+
+#include <string.h>
+
+const char *const output_type_name[OUTPUT_TYPES] = {
+    [OUTPUT_POSITION] = "position",
+    [OUTPUT_VELOCITY] = "velocity",
+    [OUTPUT_ACCELERATION] = "acceleration",
+    [OUTPUT_ORIENTATION] = "orientation",
+    [OUTPUT_ROLL_PITCH_YAW] = "roll_pitch_yaw",
+    [OUTPUT_ANGULAR_VELOCITY] = "angular_velocity",
+    [OUTPUT_COORDINATE] = "coordinate",
+    [OUTPUT_FORCE] = "force",
+    [OUTPUT_DRIVE_FORCE] = "drive_force",
+    [OUTPUT_WHEEL] = "wheel",
+    [OUTPUT_ENERGY] = "energy",
+};
+
+enum { WATCH_TYPE, WATCH_BODY, WATCH_POINT, WATCH_IN, WATCH_COORDINATE, WATCH_ELEMENT, WATCH_WHEEL, WATCH_KEYS };
+
+#define FRAMED_POINTS (FORM(OUTPUT_VELOCITY) | FORM(OUTPUT_ACCELERATION))
+#define POINTS (FRAMED_POINTS | FORM(OUTPUT_POSITION))
+#define ROTATIONS (FORM(OUTPUT_ORIENTATION) | FORM(OUTPUT_ROLL_PITCH_YAW) | FORM(OUTPUT_ANGULAR_VELOCITY))
+#define OF_COORDINATES (FORM(OUTPUT_COORDINATE) | FORM(OUTPUT_DRIVE_FORCE))
+
+static const Key output_key[WATCH_KEYS] = {
+    [WATCH_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [WATCH_BODY] = {"body", KEY_BODY, POINTS | ROTATIONS, POINTS | ROTATIONS, BOUND_NONE, 0},
+    [WATCH_POINT] = {"point", KEY_POINT, POINTS, 0, BOUND_NONE, 0},
+    [WATCH_IN] = {"in", KEY_FRAME, FRAMED_POINTS | FORM(OUTPUT_ANGULAR_VELOCITY), 0, BOUND_NONE, 0},
+    [WATCH_COORDINATE] = {"coordinate", KEY_COORDINATE, OF_COORDINATES, OF_COORDINATES, BOUND_NONE, 0},
+    [WATCH_ELEMENT] = {"element", KEY_FORCE, FORM(OUTPUT_FORCE), FORM(OUTPUT_FORCE), BOUND_NONE, 0},
+    [WATCH_WHEEL] = {"wheel", KEY_WHEEL, FORM(OUTPUT_WHEEL), FORM(OUTPUT_WHEEL), BOUND_NONE, 0},
+};
+
+/* Components and units of each type; a lone component "" has no suffix. Angles have their own units. */
+typedef struct OutputKind {
+    int count;
+    const char *component[OUTPUT_MAX_COMPONENTS], *unit[OUTPUT_MAX_COMPONENTS], *angle_unit[OUTPUT_MAX_COMPONENTS];
+} OutputKind;
+
+static const OutputKind output_kind[OUTPUT_TYPES] = {
+    [OUTPUT_POSITION] = {3, {"x", "y", "z"}, {"m", "m", "m"}, {0}},
+    [OUTPUT_VELOCITY] = {3, {"x", "y", "z"}, {"m/s", "m/s", "m/s"}, {0}},
+    [OUTPUT_ACCELERATION] = {3, {"x", "y", "z"}, {"m/s^2", "m/s^2", "m/s^2"}, {0}},
+    [OUTPUT_ORIENTATION] = {4, {"e0", "e1", "e2", "e3"}, {"1", "1", "1", "1"}, {0}},
+    [OUTPUT_ROLL_PITCH_YAW] = {3, {"roll", "pitch", "yaw"}, {"rad", "rad", "rad"}, {0}},
+    [OUTPUT_ANGULAR_VELOCITY] = {3, {"x", "y", "z"}, {"rad/s", "rad/s", "rad/s"}, {0}},
+    [OUTPUT_COORDINATE] = {3, {"value", "rate", "acceleration"}, {"m", "m/s", "m/s^2"}, {"rad", "rad/s", "rad/s^2"}},
+    [OUTPUT_FORCE] = {1, {""}, {"N"}, {"N m"}},
+    [OUTPUT_DRIVE_FORCE] = {1, {""}, {"N"}, {"N m"}},
+    [OUTPUT_WHEEL] = {4, {"fz", "deflection", "deflection_rate", "height"}, {"N", "m", "m/s", "m"}, {0}},
+    [OUTPUT_ENERGY] = {2, {"kinetic", "potential"}, {"J", "J"}, {0}},
+};
+
+static const Section output_section = {output_key, WATCH_KEYS, output_type_name, OUTPUT_TYPES, output_type_name};
+
+/* Whether an output belongs to an angle, directly or by a force along it. */
+static bool of_angle(const Model *model, const Output *output)
+{
+    int coordinate = -1;
+    if (output->type == OUTPUT_COORDINATE || output->type == OUTPUT_DRIVE_FORCE)
+        coordinate = output->index;
+    else if (output->type == OUTPUT_FORCE)
+        coordinate = model->force[output->index].coordinate;
+    return coordinate >= 0 && model->coordinate[coordinate].type == COORDINATE_ANGLE;
+}
+
+static void components_set(Reader *reader, Output *output)
+{
+    const OutputKind *kind = output_kind + output->type;
+    const char *const *unit = of_angle(reader->model, output) ? kind->angle_unit : kind->unit;
+    output->count = kind->count;
+    for (int i = 0; i < kind->count; ++i) {
+        const char *suffix = kind->component[i];
+        output->component[i] = pool_print(reader->pool, suffix[0] ? "%s.%s" : "%s%s", output->name, suffix);
+        output->unit[i] = unit[i];
+    }
+}
+
+static void output_read(Reader *reader, const Entry *entry, Output *output)
+{
+    Value value[WATCH_KEYS];
+    OutputType type = (OutputType)section_type(reader, &output_section, entry);
+    section_read(reader, &output_section, (int)type, entry, value);
+    *output = (Output){.name = entry->name, .at = entry->at, .type = type, .body = BODY_GROUND, .in = BODY_GROUND,
+                       .index = -1};
+    if (value[WATCH_BODY].item)
+        output->body = value[WATCH_BODY].index[0];
+    if (value[WATCH_POINT].item)
+        body_point(reader, output->body, value[WATCH_POINT].number, value[WATCH_POINT].item->at, output->point);
+    if (value[WATCH_IN].item)
+        output->in = value[WATCH_IN].index[0];
+    for (int k = WATCH_COORDINATE; k <= WATCH_WHEEL; ++k)
+        if (value[k].item)
+            output->index = value[k].index[0];
+    if (type == OUTPUT_DRIVE_FORCE && !reader->model->coordinate[output->index].driven)
+        diag_fail(value[WATCH_COORDINATE].item->at, "write `driven: true` there, or ask for `type: coordinate`",
+                  "%s: coordinate '%s' is free, so nothing drives it", entry->what,
+                  reader->model->coordinate[output->index].name);
+    components_set(reader, output);
+}
+
+/* Without `outputs`: pose and velocity of a free base, and every coordinate. */
+static void default_outputs(Reader *reader)
+{
+    static const struct {
+        const char *suffix;
+        OutputType type;
+    } of_base[] = {
+        {"position", OUTPUT_POSITION},
+        {"orientation", OUTPUT_ORIENTATION},
+        {"velocity", OUTPUT_VELOCITY},
+    };
+    Model *model = reader->model;
+    const Body *base = model->body + BODY_BASE;
+    for (int i = 0; model->free_base && i < 3; ++i)
+        model->output[model->outputs++] = (Output){
+            .name = pool_print(reader->pool, "%s_%s", base->name, of_base[i].suffix),
+            .at = base->at,
+            .type = of_base[i].type,
+            .body = BODY_BASE,
+            .in = BODY_GROUND,
+            .index = -1,
+        };
+    for (int i = 0; i < model->coordinates; ++i)
+        model->output[model->outputs++] = (Output){
+            .name = model->coordinate[i].name,
+            .at = model->coordinate[i].at,
+            .type = OUTPUT_COORDINATE,
+            .body = BODY_GROUND,
+            .in = BODY_GROUND,
+            .index = i,
+        };
+    for (int i = 0; i < model->outputs; ++i)
+        components_set(reader, model->output + i);
+}
+
+void outputs_read(Reader *reader, const Item *map)
+{
+    Model *model = reader->model;
+    int count;
+    Entry *entry = section_entries(reader, map, "output", &count);
+    model->output = pool_alloc(reader->pool, sizeof *model->output * (size_t)(count + model->coordinates + 3));
+    if (!map)
+        default_outputs(reader);
+    for (int i = 0; i < count; ++i)
+        output_read(reader, entry + i, model->output + model->outputs++);
+    size_t room = (size_t)(OUTPUT_MAX_COMPONENTS * model->outputs + 1);
+    const char **name = pool_alloc(reader->pool, sizeof *name * room);
+    Place *at = pool_alloc(reader->pool, sizeof *at * room);
+    for (int i = 0; i < model->outputs; ++i)
+        for (int k = 0; k < model->output[i].count; ++k) {
+            name[model->output_components] = model->output[i].component[k];
+            at[model->output_components++] = model->output[i].at;
+        }
+    generated_names_check(reader, "output", name, at, model->output_components);
+}

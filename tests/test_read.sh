@@ -1,0 +1,53 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_read.sh GICGEN: every broken file of tests/bad must be refused with the one message that its first line
+# announces as `# expect: LINE:COLUMN: fragment of the message`, with a caret, exit status 1 and nothing else.
+gicgen=$1
+here=$(dirname "$0")
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+passed=0
+failed=0
+
+# why FILE: the first thing that is wrong with the answer to FILE, or nothing
+why() {
+    expected=$(sed -n '1s/.*# expect: //p' "$1")
+    place=$(printf '%s\n' "$expected" | cut -d: -f1-2)
+    fragment=$(printf '%s\n' "$expected" | sed 's/^[^:]*:[^:]*: //')
+    column=${place#*:}
+    "$gicgen" --dump-model "$1" >"$work/out" 2>"$work/err"
+    status=$?
+    head -n 1 "$work/err" >"$work/message"
+    if [ -z "$expected" ]; then
+        echo "no '# expect:' in its first line"
+    elif [ "$status" -ne 1 ]; then
+        echo "exit status $status"
+    elif [ -s "$work/out" ]; then
+        echo "something on standard output"
+    elif [ "$(grep -c 'error:' "$work/err")" -ne 1 ]; then
+        echo "not exactly one error"
+    elif ! grep -qF -e "$1:$place: error: " "$work/message"; then
+        echo "not at $place: $(cat "$work/message")"
+    elif ! grep -qF -e "$fragment" "$work/message"; then
+        echo "not '$fragment': $(cat "$work/message")"
+    elif ! sed -n 3p "$work/err" | grep -q '^[[:blank:]]*^$'; then
+        echo "no caret"
+    elif [ "$column" -lt 100 ] && [ "$(sed -n 3p "$work/err" | tr -d '\n' | wc -c)" -ne $((column + 2)) ]; then
+        echo "the caret is not below column $column"
+    elif ! grep -q '^  remedy: ' "$work/err"; then
+        echo "no remedy"
+    fi
+}
+
+for file in "$here"/bad/*.veh; do
+    reason=$(why "$file")
+    if [ -z "$reason" ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAIL $file: $reason"
+    fi
+done
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ] && [ "$passed" -ge 45 ]
