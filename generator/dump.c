@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: MIT
+ * The resolved model as JSON, for programs that check ours (FORMAT.md section 11). */
+#include "gicgen.h"
+
+#include <string.h>
+
+static void add(Text *out, const char *s)
+{
+    text_add(out, s, strlen(s));
+}
+
+static void string(Text *out, const char *s)
+{
+    add(out, "\"");
+    for (; *s; ++s)
+        if (*s == '"' || *s == '\\')
+            text_print(out, "\\%c", *s);
+        else if ((unsigned char)*s < 0x20)
+            text_print(out, "\\u%04x", (unsigned)*s);
+        else
+            text_add(out, s, 1);
+    add(out, "\"");
+}
+
+/* `, "key": ` behind a first pair of an object. */
+static void key(Text *out, const char *name)
+{
+    text_print(out, ", \"%s\": ", name);
+}
+
+static void text_pair(Text *out, const char *name, const char *s)
+{
+    key(out, name);
+    string(out, s);
+}
+
+static void integer_pair(Text *out, const char *name, int value)
+{
+    key(out, name);
+    text_print(out, "%d", value);
+}
+
+static void vector(Text *out, const double *x, int size)
+{
+    add(out, "[");
+    for (int i = 0; i < size; ++i)
+        text_print(out, "%s%.17g", i ? ", " : "", x[i]);
+    add(out, "]");
+}
+
+/* A vector of `size` numbers, a plain number when size is 0, null where the type has none. */
+static void number_pair(Text *out, const char *name, const double *x, int size, bool applies)
+{
+    key(out, name);
+    if (!applies)
+        add(out, "null");
+    else if (size)
+        vector(out, x, size);
+    else
+        text_print(out, "%.17g", *x);
+}
+
+/* The start of entry i of a list, up to its name. */
+static void begin(Text *out, int i, const char *name)
+{
+    add(out, i ? ",\n    {\"name\": " : "\n    {\"name\": ");
+    string(out, name);
+}
+
+static void bodies(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->bodies; ++i) {
+        const Body *body = model->body + i;
+        begin(out, i, body->name);
+        number_pair(out, "mass", &body->mass, 0, true);
+        number_pair(out, "com", body->com, 3, true);
+        number_pair(out, "inertia", body->inertia, 6, true);
+        number_pair(out, "position", body->position, 3, true);
+        number_pair(out, "euler", body->euler, 4, true);
+        add(out, "}");
+    }
+}
+
+static void joints(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->joints; ++i) {
+        const Joint *joint = model->joint + i;
+        bool link = joint->type == JOINT_REVOLUTE_SPHERICAL;
+        bool hinge = joint->type == JOINT_REVOLUTE || joint->type == JOINT_PRISMATIC;
+        begin(out, i, joint->name);
+        text_pair(out, "type", joint_type_name[joint->type]);
+        integer_pair(out, "a", joint->body[0]);
+        integer_pair(out, "b", joint->body[1]);
+        number_pair(out, "point_a", joint->point[0], 3, true);
+        number_pair(out, "point_b", joint->point[1], 3, true);
+        number_pair(out, "axis_a", joint->axis[0], 3, hinge || link);
+        number_pair(out, "axis_b", joint->axis[1], 3, hinge);
+        number_pair(out, "length", &joint->length, 0, link || joint->type == JOINT_DISTANCE);
+        number_pair(out, "offset", &joint->offset, 0, link);
+        add(out, "}");
+    }
+}
+
+static void coordinates(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->coordinates; ++i) {
+        const Coordinate *coordinate = model->coordinate + i;
+        bool angle = coordinate->type == COORDINATE_ANGLE, length = coordinate->type == COORDINATE_LENGTH;
+        begin(out, i, coordinate->name);
+        text_pair(out, "type", coordinate_type_name[coordinate->type]);
+        integer_pair(out, "a", coordinate->body[0]);
+        integer_pair(out, "b", coordinate->body[1]);
+        number_pair(out, "point_a", coordinate->point[0], 3, !angle);
+        number_pair(out, "point_b", coordinate->point[1], 3, !angle);
+        number_pair(out, "axis_a", coordinate->axis, 3, !length);
+        number_pair(out, "reference_a", coordinate->reference[0], 3, angle);
+        number_pair(out, "reference_b", coordinate->reference[1], 3, angle);
+        number_pair(out, "design", &coordinate->design, 0, true);
+        number_pair(out, "offset", &coordinate->offset, 0, !angle && !length);
+        number_pair(out, "range", coordinate->range, 2, true);
+        key(out, "driven");
+        add(out, coordinate->driven ? "true}" : "false}");
+    }
+}
+
+static void forces(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->forces; ++i) {
+        const Force *force = model->force + i;
+        bool points = force->type == FORCE_POINTS;
+        begin(out, i, force->name);
+        text_pair(out, "type", points ? "points" : "coordinate");
+        integer_pair(out, "coordinate", force->coordinate);
+        for (int k = 0; k < 2; ++k)
+            if (points)
+                integer_pair(out, k ? "b" : "a", force->body[k]);
+            else
+                number_pair(out, k ? "b" : "a", NULL, 0, false);
+        number_pair(out, "point_a", force->point[0], 3, points);
+        number_pair(out, "point_b", force->point[1], 3, points);
+        number_pair(out, "stiffness", &force->stiffness, 0, true);
+        number_pair(out, "damping", &force->damping, 0, true);
+        number_pair(out, "free", &force->free, 0, true);
+        add(out, "}");
+    }
+}
+
+static void wheels(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->wheels; ++i) {
+        const Wheel *wheel = model->wheel + i;
+        begin(out, i, wheel->name);
+        integer_pair(out, "body", wheel->body);
+        number_pair(out, "center", wheel->center, 3, true);
+        number_pair(out, "radius", &wheel->radius, 0, true);
+        number_pair(out, "stiffness", &wheel->stiffness, 0, true);
+        number_pair(out, "damping", &wheel->damping, 0, true);
+        number_pair(out, "fade", &wheel->fade, 0, true);
+        add(out, "}");
+    }
+}
+
+static void inputs(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->inputs; ++i) {
+        begin(out, i, model->input[i].name);
+        text_pair(out, "unit", model->input[i].unit);
+        number_pair(out, "default", &model->input[i].initial, 0, true);
+        add(out, "}");
+    }
+}
+
+static void strings(Text *out, const char *name, const char *const *s, int count)
+{
+    key(out, name);
+    add(out, "[");
+    for (int i = 0; i < count; ++i) {
+        add(out, i ? ", " : "");
+        string(out, s[i]);
+    }
+    add(out, "]");
+}
+
+static void outputs(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->outputs; ++i) {
+        const Output *output = model->output + i;
+        begin(out, i, output->name);
+        text_pair(out, "type", output_type_name[output->type]);
+        strings(out, "components", output->component, output->count);
+        strings(out, "unit", output->unit, output->count);
+        add(out, "}");
+    }
+}
+
+static void indices(Text *out, const char *name, const int *index, int count)
+{
+    key(out, name);
+    add(out, "[");
+    for (int i = 0; i < count; ++i)
+        text_print(out, "%s%d", i ? ", " : "", index[i]);
+    add(out, "]");
+}
+
+static void subsets(Text *out, const Sequence *sequence)
+{
+    for (int i = 0; i < sequence->subsets; ++i) {
+        const Subset *subset = sequence->subset + i;
+        text_print(out, "%s\n    {\"stage\": %d", i ? "," : "", subset->stage);
+        if (subset->class < 0)
+            number_pair(out, "class", NULL, 0, false);
+        else
+            text_pair(out, "class", sequence->class[subset->class].name);
+        indices(out, "bodies", subset->body, subset->bodies);
+        indices(out, "joints", subset->joint, subset->joints);
+        indices(out, "coordinates", subset->coordinate, subset->coordinates);
+        add(out, "}");
+    }
+}
+
+void model_dump(Text *out, const Model *model, const Sequence *sequence)
+{
+    static const struct {
+        const char *name;
+        void (*entries)(Text *out, const Model *model);
+    } list[] = {
+        {"bodies", bodies}, {"joints", joints}, {"coordinates", coordinates}, {"forces", forces},
+        {"wheels", wheels}, {"inputs", inputs}, {"outputs", outputs},
+    };
+    add(out, "{\"gicgen_dump\": 1");
+    text_pair(out, "model", model->name);
+    number_pair(out, "gravity", model->gravity, 3, true);
+    text_pair(out, "base", model->free_base ? "free" : "fixed");
+    for (size_t i = 0; i < sizeof list / sizeof *list; ++i) {
+        text_print(out, ",\n  \"%s\": [", list[i].name);
+        list[i].entries(out, model);
+        add(out, "]");
+    }
+    add(out, ",\n  \"sequence\": [");
+    if (sequence)
+        subsets(out, sequence);
+    add(out, "]}\n");
+}
