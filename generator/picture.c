@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT
+ * Pictures through Graphviz. */
+#include "gicgen.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static _Noreturn void picture_fail(const char *path, const char *what, const char *remedy)
+{
+    fprintf(stderr, "%s: error: %s\n  remedy: %s\n", path, what, remedy);
+    exit(1);
+}
+
+/* Run `dot -Tsvg` between two open files; its exit status, 127 when it is not there. */
+static int run_dot(FILE *input, FILE *output)
+{
+    pid_t child = fork();
+    if (child < 0)
+        return -1;
+    if (child == 0) {
+        if (dup2(fileno(input), STDIN_FILENO) >= 0 && dup2(fileno(output), STDOUT_FILENO) >= 0)
+            execlp("dot", "dot", "-Tsvg", (char *)NULL);
+        _exit(127);
+    }
+    int status;
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            return -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+void picture_write(Pool *pool, const char *path, const Text *dot)
+{
+    FILE *input = tmpfile(), *output = tmpfile();
+    if (!input || !output || fwrite(dot->s, 1, dot->size, input) != dot->size || fflush(input))
+        picture_fail(path, "can't make a temporary file", "free some space in the temporary folder");
+    rewind(input);
+    int status = run_dot(input, output);
+    if (status == 127)
+        picture_fail(path, "Graphviz's program `dot` is not installed", "install the package graphviz, or ask for a .dot file");
+    if (status)
+        picture_fail(path, "Graphviz's program `dot` failed", "ask for a .dot file and see what `dot` says of it");
+    Text svg = {.pool = pool};
+    char buffer[1 << 14];
+    rewind(output);
+    for (size_t n; (n = fread(buffer, 1, sizeof buffer, output)) > 0;)
+        text_add(&svg, buffer, n);
+    fclose(input);
+    fclose(output);
+    file_write(path, svg.s, svg.size);
+}
