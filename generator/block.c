@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT
+ * Straight-line code before it is text. */
+#include "gicgen.h"
+
+void block_store(Block *block, Ex value, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    const char *target = pool_vprint(block->dag->pool, format, args);
+    va_end(args);
+    *POOL_PUSH(block->dag->pool, block->store, block->stores) = (Store){target, value};
+}
+
+void block_check(Block *block, Ex value, bool magnitude, double least, const char *status)
+{
+    *POOL_PUSH(block->dag->pool, block->check, block->checks) = (Check){value, least, magnitude, status};
+}
+
+Count block_count(const Block *block)
+{
+    int roots = block->stores + block->checks;
+    Ex *root = pool_alloc(block->dag->pool, (size_t)roots * sizeof *root);
+    for (int i = 0; i < block->stores; ++i)
+        root[i] = block->store[i].value;
+    for (int i = 0; i < block->checks; ++i)
+        root[block->stores + i] = block->check[i].value;
+    return dag_count(block->dag, root, roots);
+}

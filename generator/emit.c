@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: MIT
+ * Blocks as C text. A node that is used once is written where it is used, up to a small size, so that a line says something;
+ * everything else is a temporary. Statements come depth-first from the results, which keeps few values alive at a time. */
+#include "gicgen.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Leaves in one expression: about a line of text. */
+enum { LEAVES_MOST = 6 };
+
+/* Binding strength of a node's text. */
+enum { STRENGTH_SUM = 1, STRENGTH_PRODUCT = 2, STRENGTH_UNARY = 3, STRENGTH_ATOM = 4 };
+
+static const struct {
+    int arity;
+    const char *text;
+} op_form[OP_COUNT] = {
+#define OP_FORM(name, arity, text, counted) {arity, text},
+    OP_LIST(OP_FORM)
+#undef OP_FORM
+};
+
+typedef struct Emitter {
+    Text *out;
+    const Block *block;
+    const Dag *dag;
+    Constants *constants;
+    int indent;
+    int *uses;      /* [nodes] how often a needed node is used */
+    int *leaves;    /* [nodes] size of its text; 0: it gets a temporary */
+    int *temporary; /* [nodes] number of its temporary, 0: none yet */
+    int temporaries;
+} Emitter;
+
+const char *emit_number(Pool *pool, double value)
+{
+    char digits[32];
+    int precision = 15;
+    do
+        snprintf(digits, sizeof digits, "%.*g", precision++, value);
+    while (strtod(digits, NULL) != value && precision <= 17);
+    return pool_print(pool, "R(%s%s)", digits, strpbrk(digits, ".e") ? "" : ".0");
+}
+
+/* Every line of one block can name what it needs by number alone. */
+static void mark_uses(Emitter *m, Ex root)
+{
+    Pool *pool = m->dag->pool;
+    int depth = 0;
+    Ex *stack = NULL;
+    *POOL_PUSH(pool, stack, depth) = root;
+    while (depth) {
+        Ex e = stack[--depth];
+        if (m->uses[e]++ || m->dag->node[e].level < LEVEL_VARIABLE)
+            continue;
+        for (int i = 0; i < op_form[m->dag->node[e].op].arity; ++i)
+            *POOL_PUSH(pool, stack, depth) = m->dag->node[e].arg[i];
+    }
+}
+
+/* Arguments have smaller numbers, so one sweep upwards sizes every text. */
+static void size_texts(Emitter *m)
+{
+    for (int e = 0; e < m->dag->nodes; ++e) {
+        const Node *node = &m->dag->node[e];
+        if (!m->uses[e])
+            continue;
+        if (node->level < LEVEL_VARIABLE || node->op == OP_INPUT) {
+            m->leaves[e] = 1;
+            continue;
+        }
+        int sum = 0;
+        for (int i = 0; i < op_form[node->op].arity; ++i) {
+            int own = m->leaves[node->arg[i]];
+            sum += own ? own : 1;
+        }
+        bool again = m->uses[e] > 1 && node->op != OP_ROAD_PART;
+        m->leaves[e] = again || sum > LEAVES_MOST || node->op == OP_ROAD ? 0 : sum;
+    }
+}
+
+static int strength_of(const Node *node)
+{
+    switch (node->op) {
+    case OP_ADD:
+    case OP_SUB: return STRENGTH_SUM;
+    case OP_MUL:
+    case OP_DIV: return STRENGTH_PRODUCT;
+    case OP_NEG: return STRENGTH_UNARY;
+    default: return STRENGTH_ATOM;
+    }
+}
+
+static int constant_slot(Emitter *m, Ex e)
+{
+    Constants *k = m->constants;
+    for (int i = 0; i < k->count; ++i)
+        if (k->e[i] == e)
+            return i;
+    *POOL_PUSH(m->dag->pool, k->e, k->count) = e;
+    return k->count - 1;
+}
+
+/* Text of a node within an expression that binds with `strength`. Recursion is as deep as one line's text. */
+static void write_text(Emitter *m, Text *line, Ex e, int strength)
+{
+    const Node *node = &m->dag->node[e];
+    if (node->op == OP_LITERAL) {
+        text_print(line, "%s", emit_number(m->dag->pool, ex_value(m->dag, e, 0)));
+        return;
+    }
+    if (node->level < LEVEL_VARIABLE) {
+        text_print(line, "k[%d]", constant_slot(m, e));
+        return;
+    }
+    if (m->temporary[e]) {
+        text_print(line, "t%d", m->temporary[e]);
+        return;
+    }
+    if (node->op == OP_INPUT) {
+        text_print(line, "%s", node->name);
+        return;
+    }
+    if (node->op == OP_ROAD_PART) {
+        text_print(line, "road%d[%d]", m->temporary[node->arg[0]], (int)node->arg[1]);
+        return;
+    }
+    int own = strength_of(node);
+    if (own < strength)
+        text_print(line, "(");
+    for (const char *s = op_form[node->op].text; *s; ++s) {
+        if (*s != '%') {
+            text_add(line, s, 1);
+            continue;
+        }
+        int which = *++s - '0';
+        /* the right operand keeps its parentheses: a + (b + c) is not (a + b) + c */
+        int inner = own == STRENGTH_ATOM ? 0 : own == STRENGTH_UNARY ? STRENGTH_ATOM : own + (which == 1);
+        write_text(m, line, node->arg[which], inner);
+    }
+    if (own < strength)
+        text_print(line, ")");
+}
+
+static void write_statement(Emitter *m, Ex e)
+{
+    const Node *node = &m->dag->node[e];
+    Text line = {.pool = m->dag->pool};
+    int number = m->temporaries + 1;
+    if (node->op == OP_ROAD) {
+        text_print(&line, "gic_real road%d[3];\n%*sif (!road_height(self, time, ", number, m->indent, "");
+        write_text(m, &line, node->arg[0], 0);
+        text_print(&line, ", ");
+        write_text(m, &line, node->arg[1], 0);
+        text_print(&line, ", road%d))\n%*sreturn GIC_ERROR_ROAD;", number, m->indent + 4, "");
+    } else {
+        text_print(&line, "const gic_real t%d = ", number);
+        write_text(m, &line, e, 0);
+        text_print(&line, ";");
+    }
+    m->temporary[e] = m->temporaries = number;
+    text_print(m->out, "%*s%s\n", m->indent, "", line.s);
+}
+
+/* All temporaries that `root` needs, deepest first. */
+static void write_temporaries(Emitter *m, Ex root)
+{
+    Pool *pool = m->dag->pool;
+    int depth = 0;
+    struct Frame {
+        Ex e;
+        int next;
+    } *stack = NULL;
+    *POOL_PUSH(pool, stack, depth) = (struct Frame){root, 0};
+    while (depth) {
+        struct Frame *top = &stack[depth - 1];
+        const Node *node = &m->dag->node[top->e];
+        bool leaf = node->level < LEVEL_VARIABLE || node->op == OP_INPUT || m->temporary[top->e];
+        if (!leaf && top->next < op_form[node->op].arity) {
+            Ex argument = node->arg[top->next++];
+            *POOL_PUSH(pool, stack, depth) = (struct Frame){argument, 0};
+            continue;
+        }
+        if (!leaf && m->leaves[top->e] == 0)
+            write_statement(m, top->e);
+        --depth;
+    }
+}
+
+static void write_check(Emitter *m, const Check *check)
+{
+    Text line = {.pool = m->dag->pool};
+    write_temporaries(m, check->value);
+    write_text(m, &line, check->value, 0);
+    text_print(m->out, check->magnitude ? "%*sif (!(GIC_FABS(%s) > %s))\n" : "%*sif (!(%s > %s))\n", m->indent, "", line.s,
+               emit_number(m->dag->pool, check->least));
+    text_print(m->out, "%*sreturn %s;\n", m->indent + 4, "", check->status);
+}
+
+void block_emit(Text *out, const Block *block, Constants *constants, int indent)
+{
+    Pool *pool = block->dag->pool;
+    size_t nodes = (size_t)block->dag->nodes;
+    Emitter m = {.out = out,
+                 .block = block,
+                 .dag = block->dag,
+                 .constants = constants,
+                 .indent = indent,
+                 .uses = pool_alloc(pool, nodes * sizeof(int)),
+                 .leaves = pool_alloc(pool, nodes * sizeof(int)),
+                 .temporary = pool_alloc(pool, nodes * sizeof(int))};
+    for (int i = 0; i < block->checks; ++i)
+        mark_uses(&m, block->check[i].value);
+    for (int i = 0; i < block->stores; ++i)
+        mark_uses(&m, block->store[i].value);
+    size_texts(&m);
+    for (int i = 0; i < block->checks; ++i)
+        write_check(&m, &block->check[i]);
+    for (int i = 0; i < block->stores; ++i)
+        write_temporaries(&m, block->store[i].value);
+    /* a target may be an input of another store: first all values, then all targets */
+    Text stores = {.pool = pool};
+    for (int i = 0; i < block->stores; ++i) {
+        const Store *store = &block->store[i];
+        const Node *node = &block->dag->node[store->value];
+        bool safe = m.temporary[store->value] || node->level < LEVEL_VARIABLE;
+        if (!safe) {
+            m.leaves[store->value] = 0;
+            write_statement(&m, store->value);
+        }
+        text_print(&stores, "%*s%s = ", indent, "", store->target);
+        write_text(&m, &stores, store->value, 0);
+        text_print(&stores, ";\n");
+    }
+    if (stores.s)
+        text_add(out, stores.s, stores.size);
+}

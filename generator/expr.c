@@ -1,0 +1,428 @@
+/* SPDX-License-Identifier: MIT
+ * The expression graph: hash-consed nodes, folding and simplification on construction, sample values. */
+#include "gicgen.h"
+
+#include <math.h>
+#include <string.h>
+
+static const int op_arity[OP_COUNT] = {
+#define OP_ARITY(name, arity, text, counted) arity,
+    OP_LIST(OP_ARITY)
+#undef OP_ARITY
+};
+
+Dag *dag_new(Pool *pool, int members, int samples)
+{
+    Dag *dag = pool_alloc(pool, sizeof *dag);
+    dag->pool = pool;
+    dag->members = members;
+    dag->samples = samples;
+    dag->mask = 1023;
+    dag->table = pool_alloc(pool, (dag->mask + 1) * sizeof *dag->table);
+    /* node 0 is the literal 0, so that a zeroed Ex is a zero */
+    ex_literal(dag, 0);
+    return dag;
+}
+
+double ex_value(const Dag *dag, Ex e, int sample)
+{
+    return dag->value[(size_t)e * (size_t)dag->samples + (size_t)sample];
+}
+
+bool ex_is(const Dag *dag, Ex e, double value)
+{
+    return dag->node[e].op == OP_LITERAL && ex_value(dag, e, 0) == value;
+}
+
+static uint64_t mix(uint64_t hash, uint64_t word)
+{
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+    return hash ^ (hash >> 29);
+}
+
+/* Literals and constants are what their samples are, inputs what their name is, the rest what their arguments are. */
+static uint64_t node_hash(const Dag *dag, const Node *node, const double *value)
+{
+    uint64_t hash = mix(17, node->op);
+    for (int i = 0; i < 3; ++i)
+        hash = mix(hash, node->arg[i]);
+    if (node->name)
+        for (const char *s = node->name; *s; ++s)
+            hash = mix(hash, (unsigned char)*s);
+    if (node->op == OP_LITERAL || node->op == OP_CONSTANT)
+        for (int s = 0; s < (node->op == OP_LITERAL ? 1 : dag->samples); ++s) {
+            uint64_t bits;
+            memcpy(&bits, value + s, sizeof bits);
+            hash = mix(hash, bits);
+        }
+    return hash;
+}
+
+static bool node_same(const Dag *dag, const Node *node, const double *value, Ex other)
+{
+    const Node *o = &dag->node[other];
+    if (o->op != node->op || memcmp(o->arg, node->arg, sizeof o->arg))
+        return false;
+    if (node->op == OP_INPUT)
+        return !strcmp(o->name, node->name);
+    if (node->op == OP_LITERAL || node->op == OP_CONSTANT)
+        return !memcmp(dag->value + (size_t)other * (size_t)dag->samples, value,
+                       (node->op == OP_LITERAL ? 1 : (size_t)dag->samples) * sizeof *value);
+    return true;
+}
+
+static void dag_grow(Dag *dag)
+{
+    int room = dag->room ? 2 * dag->room : 256;
+    size_t row = (size_t)dag->samples * sizeof *dag->value;
+    dag->node = pool_grow(dag->pool, dag->node, (size_t)dag->nodes * sizeof *dag->node, (size_t)room * sizeof *dag->node);
+    dag->value = pool_grow(dag->pool, dag->value, (size_t)dag->nodes * row, (size_t)room * row);
+    dag->room = room;
+}
+
+static void table_grow(Dag *dag)
+{
+    dag->mask = 2 * dag->mask + 1;
+    dag->table = pool_alloc(dag->pool, ((size_t)dag->mask + 1) * sizeof *dag->table);
+    for (Ex e = 0; e < (Ex)dag->nodes; ++e) {
+        uint64_t slot = node_hash(dag, &dag->node[e], dag->value + (size_t)e * (size_t)dag->samples);
+        while (dag->table[slot & dag->mask])
+            ++slot;
+        dag->table[slot & dag->mask] = e + 1;
+    }
+}
+
+/* The node equal to *node with these samples, made when there is none. */
+static Ex intern(Dag *dag, const Node *node, const double *value)
+{
+    uint64_t slot = node_hash(dag, node, value);
+    for (Ex e; (e = dag->table[slot & dag->mask]) != 0; ++slot)
+        if (node_same(dag, node, value, e - 1))
+            return e - 1;
+    if (dag->nodes == dag->room)
+        dag_grow(dag);
+    Ex e = (Ex)dag->nodes++;
+    dag->node[e] = *node;
+    memcpy(dag->value + (size_t)e * (size_t)dag->samples, value, (size_t)dag->samples * sizeof *value);
+    dag->table[slot & dag->mask] = e + 1;
+    if ((uint32_t)dag->nodes > dag->mask / 2)
+        table_grow(dag);
+    return e;
+}
+
+/* sin and cos by their Taylor series after reduction to [-pi/4, pi/4]: only exactly rounded operations. */
+void portable_sincos(double x, double *sine, double *cosine)
+{
+    const double half_pi_high = 0x1.921fb54400000p0, half_pi_low = 0x1.0b4611a626331p-34;
+    double turns = floor(x / (half_pi_high + half_pi_low) + 0.5);
+    double y = (x - turns * half_pi_high) - turns * half_pi_low, y2 = y * y;
+    double s = 0, c = 0;
+    for (int n = 23; n >= 3; n -= 2)
+        s = (1 - s) * y2 / ((double)n * (n - 1)); /* y (1 - s) = sin y */
+    for (int n = 22; n >= 2; n -= 2)
+        c = (1 - c) * y2 / ((double)n * (n - 1)); /* 1 - c = cos y */
+    s = y * (1 - s);
+    c = 1 - c;
+    switch ((int)(turns - 4 * floor(turns / 4))) {
+    case 0: *sine = s, *cosine = c; break;
+    case 1: *sine = c, *cosine = -s; break;
+    case 2: *sine = -s, *cosine = -c; break;
+    default: *sine = -c, *cosine = s; break;
+    }
+}
+
+static double op_evaluate(Op op, double a, double b, double c)
+{
+    double sine, cosine;
+    switch (op) {
+    case OP_NEG: return -a;
+    case OP_ADD: return a + b;
+    case OP_SUB: return a - b;
+    case OP_MUL: return a * b;
+    case OP_DIV: return a / b;
+    case OP_SQRT: return sqrt(a);
+    case OP_ABS: return fabs(a);
+    case OP_SIN: portable_sincos(a, &sine, &cosine); return sine;
+    case OP_COS: portable_sincos(a, &sine, &cosine); return cosine;
+    case OP_ASIN: return asin(a);
+    case OP_ATAN2: return atan2(a, b);
+    case OP_MIN: return a < b ? a : b;
+    case OP_MAX: return a > b ? a : b;
+    case OP_POSITIVE: return a > 0 ? b : c;
+    default: return 0; /* the road is not known before run time: flat */
+    }
+}
+
+/* Samples first .. first + count - 1 of a node; out points at its row of samples. */
+static void node_evaluate(const Dag *dag, const Node *node, double *out, int first, int count)
+{
+    size_t samples = (size_t)dag->samples;
+    const double *a = dag->value + node->arg[0] * samples, *b = dag->value + node->arg[1] * samples,
+                 *c = dag->value + node->arg[2] * samples;
+    for (int s = first; s < first + count; ++s)
+        out[s] = op_evaluate((Op)node->op, a[s], b[s], c[s]);
+}
+
+Ex ex_literal(Dag *dag, double value)
+{
+    double sample[dag->samples];
+    for (int s = 0; s < dag->samples; ++s)
+        sample[s] = value + 0.0; /* no negative zero: -0.0 and 0.0 are one node */
+    return intern(dag, &(Node){.op = OP_LITERAL, .level = LEVEL_LITERAL}, sample);
+}
+
+/* A constant that is the same for every member is a literal. */
+static Ex constant_or_literal(Dag *dag, double *sample)
+{
+    bool same = true;
+    for (int s = 0; s < dag->samples; ++s) {
+        sample[s] += 0.0;
+        same = same && sample[s] == sample[0];
+    }
+    if (same)
+        return ex_literal(dag, sample[0]);
+    return intern(dag, &(Node){.op = OP_CONSTANT, .level = LEVEL_CONSTANT}, sample);
+}
+
+Ex ex_constant(Dag *dag, const double *value)
+{
+    double sample[dag->samples];
+    int each = dag->samples / dag->members;
+    for (int s = 0; s < dag->samples; ++s)
+        sample[s] = value[s / each];
+    return constant_or_literal(dag, sample);
+}
+
+Ex ex_input(Dag *dag, const char *name, const double *sample)
+{
+    double zero[dag->samples];
+    memset(zero, 0, sizeof zero);
+    return intern(dag, &(Node){.op = OP_INPUT, .level = LEVEL_VARIABLE, .name = name}, sample ? sample : zero);
+}
+
+void ex_set_sample(Dag *dag, Ex input, int sample, double value)
+{
+    dag->value[(size_t)input * (size_t)dag->samples + (size_t)sample] = value;
+}
+
+Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c)
+{
+    Node node = {.op = (uint8_t)op, .arg = {a, b, c}};
+    int arity = op_arity[op];
+    for (int i = 0; i < arity; ++i)
+        if (dag->node[node.arg[i]].level > node.level)
+            node.level = dag->node[node.arg[i]].level;
+    if (op == OP_ROAD || op == OP_ROAD_PART)
+        node.level = LEVEL_VARIABLE;
+    double sample[dag->samples];
+    if (op == OP_ROAD_PART) {
+        memset(sample, 0, sizeof sample);
+        return intern(dag, &node, sample);
+    }
+    node_evaluate(dag, &node, sample, 0, dag->samples);
+    /* what depends on constants alone is computed now and becomes an entry of the class's table */
+    if (node.level < LEVEL_VARIABLE)
+        return constant_or_literal(dag, sample);
+    return intern(dag, &node, sample);
+}
+
+static bool is_neg(const Dag *dag, Ex e)
+{
+    return dag->node[e].op == OP_NEG;
+}
+
+static Ex ordered(Dag *dag, Op op, Ex a, Ex b)
+{
+    return a < b ? ex_op(dag, op, a, b, 0) : ex_op(dag, op, b, a, 0);
+}
+
+Ex ex_neg(Dag *dag, Ex a)
+{
+    const Node *node = &dag->node[a];
+    if (node->op == OP_NEG)
+        return node->arg[0];
+    if (node->op == OP_SUB)
+        return ex_sub(dag, node->arg[1], node->arg[0]);
+    return ex_op(dag, OP_NEG, a, 0, 0);
+}
+
+Ex ex_add(Dag *dag, Ex a, Ex b)
+{
+    if (ex_is(dag, a, 0))
+        return b;
+    if (ex_is(dag, b, 0))
+        return a;
+    if (is_neg(dag, a) && is_neg(dag, b))
+        return ex_neg(dag, ordered(dag, OP_ADD, dag->node[a].arg[0], dag->node[b].arg[0]));
+    if (is_neg(dag, b))
+        return ex_sub(dag, a, dag->node[b].arg[0]);
+    if (is_neg(dag, a))
+        return ex_sub(dag, b, dag->node[a].arg[0]);
+    return ordered(dag, OP_ADD, a, b);
+}
+
+Ex ex_sub(Dag *dag, Ex a, Ex b)
+{
+    if (a == b)
+        return ex_literal(dag, 0);
+    if (ex_is(dag, b, 0))
+        return a;
+    if (ex_is(dag, a, 0))
+        return ex_neg(dag, b);
+    if (is_neg(dag, b))
+        return ex_add(dag, a, dag->node[b].arg[0]);
+    if (is_neg(dag, a))
+        return ex_neg(dag, ex_add(dag, dag->node[a].arg[0], b));
+    return ex_op(dag, OP_SUB, a, b, 0);
+}
+
+Ex ex_mul(Dag *dag, Ex a, Ex b)
+{
+    if (ex_is(dag, a, 0) || ex_is(dag, b, 0))
+        return ex_literal(dag, 0);
+    if (ex_is(dag, a, 1))
+        return b;
+    if (ex_is(dag, b, 1))
+        return a;
+    if (ex_is(dag, a, -1))
+        return ex_neg(dag, b);
+    if (ex_is(dag, b, -1))
+        return ex_neg(dag, a);
+    if (is_neg(dag, a) && is_neg(dag, b))
+        return ex_mul(dag, dag->node[a].arg[0], dag->node[b].arg[0]);
+    if (is_neg(dag, a))
+        return ex_neg(dag, ex_mul(dag, dag->node[a].arg[0], b));
+    if (is_neg(dag, b))
+        return ex_neg(dag, ex_mul(dag, a, dag->node[b].arg[0]));
+    /* constant factors gather in front, where they fold */
+    for (int swap = 0; swap < 2; ++swap) {
+        Ex k = swap ? b : a, x = swap ? a : b;
+        const Node *node = &dag->node[x];
+        if (dag->node[k].level < LEVEL_VARIABLE && node->op == OP_MUL && node->level == LEVEL_VARIABLE)
+            for (int i = 0; i < 2; ++i)
+                if (dag->node[node->arg[i]].level < LEVEL_VARIABLE)
+                    return ex_mul(dag, ex_mul(dag, k, node->arg[i]), node->arg[1 - i]);
+    }
+    return ordered(dag, OP_MUL, a, b);
+}
+
+Ex ex_div(Dag *dag, Ex a, Ex b)
+{
+    if (ex_is(dag, a, 0))
+        return a;
+    if (dag->node[b].level < LEVEL_VARIABLE)
+        return ex_mul(dag, ex_op(dag, OP_DIV, ex_literal(dag, 1), b, 0), a);
+    if (is_neg(dag, a))
+        return ex_neg(dag, ex_div(dag, dag->node[a].arg[0], b));
+    return ex_op(dag, OP_DIV, a, b, 0);
+}
+
+Ex ex_sqrt(Dag *dag, Ex a)
+{
+    return ex_op(dag, OP_SQRT, a, 0, 0);
+}
+
+Ex ex_dot(Dag *dag, const Ex a[3], const Ex b[3])
+{
+    return ex_add(dag, ex_add(dag, ex_mul(dag, a[0], b[0]), ex_mul(dag, a[1], b[1])), ex_mul(dag, a[2], b[2]));
+}
+
+void ex_cross(Dag *dag, const Ex a[3], const Ex b[3], Ex out[3])
+{
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = ex_sub(dag, ex_mul(dag, a[j], b[k]), ex_mul(dag, a[k], b[j]));
+    }
+}
+
+void ex_add3(Dag *dag, const Ex a[3], const Ex b[3], Ex out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = ex_add(dag, a[i], b[i]);
+}
+
+void ex_sub3(Dag *dag, const Ex a[3], const Ex b[3], Ex out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = ex_sub(dag, a[i], b[i]);
+}
+
+void ex_scale3(Dag *dag, Ex s, const Ex a[3], Ex out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = ex_mul(dag, s, a[i]);
+}
+
+void ex_zero3(Dag *dag, Ex out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = ex_literal(dag, 0);
+}
+
+void ex_apply(Dag *dag, const Ex A[9], const Ex x[3], Ex out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = ex_dot(dag, A + 3 * i, x);
+}
+
+void ex_apply_transposed(Dag *dag, const Ex A[9], const Ex x[3], Ex out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = ex_dot(dag, (Ex[]){A[i], A[3 + i], A[6 + i]}, x);
+}
+
+/* With d = 2 e: the diagonal as 1 - sums of squares, which needs no e0^2 and shares the products. */
+void ex_rotation(Dag *dag, const Ex p[4], Ex A[9])
+{
+    Ex one = ex_literal(dag, 1), twice[3], square[3];
+    for (int i = 0; i < 3; ++i) {
+        twice[i] = ex_add(dag, p[1 + i], p[1 + i]);
+        square[i] = ex_mul(dag, twice[i], p[1 + i]);
+    }
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        Ex product = ex_mul(dag, twice[j], p[1 + k]), turn = ex_mul(dag, twice[i], p[0]);
+        A[4 * i] = ex_sub(dag, one, ex_add(dag, square[j], square[k]));
+        A[3 * j + k] = ex_sub(dag, product, turn);
+        A[3 * k + j] = ex_add(dag, product, turn);
+    }
+}
+
+void dag_evaluate(Dag *dag, int first, int count)
+{
+    for (Ex e = 0; e < (Ex)dag->nodes; ++e) {
+        const Node *node = &dag->node[e];
+        if (node->level == LEVEL_VARIABLE && node->op != OP_INPUT && node->op != OP_ROAD_PART)
+            node_evaluate(dag, node, dag->value + (size_t)e * (size_t)dag->samples, first, count);
+    }
+}
+
+Count dag_count(const Dag *dag, const Ex *root, int roots)
+{
+    static const char kind[OP_COUNT] = {
+#define OP_KIND(name, arity, text, counted) counted[0],
+        OP_LIST(OP_KIND)
+#undef OP_KIND
+    };
+    Count count = {0};
+    /* arguments have smaller numbers than the nodes that use them: one backward sweep marks what is needed */
+    bool *needed = pool_alloc(dag->pool, (size_t)dag->nodes * sizeof *needed);
+    for (int i = 0; i < roots; ++i)
+        needed[root[i]] = true;
+    for (int e = dag->nodes - 1; e >= 0; --e) {
+        const Node *node = &dag->node[e];
+        if (!needed[e] || node->level < LEVEL_VARIABLE)
+            continue;
+        for (int i = 0; i < op_arity[node->op]; ++i)
+            needed[node->arg[i]] = true;
+        switch (kind[node->op]) {
+        case 'a': ++count.add; break;
+        case 'm': ++count.multiply; break;
+        case 'd': ++count.divide; break;
+        case 'r': ++count.root; break;
+        case 'f': ++count.function; break;
+        default: break;
+        }
+    }
+    return count;
+}
