@@ -1,0 +1,365 @@
+/* SPDX-License-Identifier: MIT
+ * Equations of motion in the reduced form (method.md, Proposition 2.1, in twists), and their solution.
+ *
+ * Unknowns: alpha and a of a free base (base frame; a is the acceleration of its origin less gravity), then the free
+ * coordinates' accelerations. The subsets have already summed up their bodies: what is left is the composite inertia, one row a
+ * coordinate, and an elimination that takes the suspension coordinates first, because they couple only to the base. */
+#include "gicgen.h"
+
+/* Sums over all subsets. */
+typedef struct Composite {
+    Ex mass, first[3], second[6]; /* about the base origin */
+    Ex force[3], moment[3];       /* quadratic-velocity terms */
+    Ex (*coupling)[7];            /* [coordinates] force and moment of a unit acceleration, quadratic-velocity force */
+    Ex *M;                        /* [coordinates][coordinates] upper triangle */
+} Composite;
+
+static void add_all(Dag *dag, Ex *sum, int offset, int count)
+{
+    for (int i = 0; i < count; ++i)
+        sum[i] = ex_add(dag, sum[i], ex_input(dag, pool_print(dag->pool, "n[%d]", offset + i), NULL));
+}
+
+/* The base body's own part: a rigid body at rest in its own frame. */
+static void add_base(Whole *whole, Composite *c)
+{
+    Dag *dag = whole->dag;
+    const Body *base = &whole->model->body[BODY_BASE];
+    Ex x[3], J[6], t[3], total = 0;
+    for (int b = 0; b < whole->model->bodies; ++b)
+        total = ex_add(dag, total, ex_literal(dag, whole->model->body[b].mass));
+    c->mass = total;
+    for (int i = 0; i < 3; ++i) {
+        x[i] = ex_literal(dag, base->com[i]);
+        c->first[i] = ex_add(dag, c->first[i], ex_literal(dag, base->mass * base->com[i]));
+    }
+    whole_inertia(whole, BODY_BASE, J);
+    const double m = base->mass, *r = base->com;
+    const double steiner[6] = {m * (r[1] * r[1] + r[2] * r[2]), m * (r[0] * r[0] + r[2] * r[2]), m * (r[0] * r[0] + r[1] * r[1]),
+                               -m * r[0] * r[1], -m * r[0] * r[2], -m * r[1] * r[2]};
+    for (int i = 0; i < 6; ++i) {
+        J[i] = ex_add(dag, J[i], ex_literal(dag, steiner[i]));
+        c->second[i] = ex_add(dag, c->second[i], J[i]);
+    }
+    /* m turn x (turn x com), and turn x (J turn) about the origin */
+    ex_cross(dag, whole->turn, x, t);
+    Ex force[3], moment[3];
+    ex_cross(dag, whole->turn, t, force);
+    ex_scale3(dag, ex_literal(dag, m), force, force);
+    ex_add3(dag, c->force, force, c->force);
+    ex_apply(dag, (Ex[]){J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]}, whole->turn, t);
+    ex_cross(dag, whole->turn, t, moment);
+    ex_add3(dag, c->moment, moment, c->moment);
+}
+
+static Composite compose(Whole *whole)
+{
+    const Model *model = whole->model;
+    const Sequence *sequence = whole->plan->sequence;
+    Dag *dag = whole->dag;
+    size_t p = (size_t)model->coordinates;
+    Composite c = {.coupling = pool_alloc(dag->pool, (p + 1) * sizeof *c.coupling),
+                   .M = pool_alloc(dag->pool, (p * p + 1) * sizeof *c.M)};
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        if (subset->class < 0)
+            continue;
+        int at = whole->plan->inertia_offset[s];
+        if (model->free_base) {
+            add_all(dag, c.first, at + INERTIA_FIRST, 3);
+            add_all(dag, c.second, at + INERTIA_SECOND, 6);
+            add_all(dag, c.force, at + INERTIA_FORCE, 3);
+            add_all(dag, c.moment, at + INERTIA_MOMENT, 3);
+        }
+        for (int j = 0; j < subset->deps; ++j) {
+            add_all(dag, c.coupling[subset->dep[j]], at + INERTIA_COORDINATE + 7 * j, 7);
+            for (int k = j; k < subset->deps; ++k) {
+                int row = subset->dep[j], column = subset->dep[k];
+                if (row > column)
+                    row = subset->dep[k], column = subset->dep[j];
+                add_all(dag, &c.M[row * model->coordinates + column], at + inertia_mass(subset->deps, j, k), 1);
+            }
+        }
+    }
+    if (model->free_base)
+        add_base(whole, &c);
+    return c;
+}
+
+static Ex mass_entry(const Whole *whole, const Composite *c, int i, int j)
+{
+    return c->M[i < j ? i * whole->model->coordinates + j : j * whole->model->coordinates + i];
+}
+
+/* Accelerations of the driven coordinates, as inputs give them; 0 for the others. */
+static Ex *driven_accelerations(Whole *whole)
+{
+    const Model *model = whole->model;
+    Ex *w2 = pool_alloc(whole->dag->pool, (size_t)(model->coordinates + 1) * sizeof *w2);
+    for (int i = 0; i < model->coordinates; ++i)
+        if (model->coordinate[i].driven)
+            w2[i] = ex_input(whole->dag, pool_print(whole->dag->pool, "u[%d]", model->coordinate[i].input + 2), NULL);
+    return w2;
+}
+
+/* Upper triangle of the reduced mass matrix. */
+static void mass_matrix(Whole *whole, const Composite *c, Ex *M, int n)
+{
+    Dag *dag = whole->dag;
+    if (whole->model->free_base) {
+        static const int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+        for (int i = 0; i < 3; ++i) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            for (int l = i; l < 3; ++l)
+                M[n * i + l] = c->second[place[i][l]];
+            M[n * (3 + i) + 3 + i] = c->mass;
+            /* moment of a linear acceleration: first x a */
+            M[n * i + 3 + k] = c->first[j];
+            M[n * i + 3 + j] = ex_neg(dag, c->first[k]);
+        }
+    }
+    for (int w = 0; w < whole->model->coordinates; ++w) {
+        int column = whole->plan->coordinate_unknown[w];
+        if (column < 0)
+            continue;
+        for (int i = 0; whole->model->free_base && i < 3; ++i) {
+            M[n * i + column] = c->coupling[w][3 + i];
+            M[n * (3 + i) + column] = c->coupling[w][i];
+        }
+        for (int other = 0; other <= w; ++other)
+            if (whole->plan->coordinate_unknown[other] >= 0)
+                M[n * whole->plan->coordinate_unknown[other] + column] = mass_entry(whole, c, other, w);
+    }
+}
+
+/* Applied less quadratic-velocity forces less those of the driven accelerations. */
+static void right_hand_side(Whole *whole, const Composite *c, const Loads *loads, const Ex *driven, Ex *b)
+{
+    Dag *dag = whole->dag;
+    const Model *model = whole->model;
+    if (model->free_base) {
+        ex_sub3(dag, loads->moment, c->moment, b);
+        ex_sub3(dag, loads->force, c->force, b + 3);
+    }
+    Ex minus_gravity[3];
+    ex_sub3(dag, (Ex[3]){0}, whole->gravity, minus_gravity);
+    for (int w = 0; w < model->coordinates; ++w) {
+        Ex t[3];
+        if (model->coordinate[w].driven && model->free_base) {
+            ex_scale3(dag, driven[w], c->coupling[w] + 3, t);
+            ex_sub3(dag, b, t, b);
+            ex_scale3(dag, driven[w], c->coupling[w], t);
+            ex_sub3(dag, b + 3, t, b + 3);
+        }
+        int row = whole->plan->coordinate_unknown[w];
+        if (row < 0)
+            continue;
+        b[row] = ex_sub(dag, loads->along[w], c->coupling[w][6]);
+        if (!model->free_base) /* the base accelerates against gravity, and that is known */
+            b[row] = ex_sub(dag, b[row], ex_dot(dag, c->coupling[w], minus_gravity));
+        for (int d = 0; d < model->coordinates; ++d)
+            if (model->coordinate[d].driven)
+                b[row] = ex_sub(dag, b[row], ex_mul(dag, mass_entry(whole, c, w, d), driven[d]));
+    }
+}
+
+static void store_base_rates(Whole *whole, Block *block, const Ex *z)
+{
+    Dag *dag = whole->dag;
+    int twist = 7 + whole->plan->free_coordinates;
+    Ex half = ex_literal(dag, 0.5), t[3], cross[3], a[3];
+    for (int i = 0; i < 3; ++i)
+        block_store(block, whole->v[i], "rate[%d]", i);
+    /* components in the base frame: e' = (e0 omega + e x omega) / 2 */
+    ex_scale3(dag, half, whole->turn, t);
+    block_store(block, ex_neg(dag, ex_dot(dag, t, whole->e + 1)), "rate[3]");
+    ex_cross(dag, whole->e + 1, t, cross);
+    for (int i = 0; i < 3; ++i)
+        block_store(block, ex_add(dag, ex_mul(dag, whole->e[0], t[i]), cross[i]), "rate[%d]", 4 + i);
+    ex_apply(dag, whole->R, z + 3, a);
+    for (int i = 0; i < 3; ++i) {
+        block_store(block, ex_add(dag, a[i], ex_literal(dag, whole->model->gravity[i])), "rate[%d]", twist + i);
+        block_store(block, z[i], "rate[%d]", twist + 3 + i);
+    }
+}
+
+Block *dynamics_block(Whole *whole)
+{
+    /* A pivot this small against its diagonal entry is rounding: no inertia is left along that coordinate. */
+    const double definite = 1e-13;
+    Dag *dag = whole->dag;
+    const Plan *plan = whole->plan;
+    Block *block = pool_alloc(dag->pool, sizeof *block);
+    block->dag = dag;
+    int n = plan->unknowns;
+    Ex *M = pool_alloc(dag->pool, ((size_t)n * (size_t)n + 1) * sizeof *M);
+    Ex *z = pool_alloc(dag->pool, (size_t)(n + 1) * sizeof *z);
+    Composite c = compose(whole);
+    mass_matrix(whole, &c, M, n);
+    right_hand_side(whole, &c, loads_make(whole), driven_accelerations(whole), z);
+    Factors *factors = linear_factor_symmetric(dag, n, M);
+    for (int k = 0; k < n; ++k) {
+        Ex diagonal = M[n * factors->row[k] + factors->row[k]];
+        if (dag->node[factors->pivot[k]].level == LEVEL_VARIABLE)
+            block_check(block, ex_sub(dag, factors->pivot[k], ex_mul(dag, ex_literal(dag, definite), diagonal)), false, 0,
+                        "GIC_ERROR_MASS");
+    }
+    linear_solve(dag, factors, z, z);
+    if (whole->model->free_base)
+        store_base_rates(whole, block, z);
+    for (int w = 0; w < whole->model->coordinates; ++w)
+        if (plan->coordinate_state[w] >= 0) {
+            block_store(block, whole->xd[w], "rate[%d]", plan->coordinate_state[w]);
+            block_store(block, z[plan->coordinate_unknown[w]], "rate[%d]", plan->coordinate_rate[w]);
+        }
+    return block;
+}
+
+/* ---- the same equations a second time, body by body: what the emitted self-test compares with ------------------- */
+
+/* Residual of Newton's and Euler's equations, projected on the coordinates, plus what moves it: nothing is shared with compose(). */
+typedef struct Projection {
+    Ex moment[3], force[3], *along;
+} Projection;
+
+static void project_body(Whole *whole, int b, const Ex alpha[3], const Ex a[3], const Ex *w2, Projection *out)
+{
+    Dag *dag = whole->dag;
+    const Body *body = &whole->model->body[b];
+    Ex J[6], acceleration[3], angular[3], force[3], moment[3], total[3], t[3], u[3];
+    Vector com = whole_point(whole, b, body->com);
+    whole_inertia(whole, b, J);
+    const Ex matrix[9] = {J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]};
+    whole_acceleration(whole, b, &com, alpha, a, w2, acceleration);
+    whole_angular_acceleration(whole, b, alpha, w2, angular);
+    ex_scale3(dag, ex_literal(dag, body->mass), acceleration, force);
+    ex_add3(dag, whole->turn, whole->motion[b].omega, total);
+    ex_apply(dag, matrix, total, t);
+    ex_cross(dag, total, t, moment);
+    ex_apply(dag, matrix, angular, t);
+    ex_add3(dag, moment, t, moment);
+    ex_cross(dag, com.v, force, t);
+    ex_add3(dag, t, moment, t);
+    ex_add3(dag, out->moment, t, out->moment);
+    ex_add3(dag, out->force, force, out->force);
+    for (int j = 0; b != BODY_BASE && j < whole_subset(whole, b)->deps; ++j) {
+        int w = whole_subset(whole, b)->dep[j];
+        whole_unit_velocity(whole, b, &com, w, t, u);
+        out->along[w] = ex_add(dag, out->along[w], ex_add(dag, ex_dot(dag, t, force), ex_dot(dag, u, moment)));
+    }
+}
+
+static Projection project(Whole *whole, const Loads *loads, const Ex alpha[3], const Ex a[3], const Ex *w2)
+{
+    Dag *dag = whole->dag;
+    Projection p = {.along = pool_alloc(dag->pool, (size_t)(whole->model->coordinates + 1) * sizeof(Ex))};
+    for (int b = whole->model->free_base ? 0 : 1; b < whole->model->bodies; ++b)
+        project_body(whole, b, alpha, a, w2, &p);
+    ex_sub3(dag, p.moment, loads->moment, p.moment);
+    ex_sub3(dag, p.force, loads->force, p.force);
+    for (int w = 0; w < whole->model->coordinates; ++w)
+        p.along[w] = ex_sub(dag, p.along[w], loads->along[w]);
+    return p;
+}
+
+Block *inverse_block(Whole *whole)
+{
+    Dag *dag = whole->dag;
+    const Plan *plan = whole->plan;
+    Block *block = pool_alloc(dag->pool, sizeof *block);
+    block->dag = dag;
+    Ex alpha[3] = {0}, a[3], *w2 = driven_accelerations(whole);
+    ex_sub3(dag, (Ex[3]){0}, whole->gravity, a);
+    for (int i = 0; whole->model->free_base && i < 3; ++i) {
+        alpha[i] = ex_input(dag, pool_print(dag->pool, "acc[%d]", i), NULL);
+        a[i] = ex_input(dag, pool_print(dag->pool, "acc[%d]", 3 + i), NULL);
+    }
+    for (int w = 0; w < whole->model->coordinates; ++w)
+        if (plan->coordinate_unknown[w] >= 0)
+            w2[w] = ex_input(dag, pool_print(dag->pool, "acc[%d]", plan->coordinate_unknown[w]), NULL);
+    Projection p = project(whole, loads_make(whole), alpha, a, w2);
+    for (int i = 0; whole->model->free_base && i < 3; ++i) {
+        block_store(block, p.moment[i], "tau[%d]", i);
+        block_store(block, p.force[i], "tau[%d]", 3 + i);
+    }
+    for (int w = 0; w < whole->model->coordinates; ++w)
+        if (plan->coordinate_unknown[w] >= 0)
+            block_store(block, p.along[w], "tau[%d]", plan->coordinate_unknown[w]);
+    return block;
+}
+
+/* Accelerations at rate[]: alpha, a less gravity (base frame), all coordinates'. */
+void whole_accelerations(Whole *whole, Ex alpha[3], Ex a[3], Ex **w2)
+{
+    Dag *dag = whole->dag;
+    const Plan *plan = whole->plan;
+    int twist = 7 + plan->free_coordinates;
+    Ex world[3];
+    ex_zero3(dag, alpha);
+    ex_sub3(dag, (Ex[3]){0}, whole->gravity, a);
+    if (whole->model->free_base) {
+        for (int i = 0; i < 3; ++i) {
+            alpha[i] = ex_input(dag, pool_print(dag->pool, "rate[%d]", twist + 3 + i), NULL);
+            Ex total = ex_input(dag, pool_print(dag->pool, "rate[%d]", twist + i), NULL);
+            world[i] = ex_sub(dag, total, ex_literal(dag, whole->model->gravity[i]));
+        }
+        ex_apply_transposed(dag, whole->R, world, a);
+    }
+    *w2 = driven_accelerations(whole);
+    for (int w = 0; w < whole->model->coordinates; ++w)
+        if (plan->coordinate_rate[w] >= 0)
+            (*w2)[w] = ex_input(dag, pool_print(dag->pool, "rate[%d]", plan->coordinate_rate[w]), NULL);
+}
+
+Ex whole_drive_force(Whole *whole, int coordinate)
+{
+    Ex alpha[3], a[3], *w2;
+    whole_accelerations(whole, alpha, a, &w2);
+    return project(whole, loads_make(whole), alpha, a, w2).along[coordinate];
+}
+
+static Ex magnitude(Dag *dag, Ex e)
+{
+    return ex_op(dag, OP_ABS, e, 0, 0);
+}
+
+Block *energy_block(Whole *whole)
+{
+    Dag *dag = whole->dag;
+    const Model *model = whole->model;
+    Block *block = pool_alloc(dag->pool, sizeof *block);
+    block->dag = dag;
+    const Loads *loads = loads_make(whole);
+    Ex alpha[3], a[3], *w2, rate = 0, scale = 0, power = loads->power;
+    whole_accelerations(whole, alpha, a, &w2);
+    for (int b = model->free_base ? 0 : 1; b < model->bodies; ++b) {
+        Ex acceleration[3], angular[3], velocity[3], total[3], J[6], t[3];
+        Vector com = whole_point(whole, b, model->body[b].com);
+        whole_inertia(whole, b, J);
+        whole_acceleration(whole, b, &com, alpha, a, w2, acceleration); /* less gravity: the potential's rate is in it */
+        whole_velocity_in_base(whole, &com, velocity);
+        whole_angular_acceleration(whole, b, alpha, w2, angular);
+        ex_add3(dag, whole->turn, whole->motion[b].omega, total);
+        ex_apply(dag, (Ex[]){J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]}, angular, t);
+        Ex linear = ex_mul(dag, ex_literal(dag, model->body[b].mass), ex_dot(dag, acceleration, velocity));
+        Ex turning = ex_dot(dag, total, t);
+        rate = ex_add(dag, rate, ex_add(dag, linear, turning));
+        scale = ex_add(dag, scale, ex_add(dag, magnitude(dag, linear), magnitude(dag, turning)));
+    }
+    rate = ex_add(dag, rate, loads->potential_rate);
+    for (int w = 0; w < model->coordinates; ++w)
+        if (model->coordinate[w].driven)
+            power = ex_add(dag, power, ex_mul(dag, whole_drive_force(whole, w), whole->xd[w]));
+    block_store(block, rate, "energy[0]");
+    block_store(block, power, "energy[1]");
+    scale = ex_add(dag, scale, ex_add(dag, magnitude(dag, loads->potential_rate), magnitude(dag, power)));
+    block_store(block, scale, "energy[2]");
+    for (int i = 0; model->free_base && i < 3; ++i) {
+        block_store(block, alpha[i], "acc[%d]", i);
+        block_store(block, a[i], "acc[%d]", 3 + i);
+    }
+    for (int w = 0; w < model->coordinates; ++w)
+        if (whole->plan->coordinate_unknown[w] >= 0)
+            block_store(block, w2[w], "acc[%d]", whole->plan->coordinate_unknown[w]);
+    return block;
+}

@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT
+ * Takes the members of a class through their sample paths by numeric Newton, so that every node of the class's graph carries values
+ * of admissible configurations: that is what pivots are chosen from. Subsets must be followed in computational order. */
+#include "subset.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Coordinates and knowns of sample s at one step of its path; a dead sample stays at the design. */
+static void place_sample(Work *w, const Sampling *sampling, int s, int step)
+{
+    int configuration = s % w->configurations;
+    const Subset *member = subset_member(w, s / w->configurations);
+    if (!w->alive[s])
+        step = 0;
+    for (int j = 0; j < w->first->deps; ++j)
+        ex_set_sample(w->dag, w->x[j], s, sampling_coordinate(sampling, w->model, step, configuration, member->dep[j]));
+    for (int i = 0; i < w->first->knowns; ++i) {
+        const double *pose = sampling_pose(sampling, step, configuration, member->known[i]);
+        for (int entry = 0; entry < 12; ++entry)
+            ex_set_sample(w->dag, entry < 3 ? w->known[i].c[entry] : w->known[i].A[entry - 3], s, pose[entry]);
+    }
+}
+
+static void set_poses(Work *w, const double *q, int s)
+{
+    for (int i = 0; i < 7 * w->first->bodies; ++i)
+        ex_set_sample(w->dag, w->q[i], s, q[i]);
+}
+
+static void move_pose(double q[7], const double twist[6])
+{
+    const double e0 = q[3], e[3] = {q[4], q[5], q[6]};
+    double cross[3];
+    for (int i = 0; i < 3; ++i)
+        q[i] += twist[3 + i];
+    vec_cross(twist, e, cross);
+    q[3] = e0 - 0.5 * vec_dot(twist, e);
+    for (int i = 0; i < 3; ++i)
+        q[4 + i] = e[i] + 0.5 * (e0 * twist[i] + cross[i]);
+    double norm = sqrt(q[3] * q[3] + vec_dot(q + 4, q + 4));
+    for (int i = 3; i < 7; ++i)
+        q[i] /= norm;
+}
+
+/* Solve J x = b at sample s; angles in x are multiplied with the subset's size, so that all of it is lengths. */
+static bool solve_sample(const Work *w, int s, double *b)
+{
+    double A[w->n * w->n];
+    for (int i = 0; i < w->n * w->n; ++i)
+        A[i] = ex_value(w->dag, w->J[i], s) / (i % w->n % 6 < 3 ? w->size : 1);
+    return linear_solve_numeric(w->n, A, b);
+}
+
+/* One Newton correction of q; its relative size, or infinity where the matrix is singular. */
+static double correct_sample(Work *w, double *q, int s)
+{
+    double b[w->n], step = 0;
+    for (int r = 0; r < w->n; ++r)
+        b[r] = -ex_value(w->dag, w->row[r].value, s);
+    if (!solve_sample(w, s, b))
+        return INFINITY;
+    for (int j = 0; j < w->n; ++j) {
+        step = fmax(step, fabs(b[j]) / w->size);
+        if (j % 6 < 3)
+            b[j] /= w->size;
+    }
+    for (int body = 0; body < w->first->bodies; ++body)
+        move_pose(q + 7 * body, b + 6 * body);
+    return step;
+}
+
+/* Newton at one step of the path. */
+static bool converge(Work *w, double *q, int s)
+{
+    const int iterations = 12;
+    const double converged = 1e-12, leap = 0.5; /* a larger correction may land on another assembly mode */
+    for (int i = 0; i < iterations; ++i) {
+        set_poses(w, q, s);
+        dag_evaluate(w->dag, s, 1);
+        double step = correct_sample(w, q, s);
+        if (!(step < leap))
+            return false;
+        if (step < converged)
+            return true;
+    }
+    return false;
+}
+
+/* Design poses of a member's bodies relative to the base. */
+static void design_poses(const Work *w, const Sampling *sampling, const Subset *member, double *q)
+{
+    for (int b = 0; b < member->bodies; ++b, q += 7) {
+        memcpy(q, sampling_pose(sampling, 0, 0, member->body[b]), 3 * sizeof *q);
+        euler_relative(w->model->body[BODY_BASE].euler, w->model->body[member->body[b]].euler, q + 3);
+    }
+}
+
+static void store_poses(Work *w, Sampling *sampling, const Subset *member, int s, int step)
+{
+    for (int b = 0; b < member->bodies; ++b) {
+        double *pose = sampling_pose(sampling, step, s % w->configurations, member->body[b]);
+        for (int i = 0; i < 12; ++i)
+            pose[i] = ex_value(w->dag, i < 3 ? w->pose[b].c[i] : w->pose[b].A[i - 3], s);
+    }
+}
+
+/* S of sample s, and how far the coordinates swing the bodies. */
+static void store_unit_velocities(Work *w, Sampling *sampling, const Subset *member, int s)
+{
+    double b[w->n];
+    for (int j = 0; j < member->deps; ++j) {
+        for (int r = 0; r < w->n; ++r) {
+            const Connection *tie = &w->connection[w->row_of[r]];
+            b[r] = tie->is_coordinate && tie->dep == j ? -ex_value(w->dag, w->row[r].dual, s) : 0;
+            for (int end = 0; end < 2; ++end) {
+                if (tie->end[end].known < 0)
+                    continue;
+                int known = member->known[tie->end[end].known];
+                const Subset *own = &w->sequence->subset[w->sequence->body_subset[known]];
+                for (int k = 0; k < own->deps; ++k)
+                    for (int i = 0; own->dep[k] == member->dep[j] && i < 6; ++i)
+                        b[r] -= ex_value(w->dag, w->row[r].J[end][i], s) *
+                                sampling->S[known][(s % w->configurations * own->deps + k) * 6 + i];
+            }
+        }
+        if (!solve_sample(w, s, b))
+            continue;
+        double *swing = &sampling->swing[member->dep[j]];
+        for (int i = 0; i < w->n; ++i) {
+            *swing = fmax(*swing, fabs(b[i]) / w->size);
+            sampling->S[member->body[i / 6]][(s % w->configurations * member->deps + j) * 6 + i % 6] =
+                b[i] / (i % 6 < 3 ? w->size : 1);
+        }
+    }
+}
+
+void subset_follow(Work *w, Sampling *sampling, int index)
+{
+    const Subset *member = subset_member(w, index);
+    int numbers = 7 * member->bodies;
+    double design[numbers], q[numbers];
+    design_poses(w, sampling, member, design);
+    for (int b = 0; b < member->bodies; ++b)
+        sampling->S[member->body[b]] =
+            pool_alloc(w->pool, (size_t)(w->configurations * member->deps * 6 + 1) * sizeof(double));
+    for (int c = 0; c < w->configurations; ++c) {
+        int s = index * w->configurations + c;
+        w->alive[s] = true;
+        for (int i = 0; i < member->knowns; ++i)
+            w->alive[s] = w->alive[s] && sampling->usable[member->known[i] * w->configurations + c];
+        memcpy(q, design, sizeof q);
+        for (int step = 0; step <= sampling->steps; ++step) {
+            place_sample(w, sampling, s, step);
+            if (step && w->alive[s] && !converge(w, q, s)) {
+                w->alive[s] = false;
+                place_sample(w, sampling, s, step);
+            }
+            set_poses(w, w->alive[s] ? q : design, s);
+            dag_evaluate(w->dag, s, 1);
+            store_poses(w, sampling, member, s, step);
+        }
+        store_unit_velocities(w, sampling, member, s);
+        for (int b = 0; b < member->bodies; ++b)
+            sampling->usable[member->body[b] * w->configurations + c] = w->alive[s];
+    }
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT
+ * Applied forces (FORMAT.md sections 7 and 8) as generalised forces. */
+#include "gicgen.h"
+
+/* A force F (base frame) on a point of a body. */
+static void push(Whole *whole, Loads *loads, int body, const Vector *point, const Ex F[3])
+{
+    Dag *dag = whole->dag;
+    if (body == BODY_GROUND)
+        return;
+    Ex t[3], angular[3];
+    ex_cross(dag, point->v, F, t);
+    ex_add3(dag, loads->moment, t, loads->moment);
+    ex_add3(dag, loads->force, F, loads->force);
+    if (body == BODY_BASE)
+        return;
+    const Subset *subset = whole_subset(whole, body);
+    for (int j = 0; j < subset->deps; ++j) {
+        Ex *along = &loads->along[subset->dep[j]];
+        whole_unit_velocity(whole, body, point, subset->dep[j], t, angular);
+        *along = ex_add(dag, *along, ex_dot(dag, F, t));
+    }
+}
+
+/* Spring and damper in parallel: tension at extension and rate; adds to the energy sums. */
+static Ex spring_damper(Whole *whole, Loads *loads, const Force *force, Ex value, Ex rate)
+{
+    Dag *dag = whole->dag;
+    Ex extension = ex_sub(dag, value, ex_literal(dag, force->free));
+    Ex elastic = ex_mul(dag, ex_literal(dag, force->stiffness), extension);
+    Ex viscous = ex_mul(dag, ex_literal(dag, force->damping), rate);
+    loads->potential = ex_add(dag, loads->potential, ex_mul(dag, ex_literal(dag, 0.5), ex_mul(dag, elastic, extension)));
+    loads->potential_rate = ex_add(dag, loads->potential_rate, ex_mul(dag, elastic, rate));
+    loads->power = ex_sub(dag, loads->power, ex_mul(dag, viscous, rate));
+    return ex_add(dag, elastic, viscous);
+}
+
+static void add_force(Whole *whole, Loads *loads, int index)
+{
+    Dag *dag = whole->dag;
+    const Force *force = &whole->model->force[index];
+    if (force->type == FORCE_COORDINATE) {
+        int w = force->coordinate;
+        Ex Q = ex_neg(dag, spring_damper(whole, loads, force, whole->x[w], whole->xd[w]));
+        loads->element[index] = Q;
+        loads->along[w] = ex_add(dag, loads->along[w], Q);
+        return;
+    }
+    Vector end[2];
+    Ex d[3], rate[3], F[3];
+    for (int i = 0; i < 2; ++i)
+        end[i] = whole_point(whole, force->body[i], force->point[i]);
+    ex_sub3(dag, end[1].v, end[0].v, d);
+    ex_sub3(dag, end[1].rate, end[0].rate, rate);
+    Ex length = ex_sqrt(dag, ex_dot(dag, d, d)), scale = ex_div(dag, ex_literal(dag, 1), length);
+    Ex tension = spring_damper(whole, loads, force, length, ex_mul(dag, scale, ex_dot(dag, d, rate)));
+    loads->element[index] = tension;
+    ex_scale3(dag, ex_mul(dag, tension, scale), d, F);
+    push(whole, loads, force->body[0], &end[0], F);
+    for (int i = 0; i < 3; ++i)
+        F[i] = ex_neg(dag, F[i]);
+    push(whole, loads, force->body[1], &end[1], F);
+}
+
+static void add_wheel(Whole *whole, Loads *loads, int index)
+{
+    Dag *dag = whole->dag;
+    const Wheel *wheel = &whole->model->wheel[index];
+    Vector center = whole_point(whole, wheel->body, wheel->center);
+    Ex at[3], v[3], F[3], one = ex_literal(dag, 1);
+    whole_position(whole, &center, at);
+    whole_velocity(whole, &center, v);
+    Ex road = ex_op(dag, OP_ROAD, at[0], at[1], 0), h = ex_op(dag, OP_ROAD_PART, road, 0, 0);
+    Ex slope_x = ex_op(dag, OP_ROAD_PART, road, 1, 0), slope_y = ex_op(dag, OP_ROAD_PART, road, 2, 0);
+    Ex deflection = ex_sub(dag, ex_add(dag, ex_literal(dag, wheel->radius), h), at[2]);
+    Ex rate = ex_sub(dag, ex_add(dag, ex_mul(dag, slope_x, v[0]), ex_mul(dag, slope_y, v[1])), v[2]);
+    Ex s = ex_op(dag, OP_MAX, ex_mul(dag, ex_literal(dag, 1 / wheel->fade), deflection), 0, 0);
+    s = ex_op(dag, OP_MIN, s, one, 0);
+    Ex fade = ex_mul(dag, ex_mul(dag, s, s), ex_sub(dag, ex_literal(dag, 3), ex_add(dag, s, s)));
+    Ex viscous = ex_mul(dag, ex_mul(dag, ex_literal(dag, wheel->damping), fade), rate);
+    /* without contact the deflection is negative and fades the damping to 0, so the limit at 0 says it all */
+    Ex fz = ex_op(dag, OP_MAX, ex_add(dag, ex_mul(dag, ex_literal(dag, wheel->stiffness), deflection), viscous), 0, 0);
+    ex_scale3(dag, fz, whole->R + 6, F);
+    push(whole, loads, wheel->body, &center, F);
+    loads->power = ex_add(dag, loads->power, ex_mul(dag, fz, v[2]));
+    const Ex all[4] = {fz, deflection, rate, h};
+    for (int i = 0; i < 4; ++i)
+        loads->wheel[index][i] = all[i];
+}
+
+Loads *loads_make(Whole *whole)
+{
+    Pool *pool = whole->dag->pool;
+    const Model *model = whole->model;
+    Loads *loads = pool_alloc(pool, sizeof *loads);
+    loads->along = pool_alloc(pool, (size_t)(model->coordinates + 1) * sizeof *loads->along);
+    loads->element = pool_alloc(pool, (size_t)(model->forces + 1) * sizeof *loads->element);
+    loads->wheel = pool_alloc(pool, (size_t)(model->wheels + 1) * sizeof *loads->wheel);
+    for (int i = 0; i < model->forces; ++i)
+        add_force(whole, loads, i);
+    for (int i = 0; i < model->wheels; ++i)
+        add_wheel(whole, loads, i);
+    return loads;
+}

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT
+ * Rigid-body kinematics relative to the base, in expressions. */
+#include "gicgen.h"
+
+void motion_base(Dag *dag, Motion *motion)
+{
+    *motion = (Motion){.S = NULL};
+    for (int i = 0; i < 3; ++i)
+        motion->A[4 * i] = ex_literal(dag, 1);
+}
+
+static void read_numbers(Dag *dag, const char *array, int offset, int count, Ex *out)
+{
+    for (int i = 0; i < count; ++i)
+        out[i] = ex_input(dag, pool_print(dag->pool, "%s[%d]", array, offset + i), NULL);
+}
+
+void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int deps)
+{
+    read_numbers(dag, array, offset + MOTION_C, 3, motion->c);
+    read_numbers(dag, array, offset + MOTION_A, 9, motion->A);
+    read_numbers(dag, array, offset + MOTION_OMEGA, 3, motion->omega);
+    read_numbers(dag, array, offset + MOTION_VELOCITY, 3, motion->velocity);
+    read_numbers(dag, array, offset + MOTION_ALPHA, 3, motion->alpha);
+    read_numbers(dag, array, offset + MOTION_ACCELERATION, 3, motion->acceleration);
+    motion->deps = deps;
+    motion->S = pool_alloc(dag->pool, (size_t)(6 * deps) * sizeof *motion->S);
+    read_numbers(dag, array, offset + MOTION_S, 6 * deps, motion->S);
+}
+
+/* Rate and bias of a vector that turns with the body: omega x arm, alpha x arm + omega x (omega x arm). */
+static void turn(Dag *dag, const Motion *motion, Vector *vector)
+{
+    Ex angular[3];
+    ex_cross(dag, motion->omega, vector->arm, vector->rate);
+    ex_cross(dag, motion->omega, vector->rate, vector->bias);
+    ex_cross(dag, motion->alpha, vector->arm, angular);
+    ex_add3(dag, vector->bias, angular, vector->bias);
+}
+
+Vector vector_axis(Dag *dag, const Motion *motion, const Ex u[3])
+{
+    Vector vector = {.point = false};
+    ex_apply(dag, motion->A, u, vector.arm);
+    for (int i = 0; i < 3; ++i)
+        vector.v[i] = vector.arm[i];
+    turn(dag, motion, &vector);
+    return vector;
+}
+
+Vector vector_point(Dag *dag, const Motion *motion, const Ex s[3])
+{
+    Vector vector = vector_axis(dag, motion, s);
+    vector.point = true;
+    ex_add3(dag, motion->c, vector.arm, vector.v);
+    ex_add3(dag, motion->velocity, vector.rate, vector.rate);
+    ex_add3(dag, motion->acceleration, vector.bias, vector.bias);
+    return vector;
+}

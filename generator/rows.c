@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: MIT
+ * Constraint equations of joints and dual coordinates (FORMAT.md sections 4 and 5): value, Jacobian with respect to the
+ * twists of both ends, and the quadratic-velocity term. Every equation is a sum of scalar products of body-fixed points and axes. */
+#include "gicgen.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Members of Fixture as numbers. */
+enum {
+    NUMBER_POINT = 0,
+    NUMBER_AXIS = 6,
+    NUMBER_SIDE = 12, /* [which][end] */
+    NUMBER_SQUARE = 24,
+    NUMBER_OFFSET = 25
+};
+_Static_assert(FIXTURE_NUMBERS == 26, "Fixture and its numbers go together");
+
+/* Vector of end 0's frame at design into end 1's. */
+static void carry(const Model *model, const int body[2], const double in_a[3], double in_b[3])
+{
+    double A[9], world[3];
+    mat_from_euler(model->body[body[0]].euler, A);
+    mat_apply(A, in_a, world);
+    mat_from_euler(model->body[body[1]].euler, A);
+    mat_apply_transposed(A, world, in_b);
+}
+
+/* Two unit vectors perpendicular to u and each other: from the axis to which u is least parallel. */
+static void perpendicular(const double u[3], double t1[3], double t2[3])
+{
+    int least = 0;
+    for (int i = 1; i < 3; ++i)
+        if (fabs(u[i]) < fabs(u[least]))
+            least = i;
+    for (int i = 0; i < 3; ++i)
+        t1[i] = (i == least) - u[least] * u[i];
+    double norm = vec_norm(t1);
+    for (int i = 0; i < 3; ++i)
+        t1[i] /= norm;
+    vec_cross(u, t1, t2);
+}
+
+static void relative_points(const int body[2], const double point[2][3], const double (*origin)[3],
+                      double number[FIXTURE_NUMBERS])
+{
+    for (int end = 0; end < 2; ++end)
+        for (int i = 0; i < 3; ++i)
+            number[NUMBER_POINT + 3 * end + i] = point[end][i] - origin[body[end]][i];
+}
+
+void fixture_of_joint(const Model *model, const Joint *joint, const double (*origin)[3],
+                      double number[FIXTURE_NUMBERS])
+{
+    memset(number, 0, FIXTURE_NUMBERS * sizeof number[0]);
+    relative_points(joint->body, joint->point, origin, number);
+    memcpy(number + NUMBER_AXIS, joint->axis, sizeof joint->axis);
+    if (joint->type == JOINT_REVOLUTE || joint->type == JOINT_PRISMATIC) {
+        double side[2][3];
+        perpendicular(joint->axis[0], side[0], side[1]);
+        for (int which = 0; which < 2; ++which) {
+            memcpy(number + NUMBER_SIDE + 6 * which, side[which], sizeof side[which]);
+            carry(model, joint->body, side[which], number + NUMBER_SIDE + 6 * which + 3);
+        }
+    }
+    number[NUMBER_SQUARE] = joint->length * joint->length;
+    number[NUMBER_OFFSET] = joint->offset;
+}
+
+void fixture_of_coordinate(const Model *model, const Coordinate *coordinate, const double (*origin)[3],
+                      double number[FIXTURE_NUMBERS])
+{
+    (void)model;
+    memset(number, 0, FIXTURE_NUMBERS * sizeof number[0]);
+    if (coordinate->type != COORDINATE_ANGLE)
+        relative_points(coordinate->body, coordinate->point, origin, number);
+    memcpy(number + NUMBER_AXIS, coordinate->axis, sizeof coordinate->axis);
+    /* angle: e_1 and e_2 in body a, f_1 in body b */
+    memcpy(number + NUMBER_SIDE, coordinate->reference[0], sizeof coordinate->reference[0]);
+    memcpy(number + NUMBER_SIDE + 3, coordinate->reference[1], sizeof coordinate->reference[1]);
+    vec_cross(coordinate->axis, coordinate->reference[0], number + NUMBER_SIDE + 6);
+    /* what is taken from w: its value at design, less the geometric offset */
+    number[NUMBER_OFFSET] = coordinate->design - (coordinate->type == COORDINATE_TRANSLATION ? coordinate->offset : 0);
+}
+
+/* Add f . (rate of the vector) to a row's derivative at one end. */
+static void add_rate(Dag *dag, Row *row, int end, const Vector *vector, const Ex f[3], bool negative)
+{
+    Ex angular[3];
+    ex_cross(dag, vector->arm, f, angular);
+    for (int i = 0; i < 3; ++i) {
+        Ex *a = &row->J[end][i], *l = &row->J[end][3 + i];
+        *a = negative ? ex_sub(dag, *a, angular[i]) : ex_add(dag, *a, angular[i]);
+        if (vector->point)
+            *l = negative ? ex_sub(dag, *l, f[i]) : ex_add(dag, *l, f[i]);
+    }
+}
+
+/* A vector from the first end's point to the second's. */
+typedef struct Link {
+    Vector end[2];
+    Ex d[3], rate[3], bias[3];
+} Link;
+
+static Link link_between(Dag *dag, const Fixture *fixture, const Motion *const end[2])
+{
+    Link link;
+    for (int i = 0; i < 2; ++i)
+        link.end[i] = vector_point(dag, end[i], fixture->point[i]);
+    ex_sub3(dag, link.end[1].v, link.end[0].v, link.d);
+    ex_sub3(dag, link.end[1].rate, link.end[0].rate, link.rate);
+    ex_sub3(dag, link.end[1].bias, link.end[0].bias, link.bias);
+    return link;
+}
+
+/* Component of a link along a fixed direction of the base frame. */
+static Row row_component(Dag *dag, const Link *link, int axis)
+{
+    Row row = {.value = link->d[axis], .bias = link->bias[axis]};
+    Ex unit[3] = {0};
+    unit[axis] = ex_literal(dag, 1);
+    add_rate(dag, &row, 1, &link->end[1], unit, false);
+    add_rate(dag, &row, 0, &link->end[0], unit, true);
+    return row;
+}
+
+/* u . link, u an axis of one end. */
+static Row row_along(Dag *dag, const Link *link, int end, const Vector *u)
+{
+    Row row = {.value = ex_dot(dag, u->v, link->d)};
+    add_rate(dag, &row, 1, &link->end[1], u->v, false);
+    add_rate(dag, &row, 0, &link->end[0], u->v, true);
+    add_rate(dag, &row, end, u, link->d, false);
+    Ex cross = ex_dot(dag, u->rate, link->rate);
+    row.bias = ex_add(dag, ex_add(dag, ex_dot(dag, u->v, link->bias), ex_dot(dag, u->bias, link->d)), ex_add(dag, cross, cross));
+    return row;
+}
+
+/* a . b, axes of the first and second end. */
+static Row row_angle(Dag *dag, const Vector *a, const Vector *b)
+{
+    Row row = {.value = ex_dot(dag, a->v, b->v)};
+    add_rate(dag, &row, 0, a, b->v, false);
+    add_rate(dag, &row, 1, b, a->v, false);
+    Ex cross = ex_dot(dag, a->rate, b->rate);
+    row.bias = ex_add(dag, ex_add(dag, ex_dot(dag, a->v, b->bias), ex_dot(dag, a->bias, b->v)), ex_add(dag, cross, cross));
+    return row;
+}
+
+/* (|link|^2 - square) / 2: no root. */
+static Row row_length(Dag *dag, const Link *link, Ex square)
+{
+    Row row = {.value = ex_mul(dag, ex_literal(dag, 0.5), ex_sub(dag, ex_dot(dag, link->d, link->d), square))};
+    add_rate(dag, &row, 1, &link->end[1], link->d, false);
+    add_rate(dag, &row, 0, &link->end[0], link->d, true);
+    row.bias = ex_add(dag, ex_dot(dag, link->d, link->bias), ex_dot(dag, link->rate, link->rate));
+    return row;
+}
+
+int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2], Row row[ROWS_MAX])
+{
+    Link link = link_between(dag, fixture, end);
+    int rows = 0;
+    if (type == JOINT_REVOLUTE || type == JOINT_SPHERICAL)
+        for (int i = 0; i < 3; ++i)
+            row[rows++] = row_component(dag, &link, i);
+    if (type == JOINT_REVOLUTE || type == JOINT_PRISMATIC) {
+        Vector axis = vector_axis(dag, end[1], fixture->axis[1]);
+        for (int which = 0; which < 2; ++which) {
+            Vector side = vector_axis(dag, end[0], fixture->side[which][0]);
+            row[rows++] = row_angle(dag, &side, &axis);
+        }
+    }
+    if (type == JOINT_PRISMATIC) {
+        Vector side[2] = {vector_axis(dag, end[0], fixture->side[0][0]), vector_axis(dag, end[0], fixture->side[1][0])};
+        Vector other = vector_axis(dag, end[1], fixture->side[1][1]);
+        row[rows++] = row_angle(dag, &side[0], &other);
+        for (int which = 0; which < 2; ++which)
+            row[rows++] = row_along(dag, &link, 0, &side[which]);
+    }
+    if (type == JOINT_DISTANCE || type == JOINT_REVOLUTE_SPHERICAL)
+        row[rows++] = row_length(dag, &link, fixture->square);
+    if (type == JOINT_REVOLUTE_SPHERICAL) {
+        Vector axis = vector_axis(dag, end[0], fixture->axis[0]);
+        row[rows] = row_along(dag, &link, 0, &axis);
+        row[rows].value = ex_sub(dag, row[rows].value, fixture->offset);
+        ++rows;
+    }
+    return rows;
+}
+
+/* cos(w) e_2 . f_1 - sin(w) e_1 . f_1 = 0; its other root, half a turn away, has the guard's sign reversed. */
+static Row row_turn(Dag *dag, const Fixture *fixture, const Motion *const end[2], Ex angle, Ex rate)
+{
+    Vector e1 = vector_axis(dag, end[0], fixture->side[0][0]), e2 = vector_axis(dag, end[0], fixture->side[1][0]);
+    Vector f1 = vector_axis(dag, end[1], fixture->side[0][1]);
+    Row x = row_angle(dag, &e1, &f1), y = row_angle(dag, &e2, &f1), row = {0};
+    Ex s = ex_op(dag, OP_SIN, angle, 0, 0), c = ex_op(dag, OP_COS, angle, 0, 0);
+    row.value = ex_sub(dag, ex_mul(dag, c, y.value), ex_mul(dag, s, x.value));
+    for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 6; ++j)
+            row.J[i][j] = ex_sub(dag, ex_mul(dag, c, y.J[i][j]), ex_mul(dag, s, x.J[i][j]));
+    row.guard = ex_add(dag, ex_mul(dag, s, y.value), ex_mul(dag, c, x.value));
+    row.dual = ex_neg(dag, row.guard);
+    /* -2 w' (s y' + c x'), the rates of the products e . f_1 */
+    Ex y_rate = ex_add(dag, ex_dot(dag, e2.rate, f1.v), ex_dot(dag, e2.v, f1.rate));
+    Ex x_rate = ex_add(dag, ex_dot(dag, e1.rate, f1.v), ex_dot(dag, e1.v, f1.rate));
+    Ex cross = ex_mul(dag, rate, ex_add(dag, ex_mul(dag, s, y_rate), ex_mul(dag, c, x_rate)));
+    row.bias = ex_sub(dag, ex_sub(dag, ex_mul(dag, c, y.bias), ex_mul(dag, s, x.bias)), ex_add(dag, cross, cross));
+    return row;
+}
+
+Row coordinate_row(Dag *dag, CoordinateType type, const Fixture *fixture, const Motion *const end[2], Ex x, Ex rate)
+{
+    if (type == COORDINATE_ANGLE)
+        return row_turn(dag, fixture, end, ex_sub(dag, x, fixture->offset), rate);
+    Link link = link_between(dag, fixture, end);
+    Row row;
+    if (type == COORDINATE_LENGTH) {
+        row = row_length(dag, &link, ex_mul(dag, x, x));
+        row.dual = ex_neg(dag, x);
+        row.bias = ex_sub(dag, row.bias, ex_mul(dag, rate, rate));
+    } else {
+        Vector axis = vector_axis(dag, end[0], fixture->axis[0]);
+        row = row_along(dag, &link, 0, &axis);
+        row.value = ex_sub(dag, row.value, ex_sub(dag, x, fixture->offset));
+        row.dual = ex_literal(dag, -1);
+    }
+    return row;
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT
+ * Admissible configurations: random values of the coordinates inside their ranges, reached from the design. */
+#include "gicgen.h"
+
+#include <string.h>
+
+enum { STEPS = 8, CONFIGURATIONS = 6, SAMPLES_MOST = 512 };
+
+Sampling *sampling_new(Pool *pool, const Model *model, const Sequence *sequence, const double (*origin)[3])
+{
+    Sampling *sampling = pool_alloc(pool, sizeof *sampling);
+    int members = 1;
+    for (int i = 0; i < sequence->classes; ++i)
+        members = sequence->class[i].members > members ? sequence->class[i].members : members;
+    /* many alike members sample the range among themselves */
+    int configurations = SAMPLES_MOST / members;
+    configurations = configurations < 2 ? 2 : configurations > CONFIGURATIONS ? CONFIGURATIONS : configurations;
+    size_t bodies = (size_t)model->bodies, coordinates = (size_t)model->coordinates, count = (size_t)configurations;
+    *sampling = (Sampling){.configurations = configurations,
+                           .steps = STEPS,
+                           .bodies = model->bodies,
+                           .coordinates = model->coordinates,
+                           .target = pool_alloc(pool, count * coordinates * sizeof(double)),
+                           .pose = pool_alloc(pool, (STEPS + 1) * count * bodies * 12 * sizeof(double)),
+                           .usable = pool_alloc(pool, count * bodies * sizeof(bool)),
+                           .S = pool_alloc(pool, bodies * sizeof(double *)),
+                           .swing = pool_alloc(pool, (coordinates + 1) * sizeof(double))};
+    Random random = {.state = 2000};
+    for (int c = 0; c < configurations; ++c)
+        for (int i = 0; i < model->coordinates; ++i) {
+            const Coordinate *w = &model->coordinate[i];
+            double share = random_uniform(&random, -0.9, 0.9); /* of the way from the design to the end of the range */
+            double end = share < 0 ? w->design - w->range[0] : w->range[1] - w->design;
+            sampling->target[c * model->coordinates + i] = w->design + (c ? share * end : 0);
+        }
+    /* every body at its design pose until it is found */
+    double base[9], body[9];
+    mat_from_euler(model->body[BODY_BASE].euler, base);
+    for (int b = 0; b < model->bodies; ++b) {
+        double pose[12], offset[3], at[3];
+        mat_from_euler(model->body[b].euler, body);
+        mat_apply(body, origin[b], offset);
+        for (int i = 0; i < 3; ++i)
+            at[i] = model->body[b].position[i] + offset[i] - model->body[BODY_BASE].position[i];
+        mat_apply_transposed(base, at, pose);
+        for (int i = 0; i < 3; ++i) {
+            double column[3], turned[3];
+            for (int j = 0; j < 3; ++j)
+                column[j] = body[3 * j + i];
+            mat_apply_transposed(base, column, turned);
+            for (int j = 0; j < 3; ++j)
+                pose[3 + 3 * j + i] = turned[j];
+        }
+        for (int s = 0; s <= STEPS; ++s)
+            for (int c = 0; c < configurations; ++c)
+                memcpy(sampling_pose(sampling, s, c, b), pose, sizeof pose);
+        for (int c = 0; c < configurations; ++c)
+            sampling->usable[b * configurations + c] = true;
+    }
+    return sampling;
+}
+
+double sampling_coordinate(const Sampling *sampling, const Model *model, int step, int configuration, int coordinate)
+{
+    double design = model->coordinate[coordinate].design;
+    double target = sampling->target[configuration * sampling->coordinates + coordinate];
+    return step == sampling->steps ? target : design + (target - design) * step / sampling->steps;
+}
+
+double *sampling_pose(const Sampling *sampling, int step, int configuration, int body)
+{
+    size_t row = (size_t)step * (size_t)sampling->configurations + (size_t)configuration;
+    return sampling->pose + (row * (size_t)sampling->bodies + (size_t)body) * 12;
+}

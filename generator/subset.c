@@ -1,0 +1,543 @@
+/* SPDX-License-Identifier: MIT
+ * Recovery of one class of decoupled subsets: Newton in twists relative to the base, velocities and accelerations from the same
+ * factorization, and what the bodies add to the equations of motion (design.md section 2 restated in subset_formulate).
+ *
+ * Unknowns of a body are the six components of its twist at its reference point. That point is put where a joint holds the body
+ * to something known: the joint's equations are then unit rows, which the factorization folds away. */
+#include "subset.h"
+
+#include <math.h>
+#include <string.h>
+
+const Subset *subset_member(const Work *w, int i)
+{
+    return &w->sequence->subset[w->class->member[i]];
+}
+
+static int place_of(const int *list, int count, int what)
+{
+    for (int i = 0; i < count; ++i)
+        if (list[i] == what)
+            return i;
+    return -1;
+}
+
+/* ---- reference points ---------------------------------------------------------------------------------- */
+
+/* How much a joint simplifies its subset when the reference point of one end sits on it. */
+static int joint_merit(const Model *model, const Sequence *sequence, int subset, const Joint *joint, int end)
+{
+    static const int merit[JOINT_TYPES] = {[JOINT_REVOLUTE] = 4,
+                                           [JOINT_SPHERICAL] = 4,
+                                           [JOINT_PRISMATIC] = 2,
+                                           [JOINT_DISTANCE] = 1,
+                                           [JOINT_REVOLUTE_SPHERICAL] = 1};
+    int other = joint->body[1 - end];
+    bool known = other == BODY_BASE || sequence->body_subset[other] != subset;
+    (void)model;
+    return 2 * merit[joint->type] + known;
+}
+
+double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3]
+{
+    double(*origin)[3] = pool_alloc(pool, (size_t)model->bodies * sizeof *origin);
+    int *best = pool_alloc(pool, (size_t)model->bodies * sizeof *best);
+    for (int s = 0; s < sequence->subsets; ++s)
+        for (int i = 0; i < sequence->subset[s].joints; ++i) {
+            const Joint *joint = &model->joint[sequence->subset[s].joint[i]];
+            for (int end = 0; end < 2; ++end) {
+                int body = joint->body[end];
+                if (body == BODY_BASE || sequence->body_subset[body] != s)
+                    continue;
+                int merit = joint_merit(model, sequence, s, joint, end);
+                if (merit > best[body]) {
+                    best[body] = merit;
+                    memcpy(origin[body], joint->point[end], sizeof origin[body]);
+                }
+            }
+        }
+    return origin;
+}
+
+/* ---- the class's data --------------------------------------------------------------------------------------- */
+
+Ex subset_constant(Work *w, double (*get)(const Work *, int member, int a, int b), int a, int b)
+{
+    double value[w->class->members];
+    for (int i = 0; i < w->class->members; ++i)
+        value[i] = get(w, i, a, b);
+    return ex_constant(w->dag, value);
+}
+
+static void make_fixture(Work *w, Connection *tie, int position)
+{
+    int members = w->class->members;
+    double number[members][FIXTURE_NUMBERS], value[members];
+    for (int i = 0; i < members; ++i) {
+        const Subset *subset = subset_member(w, i);
+        if (tie->is_coordinate)
+            fixture_of_coordinate(w->model, &w->model->coordinate[subset->coordinate[position]], w->origin, number[i]);
+        else
+            fixture_of_joint(w->model, &w->model->joint[subset->joint[position]], w->origin, number[i]);
+    }
+    Ex *out = (Ex *)&tie->fixture;
+    for (int j = 0; j < FIXTURE_NUMBERS; ++j) {
+        for (int i = 0; i < members; ++i)
+            value[i] = number[i][j];
+        out[j] = ex_constant(w->dag, value);
+    }
+}
+
+static End end_of(const Work *w, int body)
+{
+    if (body == BODY_BASE)
+        return (End){-1, -1};
+    int unknown = place_of(w->first->body, w->first->bodies, body);
+    return (End){unknown, unknown < 0 ? place_of(w->first->known, w->first->knowns, body) : -1};
+}
+
+static void make_connections(Work *w)
+{
+    const Subset *first = w->first;
+    w->connections = first->joints + first->coordinates;
+    w->connection = pool_alloc(w->pool, (size_t)w->connections * sizeof *w->connection);
+    for (int i = 0; i < w->connections; ++i) {
+        Connection *tie = &w->connection[i];
+        tie->is_coordinate = i >= first->joints;
+        int position = tie->is_coordinate ? i - first->joints : i;
+        tie->index = tie->is_coordinate ? first->coordinate[position] : first->joint[position];
+        const int *body =
+            tie->is_coordinate ? w->model->coordinate[tie->index].body : w->model->joint[tie->index].body;
+        for (int end = 0; end < 2; ++end)
+            tie->end[end] = end_of(w, body[end]);
+        if (tie->is_coordinate)
+            tie->dep = place_of(first->dep, first->deps, tie->index);
+        make_fixture(w, tie, position);
+    }
+}
+
+/* Largest distance of a fixture's points from the reference points they are counted from, over all members. */
+static double subset_size(const Work *w)
+{
+    double size = 0;
+    for (int i = 0; i < w->connections; ++i)
+        for (int end = 0; end < 2; ++end) {
+            if (w->connection[i].end[end].unknown < 0)
+                continue;
+            for (int s = 0; s < w->dag->samples; ++s) {
+                double s3[3];
+                for (int j = 0; j < 3; ++j)
+                    s3[j] = ex_value(w->dag, w->connection[i].fixture.point[end][j], s);
+                size = fmax(size, vec_norm(s3));
+            }
+        }
+    return size > 0 ? size : 1;
+}
+
+static Ex *make_inputs(Work *w, const char *name, int count)
+{
+    Ex *e = pool_alloc(w->pool, (size_t)(count ? count : 1) * sizeof *e);
+    for (int i = 0; i < count; ++i)
+        e[i] = ex_input(w->dag, pool_print(w->pool, "%s[%d]", name, i), NULL);
+    return e;
+}
+
+/* S of a known refers to the deps of its own subset: order it by ours. */
+static void order_by_deps(Work *w, int known)
+{
+    Motion *m = &w->known[known];
+    const Subset *own = &w->sequence->subset[w->sequence->body_subset[w->first->known[known]]];
+    Ex *S = pool_alloc(w->pool, (size_t)(6 * w->first->deps) * sizeof *S);
+    for (int j = 0; j < own->deps; ++j)
+        memcpy(S + 6 * place_of(w->first->dep, w->first->deps, own->dep[j]), m->S + 6 * j, 6 * sizeof *S);
+    m->S = S;
+    m->deps = w->first->deps;
+}
+
+static void make_motions(Work *w)
+{
+    const Subset *first = w->first;
+    motion_base(w->dag, &w->base);
+    w->known = pool_alloc(w->pool, (size_t)(first->knowns + 1) * sizeof *w->known);
+    for (int i = 0; i < first->knowns; ++i) {
+        const Subset *own = &w->sequence->subset[w->sequence->body_subset[first->known[i]]];
+        motion_input(w->dag, &w->known[i], pool_print(w->pool, "m%d", i), 0, own->deps);
+        order_by_deps(w, i);
+    }
+    w->q = make_inputs(w, "q", 7 * first->bodies);
+    w->pose = pool_alloc(w->pool, (size_t)first->bodies * sizeof *w->pose);
+    for (int b = 0; b < first->bodies; ++b) {
+        memcpy(w->pose[b].c, w->q + 7 * b, sizeof w->pose[b].c);
+        ex_rotation(w->dag, w->q + 7 * b + 3, w->pose[b].A);
+    }
+    w->x = make_inputs(w, "x", first->deps);
+    w->rate = make_inputs(w, "rate", first->deps);
+    w->change = make_inputs(w, "change", first->deps);
+}
+
+/* ---- equations ------------------------------------------------------------------------------------------------ */
+
+static const Motion *motion_of(const Work *w, const Motion *unknown, End end)
+{
+    return end.unknown >= 0 ? &unknown[end.unknown] : end.known >= 0 ? &w->known[end.known] : &w->base;
+}
+
+/* All rows of the subset with the unknowns moving as given; row_of tells the link of each. */
+static void make_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
+{
+    int rows = 0;
+    for (int i = 0; i < w->connections; ++i) {
+        const Connection *tie = &w->connection[i];
+        const Motion *end[2] = {motion_of(w, unknown, tie->end[0]), motion_of(w, unknown, tie->end[1])};
+        int made = 1;
+        if (tie->is_coordinate)
+            row[rows] = coordinate_row(w->dag, w->model->coordinate[tie->index].type, &tie->fixture, end,
+                                       w->x[tie->dep], w->rate[tie->dep]);
+        else
+            made = joint_rows(w->dag, w->model->joint[tie->index].type, &tie->fixture, end, row + rows);
+        for (int r = 0; r < made; ++r)
+            row_of[rows++] = i;
+    }
+}
+
+/* Columns of the unknowns, [n][n]. */
+static void make_jacobian(const Work *w, const Row *row, const int *row_of, Ex *J)
+{
+    for (int r = 0; r < w->n; ++r)
+        for (int end = 0; end < 2; ++end) {
+            int body = w->connection[row_of[r]].end[end].unknown;
+            for (int j = 0; body >= 0 && j < 6; ++j)
+                J[w->n * r + 6 * body + j] = row[r].J[end][j];
+        }
+}
+
+/* ---- factorization with diagnosis ---------------------------------------------------------------------------------- */
+
+/* Names of the links whose rows found no pivot. */
+static const char *connections_named(const Work *w, const bool *row_left)
+{
+    Text names = {.pool = w->pool};
+    int last = -1;
+    for (int r = 0; r < w->n; ++r) {
+        if (!row_left[r] || w->row_of[r] == last)
+            continue;
+        const Connection *tie = &w->connection[last = w->row_of[r]];
+        text_print(&names, "%s%s '%s'", names.size ? ", " : "", tie->is_coordinate ? "coordinate" : "joint",
+                   tie->is_coordinate ? w->model->coordinate[tie->index].name : w->model->joint[tie->index].name);
+    }
+    return names.s;
+}
+
+static const char *bodies_named(const Work *w)
+{
+    Text names = {.pool = w->pool};
+    for (int b = 0; b < w->first->bodies; ++b)
+        text_print(&names, "%s'%s'", b ? ", " : "", w->model->body[w->first->body[b]].name);
+    return names.s;
+}
+
+static Factors *factor_or_explain(Work *w)
+{
+    double column_scale[w->n];
+    bool row_left[w->n], design[w->dag->samples];
+    int rank;
+    for (int j = 0; j < w->n; ++j)
+        column_scale[j] = j % 6 < 3 ? w->size : 1;
+    Factors *f = linear_factor(w->dag, w->n, w->J, column_scale, w->alive, &rank, row_left);
+    if (f)
+        return f;
+    for (int s = 0; s < w->dag->samples; ++s)
+        design[s] = s % w->configurations == 0;
+    const char *names = connections_named(w, row_left);
+    Place at = w->model->body[w->first->body[0]].at;
+    f = linear_factor(w->dag, w->n, w->J, column_scale, design, &rank, row_left);
+    if (f) {
+        diag_warn(at, "narrow the coordinates' ranges, or choose a coordinate that stays independent",
+                  "inside its range the subset of bodies %s passes a singular configuration: %s", bodies_named(w), names);
+        return f;
+    }
+    names = connections_named(w, row_left);
+    diag_fail(at, "some of these equations repeat others or contradict them at the design configuration: move a point, turn an "
+                  "axis, or replace a joint or coordinate",
+              "bodies %s can't be determined from their joints and coordinates (%d of %d equations are independent): %s",
+              bodies_named(w), rank, w->n, names);
+}
+
+/* ---- blocks ---------------------------------------------------------------------------------------------------------- */
+
+/* q moved by a twist: linear in the step and normalized to second order, so that repeated corrections converge to unit length. */
+static void moved(Work *w, const Ex *q, const Ex twist[6], Ex out[7])
+{
+    Dag *dag = w->dag;
+    Ex half = ex_literal(dag, 0.5), t[3], cross[3], p[4];
+    ex_add3(dag, q, twist + 3, out);
+    ex_scale3(dag, half, twist, t);
+    ex_cross(dag, t, q + 4, cross);
+    p[0] = ex_sub(dag, q[3], ex_dot(dag, t, q + 4));
+    for (int i = 0; i < 3; ++i)
+        p[1 + i] = ex_add(dag, q[4 + i], ex_add(dag, ex_mul(dag, q[3], t[i]), cross[i]));
+    Ex square = ex_add(dag, ex_mul(dag, p[0], p[0]), ex_dot(dag, p + 1, p + 1));
+    Ex scale = ex_sub(dag, ex_literal(dag, 1.5), ex_mul(dag, half, square));
+    for (int i = 0; i < 4; ++i)
+        out[3 + i] = ex_mul(dag, p[i], scale);
+}
+
+/* Squared size of twists relative to the subset's size. */
+static Ex relative_square(Work *w, const Ex *twist)
+{
+    Dag *dag = w->dag;
+    Ex angular = 0, linear = 0;
+    for (int b = 0; b < w->first->bodies; ++b) {
+        angular = ex_add(dag, angular, ex_dot(dag, twist + 6 * b, twist + 6 * b));
+        linear = ex_add(dag, linear, ex_dot(dag, twist + 6 * b + 3, twist + 6 * b + 3));
+    }
+    return ex_add(dag, angular, ex_mul(dag, ex_literal(dag, 1 / (w->size * w->size)), linear));
+}
+
+static void store_moved(Work *w, Block *block, const Ex *twist, Ex *moved_q)
+{
+    for (int b = 0; b < w->first->bodies; ++b) {
+        moved(w, w->q + 7 * b, twist + 6 * b, moved_q + 7 * b);
+        for (int i = 0; i < 7; ++i)
+            block_store(block, moved_q[7 * b + i], "q[%d]", 7 * b + i);
+    }
+}
+
+static void make_predict(Work *w, Formula *formula)
+{
+    Ex *s = make_inputs(w, "s", w->n * w->first->deps), twist[w->n], q[7 * w->first->bodies];
+    for (int i = 0; i < w->n; ++i) {
+        twist[i] = 0;
+        for (int j = 0; j < w->first->deps; ++j)
+            twist[i] = ex_add(w->dag, twist[i], ex_mul(w->dag, s[(i / 6 * w->first->deps + j) * 6 + i % 6], w->change[j]));
+    }
+    store_moved(w, &formula->predict, twist, q);
+    block_store(&formula->predict, relative_square(w, twist), "reach");
+}
+
+/* The factors as inputs f[...] where they vary. stored: what to write there. */
+static Factors *factors_from_memory(Work *w, const Factors *factors, Ex *stored, int *count)
+{
+    Factors *f = pool_alloc(w->pool, sizeof *f);
+    size_t entries = (size_t)(w->n * w->n);
+    *f = *factors;
+    f->entry = pool_alloc(w->pool, entries * sizeof *f->entry);
+    *count = 0;
+    for (size_t i = 0; i < entries; ++i) {
+        Ex e = factors->entry[i];
+        f->entry[i] = e;
+        if (w->dag->node[e].level < LEVEL_VARIABLE)
+            continue;
+        /* equal and opposite entries are kept once */
+        Ex positive = w->dag->node[e].op == OP_NEG ? w->dag->node[e].arg[0] : e;
+        int slot = 0;
+        while (slot < *count && stored[slot] != positive)
+            ++slot;
+        if (slot == *count)
+            stored[(*count)++] = positive;
+        f->entry[i] = ex_input(w->dag, pool_print(w->pool, "f[%d]", slot), NULL);
+        if (positive != e)
+            f->entry[i] = ex_neg(w->dag, f->entry[i]);
+    }
+    return f;
+}
+
+static void make_step(Work *w, const Factors *factors, Block *block, Ex *moved_q)
+{
+    Ex b[w->n];
+    for (int r = 0; r < w->n; ++r)
+        b[r] = ex_neg(w->dag, w->row[r].value);
+    linear_solve(w->dag, factors, b, b);
+    store_moved(w, block, b, moved_q);
+    block_store(block, relative_square(w, b), "step");
+}
+
+/* What is known of J twist + ... = 0 for a unit rate of coordinate j: goes to the right-hand side. */
+static void unit_rate(Work *w, int j, Ex *b)
+{
+    for (int r = 0; r < w->n; ++r) {
+        const Connection *tie = &w->connection[w->row_of[r]];
+        Ex sum = tie->is_coordinate && tie->dep == j ? w->row[r].dual : 0;
+        for (int end = 0; end < 2; ++end)
+            if (tie->end[end].known >= 0)
+                for (int i = 0; i < 6; ++i)
+                    sum = ex_add(w->dag, sum, ex_mul(w->dag, w->row[r].J[end][i], w->known[tie->end[end].known].S[6 * j + i]));
+        b[r] = ex_neg(w->dag, sum);
+    }
+}
+
+/* S, then velocities and accelerations of the unknowns at q. */
+static void make_motion(Work *w, const Factors *factors, Motion *motion)
+{
+    Dag *dag = w->dag;
+    const Subset *first = w->first;
+    Ex b[w->n];
+    for (int body = 0; body < first->bodies; ++body) {
+        motion[body] = w->pose[body];
+        motion[body].deps = first->deps;
+        motion[body].S = pool_alloc(w->pool, (size_t)(6 * first->deps + 1) * sizeof *motion[body].S);
+    }
+    for (int j = 0; j < first->deps; ++j) {
+        unit_rate(w, j, b);
+        linear_solve(dag, factors, b, b);
+        for (int i = 0; i < w->n; ++i) {
+            Motion *m = &motion[i / 6];
+            Ex *rate = i % 6 < 3 ? &m->omega[i % 3] : &m->velocity[i % 3];
+            m->S[6 * j + i % 6] = b[i];
+            *rate = ex_add(dag, *rate, ex_mul(dag, b[i], w->rate[j]));
+        }
+    }
+    /* once more with rates, for the quadratic-velocity terms */
+    Row *row = pool_alloc(w->pool, (size_t)w->n * sizeof *row);
+    make_rows(w, motion, row, w->row_of);
+    for (int r = 0; r < w->n; ++r)
+        b[r] = ex_neg(dag, row[r].bias);
+    linear_solve(dag, factors, b, b);
+    for (int i = 0; i < w->n; ++i)
+        *(i % 6 < 3 ? &motion[i / 6].alpha[i % 3] : &motion[i / 6].acceleration[i % 3]) = b[i];
+}
+
+static void store_motion(Block *block, const Motion *m, int offset)
+{
+    const struct {
+        const Ex *e;
+        int offset, count;
+    } part[] = {{m->c, MOTION_C, 3},         {m->A, MOTION_A, 9},         {m->omega, MOTION_OMEGA, 3},
+                {m->velocity, MOTION_VELOCITY, 3}, {m->alpha, MOTION_ALPHA, 3}, {m->acceleration, MOTION_ACCELERATION, 3},
+                {m->S, MOTION_S, 6 * m->deps}};
+    for (size_t p = 0; p < sizeof part / sizeof *part; ++p)
+        for (int i = 0; i < part[p].count; ++i)
+            block_store(block, part[p].e[i], "motion[%d]", offset + part[p].offset + i);
+}
+
+/* A pivot this much smaller than at any sample means that independence is being lost, while the error it causes, about
+ * epsilon times the ratio, is still far below 1e-8. */
+static const double pivot_loss = 1e-7;
+
+static void check_pivots(Work *w, Formula *formula, const Factors *factors)
+{
+    for (int k = 0; k < w->n; ++k) {
+        Ex pivot = factors->pivot[k];
+        if (w->dag->node[pivot].level < LEVEL_VARIABLE)
+            continue;
+        double usual = 0;
+        for (int s = 0; s < w->dag->samples; ++s)
+            usual = fmax(usual, fabs(ex_value(w->dag, pivot, s)));
+        block_check(&formula->solve, pivot, true, pivot_loss * usual, "GIC_ERROR_SINGULAR");
+    }
+    for (int r = 0; r < w->n; ++r)
+        if (w->row[r].guard)
+            block_check(&formula->solve, w->row[r].guard, false, 0, "GIC_ERROR_SINGULAR");
+}
+
+/* Rows are scaled to what a unit move of the subset's size changes in them at the design. */
+static void make_residual(Work *w, Formula *formula)
+{
+    Dag *dag = w->dag;
+    Ex worst = 0;
+    double scale[w->class->members];
+    for (int r = 0; r < w->n; ++r) {
+        for (int i = 0; i < w->class->members; ++i) {
+            double largest = 0;
+            for (int j = 0; j < w->n; ++j)
+                largest = fmax(largest, fabs(ex_value(dag, w->J[w->n * r + j], i * w->configurations)) / (j % 6 < 3 ? w->size : 1));
+            scale[i] = 1 / (largest * w->size);
+        }
+        Ex value = ex_op(dag, OP_ABS, ex_mul(dag, ex_constant(dag, scale), w->row[r].value), 0, 0);
+        worst = r ? ex_op(dag, OP_MAX, worst, value, 0) : value;
+    }
+    block_store(&formula->residual, worst, "worst");
+}
+
+static Work *open_class(Pool *pool, const Model *model, const Sequence *sequence, const Class *class,
+                        const double (*origin)[3], const Sampling *sampling)
+{
+    Work *w = pool_alloc(pool, sizeof *w);
+    const Subset *first = &sequence->subset[class->member[0]];
+    *w = (Work){.pool = pool,
+                .model = model,
+                .sequence = sequence,
+                .class = class,
+                .first = first,
+                .origin = origin,
+                .dag = dag_new(pool, class->members, class->members * sampling->configurations),
+                .n = 6 * first->bodies,
+                .configurations = sampling->configurations};
+    size_t n = (size_t)w->n;
+    w->row = pool_alloc(pool, n * sizeof *w->row);
+    w->row_of = pool_alloc(pool, n * sizeof *w->row_of);
+    w->J = pool_alloc(pool, n * n * sizeof *w->J);
+    w->alive = pool_alloc(pool, (size_t)w->dag->samples * sizeof *w->alive);
+    make_connections(w);
+    make_motions(w);
+    w->size = subset_size(w);
+    make_rows(w, w->pose, w->row, w->row_of);
+    make_jacobian(w, w->row, w->row_of, w->J);
+    return w;
+}
+
+static Layout make_layout(const Work *w, int factors)
+{
+    int bodies = w->first->bodies, deps = w->first->deps;
+    return (Layout){.bodies = bodies,
+                    .deps = deps,
+                    .factors = factors,
+                    .start_S = 7 * bodies,
+                    .start_factors = 7 * bodies + w->n * deps,
+                    .start_size = 7 * bodies + w->n * deps + factors,
+                    .motion_size = MOTION_S + 6 * deps,
+                    .inertia_size = inertia_mass(deps, deps, deps)};
+}
+
+static Formula *formulate_class(Work *w)
+{
+    Pool *pool = w->pool;
+    Dag *dag = w->dag;
+    int bodies = w->first->bodies, deps = w->first->deps;
+    Formula *formula = pool_alloc(pool, sizeof *formula);
+    formula->dag = formula->predict.dag = formula->chord.dag = formula->solve.dag = formula->residual.dag = dag;
+    formula->size = w->size;
+    Factors *factors = factor_or_explain(w);
+    Ex *stored = pool_alloc(pool, (size_t)(w->n * w->n) * sizeof *stored), *q = pool_alloc(pool, (size_t)(7 * bodies) * sizeof *q);
+    int count;
+    Factors *remembered = factors_from_memory(w, factors, stored, &count);
+    formula->layout = make_layout(w, count);
+    const Layout *layout = &formula->layout;
+
+    make_predict(w, formula);
+    make_step(w, remembered, &formula->chord, q);
+    make_residual(w, formula);
+    check_pivots(w, formula, factors);
+    make_step(w, factors, &formula->solve, q);
+    Motion *motion = pool_alloc(pool, (size_t)bodies * sizeof *motion);
+    make_motion(w, factors, motion);
+    for (int b = 0; b < bodies; ++b) {
+        /* S and the rates belong to q, which the last correction moves by less than they can show */
+        memcpy(motion[b].c, q + 7 * b, sizeof motion[b].c);
+        ex_rotation(dag, q + 7 * b + 3, motion[b].A);
+        store_motion(&formula->solve, &motion[b], b * layout->motion_size);
+        for (int i = 0; i < 6 * deps; ++i)
+            block_store(&formula->solve, motion[b].S[i], "start[%d]", layout->start_S + 6 * deps * b + i);
+    }
+    for (int i = 0; i < count; ++i)
+        block_store(&formula->solve, stored[i], "start[%d]", layout->start_factors + i);
+    subset_inertia(w, layout, motion, &formula->solve);
+    return formula;
+}
+
+Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence *sequence, const double (*origin)[3],
+                            Sampling *sampling)
+{
+    Formula **formula = pool_alloc(pool, (size_t)(sequence->classes + 1) * sizeof *formula);
+    Work **work = pool_alloc(pool, (size_t)(sequence->classes + 1) * sizeof *work);
+    for (int c = 0; c < sequence->classes; ++c)
+        work[c] = open_class(pool, model, sequence, &sequence->class[c], origin, sampling);
+    for (int s = 0; s < sequence->subsets; ++s) {
+        int c = sequence->subset[s].class;
+        if (c >= 0)
+            subset_follow(work[c], sampling, place_of(work[c]->class->member, work[c]->class->members, s));
+    }
+    for (int c = 0; c < sequence->classes; ++c)
+        formula[c] = formulate_class(work[c]);
+    return formula;
+}

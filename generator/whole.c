@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: MIT
+ * The whole mechanism relative to the world, once every subset is recovered: what dynamics, outputs and checks share. */
+#include "gicgen.h"
+
+#include <string.h>
+
+Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Formula **formula, const double (*origin)[3])
+{
+    Plan *plan = pool_alloc(pool, sizeof *plan);
+    size_t bodies = (size_t)model->bodies, coordinates = (size_t)model->coordinates + 1, subsets = (size_t)sequence->subsets + 1;
+    *plan = (Plan){.model = model,
+                   .sequence = sequence,
+                   .formula = formula,
+                   .origin = origin,
+                   .start_offset = pool_alloc(pool, subsets * sizeof(int)),
+                   .inertia_offset = pool_alloc(pool, subsets * sizeof(int)),
+                   .motion_offset = pool_alloc(pool, bodies * sizeof(int)),
+                   .coordinate_state = pool_alloc(pool, coordinates * sizeof(int)),
+                   .coordinate_rate = pool_alloc(pool, coordinates * sizeof(int)),
+                   .coordinate_unknown = pool_alloc(pool, coordinates * sizeof(int))};
+    /* the coordinates that a start belongs to stand in front of it */
+    plan->start_size = model->coordinates;
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        if (subset->class < 0)
+            continue;
+        const Layout *layout = &formula[subset->class]->layout;
+        plan->start_offset[s] = plan->start_size;
+        plan->inertia_offset[s] = plan->inertia_size;
+        plan->start_size += layout->start_size;
+        plan->inertia_size += layout->inertia_size;
+        for (int b = 0; b < subset->bodies; ++b) {
+            plan->motion_offset[subset->body[b]] = plan->motion_size;
+            plan->motion_size += layout->motion_size;
+        }
+    }
+    for (int i = 0; i < model->coordinates; ++i)
+        plan->free_coordinates += !model->coordinate[i].driven;
+    int free_index = 0, base_pose = model->free_base ? 7 : 0, base_twist = model->free_base ? 6 : 0;
+    for (int i = 0; i < model->coordinates; ++i) {
+        bool driven = model->coordinate[i].driven;
+        plan->coordinate_state[i] = driven ? -1 : base_pose + free_index;
+        plan->coordinate_rate[i] = driven ? -1 : base_pose + plan->free_coordinates + base_twist + free_index;
+        plan->coordinate_unknown[i] = driven ? -1 : base_twist + free_index;
+        free_index += !driven;
+    }
+    plan->states = base_pose + base_twist + 2 * plan->free_coordinates;
+    plan->unknowns = base_twist + plan->free_coordinates;
+    return plan;
+}
+
+const Subset *whole_subset(const Whole *whole, int body)
+{
+    return &whole->plan->sequence->subset[whole->plan->sequence->body_subset[body]];
+}
+
+static Ex indexed(Whole *whole, const char *array, int i)
+{
+    return ex_input(whole->dag, pool_print(whole->dag->pool, "%s[%d]", array, i), NULL);
+}
+
+Whole *whole_new(Pool *pool, const Plan *plan)
+{
+    const Model *model = plan->model;
+    Dag *dag = dag_new(pool, 1, 1);
+    Whole *whole = pool_alloc(pool, sizeof *whole);
+    *whole = (Whole){.plan = plan,
+                     .model = model,
+                     .dag = dag,
+                     .motion = pool_alloc(pool, (size_t)model->bodies * sizeof(Motion)),
+                     .x = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof(Ex)),
+                     .xd = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof(Ex))};
+    motion_base(dag, &whole->motion[BODY_BASE]);
+    for (int b = 1; b < model->bodies; ++b)
+        motion_input(dag, &whole->motion[b], "m", plan->motion_offset[b], whole_subset(whole, b)->deps);
+    for (int i = 0; i < model->coordinates; ++i) {
+        whole->x[i] = indexed(whole, "x", i);
+        whole->xd[i] = indexed(whole, "xd", i);
+    }
+    Ex gravity[3];
+    for (int i = 0; i < 3; ++i)
+        gravity[i] = ex_literal(dag, model->gravity[i]);
+    if (model->free_base) {
+        int twist = 7 + plan->free_coordinates;
+        for (int i = 0; i < 3; ++i) {
+            whole->r[i] = indexed(whole, "y", i);
+            whole->v[i] = indexed(whole, "y", twist + i);
+            whole->turn[i] = indexed(whole, "y", twist + 3 + i);
+        }
+        for (int i = 0; i < 4; ++i)
+            whole->e[i] = indexed(whole, "e", i);
+        ex_rotation(dag, whole->e, whole->R);
+    } else {
+        whole->e[0] = ex_literal(dag, 1);
+        for (int i = 0; i < 3; ++i)
+            whole->R[4 * i] = ex_literal(dag, 1);
+    }
+    ex_apply_transposed(dag, whole->R, gravity, whole->gravity);
+    return whole;
+}
+
+Vector whole_point(Whole *whole, int body, const double s[3])
+{
+    Dag *dag = whole->dag;
+    Ex local[3];
+    if (body == BODY_GROUND && whole->model->free_base) {
+        /* fixed in the world: seen from the base it moves against the base's own motion */
+        Vector vector = {.point = true};
+        Ex world[3], velocity[3];
+        for (int i = 0; i < 3; ++i)
+            local[i] = ex_literal(dag, s[i]);
+        ex_sub3(dag, local, whole->r, world);
+        ex_apply_transposed(dag, whole->R, world, vector.v);
+        ex_apply_transposed(dag, whole->R, whole->v, velocity);
+        ex_cross(dag, whole->turn, vector.v, vector.rate);
+        ex_add3(dag, vector.rate, velocity, vector.rate);
+        ex_sub3(dag, (Ex[3]){0}, vector.rate, vector.rate);
+        return vector;
+    }
+    for (int i = 0; i < 3; ++i)
+        local[i] = ex_literal(dag, s[i] - whole->plan->origin[body][i]);
+    return vector_point(dag, &whole->motion[body], local);
+}
+
+void whole_position(Whole *whole, const Vector *point, Ex out[3])
+{
+    ex_apply(whole->dag, whole->R, point->v, out);
+    ex_add3(whole->dag, whole->r, out, out);
+}
+
+void whole_velocity_in_base(Whole *whole, const Vector *point, Ex out[3])
+{
+    Ex own[3];
+    ex_apply_transposed(whole->dag, whole->R, whole->v, own);
+    ex_cross(whole->dag, whole->turn, point->v, out);
+    ex_add3(whole->dag, out, point->rate, out);
+    ex_add3(whole->dag, out, own, out);
+}
+
+void whole_velocity(Whole *whole, const Vector *point, Ex out[3])
+{
+    Ex relative[3];
+    ex_cross(whole->dag, whole->turn, point->v, relative);
+    ex_add3(whole->dag, relative, point->rate, relative);
+    ex_apply(whole->dag, whole->R, relative, out);
+    ex_add3(whole->dag, whole->v, out, out);
+}
+
+void whole_inertia(Whole *whole, int body, Ex J[6])
+{
+    Dag *dag = whole->dag;
+    const double *I = whole->model->body[body].inertia;
+    const int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+    const Ex *A = whole->motion[body].A;
+    Ex AI[3][3];
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            Ex column[3];
+            for (int k = 0; k < 3; ++k)
+                column[k] = ex_literal(dag, I[place[k][j]]);
+            AI[i][j] = ex_dot(dag, A + 3 * i, column);
+        }
+    for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j)
+            J[place[i][j]] = ex_dot(dag, AI[i], A + 3 * j);
+}
+
+void whole_unit_velocity(Whole *whole, int body, const Vector *point, int coordinate, Ex linear[3], Ex angular[3])
+{
+    ex_zero3(whole->dag, linear);
+    ex_zero3(whole->dag, angular);
+    if (body <= BODY_BASE)
+        return;
+    const Subset *subset = whole_subset(whole, body);
+    const Motion *m = &whole->motion[body];
+    for (int j = 0; j < subset->deps; ++j)
+        if (subset->dep[j] == coordinate) {
+            const Ex *S = m->S + 6 * j;
+            memcpy(angular, S, 3 * sizeof *S);
+            ex_cross(whole->dag, S, point->arm, linear);
+            ex_add3(whole->dag, linear, S + 3, linear);
+        }
+}
+
+void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2, Ex out[3])
+{
+    Dag *dag = whole->dag;
+    Ex t[3], u[3];
+    ex_cross(dag, whole->turn, point->v, t);
+    ex_add3(dag, t, point->rate, t);
+    ex_add3(dag, t, point->rate, t);
+    ex_cross(dag, whole->turn, t, out);
+    ex_cross(dag, alpha, point->v, t);
+    ex_add3(dag, out, t, out);
+    ex_add3(dag, out, a, out);
+    ex_add3(dag, out, point->bias, out);
+    if (body <= BODY_BASE)
+        return;
+    const Subset *subset = whole_subset(whole, body);
+    for (int j = 0; j < subset->deps; ++j) {
+        whole_unit_velocity(whole, body, point, subset->dep[j], t, u);
+        ex_scale3(dag, w2[subset->dep[j]], t, t);
+        ex_add3(dag, out, t, out);
+    }
+}
+
+void whole_angular_acceleration(Whole *whole, int body, const Ex alpha[3], const Ex *w2, Ex out[3])
+{
+    Dag *dag = whole->dag;
+    const Motion *m = &whole->motion[body];
+    Ex t[3];
+    ex_cross(dag, whole->turn, m->omega, out);
+    ex_add3(dag, out, alpha, out);
+    ex_add3(dag, out, m->alpha, out);
+    if (body == BODY_BASE)
+        return;
+    const Subset *subset = whole_subset(whole, body);
+    for (int j = 0; j < subset->deps; ++j) {
+        ex_scale3(dag, w2[subset->dep[j]], m->S + 6 * j, t);
+        ex_add3(dag, out, t, out);
+    }
+}
