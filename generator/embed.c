@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ * A tool of the build: `embed FILE... > embedded.c` prints files as C, as `embedded` of gicgen.h wants them, so that
+ * the programs need no data files. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static _Noreturn void fail(const char *path)
+{
+    fprintf(stderr, "%s: error: %s\n", path, strerror(errno));
+    exit(1);
+}
+
+/* Numbers rather than a string literal: C99 promises no literal longer than 4095 characters. */
+static void print_bytes(const char *path, int index)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        fail(path);
+    printf("\nstatic const char file_%d[] = {", index);
+    int column = 0;
+    for (int c; (c = getc(file)) != EOF; ++column)
+        printf(c < 128 ? "%s%d," : "%s(char)%d,", column % 24 ? "" : "\n    ", c);
+    if (ferror(file))
+        fail(path);
+    fclose(file);
+    puts("\n    0};");
+}
+
+int main(int count, char **path)
+{
+    puts("/* SPDX-License-Identifier: MIT */\n#include \"gicgen.h\"");
+    for (int i = 1; i < count; ++i)
+        print_bytes(path[i], i);
+    puts("\nconst Embedded embedded[] = {");
+    for (int i = 1; i < count; ++i)
+        printf("    {\"%s\", file_%d, sizeof file_%d - 1},\n", base_name(path[i]), i, i);
+    puts("    {NULL, NULL, 0},\n};");
+    if (fflush(stdout) || ferror(stdout))
+        fail("standard output");
+    return 0;
+}

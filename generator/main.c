@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: MIT
+ * gicgen: the command line. */
+#include "gicgen.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] =
+    "usage: gicgen MODEL.veh [-o FILE.c]      write FILE.c and its header (default: <model>.c here)\n"
+    "       gicgen --sequence MODEL.veh       print the computational sequence\n"
+    "       gicgen --graph FILE MODEL.veh     draw bodies, joints and stages: FILE.svg (needs Graphviz) or FILE.dot\n"
+    "       gicgen --dump-model MODEL.veh     print the resolved model as JSON\n"
+    "\n"
+    "options:\n"
+    "  -o FILE          where to write; FILE.c gets a FILE.h beside it; `-` is standard output\n"
+    "  --templates DIR  take templates from DIR instead of the built-in ones\n"
+    "  -h, --help       this text\n"
+    "  --version        the version\n"
+    "\n"
+    "MODEL.veh is described in models/FORMAT.md; `-` reads standard input.\n";
+
+typedef enum Task { TASK_GENERATE, TASK_SEQUENCE, TASK_GRAPH, TASK_DUMP } Task;
+
+typedef struct Options {
+    Task task;
+    const char *model, *output, *picture, *templates;
+} Options;
+
+static _Noreturn void usage_error(const char *message, const char *word)
+{
+    fprintf(stderr, "gicgen: error: %s%s%s\n%s", message, word ? ": " : "", word ? word : "", usage);
+    exit(2);
+}
+
+static const char *argument(int count, char **word, int *i)
+{
+    if (*i + 1 >= count)
+        usage_error("an argument is missing after", word[*i]);
+    return word[++*i];
+}
+
+static void set_task(Options *options, Task task)
+{
+    if (options->task != TASK_GENERATE)
+        usage_error("only one of --sequence, --graph and --dump-model can be asked for", NULL);
+    options->task = task;
+}
+
+static Options read_options(int count, char **word)
+{
+    Options options = {.task = TASK_GENERATE};
+    for (int i = 1; i < count; ++i) {
+        const char *w = word[i];
+        if (!strcmp(w, "-h") || !strcmp(w, "--help")) {
+            fputs(usage, stdout);
+            exit(0);
+        } else if (!strcmp(w, "--version")) {
+            puts("gicgen " GICGEN_VERSION);
+            exit(0);
+        } else if (!strcmp(w, "-o")) {
+            options.output = argument(count, word, &i);
+        } else if (!strcmp(w, "--templates")) {
+            options.templates = argument(count, word, &i);
+        } else if (!strcmp(w, "--sequence")) {
+            set_task(&options, TASK_SEQUENCE);
+        } else if (!strcmp(w, "--dump-model")) {
+            set_task(&options, TASK_DUMP);
+        } else if (!strcmp(w, "--graph")) {
+            set_task(&options, TASK_GRAPH);
+            options.picture = argument(count, word, &i);
+        } else if (w[0] == '-' && w[1]) {
+            usage_error("unknown option", w);
+        } else if (options.model) {
+            usage_error("more than one model given", w);
+        } else {
+            options.model = w;
+        }
+    }
+    if (!options.model)
+        usage_error("no model given", NULL);
+    return options;
+}
+
+static bool ends_with(const char *s, const char *end)
+{
+    size_t length = strlen(s), tail = strlen(end);
+    return length >= tail && !strcmp(s + length - tail, end);
+}
+
+/* FILE.c and FILE.h; the code includes <model>.h, so the names must agree. */
+static void write_code(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)
+{
+    Text c = {.pool = pool}, h = {.pool = pool};
+    const char *path = options->output ? options->output : pool_print(pool, "%s.c", model->name);
+    if (strcmp(path, "-") && !ends_with(path, ".c"))
+        usage_error("the generated file must end in .c", path);
+    const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
+    const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
+    generate(pool, model, sequence, options->templates, strcmp(path, "-") ? name : NULL, &c, &h);
+    if (!strcmp(path, "-")) {
+        text_add(&h, c.s, c.size);
+        file_write(path, h.s, h.size);
+        return;
+    }
+    file_write(header, h.s, h.size);
+    file_write(path, c.s, c.size);
+}
+
+static void write_graph(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)
+{
+    Text dot = {.pool = pool};
+    graph_draw(&dot, model, sequence);
+    if (ends_with(options->picture, ".svg"))
+        picture_write(pool, options->picture, &dot);
+    else if (ends_with(options->picture, ".dot") || !strcmp(options->picture, "-"))
+        file_write(options->picture, dot.s, dot.size);
+    else
+        usage_error("the picture's name must end in .svg or .dot", options->picture);
+}
+
+int main(int count, char **word)
+{
+    Options options = read_options(count, word);
+    Pool *pool = pool_new();
+    const Model *model = model_read(pool, options.model);
+    const Sequence *sequence = sequence_find(pool, model);
+    Text text = {.pool = pool};
+    switch (options.task) {
+    case TASK_GENERATE:
+        write_code(pool, model, sequence, &options);
+        break;
+    case TASK_GRAPH:
+        write_graph(pool, model, sequence, &options);
+        break;
+    case TASK_SEQUENCE:
+    case TASK_DUMP:
+        if (options.task == TASK_DUMP)
+            model_dump(&text, model, sequence);
+        else
+            sequence_print(&text, model, sequence);
+        file_write(options.output ? options.output : "-", text.s, text.size);
+        break;
+    }
+    pool_free(pool);
+    return 0;
+}
