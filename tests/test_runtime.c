@@ -1,0 +1,564 @@
+/* SPDX-License-Identifier: MIT
+ * The runtime core against exact solutions, independent formulas in long double and bit comparisons. Made to be built
+ * three ways: plain, with -DGIC_FLOAT, and with -ffast-math. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <float.h>
+#include <math.h>
+
+#include "../runtime/gic_runtime.h"
+
+#ifdef GIC_FLOAT
+#define EPSILON ((double)FLT_EPSILON)
+#define ORDER_TOLERANCE 0.25 /* rounding shows beside the fourth-order error */
+#else
+#define EPSILON DBL_EPSILON
+#define ORDER_TOLERANCE 0.1
+#endif
+
+/* ---- a hand-made model: x'' = -x + u + t with the input u = cos 2t -------------------------------------- */
+
+enum { N = 2 };
+
+typedef struct Probe {
+    gic_head head;
+    gic_real state[N], rate[N], history[2 * N], input[1], scratch[4 * N + 1];
+    int fail_at;   /* evaluation of the step that fails, from 0; -1: none */
+    int poison_at; /* evaluation whose rate is not a number, from 0; -1: none */
+    int settle_status;
+    int evaluation;
+} Probe;
+
+static gic_real not_a_number(void)
+{
+    gic_real x;
+    memset(&x, 0xff, sizeof x);
+    return x;
+}
+
+static int probe_rhs(void *self, gic_real time, const gic_real *state, gic_real *rate)
+{
+    Probe *probe = self;
+    ++probe->head.rhs_count;
+    const int evaluation = probe->evaluation++;
+    rate[0] = state[1];
+    rate[1] = -state[0] + probe->input[0] + time;
+    if (evaluation == probe->poison_at)
+        rate[1] = not_a_number();
+    if (evaluation == probe->fail_at) {
+        probe->head.subset = 3;
+        return GIC_ERROR_NEWTON;
+    }
+    return GIC_OK;
+}
+
+static int probe_settle(void *self, gic_real *state)
+{
+    (void)state;
+    return ((Probe *)self)->settle_status;
+}
+
+static void cosine_input(void *user, int32_t lane, gic_real time, gic_real *input)
+{
+    (void)user;
+    (void)lane;
+    input[0] = (gic_real)cos(2 * (double)time);
+}
+
+static double exact(double t, int i)
+{
+    return i == 0 ? cos(t) - cos(2 * t) / 3 + t : -sin(t) + 2 * sin(2 * t) / 3 + 1;
+}
+
+static const gic_model probe_model = {
+    .abi_version = GIC_ABI_VERSION,
+    .real_size = sizeof(gic_real),
+    .size = sizeof(Probe),
+    .slow_count = N,
+    .input_count = 1,
+    .state_offset = offsetof(Probe, state),
+    .rate_offset = offsetof(Probe, rate),
+    .history_offset = offsetof(Probe, history),
+    .scratch_offset = offsetof(Probe, scratch),
+    .input_offset = offsetof(Probe, input),
+    .rhs = probe_rhs,
+    .settle = probe_settle,
+};
+
+static Probe probe_new(void)
+{
+    Probe probe;
+    memset(&probe, 0, sizeof probe);
+    for (int i = 0; i < N; ++i)
+        probe.state[i] = (gic_real)exact(0, i);
+    probe.fail_at = probe.poison_at = -1;
+    probe.head.input_function = cosine_input;
+    probe.input[0] = (gic_real)0.125;
+    return probe;
+}
+
+static int probe_step(Probe *probe, double step, int32_t method)
+{
+    probe->evaluation = 0;
+    return gic_step(&probe_model, probe, (gic_real)step, method);
+}
+
+/* ---- integrators ---------------------------------------------------------------------------------------- */
+
+static double error_at(int32_t method, int steps)
+{
+    const double end = 3;
+    Probe probe = probe_new();
+    for (int k = 0; k < steps; ++k)
+        assert_int_equal(probe_step(&probe, end / steps, method), GIC_OK);
+    return hypot((double)probe.state[0] - exact(end, 0), (double)probe.state[1] - exact(end, 1));
+}
+
+static void test_order(void **unused)
+{
+    (void)unused;
+#ifdef GIC_FLOAT
+    const int ab3_steps = 60, rk4_steps = 8;
+#else
+    const int ab3_steps = 600, rk4_steps = 100;
+#endif
+    const double ab3 = log2(error_at(GIC_AB3, ab3_steps) / error_at(GIC_AB3, 2 * ab3_steps));
+    const double rk4 = log2(error_at(GIC_RK4, rk4_steps) / error_at(GIC_RK4, 2 * rk4_steps));
+    assert_true(fabs(ab3 - 3) < ORDER_TOLERANCE);
+    assert_true(fabs(rk4 - 4) < ORDER_TOLERANCE);
+}
+
+static void test_ab3_starts_with_rk4(void **unused)
+{
+    (void)unused;
+    Probe a = probe_new(), b = probe_new();
+    for (int k = 0; k < 3; ++k) {
+        assert_int_equal(probe_step(&a, 0.01, GIC_AB3), GIC_OK);
+        assert_int_equal(a.evaluation, k < 2 ? 4 : 1);
+        assert_int_equal(a.head.history, k < 1 ? 1 : 2);
+        assert_int_equal(probe_step(&b, 0.01, GIC_RK4), GIC_OK);
+        assert_int_equal(b.head.history, 0);
+        assert_int_equal(memcmp(a.state, b.state, sizeof a.state) == 0, k < 2);
+    }
+}
+
+/* rate[] belongs to the start of the last step, input[] to its end. */
+static void test_rate_and_input(void **unused)
+{
+    (void)unused;
+    for (int32_t method = GIC_AB3; method <= GIC_RK4; ++method) {
+        Probe probe = probe_new();
+        for (int k = 0; k < 5; ++k) {
+            const double before = (double)probe.state[0], velocity = (double)probe.state[1];
+            const double t = (double)gic_time(&probe);
+            assert_int_equal(probe_step(&probe, 0.25, method), GIC_OK);
+            assert_true((double)probe.rate[0] == velocity);
+            assert_true(fabs((double)probe.rate[1] - (-before + cos(2 * t) + t)) < 8 * EPSILON);
+            assert_true(fabs((double)probe.input[0] - cos(2 * (t + 0.25))) < 8 * EPSILON);
+        }
+    }
+}
+
+static void assert_same(const Probe *a, const Probe *b)
+{
+    assert_memory_equal(a->state, b->state, sizeof a->state);
+    assert_memory_equal(a->rate, b->rate, sizeof a->rate);
+    assert_memory_equal(a->history, b->history, sizeof a->history);
+    assert_memory_equal(a->input, b->input, sizeof a->input);
+    assert_memory_equal(&a->head.start_time, &b->head.start_time, sizeof a->head.start_time);
+    assert_memory_equal(&a->head.step, &b->head.step, sizeof a->head.step);
+    assert_int_equal(a->head.steps, b->head.steps);
+    assert_int_equal(a->head.method, b->head.method);
+    assert_int_equal(a->head.history, b->head.history);
+}
+
+/* Whatever fails in a step, and whichever step it is, the instance stays as it was and can go on. */
+static void test_failure_changes_nothing(void **unused)
+{
+    (void)unused;
+    for (int32_t method = GIC_AB3; method <= GIC_RK4; ++method)
+        for (int before = 0; before < 5; ++before)
+            for (int fault = 0; fault < 10; ++fault) {
+                Probe probe = probe_new();
+                for (int k = 0; k < before; ++k)
+                    assert_int_equal(probe_step(&probe, 0.01, method), GIC_OK);
+                const Probe good = probe;
+                int expected = GIC_ERROR_NEWTON, evaluations = method == GIC_AB3 && before >= 2 ? 1 : 4;
+                /* a poisoned middle stage spoils the next rate as well, so every one of them is seen */
+                if (fault < 4) {
+                    probe.fail_at = fault;
+                } else if (fault < 8) {
+                    probe.poison_at = fault - 4;
+                    expected = GIC_ERROR_RESULT;
+                } else if (fault == 8) {
+                    probe.settle_status = expected = GIC_ERROR_ORIENTATION;
+                }
+                const int hit = fault == 8 || (fault < 8 && fault % 4 < evaluations);
+                const double step = fault == 9 ? 0.02 : 0.01; /* 9: a failure while the step changes */
+                if (fault == 9)
+                    probe.fail_at = 0;
+                assert_int_equal(probe_step(&probe, step, method), hit || fault == 9 ? expected : GIC_OK);
+                if (!hit && fault != 9)
+                    continue;
+                assert_same(&probe, &good);
+                assert_int_equal(probe.head.status, expected);
+                assert_int_equal(probe.head.subset, expected == GIC_ERROR_NEWTON ? 3 : -1);
+
+                Probe undisturbed = good;
+                probe.fail_at = probe.poison_at = -1;
+                probe.settle_status = GIC_OK;
+                for (int k = 0; k < 4; ++k) {
+                    assert_int_equal(probe_step(&probe, 0.01, method), GIC_OK);
+                    assert_int_equal(probe_step(&undisturbed, 0.01, method), GIC_OK);
+                }
+                assert_same(&probe, &undisturbed);
+                assert_int_equal(probe.head.subset, -1);
+            }
+}
+
+static void test_snapshot(void **unused)
+{
+    (void)unused;
+    Probe probe = probe_new();
+    for (int k = 0; k < 7; ++k)
+        probe_step(&probe, 0.01, GIC_AB3);
+    Probe copy;
+    memcpy(&copy, &probe, sizeof copy);
+    for (int k = 0; k < 50; ++k)
+        probe_step(&probe, 0.01, GIC_AB3);
+    const Probe first = probe;
+    memcpy(&probe, &copy, sizeof copy);
+    for (int k = 0; k < 50; ++k) {
+        probe_step(&probe, 0.01, GIC_AB3);
+        probe_step(&copy, 0.01, GIC_AB3);
+    }
+    assert_same(&first, &probe);
+    assert_same(&first, &copy);
+}
+
+static void test_time(void **unused)
+{
+    (void)unused;
+    Probe probe = probe_new();
+    for (int k = 0; k < 1000000; ++k)
+        probe_step(&probe, 0.001, GIC_AB3);
+    assert_true(fabs((double)gic_time(&probe) - 1000) <= 1000 * 1.5 * EPSILON);
+
+    /* a new step: time goes on from where it is, the history starts again */
+    const gic_real now = gic_time(&probe);
+    assert_int_equal(probe_step(&probe, 0.5, GIC_AB3), GIC_OK);
+    assert_true(probe.head.start_time == now && probe.head.steps == 1 && probe.head.history == 1);
+    assert_true(fabs((double)gic_time(&probe) - (double)now - 0.5) <= 1000 * EPSILON);
+    probe_step(&probe, 0.5, GIC_AB3);
+    assert_int_equal(probe.head.history, 2);
+    probe_step(&probe, 0.5, GIC_RK4);
+    assert_true(probe.head.history == 0 && probe.head.steps == 1);
+
+    gic_restart(&probe, GIC_R(-2.0));
+    assert_true(gic_time(&probe) == GIC_R(-2.0) && probe.head.history == 0);
+    probe_step(&probe, 0.5, GIC_RK4);
+    assert_true(gic_time(&probe) == GIC_R(-1.5));
+}
+
+static void test_arguments(void **unused)
+{
+    (void)unused;
+    const double bad[] = {0, -0.01, 1e-30, INFINITY, -INFINITY};
+    Probe probe = probe_new();
+    probe_step(&probe, 1, GIC_RK4);
+    const Probe good = probe;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
+#ifdef __FAST_MATH__
+        if (bad[i] > 0 && bad[i] < 1) /* time + step <= time is reduced to step <= 0 there */
+            continue;
+#endif
+        assert_int_equal(probe_step(&probe, bad[i], GIC_AB3), GIC_ERROR_ARGUMENT);
+        assert_same(&probe, &good);
+    }
+    assert_int_equal(gic_step(&probe_model, &probe, not_a_number(), GIC_AB3), GIC_ERROR_ARGUMENT);
+    assert_int_equal(probe_step(&probe, 0.01, 2), GIC_ERROR_ARGUMENT);
+    assert_int_equal(probe_step(&probe, 0.01, -1), GIC_ERROR_ARGUMENT);
+    assert_same(&probe, &good);
+
+    gic_model other = probe_model;
+    other.abi_version = GIC_ABI_VERSION + 1;
+    assert_int_equal(gic_step(&other, &probe, GIC_R(0.01), GIC_AB3), GIC_ERROR_ABI);
+    other = probe_model;
+    other.real_size = 12 - (uint32_t)sizeof(gic_real); /* the other one of 4 and 8 */
+    assert_int_equal(gic_step(&other, &probe, GIC_R(0.01), GIC_AB3), GIC_ERROR_ABI);
+    assert_same(&probe, &good);
+}
+
+/* ---- numbers and texts ---------------------------------------------------------------------------------- */
+
+static void test_finite(void **unused)
+{
+    (void)unused;
+#ifdef GIC_FLOAT
+    const uint32_t good[] = {0, 0x80000000, 1, 0x007fffff, 0x7f7fffff, 0xff7fffff, 0x3f800000};
+    const uint32_t bad[] = {0x7f800000, 0xff800000, 0x7f800001, 0x7fc00000, 0xffffffff};
+#else
+    const uint64_t good[] = {0, 0x8000000000000000, 1, 0x000fffffffffffff, 0x7fefffffffffffff, 0xffefffffffffffff};
+    const uint64_t bad[] = {0x7ff0000000000000, 0xfff0000000000000, 0x7ff0000000000001, 0x7ff8000000000000, UINT64_MAX};
+#endif
+    gic_real x[8];
+    memcpy(x, good, sizeof good);
+    const int32_t count = (int32_t)(sizeof good / sizeof *good);
+    assert_true(gic_finite(x, count));
+    assert_true(gic_finite(x, 0));
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i)
+        for (int32_t place = 0; place < count; ++place) {
+            memcpy(x, good, sizeof good);
+            memcpy(&x[place], &bad[i], sizeof *x);
+            assert_false(gic_finite(x, count));
+            assert_true(gic_finite(x, place));
+        }
+}
+
+static void test_status_text(void **unused)
+{
+    (void)unused;
+    assert_string_equal(gic_status_text(0), "ok");
+    for (int a = GIC_STATUS_LAST; a <= 0; ++a)
+        for (int b = GIC_STATUS_LAST; b < a; ++b)
+            assert_string_not_equal(gic_status_text(a), gic_status_text(b));
+    assert_non_null(gic_status_text(1));
+    assert_string_equal(gic_status_text(GIC_STATUS_LAST - 1), gic_status_text(1));
+}
+
+/* ---- orientation ---------------------------------------------------------------------------------------- */
+
+static void test_orientation(void **unused)
+{
+    (void)unused;
+    int64_t switches = 0;
+    int32_t dependent = -1;
+    gic_real e[4];
+    const gic_real first[4] = {GIC_R(0.0), GIC_R(-0.6), GIC_R(0.0), GIC_R(0.8)};
+    assert_int_equal(gic_orientation(first, &dependent, &switches, e), GIC_OK);
+    assert_true(dependent == 3 && switches == 0);
+
+    /* the dependent one is recovered with its sign, whatever small error it was given with; the others stay */
+    for (int k = 0; k < 4; ++k)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            gic_real given[4] = {GIC_R(0.1), GIC_R(-0.2), GIC_R(0.3), GIC_R(-0.1)}, kept[4];
+            long double rest = 1;
+            for (int i = 0; i < 4; ++i)
+                rest -= i == k ? 0 : (long double)given[i] * (long double)given[i];
+            given[k] = (gic_real)(1.002L * (long double)sign * sqrtl(rest));
+            memcpy(kept, given, sizeof kept);
+            dependent = -1;
+            assert_int_equal(gic_orientation(given, &dependent, &switches, e), GIC_OK);
+            assert_int_equal(dependent, k);
+            assert_true(fabsl((long double)e[k] - (long double)sign * sqrtl(rest)) < 2 * (long double)EPSILON);
+            for (int i = 0; i < 4; ++i)
+                assert_true(i == k || e[i] == kept[i]);
+        }
+
+    /* two turns of yaw: e0 and e3 take turns, four times; recovered values never jump */
+    dependent = 0;
+    switches = 0;
+    for (int i = 0; i <= 4000; ++i) {
+        const double half = i * 6.283185307179586 / 4000;
+        const gic_real given[4] = {(gic_real)cos(half), 0, 0, (gic_real)sin(half)};
+        assert_int_equal(gic_orientation(given, &dependent, &switches, e), GIC_OK);
+        for (int k = 0; k < 4; ++k)
+            assert_true(fabs((double)e[k] - (double)given[k]) < 4 * EPSILON);
+        assert_true(fabs((double)e[dependent]) > 0.45);
+    }
+    assert_int_equal(switches, 4);
+
+    /* hysteresis: trembling about equal magnitudes changes nothing */
+    dependent = 0;
+    switches = 0;
+    for (int i = 0; i < 100; ++i) {
+        const double half = 0.7853981633974483 + (i % 2 ? 0.02 : -0.02);
+        const gic_real given[4] = {(gic_real)cos(half), 0, 0, (gic_real)sin(half)};
+        assert_int_equal(gic_orientation(given, &dependent, &switches, e), GIC_OK);
+    }
+    assert_true(switches == 0 && dependent == 0);
+
+    const gic_real longer[4] = {GIC_R(1.01), 0, 0, 0}, shorter[4] = {GIC_R(0.99), 0, 0, 0}, zero[4] = {0, 0, 0, 0};
+    const gic_real broken[4] = {GIC_R(1.0), not_a_number(), 0, 0};
+    assert_int_equal(gic_orientation(longer, &dependent, &switches, e), GIC_ERROR_ORIENTATION);
+    assert_int_equal(gic_orientation(shorter, &dependent, &switches, e), GIC_ERROR_ORIENTATION);
+    assert_int_equal(gic_orientation(zero, &dependent, &switches, e), GIC_ERROR_ORIENTATION);
+    assert_int_equal(gic_orientation(broken, &dependent, &switches, e), GIC_ERROR_ORIENTATION);
+}
+
+/* ---- roads: against formulas written here in long double, slopes by their central differences ----------- */
+
+typedef long double Formula(const void *road, long double x, long double y);
+
+static const long double pi = 3.14159265358979323846264338327950288L;
+
+static long double plane_formula(const void *road, long double x, long double y)
+{
+    const gic_road_plane *plane = road;
+    return (long double)plane->z0 + (long double)plane->sx * x + (long double)plane->sy * y;
+}
+
+static long double sine_formula(const void *road, long double x, long double y)
+{
+    const gic_road_sine *sine = road;
+    const long double wave = 2 * pi / (long double)sine->wavelength;
+    return (long double)sine->amplitude * sinl(wave * (x - (long double)sine->x0) + (long double)sine->phase_per_y * y);
+}
+
+static long double bumps_formula(const void *road, long double x, long double y)
+{
+    const gic_road_bumps *bumps = road;
+    long double h = 0;
+    for (int32_t i = 0; i < bumps->count; ++i) {
+        const gic_bump *b = &bumps->bump[i];
+        const long double s = (x - (long double)b->x) / (long double)b->length;
+        if (s > 0 && s < 1 && y >= (long double)b->y_low && y <= (long double)b->y_high)
+            h += (long double)b->height * powl(sinl(pi * s), 2);
+    }
+    return h;
+}
+
+static void check_road(const gic_road *road, Formula *formula)
+{
+    const long double d = 1e-6L, tolerance = 100 * (long double)EPSILON + 1e-10L;
+    for (int i = -40; i < 140; ++i)
+        for (int j = -3; j <= 3; ++j) {
+            const gic_real x = (gic_real)(0.0937 * i + 0.011), y = (gic_real)(0.31 * j + 0.017);
+            const long double X = (long double)x, Y = (long double)y;
+            gic_real out[3];
+            road->height(road, 0, 0, x, y, out);
+            assert_true(fabsl((long double)out[0] - formula(road, X, Y)) < tolerance);
+            const long double along = (formula(road, X + d, Y) - formula(road, X - d, Y)) / (2 * d);
+            const long double across = (formula(road, X, Y + d) - formula(road, X, Y - d)) / (2 * d);
+            assert_true(fabsl((long double)out[1] - along) < tolerance);
+            assert_true(fabsl((long double)out[2] - across) < tolerance);
+        }
+}
+
+static void test_roads(void **unused)
+{
+    (void)unused;
+    const gic_road_plane plane = {{gic_plane_height}, GIC_R(0.25), GIC_R(0.05), GIC_R(-0.03)};
+    const gic_road_sine sine = {{gic_sine_height}, GIC_R(0.04), GIC_R(3.0), GIC_R(0.7), GIC_R(0.9)};
+    const gic_bump bump[] = {{GIC_R(1.0), GIC_R(2.0), GIC_R(0.1), GIC_R(0.0), GIC_R(50.0)},
+                             {GIC_R(2.5), GIC_R(1.5), GIC_R(-0.05), GIC_R(-50.0), GIC_R(50.0)}};
+    const gic_road_bumps bumps = {{gic_bumps_height}, bump, 2};
+    check_road(&plane.head, plane_formula);
+    check_road(&sine.head, sine_formula);
+    check_road(&bumps.head, bumps_formula);
+}
+
+static void test_table(void **unused)
+{
+    (void)unused;
+    enum { COUNT = 7 };
+    const gic_real x[COUNT] = {GIC_R(0.0), GIC_R(1.0), GIC_R(1.5), GIC_R(3.0), GIC_R(4.0), GIC_R(6.0), GIC_R(7.0)};
+    const gic_real left[COUNT] = {GIC_R(0.0), GIC_R(0.125), GIC_R(0.5), GIC_R(0.5), GIC_R(0.25), GIC_R(-0.25),
+                                  GIC_R(1.0)};
+    const gic_real right[COUNT] = {GIC_R(-1.0), GIC_R(0.0), GIC_R(0.5), GIC_R(2.0), GIC_R(3.0), GIC_R(5.0), GIC_R(6.0)};
+    gic_real slope_left[COUNT], slope_right[COUNT], out[3], beside[3];
+    gic_road_table road = {{gic_table_height}, x, left, right, slope_left, slope_right, COUNT};
+    assert_int_equal(gic_road_table_setup(&road), GIC_OK);
+
+    for (int side = 0; side < 2; ++side) {
+        const gic_real y = side ? GIC_R(-0.5) : GIC_R(0.5), *h = side ? right : left;
+        for (int i = 0; i < COUNT; ++i) { /* through the points */
+            gic_table_height(&road.head, 0, 0, x[i], y, out);
+            assert_true(fabs((double)out[0] - (double)h[i]) < 4 * EPSILON);
+            assert_true(out[2] == GIC_R(0.0));
+        }
+        for (int i = 0; i < COUNT - 1; ++i) {
+            gic_real last = h[i];
+            for (int k = 1; k < 100; ++k) { /* monotone between, slope by central differences, no jump of the slope */
+                const double width = (double)(x[i + 1] - x[i]), d = 1e-3 * width;
+                const gic_real at = (gic_real)((double)x[i] + width * k / 100);
+                gic_table_height(&road.head, 0, 0, at, y, out);
+                assert_true((out[0] - last) * (h[i + 1] - h[i]) >= GIC_R(0.0));
+                last = out[0];
+                gic_table_height(&road.head, 0, 0, (gic_real)((double)at + d), y, beside);
+                const double up = (double)beside[0];
+                gic_table_height(&road.head, 0, 0, (gic_real)((double)at - d), y, beside);
+                assert_true(fabs((double)out[1] - (up - (double)beside[0]) / (2 * d)) < 1e-5 + 2e4 * EPSILON);
+            }
+            gic_table_height(&road.head, 0, 0, (gic_real)((double)x[i] + 1e-5), y, out);
+            gic_table_height(&road.head, 0, 0, (gic_real)((double)x[i] - 1e-5), y, beside);
+            assert_true(fabs((double)out[1] - (double)beside[1]) < 1e-3);
+        }
+        for (int i = 0; i < 2; ++i) { /* constant and level outside */
+            gic_table_height(&road.head, 0, 0, i ? GIC_R(99.0) : GIC_R(-9.0), y, out);
+            assert_true(out[0] == h[i ? COUNT - 1 : 0] && out[1] == GIC_R(0.0));
+        }
+    }
+    /* a straight stretch stays straight */
+    gic_table_height(&road.head, 0, 0, GIC_R(3.3), GIC_R(-1.0), out);
+    assert_true(fabs((double)out[1] - 1) < 100 * EPSILON);
+    assert_true(fabs((double)out[0] - 2.3) < 100 * EPSILON);
+
+    const gic_real falling[COUNT] = {0, 1, 2, 2, 3, 4, 5};
+    gic_road_table bad = road;
+    bad.x = falling;
+    assert_int_equal(gic_road_table_setup(&bad), GIC_ERROR_ARGUMENT);
+    bad = road;
+    bad.count = 1;
+    assert_int_equal(gic_road_table_setup(&bad), GIC_ERROR_ARGUMENT);
+}
+
+/* ---- inputs --------------------------------------------------------------------------------------------- */
+
+static void test_quintic(void **unused)
+{
+    (void)unused;
+    const double t0 = 0.5, t1 = 2.5, y0 = -1, y1 = 3;
+    gic_real out[3], beside[3];
+    for (int i = 0; i <= 300; ++i) {
+        const double t = i / 100.0, s = fmin(fmax((t - t0) / (t1 - t0), 0), 1), d = 1e-2;
+        gic_quintic((gic_real)t, (gic_real)t0, (gic_real)t1, (gic_real)y0, (gic_real)y1, out);
+        const double expected = y0 + (y1 - y0) * (10 * pow(s, 3) - 15 * pow(s, 4) + 6 * pow(s, 5));
+        assert_true(fabs((double)out[0] - expected) < 100 * EPSILON);
+        double value[2], rate[2];
+        for (int side = 0; side < 2; ++side) {
+            const double near = t + (side ? d : -d);
+            gic_quintic((gic_real)near, (gic_real)t0, (gic_real)t1, (gic_real)y0, (gic_real)y1, beside);
+            value[side] = (double)beside[0];
+            rate[side] = (double)beside[1];
+            assert_true(fabs((double)beside[2] - (double)out[2]) < 0.7); /* largest third derivative is 60 * 4 / 2^3 */
+        }
+        assert_true(fabs((double)out[1] - (value[1] - value[0]) / (2 * d)) < 2e-3);
+        assert_true(fabs((double)out[2] - (rate[1] - rate[0]) / (2 * d)) < 0.16); /* its derivative jumps at the ends */
+    }
+    for (int side = 0; side < 2; ++side) { /* at rest at both ends, from outside and from inside */
+        const double end = side ? t1 : t0, inside = side ? -1e-4 : 1e-4, d[2] = {-inside, inside};
+        for (int k = 0; k < 2; ++k) {
+            gic_quintic((gic_real)(end + d[k]), (gic_real)t0, (gic_real)t1, (gic_real)y0, (gic_real)y1, out);
+            assert_true(fabs((double)out[0] - (side ? y1 : y0)) < 1e-9 + 8 * EPSILON);
+            assert_true(fabs((double)out[1]) < 1e-6);
+            assert_true(fabs((double)out[2]) < 4e-3);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_ab3_starts_with_rk4),
+        cmocka_unit_test(test_rate_and_input),
+        cmocka_unit_test(test_failure_changes_nothing),
+        cmocka_unit_test(test_snapshot),
+        cmocka_unit_test(test_time),
+        cmocka_unit_test(test_arguments),
+        cmocka_unit_test(test_finite),
+        cmocka_unit_test(test_status_text),
+        cmocka_unit_test(test_orientation),
+        cmocka_unit_test(test_roads),
+        cmocka_unit_test(test_table),
+        cmocka_unit_test(test_quintic),
+    };
+    return cmocka_run_group_tests_name("runtime", tests, NULL, NULL);
+}
