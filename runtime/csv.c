@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT
+ * Tables as comma-separated text: results out, states in. */
+#include "gicrun.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- writing -------------------------------------------------------------------------------------------- */
+
+static _Noreturn void write_fail(const Csv *csv, const char *what)
+{
+    int reason = errno;
+    if (csv->temporary)
+        remove(csv->temporary);
+    diag_fail(gicrun_place, "make room, or choose another place with -o", "can't %s %s: %s", what,
+              csv->temporary ? csv->path : "to standard output", strerror(reason));
+}
+
+Csv csv_open(Pool *pool, const char *path)
+{
+    Csv csv = {.file = stdout, .path = path};
+    if (strcmp(path, "-")) {
+        const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid());
+        csv.file = fopen(temporary, "w");
+        if (!csv.file)
+            write_fail(&(Csv){.path = path, .temporary = temporary}, "create");
+        csv.temporary = temporary;
+    }
+    return csv;
+}
+
+static void cell(Csv *csv)
+{
+    if (csv->inside)
+        fputc(',', csv->file);
+    csv->inside = true;
+}
+
+void csv_name(Csv *csv, const char *name, const char *unit)
+{
+    cell(csv);
+    fprintf(csv->file, unit ? "%s [%s]" : "%s", name, unit);
+}
+
+void csv_number(Csv *csv, double value)
+{
+    char text[32];
+    cell(csv);
+    snprintf(text, sizeof text, "%.15g", value); /* 0.015 rather than 0.014999999999999999 */
+    if (strtod(text, NULL) != value)
+        snprintf(text, sizeof text, "%.17g", value);
+    fputs(text, csv->file);
+}
+
+void csv_text(Csv *csv, const char *text)
+{
+    cell(csv);
+    if (!text)
+        return;
+    fputc('"', csv->file);
+    for (; *text; ++text) {
+        if (*text == '"')
+            fputc('"', csv->file);
+        fputc(*text, csv->file);
+    }
+    fputc('"', csv->file);
+}
+
+void csv_end_row(Csv *csv)
+{
+    fputc('\n', csv->file);
+    csv->inside = false;
+}
+
+void csv_close(Csv *csv)
+{
+    bool written = !fflush(csv->file) && !ferror(csv->file);
+    if (!csv->temporary) {
+        if (!written)
+            write_fail(csv, "write");
+        return;
+    }
+    if (fclose(csv->file) || !written || rename(csv->temporary, csv->path))
+        write_fail(csv, "write");
+}
+
+/* ---- reading -------------------------------------------------------------------------------------------- */
+
+/* A cell's text between separators, without the blanks around it. */
+typedef struct Cell {
+    const char *from, *to;
+} Cell;
+
+static Place cell_place(const Source *source, const Cell *c)
+{
+    return diag_place(source, (size_t)(c->from - source->bytes));
+}
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+/* The cell at *s; moves *s behind its separator. Returns false behind the last cell of the line. */
+static bool next_cell(const char **s, const char *end, Cell *c)
+{
+    if (*s > end)
+        return false;
+    const char *stop = *s;
+    while (stop < end && *stop != ',')
+        ++stop;
+    *c = (Cell){*s, stop};
+    while (c->from < c->to && is_blank(*c->from))
+        ++c->from;
+    while (c->to > c->from && is_blank(c->to[-1]))
+        --c->to;
+    *s = stop + 1;
+    return true;
+}
+
+static char *cell_text(Pool *pool, const Cell *c)
+{
+    return pool_print(pool, "%.*s", (int)(c->to - c->from), c->from);
+}
+
+static double cell_number(Pool *pool, const Source *source, const Cell *c, const char *column)
+{
+    char *text = cell_text(pool, c), *stop;
+    double value = strtod(text, &stop);
+    const char *remedy = "write a decimal number such as 1.5 or -2e-3";
+    if (stop == text || *stop || text[strspn(text, "0123456789+-.eE")])
+        diag_fail(cell_place(source, c), remedy, "%s must be a number, not '%s'", column, text);
+    if (!isfinite(value))
+        diag_fail(cell_place(source, c), remedy, "%s: %s is too large", column, text);
+    return value;
+}
+
+/* Name of a column: quotes around it and a unit in brackets behind it are dropped. */
+static const char *column_name(Pool *pool, const Source *source, Cell c)
+{
+    if (c.to - c.from >= 2 && *c.from == '"' && c.to[-1] == '"') {
+        ++c.from;
+        --c.to;
+    }
+    if (c.to > c.from && c.to[-1] == ']')
+        for (const char *bracket = c.to; --bracket > c.from;)
+            if (*bracket == '[') {
+                c.to = bracket;
+                break;
+            }
+    while (c.to > c.from && is_blank(c.to[-1]))
+        --c.to;
+    if (c.to == c.from)
+        diag_fail(cell_place(source, &c), "the first line names the columns: r.x,r.y,...", "a column without a name");
+    return cell_text(pool, &c);
+}
+
+static void read_header(Pool *pool, Table *table, const char *s, const char *end)
+{
+    int places = 0;
+    for (Cell c; next_cell(&s, end, &c);) {
+        const char *name = column_name(pool, table->source, c);
+        for (int i = 0; i < table->columns; ++i)
+            if (!strcmp(table->name[i], name))
+                diag_fail(cell_place(table->source, &c), "remove one of them", "column '%s' is here twice", name);
+        *POOL_PUSH(pool, table->name, table->columns) = name;
+        *POOL_PUSH(pool, table->at, places) = cell_place(table->source, &c);
+    }
+}
+
+static void read_row(Pool *pool, Table *table, int *values, const char *s, const char *end)
+{
+    const Source *source = table->source;
+    Cell c = {s, s};
+    int column = 0;
+    while (next_cell(&s, end, &c)) {
+        if (column == table->columns)
+            diag_fail(cell_place(source, &c), "one cell a column; the decimal point is a point",
+                      "the row has more than the header's %d cells", table->columns);
+        *POOL_PUSH(pool, table->value, *values) = cell_number(pool, source, &c, table->name[column++]);
+    }
+    if (column < table->columns)
+        diag_fail(cell_place(source, &c), "one cell a column, separated by commas",
+                  "the row has %d cells, the header has %d", column, table->columns);
+    ++table->rows;
+}
+
+const Table *csv_read(Pool *pool, const char *path)
+{
+    Source *source = pool_alloc(pool, sizeof *source);
+    source->path = path;
+    source->bytes = file_read(pool, path, &source->size);
+    if (source->size >= 3 && !memcmp(source->bytes, "\xef\xbb\xbf", 3)) { /* byte order mark */
+        source->bytes += 3;
+        source->size -= 3;
+    }
+    Table *table = pool_alloc(pool, sizeof *table);
+    table->source = source;
+    int values = 0;
+    for (const char *s = source->bytes, *stop = s + source->size, *end; s < stop; s = end + 1) {
+        end = memchr(s, '\n', (size_t)(stop - s));
+        if (!end)
+            end = stop;
+        const char *first = s;
+        while (first < end && is_blank(*first))
+            ++first;
+        if (first == end || *first == '#')
+            continue;
+        if (!table->columns)
+            read_header(pool, table, s, end);
+        else
+            read_row(pool, table, &values, s, end);
+    }
+    if (!table->columns)
+        diag_fail((Place){source, 0, 0}, "the first line names the columns: r.x,r.y,...", "the file is empty");
+    return table;
+}

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT
+ * Rows of states to accelerations and poses (--eval), for comparison with programs of other people. */
+#include "gicrun.h"
+
+#include <string.h>
+
+/* Which column of the table fills which number of the instance: states first, then inputs; -1: keeps its default. */
+typedef struct Columns {
+    int states, inputs;
+    int *column; /* [states + inputs] */
+} Columns;
+
+static const char *number_name(const gic_model *model, int i)
+{
+    return i < model->slow_count ? model->state[i].name : model->input[i - model->slow_count].name;
+}
+
+/* Must the table have it? All states, and what driven coordinates do. */
+static bool is_needed(const gic_model *model, int i)
+{
+    if (i < model->slow_count)
+        return true;
+    for (int k = 0; k < model->coordinate_count; ++k) {
+        int first = model->coordinate_input[k];
+        if (first >= 0 && i - model->slow_count >= first && i - model->slow_count < first + 3)
+            return true;
+    }
+    return false;
+}
+
+static Columns find_columns(Pool *pool, const gic_model *model, const Table *table)
+{
+    Columns columns = {.states = model->slow_count, .inputs = model->input_count};
+    const int numbers = columns.states + columns.inputs;
+    const char **name = pool_alloc(pool, sizeof *name * (size_t)(numbers + 1));
+    columns.column = pool_alloc(pool, sizeof *columns.column * (size_t)(numbers + 1));
+    for (int i = 0; i < numbers; ++i) {
+        name[i] = number_name(model, i);
+        columns.column[i] = -1;
+    }
+    for (int k = 0; k < table->columns; ++k) {
+        int i = 0;
+        while (i < numbers && (strcmp(name[i], table->name[k]) || columns.column[i] >= 0))
+            ++i;
+        const char *nearest = diag_nearest(table->name[k], name, numbers);
+        if (i == numbers)
+            diag_fail(table->at[k], nearest ? pool_print(pool, "did you mean '%s'?", nearest) : "remove the column",
+                      "the model has no state or input '%s'", table->name[k]);
+        columns.column[i] = k;
+    }
+    Text missing = {.pool = pool};
+    for (int i = 0; i < numbers; ++i)
+        if (columns.column[i] < 0 && is_needed(model, i))
+            text_print(&missing, "%s%s", missing.size ? ", " : "add ", name[i]);
+    if (missing.size)
+        diag_fail(table->at[0], missing.s, "columns are missing");
+    return columns;
+}
+
+static bool is_ground(const gic_model *model, int body)
+{
+    return body == 0 && !model->free_base;
+}
+
+static void write_header(const gic_model *model, Csv *csv)
+{
+    static const char *const base[][2] = {{"a.x", "m/s^2"}, {"a.y", "m/s^2"}, {"a.z", "m/s^2"},
+                                          {"alpha.x", "rad/s^2"}, {"alpha.y", "rad/s^2"}, {"alpha.z", "rad/s^2"}};
+    static const char *const pose[][2] = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"e0", NULL}, {"e1", NULL}, {"e2", NULL},
+                                          {"e3", NULL}};
+    char name[128], unit[64];
+    for (int i = 0; i < 6 && model->free_base; ++i)
+        csv_name(csv, base[i][0], base[i][1]);
+    for (int i = 0; i < model->coordinate_count; ++i)
+        if (model->coordinate_state[i] >= 0) {
+            snprintf(name, sizeof name, "%s.acceleration", model->coordinate[i].name);
+            snprintf(unit, sizeof unit, "%s/s^2", model->coordinate[i].unit);
+            csv_name(csv, name, unit);
+        }
+    for (int i = 0; i < model->body_count; ++i)
+        for (int k = 0; k < 7 && !is_ground(model, i); ++k) {
+            snprintf(name, sizeof name, "%s.%s", model->body_name[i], pose[k][0]);
+            csv_name(csv, name, pose[k][1]);
+        }
+    csv_name(csv, "constraint", NULL);
+    csv_name(csv, "status", NULL);
+    csv_name(csv, "message", NULL);
+    csv_end_row(csv);
+}
+
+/* A cell, empty where the row has no result. */
+static void result(Csv *csv, int status, double value)
+{
+    if (status == GIC_OK)
+        csv_number(csv, value);
+    else
+        csv_text(csv, NULL);
+}
+
+static void write_row(Pool *pool, const gic_model *model, Csv *csv, const gic_head *self, int status,
+                      const double *rate, const double *pose, double constraint)
+{
+    const int half = model->slow_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
+    for (int i = 0; i < 6 && model->free_base; ++i)
+        result(csv, status, rate[half + 1 + i]);
+    for (int i = 0; i < model->coordinate_count; ++i)
+        if (model->coordinate_state[i] >= 0)
+            result(csv, status, rate[model->coordinate_state[i] + half]);
+    for (int i = 0; i < model->body_count; ++i)
+        for (int k = 0; k < 7 && !is_ground(model, i); ++k)
+            result(csv, status, pose[7 * i + k]);
+    result(csv, status, constraint);
+    csv_number(csv, status);
+    csv_text(csv, instance_status(pool, model, self, status));
+    csv_end_row(csv);
+}
+
+void evaluate(Pool *pool, const gic_model *model, const Scene *scene, const Request *request)
+{
+    const Table *table = csv_read(pool, request->states);
+    const Columns columns = find_columns(pool, model, table);
+    gic_head *self = instance_new(pool, model);
+    double *state = instance_array(self, model->state_offset), *input = instance_array(self, model->input_offset);
+    double *rate = pool_alloc(pool, sizeof *rate * (size_t)(model->slow_count + model->fast_count + 1));
+    double *pose = pool_alloc(pool, sizeof *pose * 7 * (size_t)(model->body_count + 1));
+    int failures = 0;
+
+    Csv csv = csv_open(pool, request->results);
+    write_header(model, &csv);
+    for (int row = 0; row < table->rows; ++row) {
+        const double *value = table->value + row * table->columns;
+        gic_self_test test = {.constraint = 0};
+        /* set up afresh: poses come by continuation from the design, whatever row came before */
+        int status = model->setup(self);
+        self->road = scene ? scene->road : NULL;
+        for (int i = 0; i < columns.states + columns.inputs; ++i)
+            if (columns.column[i] >= 0)
+                *(i < columns.states ? &state[i] : &input[i - columns.states]) = value[columns.column[i]];
+        if (status == GIC_OK)
+            status = model->rhs(self, 0, state, rate);
+        if (status == GIC_OK)
+            status = model->poses(self, pose);
+        if (status == GIC_OK)
+            status = model->self_test(self, &test);
+        failures += status != GIC_OK;
+        write_row(pool, model, &csv, self, status, rate, pose, test.constraint);
+    }
+    csv_close(&csv);
+    if (failures)
+        diag_warn((Place){table->source, 0, 0}, "their status and message tell why",
+                  "%d of %d rows have no result", failures, table->rows);
+}

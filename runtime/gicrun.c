@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT
+ * gicrun: generate, compile and run a model. This file: the command line. */
+#include "gicrun.h"
+
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char help[] =
+    "usage: gicrun MODEL.veh SCENE [-o results.csv] [--plot picture.svg|picture.png]\n"
+    "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
+    "\n"
+    "Generates C for a vehicle model, compiles it with the system's compiler and runs a\n"
+    "scene, or evaluates rows of states: accelerations and the poses of all bodies.\n"
+    "\n"
+    "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
+    "                     picture is asked for)\n"
+    "      --plot FILE    draw the scene's `plot` outputs over time with gnuplot\n"
+    "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
+    "                     a scene gives the road only\n"
+    "      --cc COMMAND   C compiler; default: $CC or cc\n"
+    "  -q, --quiet        neither progress nor summary\n"
+    "  -h, --help         this text\n"
+    "      --version      version\n"
+    "\n"
+    "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
+    "Exit status: 0 good, 1 error in a file or during the run, 2 wrong usage.\n";
+
+static _Noreturn void usage_fail(const char *message, const char *word)
+{
+    fprintf(stderr, "gicrun: error: %s%s%s%s\n  remedy: `gicrun -h` shows how\n", message, word ? " '" : "",
+            word ? word : "", word ? "'" : "");
+    exit(2);
+}
+
+static const char *default_compiler(void)
+{
+    const char *compiler = getenv("CC");
+    return compiler && *compiler ? compiler : "cc";
+}
+
+static Request read_command_line(int count, char **word)
+{
+    enum { PLOT = 256, EVAL, COMPILER, VERSION };
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'}, {"plot", required_argument, NULL, PLOT},
+        {"eval", required_argument, NULL, EVAL},  {"cc", required_argument, NULL, COMPILER},
+        {"quiet", no_argument, NULL, 'q'},        {"help", no_argument, NULL, 'h'},
+        {"version", no_argument, NULL, VERSION},  {NULL, 0, NULL, 0},
+    };
+    Request request = {.compiler = default_compiler()};
+    for (int option; (option = getopt_long(count, word, "o:qh", options, NULL)) != -1;)
+        switch (option) {
+        case 'o': request.results = optarg; break;
+        case PLOT: request.picture = optarg; break;
+        case EVAL: request.states = optarg; break;
+        case COMPILER: request.compiler = optarg; break;
+        case 'q': request.quiet = true; break;
+        case 'h': fputs(help, stdout); exit(0);
+        case VERSION: puts("gicrun " GICGEN_VERSION); exit(0);
+        default: fputs("  remedy: `gicrun -h` shows how\n", stderr); exit(2);
+        }
+    const int files = count - optind;
+    if (files < 1)
+        usage_fail("no model given", NULL);
+    if (files < 2 && !request.states)
+        usage_fail("no scene given", NULL);
+    if (files > 2)
+        usage_fail("one model and one scene, please; what is", word[optind + 2]);
+    request.model = word[optind];
+    request.scene = files > 1 ? word[optind + 1] : NULL;
+    if (!strcmp(request.model, "-"))
+        usage_fail("the model must be a file", NULL);
+    if (request.picture && request.states)
+        usage_fail("--plot goes with a scene, not with --eval", NULL);
+    if (request.picture && !plot_known(request.picture))
+        usage_fail("the picture must end in .svg or .png, unlike", request.picture);
+    if (!request.results && !request.picture)
+        request.results = "-";
+    return request;
+}
+
+int main(int count, char **word)
+{
+    const Request request = read_command_line(count, word);
+    Pool *pool = pool_new();
+    const Model *model = model_read(pool, request.model);
+    const Scene *scene = request.scene ? scene_read(pool, request.scene, model) : NULL;
+    const gic_model *code = build_model(pool, model, request.compiler);
+    if (request.states)
+        evaluate(pool, code, scene, &request);
+    else
+        simulate(pool, code, scene, &request);
+    pool_free(pool);
+    return 0;
+}

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gicrun: the program that generates, compiles and runs a model in one go. Its parts, file by file, in the order in
+ * which they are used; conventions as in gicgen.h. */
+#ifndef GICRUN_H
+#define GICRUN_H
+
+#include "../generator/gicgen.h"
+#include "gic_runtime.h"
+
+/* ---- gicrun.c: the command line ------------------------------------------------------------------------ */
+
+/* What the command line asks for. */
+typedef struct Request {
+    const char *model, *scene;  /* paths; scene may be NULL with `states` */
+    const char *states;         /* --eval, or NULL */
+    const char *results;        /* "-": standard output; NULL: none */
+    const char *picture;        /* NULL: none */
+    const char *compiler;       /* command, perhaps with options */
+    bool quiet;
+} Request;
+
+/* ---- process.c: other programs, and signals that ask to stop -------------------------------------------- */
+
+/* The place of messages that are not about an input file: `gicrun: error: ...`. */
+extern const Place gicrun_place;
+
+/* Between hold and release SIGINT, SIGTERM and SIGHUP wait, so that what was begun can be put in order: temporary files
+ * removed, results kept. Release lets them through: one that has arrived ends the program there. */
+void interrupt_hold(void);
+bool interrupt_arrived(void);
+void interrupt_release(void);
+
+enum { PROCESS_NOT_STARTED = -1, PROCESS_INTERRUPTED = -2 };
+
+/* Run argv[0], searched in PATH, with `input` as its standard input; call between hold and release. Returns the exit
+ * status (128 + signal when one killed it) or one of the above; *said: all it printed, or why it didn't start. */
+int process_run(Pool *pool, char *const argv[], const char *input, const char **said);
+
+/* $TMPDIR or /tmp. */
+const char *temporary_folder(void);
+
+/* ---- build.c: from model file to callable code ---------------------------------------------------------- */
+
+/* Generate, compile and load. Every failure ends in diag_fail; the temporary folder is gone in any case. The code stays
+ * loaded until the program ends. */
+const gic_model *build_model(Pool *pool, const Model *model, const char *compiler);
+/* Memory for one instance, not set up. */
+gic_head *instance_new(Pool *pool, const gic_model *model);
+/* "status text" or "status text: subset 'name'" of the last call. */
+const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status);
+/* An array of the instance at one of the descriptor's offsets. */
+double *instance_array(gic_head *self, size_t offset);
+
+/* ---- scene.c, scene_road.c: what the vehicle does and where; models/SCENE.md ---------------------------- */
+
+/* How an input runs over time: `count` knots joined by quintics, or a sine that is faded in over its first period. */
+typedef struct Profile {
+    int input;   /* index in input[] */
+    bool driven; /* rate and acceleration follow */
+    int count;   /* of knots; 0: sine */
+    double *time, *value;
+    double amplitude, frequency, offset, start;
+} Profile;
+
+typedef struct Scene {
+    const Source *source;
+    double duration, step, output_step;
+    int64_t outputs;    /* output times after the one at 0 */
+    int64_t per_output; /* steps from one output time to the next */
+    int32_t method;     /* gic_method */
+    double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
+    double *value, *rate; /* [coordinates] at time 0; not used where driven */
+    const gic_road *road; /* NULL: flat at z = 0 */
+    int profiles, columns, curves;
+    Profile *profile;
+    int *column, *curve; /* output components in results and picture, indices into output[] */
+} Scene;
+
+/* Read a scene for a model. Any mistake ends in diag_fail. */
+const Scene *scene_read(Pool *pool, const char *path, const Model *model);
+/* Value, rate and acceleration of a profile. */
+void profile_at(const Profile *profile, double time, double out[3]);
+/* A gic_input_function; `user` is the Scene. */
+void scene_inputs(void *user, int32_t lane, double time, double *input);
+/* scene_road.c: the road a `road:` item describes. */
+const gic_road *road_read(Pool *pool, const Item *item);
+
+/* Checked access beyond doc.c. need: the value of a key that must be there; number: or `absent` where there is none;
+ * numbers: a list of at least `least` numbers. */
+#define CHECK_KEYS(item, what, ...) \
+    doc_check_keys((item), (what), (const char *const[]){__VA_ARGS__}, \
+                   (int)(sizeof((const char *const[]){__VA_ARGS__}) / sizeof(const char *)))
+const Item *scene_need(const Item *map, const char *key, const char *what);
+double scene_number(const Item *map, const char *key, const char *what, double absent);
+double scene_positive(const Item *item, const char *what);
+double *scene_numbers(Pool *pool, const Item *item, const char *what, int least);
+
+/* ---- csv.c ---------------------------------------------------------------------------------------------- */
+
+/* A results file in the making: written beside `path` and renamed when it is closed. */
+typedef struct Csv {
+    FILE *file;
+    const char *path, *temporary; /* temporary: NULL for standard output */
+    bool inside;                  /* a row */
+} Csv;
+
+Csv csv_open(Pool *pool, const char *path);
+void csv_name(Csv *csv, const char *name, const char *unit); /* a cell `name [unit]`; unit may be NULL */
+void csv_number(Csv *csv, double value);                     /* reads back bit-exactly */
+void csv_text(Csv *csv, const char *text);                   /* in quotes; NULL: an empty cell */
+void csv_end_row(Csv *csv);
+void csv_close(Csv *csv); /* exits with a message where not all could be written */
+
+/* A table of numbers with named columns; units in brackets behind the names are dropped. */
+typedef struct Table {
+    const Source *source;
+    int columns, rows;
+    const char **name;
+    Place *at;     /* of the names */
+    double *value; /* [rows][columns] */
+} Table;
+
+const Table *csv_read(Pool *pool, const char *path);
+
+/* ---- plot.c --------------------------------------------------------------------------------------------- */
+
+/* Curves over time; `sample` holds rows of time and `curves` values. */
+typedef struct Plot {
+    const char *title;
+    int curves, rows;
+    const char **name, **unit;
+    double *sample;
+} Plot;
+
+/* Picture by gnuplot, SVG or PNG by the ending of `path`; curves of the same unit share a panel. */
+void plot_write(Pool *pool, const Plot *plot, const char *path);
+bool plot_known(const char *path); /* does `path` end in .svg or .png? */
+
+/* ---- simulate.c, eval.c --------------------------------------------------------------------------------- */
+
+/* Run a scene: results, picture, summary. A failure on the way keeps what was computed and ends in diag_fail. */
+void simulate(Pool *pool, const gic_model *model, const Scene *scene, const Request *request);
+/* Evaluate rows of states (--eval). scene may be NULL; only its road is used. */
+void evaluate(Pool *pool, const gic_model *model, const Scene *scene, const Request *request);
+
+#endif

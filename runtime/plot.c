@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT
+ * Pictures by gnuplot: curves over time, one panel a unit. */
+#include "gicrun.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { WIDTH = 900, PANEL_HEIGHT = 420 };
+
+static bool ends_with(const char *s, const char *end)
+{
+    size_t n = strlen(s), m = strlen(end);
+    return n > m && !strcmp(s + n - m, end);
+}
+
+bool plot_known(const char *path)
+{
+    return ends_with(path, ".svg") || ends_with(path, ".png");
+}
+
+/* In single quotes of gnuplot, where only the quote itself is special. */
+static void quoted(Text *text, const char *s)
+{
+    text_print(text, "'");
+    for (; *s; ++s)
+        text_print(text, *s == '\'' ? "''" : "%c", *s);
+    text_print(text, "'");
+}
+
+/* Is curve i the first of its unit? */
+static bool opens_panel(const Plot *plot, int i)
+{
+    for (int k = 0; k < i; ++k)
+        if (!strcmp(plot->unit[k], plot->unit[i]))
+            return false;
+    return true;
+}
+
+static void data_block(Text *script, const Plot *plot)
+{
+    text_print(script, "$data << END\n");
+    for (int row = 0; row < plot->rows; ++row)
+        for (int k = 0; k <= plot->curves; ++k)
+            text_print(script, "%.9g%c", plot->sample[row * (plot->curves + 1) + k], k < plot->curves ? ' ' : '\n');
+    text_print(script, "END\n");
+}
+
+static void panel(Text *script, const Plot *plot, int first, bool last)
+{
+    text_print(script, "set xlabel %s\nset ylabel ", last ? "'time [s]'" : "''");
+    quoted(script, plot->unit[first]);
+    text_print(script, "\nplot ");
+    for (int i = first, drawn = 0; i < plot->curves; ++i) {
+        if (strcmp(plot->unit[i], plot->unit[first]))
+            continue;
+        text_print(script, "%s$data using 1:%d with lines linewidth 1.5 title ", drawn++ ? ", " : "", i + 2);
+        quoted(script, plot->name[i]);
+    }
+    text_print(script, "\n");
+}
+
+static const char *plot_script(Pool *pool, const Plot *plot, const char *path, const char *temporary)
+{
+    Text script = {.pool = pool};
+    int panels = 0, done = 0;
+    for (int i = 0; i < plot->curves; ++i)
+        panels += opens_panel(plot, i);
+    data_block(&script, plot);
+    text_print(&script, "set terminal %s size %d,%d noenhanced\nset output ",
+               ends_with(path, ".svg") ? "svg background 'white'" : "pngcairo", WIDTH, PANEL_HEIGHT * panels + 40);
+    quoted(&script, temporary);
+    text_print(&script, "\nset grid\nset key outside center top horizontal\nset lmargin 10\nset multiplot layout %d,1 title ", panels);
+    quoted(&script, plot->title);
+    text_print(&script, "\n");
+    for (int i = 0; i < plot->curves; ++i)
+        if (opens_panel(plot, i))
+            panel(&script, plot, i, ++done == panels);
+    text_print(&script, "unset multiplot\nset output\n");
+    return script.s;
+}
+
+void plot_write(Pool *pool, const Plot *plot, const char *path)
+{
+    const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid()), *said = "";
+    char *const argv[] = {"gnuplot", "-", NULL};
+    FILE *file = fopen(temporary, "w"); /* where gnuplot can't write it goes on with standard output */
+    if (!file)
+        diag_fail(gicrun_place, "choose another place with --plot", "can't create %s: %s", path, strerror(errno));
+    fclose(file);
+    interrupt_hold();
+    int status = process_run(pool, argv, plot_script(pool, plot, path, temporary), &said);
+    if (!status && rename(temporary, path)) {
+        said = pool_print(pool, "%s\n", strerror(errno));
+        status = 1;
+    }
+    if (status)
+        unlink(temporary);
+    interrupt_release();
+    if (status == PROCESS_NOT_STARTED)
+        diag_fail(gicrun_place, "install it (Debian: apt-get install gnuplot-nox), or run without --plot",
+                  "no picture: gnuplot can't be started: %s", said);
+    if (status) {
+        fputs(said, stderr);
+        diag_fail(gicrun_place, "gnuplot's messages are above; is there room on the disk?",
+                  "no picture: %s could not be drawn", path);
+    }
+}

@@ -1,0 +1,422 @@
+/* SPDX-License-Identifier: MIT
+ * Scenes: models/SCENE.md. */
+#include "gicrun.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double pi = 3.141592653589793;
+
+/* What reading needs all along: the scene in the making and the model it is for. */
+typedef struct Reader {
+    Pool *pool;
+    const Model *model;
+    Scene *scene;
+} Reader;
+
+const Item *scene_need(const Item *map, const char *key, const char *what)
+{
+    const Item *item = doc_find(map, key);
+    char remedy[80];
+    snprintf(remedy, sizeof remedy, "add `%s: ...`", key);
+    if (!item)
+        diag_fail(map->at, remedy, "%s needs the key '%s'", what, key);
+    return item;
+}
+
+double scene_number(const Item *map, const char *key, const char *what, double absent)
+{
+    const Item *item = doc_find(map, key);
+    return item ? doc_number(item, what) : absent;
+}
+
+double scene_positive(const Item *item, const char *what)
+{
+    double value = doc_number(item, what);
+    if (value <= 0)
+        diag_fail(item->at, "write a number greater than zero", "%s must be positive", what);
+    return value;
+}
+
+double *scene_numbers(Pool *pool, const Item *item, const char *what, int least)
+{
+    if (item->kind != ITEM_LIST || item->count < least)
+        diag_fail(item->at, "write [first, second, ...]", "%s must be a list of at least %d number%s", what, least,
+                  least == 1 ? "" : "s");
+    double *out = pool_alloc(pool, sizeof *out * (size_t)item->count);
+    doc_vector(item, what, out, item->count);
+    return out;
+}
+
+/* Index of `word` among names, or failure with the nearest one, or all of them where they are few. */
+static int name_index(Reader *reader, const Item *item, const char *word, const char *kind, const char *const *name,
+                      int count)
+{
+    for (int i = 0; i < count; ++i)
+        if (!strcmp(name[i], word))
+            return i;
+    Text remedy = {.pool = reader->pool};
+    const char *nearest = diag_nearest(word, name, count);
+    if (nearest)
+        text_print(&remedy, "did you mean '%s'?", nearest);
+    for (int i = 0; !nearest && i < count && count <= 20; ++i)
+        text_print(&remedy, "%s%s", i ? ", " : "there are: ", name[i]);
+    diag_fail(item->at, remedy.size ? remedy.s : count ? NULL : "remove it", "the model has no %s '%s'", kind, word);
+}
+
+/* ---- time ----------------------------------------------------------------------------------------------- */
+
+static void read_time(Reader *reader, const Item *root)
+{
+    const double most_steps = 1e12;
+    Scene *scene = reader->scene;
+    const Item *duration = scene_need(root, "duration", "the scene"), *step = scene_need(root, "step", "the scene");
+    const Item *output = doc_find(root, "output_step"), *method = doc_find(root, "integrator");
+    scene->duration = scene_positive(duration, "duration");
+    scene->step = scene_positive(step, "step");
+    scene->output_step = output ? scene_positive(output, "output_step") : scene->step;
+    if (scene->duration / scene->step > most_steps)
+        diag_fail(step->at, "a longer step or a shorter duration", "the run would take more than %g steps", most_steps);
+
+    double steps = round(scene->output_step / scene->step);
+    if (steps < 1 || fabs(steps * scene->step - scene->output_step) > 1e-9 * scene->output_step)
+        diag_fail(output->at, pool_print(reader->pool, "write %.15g, or change the step",
+                                         fmax(steps, 1) * scene->step),
+                  "output_step must be a multiple of step (%.15g s)", scene->step);
+    scene->per_output = (int64_t)steps;
+    scene->outputs = (int64_t)floor(scene->duration / scene->output_step * (1 + 1e-12) + 1e-9);
+    if (!scene->outputs)
+        diag_fail(duration->at, "a longer duration, or a shorter step or output_step",
+                  "the scene ends before the first output at %.15g s", scene->output_step);
+
+    const char *word = method ? doc_word(method, "integrator") : "ab3";
+    if (strcmp(word, "ab3") && strcmp(word, "rk4"))
+        diag_fail(method->at, "write ab3 or rk4", "there is no integrator '%s'", word);
+    scene->method = strcmp(word, "ab3") ? GIC_RK4 : GIC_AB3;
+}
+
+/* ---- the initial state ---------------------------------------------------------------------------------- */
+
+static void read_orientation(const Item *item, double e[4])
+{
+    CHECK_KEYS(item, "orientation", "yaw", "pitch", "roll", "euler");
+    const Item *euler = doc_find(item, "euler");
+    if (euler) {
+        if (item->count > 1)
+            diag_fail(item->at, "keep either euler, or yaw, pitch and roll", "orientation is given twice");
+        doc_vector(euler, "Euler parameters", e, 4);
+        double norm = sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
+        if (fabs(norm - 1) > 1e-6)
+            diag_fail(euler->at, "divide them by it", "the norm of Euler parameters must be 1, not %.9g", norm);
+        for (int i = 0; i < 4; ++i)
+            e[i] /= norm;
+        return;
+    }
+    double yaw = scene_number(item, "yaw", "yaw", 0) / 2, pitch = scene_number(item, "pitch", "pitch", 0) / 2,
+           roll = scene_number(item, "roll", "roll", 0) / 2;
+    double cy = cos(yaw), sy = sin(yaw), cp = cos(pitch), sp = sin(pitch), cr = cos(roll), sr = sin(roll);
+    e[0] = cr * cp * cy + sr * sp * sy;
+    e[1] = sr * cp * cy - cr * sp * sy;
+    e[2] = cr * sp * cy + sr * cp * sy;
+    e[3] = cr * cp * sy - sr * sp * cy;
+}
+
+static void read_base(Reader *reader, const Item *initial)
+{
+    static const char *const keys[] = {"position", "orientation", "velocity", "speed", "angular_velocity"};
+    Scene *scene = reader->scene;
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; ++i) {
+        const Item *item = doc_find(initial, keys[i]);
+        if (item && !reader->model->free_base)
+            diag_fail(item->at, "remove it: coordinates and rates alone describe the state",
+                      "%s of the base, but the base of '%s' is fixed", keys[i], reader->model->name);
+    }
+    const Item *position = doc_find(initial, "position"), *orientation = doc_find(initial, "orientation");
+    const Item *velocity = doc_find(initial, "velocity"), *speed = doc_find(initial, "speed");
+    const Item *angular = doc_find(initial, "angular_velocity");
+    if (position)
+        doc_vector(position, "initial position", scene->position, 3);
+    if (orientation)
+        read_orientation(orientation, scene->euler);
+    if (velocity && speed)
+        diag_fail(speed->at, "keep one of the two", "the initial state has both velocity and speed");
+    if (velocity)
+        doc_vector(velocity, "initial velocity", scene->velocity, 3);
+    if (speed) {
+        double A[9], along[3] = {doc_number(speed, "initial speed"), 0, 0};
+        mat_from_euler(scene->euler, A);
+        mat_apply(A, along, scene->velocity);
+    }
+    if (angular)
+        doc_vector(angular, "initial angular velocity", scene->angular_velocity, 3);
+}
+
+/* A map from free coordinates to numbers; `what` is "coordinate" or "rate". */
+static void read_coordinates(Reader *reader, const Item *map, const char *what, double *out)
+{
+    const Model *model = reader->model;
+    const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(model->coordinates + 1));
+    for (int i = 0; i < model->coordinates; ++i)
+        name[i] = model->coordinate[i].name;
+    if (map->kind != ITEM_MAP)
+        diag_fail(map->at, "write {name: number}", "initial %ss must be a map", what);
+    for (int k = 0; k < map->count; ++k) {
+        const Item *key = map->key[k];
+        int i = name_index(reader, key, key->text, "coordinate", name, model->coordinates);
+        if (model->coordinate[i].driven)
+            diag_fail(key->at, "describe it under `inputs`", "coordinate '%s' is driven, not part of the state",
+                      name[i]);
+        out[i] = doc_number(map->value[k], pool_print(reader->pool, "initial %s of '%s'", what, name[i]));
+    }
+}
+
+static void warn_range(const Coordinate *coordinate, Place at, double low, double high)
+{
+    if (low < coordinate->range[0] || high > coordinate->range[1])
+        diag_warn(at, "the model may not reach that far; `range` of the coordinate states what it is made for",
+                  "coordinate '%s' leaves its range [%g, %g]", coordinate->name, coordinate->range[0],
+                  coordinate->range[1]);
+}
+
+static void read_initial(Reader *reader, const Item *initial)
+{
+    const Model *model = reader->model;
+    Scene *scene = reader->scene;
+    CHECK_KEYS(initial, "the initial state", "position", "orientation", "velocity", "speed", "angular_velocity",
+               "coordinates", "rates");
+    read_base(reader, initial);
+    const Item *coordinates = doc_find(initial, "coordinates"), *rates = doc_find(initial, "rates");
+    if (coordinates)
+        read_coordinates(reader, coordinates, "coordinate", scene->value);
+    if (rates)
+        read_coordinates(reader, rates, "rate", scene->rate);
+    for (int i = 0; coordinates && i < model->coordinates; ++i) {
+        const Item *item = doc_find(coordinates, model->coordinate[i].name);
+        if (item)
+            warn_range(&model->coordinate[i], item->at, scene->value[i], scene->value[i]);
+    }
+}
+
+/* ---- inputs --------------------------------------------------------------------------------------------- */
+
+static void read_knots(Reader *reader, const Item *item, Profile *profile)
+{
+    CHECK_KEYS(item, "knots", "times", "values");
+    const Item *times = scene_need(item, "times", "knots"), *values = scene_need(item, "values", "knots");
+    profile->time = scene_numbers(reader->pool, times, "times of knots", 1);
+    profile->value = scene_numbers(reader->pool, values, "values of knots", 1);
+    profile->count = times->count;
+    if (values->count != times->count)
+        diag_fail(values->at, "one value for each time", "knots have %d times and %d values", times->count,
+                  values->count);
+    for (int i = 1; i < times->count; ++i)
+        if (profile->time[i] <= profile->time[i - 1])
+            diag_fail(times->value[i]->at, "sort the knots by time", "times of knots must rise");
+}
+
+static void read_sine(const Item *item, Profile *profile)
+{
+    CHECK_KEYS(item, "a sine input", "amplitude", "frequency", "offset", "start");
+    profile->amplitude = doc_number(scene_need(item, "amplitude", "a sine input"), "amplitude");
+    profile->frequency = scene_positive(scene_need(item, "frequency", "a sine input"), "frequency");
+    profile->offset = scene_number(item, "offset", "offset", profile->offset);
+    profile->start = scene_number(item, "start", "start", 0);
+}
+
+static void read_constant(Reader *reader, const Item *item, Profile *profile)
+{
+    profile->count = 1;
+    profile->time = pool_alloc(reader->pool, sizeof(double));
+    profile->value = pool_alloc(reader->pool, sizeof(double));
+    profile->value[0] = doc_number(item, "value of an input");
+}
+
+static void read_profile(Reader *reader, const Item *item, Profile *profile)
+{
+    const char *remedy = "write a number, or {constant: ..}, {knots: {times: [..], values: [..]}} or {sine: {..}}";
+    if (item->kind == ITEM_SCALAR) {
+        read_constant(reader, item, profile);
+        return;
+    }
+    CHECK_KEYS(item, "an input", "constant", "knots", "sine");
+    if (item->count != 1)
+        diag_fail(item->at, remedy, "an input must be described in one way");
+    if (!strcmp(item->key[0]->text, "constant"))
+        read_constant(reader, item->value[0], profile);
+    else if (!strcmp(item->key[0]->text, "knots"))
+        read_knots(reader, item->value[0], profile);
+    else
+        read_sine(item->value[0], profile);
+}
+
+/* The driven coordinate whose value is this input, or NULL. */
+static const Coordinate *driven_by(const Model *model, int input)
+{
+    for (int i = 0; i < model->coordinates; ++i)
+        if (model->coordinate[i].driven && model->coordinate[i].input == input)
+            return &model->coordinate[i];
+    return NULL;
+}
+
+static void check_driven(const Profile *profile, const Coordinate *coordinate, Place at)
+{
+    double low = profile->offset - fabs(profile->amplitude), high = profile->offset + fabs(profile->amplitude);
+    for (int i = 0; i < profile->count; ++i) {
+        low = i ? fmin(low, profile->value[i]) : profile->value[i];
+        high = i ? fmax(high, profile->value[i]) : profile->value[i];
+    }
+    warn_range(coordinate, at, low, high);
+}
+
+static void read_inputs(Reader *reader, const Item *map)
+{
+    const Model *model = reader->model;
+    Scene *scene = reader->scene;
+    const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(model->inputs + 1));
+    for (int i = 0; i < model->inputs; ++i)
+        name[i] = model->input[i].name;
+    if (map->kind != ITEM_MAP)
+        diag_fail(map->at, "write {name: number or profile}", "inputs must be a map");
+    for (int k = 0; k < map->count; ++k) {
+        const Item *key = map->key[k];
+        int i = name_index(reader, key, key->text, "input", name, model->inputs);
+        const char *dot = strchr(name[i], '.');
+        if (dot)
+            diag_fail(key->at, pool_print(reader->pool, "describe '%.*s'; rate and acceleration follow from it",
+                                          (int)(dot - name[i]), name[i]),
+                      "'%s' is no input of its own", name[i]);
+        const Coordinate *coordinate = driven_by(model, i);
+        Profile *profile = POOL_PUSH(reader->pool, scene->profile, scene->profiles);
+        *profile = (Profile){.input = i, .driven = coordinate, .offset = model->input[i].initial};
+        read_profile(reader, map->value[k], profile);
+        if (coordinate)
+            check_driven(profile, coordinate, map->value[k]->at);
+    }
+}
+
+void profile_at(const Profile *profile, double time, double out[3])
+{
+    if (profile->count) {
+        int k = 0;
+        while (k + 2 < profile->count && time > profile->time[k + 1])
+            ++k;
+        if (profile->count > 1)
+            gic_quintic(time, profile->time[k], profile->time[k + 1], profile->value[k], profile->value[k + 1], out);
+        else
+            memcpy(out, (double[3]){profile->value[0]}, 3 * sizeof *out);
+        return;
+    }
+    double fade[3], w = 2 * pi * profile->frequency, phase = w * (time - profile->start);
+    double s = profile->amplitude * sin(phase), c = profile->amplitude * cos(phase);
+    gic_quintic(time, profile->start, profile->start + 1 / profile->frequency, 0, 1, fade);
+    out[0] = profile->offset + fade[0] * s;
+    out[1] = fade[1] * s + fade[0] * w * c;
+    out[2] = fade[2] * s + 2 * fade[1] * w * c - fade[0] * w * w * s;
+}
+
+void scene_inputs(void *user, int32_t lane, double time, double *input)
+{
+    const Scene *scene = user;
+    (void)lane;
+    for (int i = 0; i < scene->profiles; ++i) {
+        const Profile *profile = &scene->profile[i];
+        double out[3];
+        profile_at(profile, time, out);
+        memcpy(input + profile->input, out, (profile->driven ? 3 : 1) * sizeof *out);
+    }
+}
+
+/* ---- outputs -------------------------------------------------------------------------------------------- */
+
+/* Components named by a list of output or component names, each once, in the order of the list. */
+static int *read_names(Reader *reader, const Item *list, const char *what, int *count)
+{
+    const Model *model = reader->model;
+    const int names = model->outputs + model->output_components;
+    const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(names + 1));
+    int *first = pool_alloc(reader->pool, sizeof *first * (size_t)(names + 1));
+    int *size = pool_alloc(reader->pool, sizeof *size * (size_t)(names + 1)), *out = NULL, n = 0, component = 0;
+    for (int i = 0; i < model->outputs; ++i) {
+        const Output *output = &model->output[i];
+        first[n] = component;
+        size[n] = output->count;
+        name[n++] = output->name;
+        for (int k = 0; k < output->count; ++k) {
+            first[n] = component++;
+            size[n] = 1;
+            name[n++] = output->component[k];
+        }
+    }
+    bool *taken = pool_alloc(reader->pool, (size_t)component + 1);
+    if (list->kind != ITEM_LIST || !list->count)
+        diag_fail(list->at, "write [name, name, ...]", "%s must be a list of names of outputs", what);
+    for (int i = 0; i < list->count; ++i) {
+        const Item *item = list->value[i];
+        int found = name_index(reader, item, doc_word(item, "name of an output"), "output", name, n);
+        for (int k = first[found]; k < first[found] + size[found]; ++k)
+            if (!taken[k]) {
+                taken[k] = true;
+                *POOL_PUSH(reader->pool, out, *count) = k;
+            }
+    }
+    return out;
+}
+
+static int *all_outputs(Reader *reader, int *count)
+{
+    int *out = NULL;
+    for (int i = 0; i < reader->model->output_components; ++i)
+        *POOL_PUSH(reader->pool, out, *count) = i;
+    return out;
+}
+
+/* Without a list the picture shows heights, as the paper's does, or else values of coordinates, or else all. */
+static int *default_curves(Reader *reader, int *count)
+{
+    const Model *model = reader->model;
+    int *out = NULL;
+    for (int pass = 0; pass < 2 && !*count; ++pass)
+        for (int i = 0, component = 0; i < model->outputs; component += model->output[i++].count)
+            if (!pass && model->output[i].type == OUTPUT_POSITION)
+                *POOL_PUSH(reader->pool, out, *count) = component + 2;
+            else if (pass && model->output[i].type == OUTPUT_COORDINATE)
+                *POOL_PUSH(reader->pool, out, *count) = component;
+    return *count ? out : all_outputs(reader, count);
+}
+
+/* ---- the scene ------------------------------------------------------------------------------------------ */
+
+const Scene *scene_read(Pool *pool, const char *path, const Model *model)
+{
+    const Item *root = doc_read(pool, path);
+    Scene *scene = pool_alloc(pool, sizeof *scene);
+    Reader reader = {pool, model, scene};
+    CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "output_step", "initial",
+               "road", "inputs", "outputs", "plot");
+    scene->source = root->at.source;
+    const Item *version = scene_need(root, "gicscene", "the scene");
+    if (doc_number(version, "gicscene") != 1)
+        diag_fail(version->at, "write 1, or use a newer gicrun", "this gicrun reads version 1 of the scene format");
+    if (doc_find(root, "description"))
+        doc_word(doc_find(root, "description"), "description");
+    read_time(&reader, root);
+
+    memcpy(scene->position, model->body[BODY_BASE].position, sizeof scene->position);
+    memcpy(scene->euler, model->body[BODY_BASE].euler, sizeof scene->euler);
+    scene->value = pool_alloc(pool, sizeof(double) * (size_t)(model->coordinates + 1));
+    scene->rate = pool_alloc(pool, sizeof(double) * (size_t)(model->coordinates + 1));
+    for (int i = 0; i < model->coordinates; ++i)
+        scene->value[i] = model->coordinate[i].design;
+    const Item *initial = doc_find(root, "initial"), *road = doc_find(root, "road"), *inputs = doc_find(root, "inputs");
+    const Item *outputs = doc_find(root, "outputs"), *plot = doc_find(root, "plot");
+    if (initial)
+        read_initial(&reader, initial);
+    if (road)
+        scene->road = road_read(pool, road);
+    if (inputs)
+        read_inputs(&reader, inputs);
+    scene->column = outputs ? read_names(&reader, outputs, "outputs", &scene->columns)
+                            : all_outputs(&reader, &scene->columns);
+    scene->curve = plot ? read_names(&reader, plot, "plot", &scene->curves) : default_curves(&reader, &scene->curves);
+    return scene;
+}

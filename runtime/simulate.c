@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: MIT
+ * Run a scene: steps, results, progress, summary. */
+#include "gicrun.h"
+
+#include <math.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum {
+    BATCH = 256,        /* steps between looks at the clock */
+    MOST_POINTS = 4000, /* of a curve in a picture */
+};
+
+static const double refresh = 0.1; /* s between lines of progress */
+
+/* A run in progress. Outputs are computed on a copy of the instance, so that how often someone looks leaves no trace in
+ * the results. */
+typedef struct Run {
+    Pool *pool;
+    const gic_model *model;
+    const Scene *scene;
+    const Request *request;
+    gic_head *self, *copy;
+    Csv csv;
+    Plot plot;
+    int64_t samples, every; /* output times so far; one in `every` goes into the picture */
+    double constraint;      /* largest residual so far */
+    double integrating;     /* CPU seconds in steps */
+    double looked;          /* when the run looked around last */
+    bool shown, interrupted;
+} Run;
+
+static double seconds(clockid_t clock_id)
+{
+    struct timespec now;
+    clock_gettime(clock_id, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Where the base stands in the state, and the free coordinates: FORMAT.md section 10. */
+static void set_state(const gic_model *model, const Scene *scene, gic_head *self)
+{
+    double *state = instance_array(self, model->state_offset);
+    const int half = model->slow_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
+    if (model->free_base) {
+        memcpy(state, scene->position, sizeof scene->position);
+        memcpy(state + 3, scene->euler, sizeof scene->euler);
+        memcpy(state + half + 1, scene->velocity, sizeof scene->velocity);
+        memcpy(state + half + 4, scene->angular_velocity, sizeof scene->angular_velocity);
+    }
+    for (int i = 0; i < model->coordinate_count; ++i) {
+        int at = model->coordinate_state[i];
+        if (at < 0)
+            continue;
+        state[at] = scene->value[i];
+        state[at + half] = scene->rate[i];
+    }
+}
+
+/* ---- output times --------------------------------------------------------------------------------------- */
+
+static void write_header(Run *run)
+{
+    csv_name(&run->csv, "time", "s");
+    for (int i = 0; i < run->scene->columns; ++i) {
+        const gic_signal *signal = &run->model->output[run->scene->column[i]];
+        csv_name(&run->csv, signal->name, signal->unit);
+    }
+    csv_end_row(&run->csv);
+}
+
+static void prepare_plot(Run *run)
+{
+    const Scene *scene = run->scene;
+    run->plot.title = run->request->scene;
+    run->plot.curves = scene->curves;
+    run->plot.name = pool_alloc(run->pool, sizeof *run->plot.name * (size_t)scene->curves);
+    run->plot.unit = pool_alloc(run->pool, sizeof *run->plot.unit * (size_t)scene->curves);
+    for (int i = 0; i < scene->curves; ++i) {
+        run->plot.name[i] = run->model->output[scene->curve[i]].name;
+        run->plot.unit[i] = run->model->output[scene->curve[i]].unit;
+    }
+    run->every = (scene->outputs + MOST_POINTS) / MOST_POINTS;
+    int64_t rows = scene->outputs / run->every + 1;
+    run->plot.sample = pool_alloc(run->pool, sizeof(double) * (size_t)rows * (size_t)(scene->curves + 1));
+}
+
+/* Compute outputs at the present time on the copy. */
+static int compute_outputs(Run *run)
+{
+    memcpy(run->copy, run->self, run->model->size);
+    return run->model->outputs(run->copy);
+}
+
+static void record(Run *run)
+{
+    const Scene *scene = run->scene;
+    const double *output = instance_array(run->copy, run->model->output_offset), time = gic_time(run->self);
+    if (run->csv.file) {
+        csv_number(&run->csv, time);
+        for (int i = 0; i < scene->columns; ++i)
+            csv_number(&run->csv, output[scene->column[i]]);
+        csv_end_row(&run->csv);
+    }
+    if (run->samples++ % run->every == 0) {
+        double *sample = run->plot.sample + run->plot.rows++ * (scene->curves + 1);
+        *sample++ = time;
+        for (int i = 0; i < scene->curves; ++i)
+            *sample++ = output[scene->curve[i]];
+    }
+    gic_self_test test;
+    if (run->model->self_test(run->copy, &test) == GIC_OK)
+        run->constraint = fmax(run->constraint, test.constraint);
+}
+
+/* ---- for the person who waits --------------------------------------------------------------------------- */
+
+static void show_progress(Run *run)
+{
+    if (run->request->quiet || !isatty(STDERR_FILENO))
+        return;
+    double time = gic_time(run->self);
+    fprintf(stderr, "\r%5.1f %%  t = %.3f s  %.0f times real time\x1b[K", 100 * time / run->scene->duration, time,
+            time / fmax(run->integrating, 1e-9));
+    run->shown = true;
+}
+
+static void clear_progress(const Run *run)
+{
+    if (run->shown)
+        fputs("\r\x1b[K", stderr);
+}
+
+static void summary(const Run *run, double total)
+{
+    const gic_head *head = run->self;
+    const Scene *scene = run->scene;
+    const double time = gic_time(head), solutions = (double)head->newton_count;
+    const char *results = run->request->results;
+    fprintf(stderr, "%s: %.6g s in %lld steps of %.6g s (%s), %lld rows%s%s\n", run->model->name, time,
+            (long long)head->steps, scene->step, scene->method == GIC_AB3 ? "ab3" : "rk4", (long long)run->samples,
+            results ? " in " : "", !results ? "" : strcmp(results, "-") ? results : "standard output");
+    fprintf(stderr, "  right-hand sides     %lld\n", (long long)head->rhs_count);
+    fprintf(stderr, "  Newton corrections   %.3f a subset solution (%lld in %lld)\n",
+            solutions > 0 ? (double)head->correction_count / solutions : 0.0, (long long)head->correction_count,
+            (long long)head->newton_count);
+    fprintf(stderr, "  parameter switches   %lld\n", (long long)head->switch_count);
+    fprintf(stderr, "  constraint residual  %.2g at most, relative to the subset's size\n", run->constraint);
+    fprintf(stderr, "  CPU time             %.3g s in steps, %.0f times real time; %.3g s with outputs\n",
+            run->integrating, time / fmax(run->integrating, 1e-9), total);
+}
+
+static const char *remedy_of(int status)
+{
+    switch (status) {
+    case GIC_ERROR_REACH:
+    case GIC_ERROR_NEWTON:
+    case GIC_ERROR_SINGULAR:
+        return "the mechanism moves to where it can't be assembled: check coordinates, springs and road; the last "
+               "rows of the results show how it got there";
+    case GIC_ERROR_RESULT:
+    case GIC_ERROR_INPUT:
+        return "the run has probably become unstable: try a shorter step";
+    default:
+        return NULL;
+    }
+}
+
+/* ---- the run -------------------------------------------------------------------------------------------- */
+
+static gic_head *start(Run *run)
+{
+    const gic_model *model = run->model;
+    const Scene *scene = run->scene;
+    const Place at = {scene->source, 0, 0};
+    gic_head *self = instance_new(run->pool, model);
+    int status = model->setup(self);
+    if (status != GIC_OK)
+        diag_fail(at, NULL, "the model can't be set up: %s", instance_status(run->pool, model, self, status));
+    set_state(model, scene, self);
+    self->road = scene->road;
+    self->input_function = scene_inputs;
+    self->user = (void *)scene; /* only read */
+    scene_inputs(self->user, 0, 0, instance_array(self, model->input_offset));
+    return self;
+}
+
+/* Now and then: has someone asked to stop, and is someone watching? */
+static void look_around(Run *run)
+{
+    double now = seconds(CLOCK_MONOTONIC);
+    if (now - run->looked < refresh)
+        return;
+    run->looked = now;
+    run->interrupted = interrupt_arrived();
+    show_progress(run);
+}
+
+/* Steps up to the next output time. Returns the status of the last one. */
+static int advance(Run *run)
+{
+    int status = GIC_OK;
+    for (int64_t left = run->scene->per_output; left && status == GIC_OK && !run->interrupted;) {
+        double before = seconds(CLOCK_PROCESS_CPUTIME_ID);
+        for (int i = 0; i < BATCH && left && status == GIC_OK; ++i, --left)
+            status = gic_step(run->model, run->self, run->scene->step, run->scene->method);
+        run->integrating += seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
+        look_around(run);
+    }
+    return status;
+}
+
+/* Returns what ended the run, with the instance it is about in *failed. */
+static int run_all(Run *run, const gic_head **failed)
+{
+    record(run);
+    for (int64_t k = 0; k < run->scene->outputs; ++k) {
+        int status = advance(run);
+        *failed = run->self;
+        if (status != GIC_OK || run->interrupted)
+            return status;
+        status = compute_outputs(run);
+        *failed = run->copy;
+        if (status != GIC_OK)
+            return status;
+        record(run);
+    }
+    return GIC_OK;
+}
+
+void simulate(Pool *pool, const gic_model *model, const Scene *scene, const Request *request)
+{
+    const Place at = {scene->source, 0, 0};
+    Run run = {.pool = pool, .model = model, .scene = scene, .request = request};
+    run.self = start(&run);
+    run.copy = instance_new(pool, model);
+    int status = compute_outputs(&run);
+    if (status != GIC_OK)
+        diag_fail(at, "is the initial state one that the mechanism can reach from its design?",
+                  "the run can't start: %s", instance_status(pool, model, run.copy, status));
+    prepare_plot(&run);
+    if (request->results) {
+        run.csv = csv_open(pool, request->results);
+        write_header(&run);
+    }
+
+    interrupt_hold();
+    const double before = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    const gic_head *failed = run.self;
+    status = run_all(&run, &failed);
+    clear_progress(&run);
+    if (request->results)
+        csv_close(&run.csv);
+    if (run.interrupted)
+        fprintf(stderr, "gicrun: interrupted at t = %.6g s; results up to there are kept\n", gic_time(run.self));
+    interrupt_release();
+    if (!request->quiet)
+        summary(&run, seconds(CLOCK_PROCESS_CPUTIME_ID) - before);
+    if (request->picture)
+        plot_write(pool, &run.plot, request->picture);
+    if (status != GIC_OK)
+        diag_fail(at, remedy_of(status), "the run ends at t = %.6g s: %s", gic_time(run.self),
+                  instance_status(pool, model, failed, status));
+}
