@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: MIT
+ * agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4]
+ *
+ * Compares what `gicrun --eval` wrote (EVAL) with what `reference` wrote (ACCEL) for the same states. Accelerations by
+ * group, relative to the sum of magnitudes of the contributing terms; places relative to the model's length scale;
+ * Euler parameters up to their common sign. A row counts where the reference reached it with a subset condition
+ * within the limit; at least half of the rows must. Exit status 1 unless every counted row agrees. */
+#include "reference/dump.h"
+#include "reference/support.h"
+#include "reference/table.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] = "usage: agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4]\n";
+
+/* Numbers that are compared as one vector. */
+typedef struct Group {
+    char label[64];
+    int size, reference[4], eval[4]; /* columns */
+    int scale_column;                /* in the reference, or -1: `scale` */
+    double scale;
+    bool either_sign;
+    double worst;
+    int worst_row; /* -1: none compared */
+} Group;
+
+typedef struct Groups {
+    int count;
+    Group *group;
+} Groups;
+
+static Group *add_group(Groups *groups, const char *label, const char *kind)
+{
+    Group *group = &groups->group[groups->count++];
+    snprintf(group->label, sizeof group->label, "%s%s", label, kind);
+    group->scale_column = group->worst_row = -1;
+    group->scale = 1;
+    return group;
+}
+
+static void add_column(Group *group, const Table *reference, const Table *eval, const char *name, const char *suffix)
+{
+    char column[64];
+    snprintf(column, sizeof column, "%s%s", name, suffix);
+    group->reference[group->size] = table_want(reference, column);
+    group->eval[group->size++] = table_want(eval, column);
+}
+
+static void add_scale(Group *group, const Table *reference, const char *name)
+{
+    char column[64];
+    snprintf(column, sizeof column, "scale.%s", name);
+    group->scale_column = table_want(reference, column);
+}
+
+static Groups groups_find(const Model *model, const Table *reference, const Table *eval)
+{
+    static const char *const xyz[] = {".x", ".y", ".z"}, *const e[] = {".e0", ".e1", ".e2", ".e3"};
+    static const char *const base[] = {"a", "alpha"};
+    Groups groups = {.group = grab((size_t)(2 + model->coordinates + 2 * model->bodies), sizeof *groups.group)};
+    for (int i = 0; i < 2 && model->free_base; ++i) {
+        Group *group = add_group(&groups, base[i], "");
+        for (int j = 0; j < 3; ++j)
+            add_column(group, reference, eval, base[i], xyz[j]);
+        add_scale(group, reference, base[i]);
+    }
+    for (int c = 0; c < model->coordinates; ++c)
+        if (!model->coordinate[c].driven) {
+            Group *group = add_group(&groups, model->coordinate[c].name, " acceleration");
+            add_column(group, reference, eval, model->coordinate[c].name, ".acceleration");
+            add_scale(group, reference, model->coordinate[c].name);
+        }
+    for (int k = model->free_base ? 0 : 1; k < model->bodies; ++k) {
+        Group *place = add_group(&groups, model->body[k].name, " place");
+        for (int j = 0; j < 3; ++j)
+            add_column(place, reference, eval, model->body[k].name, xyz[j]);
+        place->scale = model->length;
+        Group *orientation = add_group(&groups, model->body[k].name, " Euler parameters");
+        for (int j = 0; j < 4; ++j)
+            add_column(orientation, reference, eval, model->body[k].name, e[j]);
+        orientation->either_sign = true;
+    }
+    return groups;
+}
+
+static double deviation(const Group *group, const Table *reference, const Table *eval, int row)
+{
+    double minus = 0, plus = 0;
+    for (int i = 0; i < group->size; ++i) {
+        double x = table_number(reference, row, group->reference[i]), y = table_number(eval, row, group->eval[i]);
+        minus += (x - y) * (x - y);
+        plus += (x + y) * (x + y);
+    }
+    double scale = group->scale_column < 0 ? group->scale : table_number(reference, row, group->scale_column);
+    double size = sqrt(group->either_sign && plus < minus ? plus : minus);
+    return size == 0 ? 0 : size / scale;
+}
+
+/* True when all groups of a row agree; NaN never does. */
+static bool row_agrees(Groups *groups, const Table *reference, const Table *eval, int row, double tolerance)
+{
+    bool agrees = true;
+    for (int i = 0; i < groups->count; ++i) {
+        Group *group = &groups->group[i];
+        double size = deviation(group, reference, eval, row);
+        if (group->worst_row < 0 || (!isnan(group->worst) && !(size <= group->worst))) {
+            group->worst = size;
+            group->worst_row = row;
+        }
+        agrees = agrees && size <= tolerance;
+    }
+    return agrees;
+}
+
+int main(int argc, char **argv)
+{
+    const char *path[3] = {NULL};
+    double tolerance = 1e-12, limit = 1e4;
+    int paths = 0;
+    for (int i = 1; i < argc; ++i) {
+        if (!strcmp(argv[i], "--tolerance") && i + 1 < argc) {
+            tolerance = number_of(argv[++i], "--tolerance");
+        } else if (!strcmp(argv[i], "--condition") && i + 1 < argc) {
+            limit = number_of(argv[++i], "--condition");
+        } else if (argv[i][0] != '-' && paths < 3) {
+            path[paths++] = argv[i];
+        } else {
+            fputs(usage, stderr);
+            return 2;
+        }
+    }
+    if (paths != 3) {
+        fputs(usage, stderr);
+        return 2;
+    }
+    Model *model = model_read(path[0]);
+    Table *reference = table_read(path[1]), *eval = table_read(path[2]);
+    if (reference->rows != eval->rows)
+        fail("%s has %d rows, %s has %d", path[1], reference->rows, path[2], eval->rows);
+    int status = table_want(reference, "status"), eval_status = table_want(eval, "status"),
+        condition = table_want(reference, "condition");
+    int unreached = 0, ill = 0, refused = 0, passed = 0, failed = 0;
+    Groups groups = groups_find(model, reference, eval);
+    for (int row = 0; row < reference->rows; ++row) {
+        if (table_number(reference, row, status) != 0) {
+            ++unreached;
+        } else if (!(table_number(reference, row, condition) <= limit)) {
+            ++ill;
+        } else if (table_number(eval, row, eval_status) != 0) {
+            if (!refused++)
+                printf("row %d: refused with status %s\n", row + 1, eval->cell[row * eval->columns + eval_status]);
+            ++failed;
+        } else if (row_agrees(&groups, reference, eval, row, tolerance)) {
+            ++passed;
+        } else {
+            ++failed;
+        }
+    }
+    int counted = passed + failed;
+    printf("%d rows: %d not reached by the reference, %d above condition %g, %d compared, %d of them refused\n",
+           reference->rows, unreached, ill, limit, counted, refused);
+    for (int i = 0; i < groups.count; ++i)
+        if (groups.group[i].worst_row >= 0)
+            printf("%-40s worst %.2e in row %d%s\n", groups.group[i].label, groups.group[i].worst,
+                   groups.group[i].worst_row + 1, groups.group[i].worst <= tolerance ? "" : "  FAILED");
+    bool enough = counted > 0 && 2 * counted >= reference->rows;
+    if (!enough)
+        printf("only %d of %d rows were admissible: that proves nothing\n", counted, reference->rows);
+    printf("%d passed, %d failed\n", passed, failed);
+    free(groups.group);
+    table_free(reference);
+    table_free(eval);
+    model_free(model);
+    return failed || !enough;
+}

@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: MIT
+ * The augmented system
+ *
+ *     [ M      0      Phi_q^T  Psi_d^T ] [ q''    ]   [ Q     ]
+ *     [ Phi_q  0      0        0       ] [ w''    ] = [ gamma ]
+ *     [ Psi_q  Psi_w  0        0       ] [ lambda ]   [ gamma ]
+ *
+ * of all bodies, where a driven coordinate has a given w'' and in its place a multiplier. Velocity terms are the
+ * rows' bias. The scales come from the same matrix: with gamma = 0 its solution is linear in Q, so that every term of
+ * Q - M b, b the accelerations where those of base and free coordinates are zero, yields its own contribution. */
+#include "solve.h"
+
+#include "support.h"
+
+#include <quadmath.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void inertia_matrix(const Body *body, quad J[3][3])
+{
+    const double *I = body->inertia;
+    const double full[3][3] = {{I[0], I[3], I[4]}, {I[3], I[1], I[5]}, {I[4], I[5], I[2]}};
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            J[i][j] = full[i][j];
+}
+
+/* 7 x 7: m I, 4 G^T J G */
+static void mass_matrix(const Body *body, const quad *q, quad M[BODY_COORDINATES][BODY_COORDINATES])
+{
+    quad J[3][3], G[3][4];
+    inertia_matrix(body, J);
+    euler_rate_matrix(q + 3, G);
+    memset(M, 0, BODY_COORDINATES * sizeof *M);
+    for (int i = 0; i < 3; ++i) {
+        M[i][i] = body->mass;
+        for (int j = 0; j < 3; ++j)
+            for (int k = 0; k < 4; ++k)
+                for (int l = 0; l < 4; ++l)
+                    M[3 + k][3 + l] += 4 * G[i][k] * J[i][j] * G[j][l];
+    }
+}
+
+static void factor_fill(Solver *solver)
+{
+    const Model *model = solver->model;
+    const Configuration *at = solver->configuration;
+    int n = solver->augmented->size, bodies = BODY_COORDINATES * solver->moving;
+    quad *a = solver->augmented->a;
+    factors_clear(solver->augmented);
+    for (int k = 0; k < solver->moving; ++k) {
+        quad M[BODY_COORDINATES][BODY_COORDINATES];
+        int start = BODY_COORDINATES * k, normal = bodies + solver->rows + k;
+        mass_matrix(&model->body[solver->first + k], at->q[solver->first + k], M);
+        for (int i = 0; i < BODY_COORDINATES; ++i)
+            memcpy(a + (start + i) * n + start, M[i], sizeof M[i]);
+        for (int j = 0; j < 4; ++j)
+            a[normal * n + start + 3 + j] = a[(start + 3 + j) * n + normal] = at->q[solver->first + k][3 + j];
+    }
+    for (int i = 0; i < solver->rows; ++i) {
+        const Row *row = &solver->row[i];
+        int line = bodies + i;
+        bool free_coordinate = row->coordinate >= 0 && !model->coordinate[row->coordinate].driven;
+        for (int side = 0; side < 2; ++side)
+            for (int j = 0; j < BODY_COORDINATES && row->body[side] >= solver->first; ++j) {
+                int column = BODY_COORDINATES * (row->body[side] - solver->first) + j;
+                a[line * n + column] = row->slope[side][j];
+                if (!free_coordinate)
+                    a[column * n + line] = row->slope[side][j];
+            }
+        if (free_coordinate)
+            a[line * n + line] = row->w_slope;
+    }
+}
+
+/* Right-hand sides of all second-derivative equations, into out[rows + bodies from `first_body`]. */
+static void second_sides(const Solver *solver, const State *state, int first_body, quad *out)
+{
+    const Model *model = solver->model;
+    for (int i = 0; i < solver->rows; ++i) {
+        const Row *row = &solver->row[i];
+        out[i] = -row->bias;
+        if (row->coordinate >= 0 && model->coordinate[row->coordinate].driven)
+            out[i] -= row->w_slope * state->w_second[row->coordinate];
+    }
+    for (int k = first_body; k < model->bodies; ++k) {
+        const quad *rate = solver->configuration->rate[k] + 3;
+        out[solver->rows + k - first_body] = -quad_dot(rate, rate, 4);
+    }
+}
+
+/* Accelerations where those of base and free coordinates are zero. */
+static void solve_bias(Solver *solver, const State *state)
+{
+    const Model *model = solver->model;
+    const Configuration *at = solver->configuration;
+    memset(solver->bias, 0, (size_t)model->bodies * sizeof *solver->bias);
+    if (model->free_base) {
+        static const double origin[3] = {0};
+        quad *base = solver->bias[0], s[3], B[3][4], B_rate[3][4];
+        const quad *p = at->q[0] + 3, *rate = at->rate[0] + 3;
+        from_com(model, 0, origin, s);
+        rotation_slope(p, s, B);
+        rotation_slope(rate, s, B_rate);
+        for (int j = 0; j < 4; ++j)
+            base[3 + j] = -p[j] * quad_dot(rate, rate, 4);
+        for (int i = 0; i < 3; ++i)
+            base[i] = -quad_dot(B[i], base + 3, 4) - quad_dot(B_rate[i], rate, 4);
+    }
+    quad *x = solver->unknown;
+    second_sides(solver, state, 1, x);
+    for (int i = 0; i < solver->rows; ++i)
+        for (int side = 0; side < 2; ++side)
+            if (solver->row[i].body[side] == 0)
+                x[i] -= quad_dot(solver->row[i].slope[side], solver->bias[0], BODY_COORDINATES);
+    quad_solve(solver->dependent, x);
+    for (int k = 1; k < model->bodies; ++k)
+        memcpy(solver->bias[k], x + BODY_COORDINATES * (k - 1), sizeof solver->bias[k]);
+}
+
+static void clear_force(Solver *solver)
+{
+    memset(solver->force, 0, (size_t)solver->model->bodies * sizeof *solver->force);
+}
+
+static void add_gravity(Solver *solver, int body)
+{
+    for (int i = 0; i < 3; ++i)
+        solver->force[body][i] += (quad)solver->model->body[body].mass * solver->model->gravity[i];
+}
+
+/* -2 G^T (omega x J omega) */
+static void add_gyroscopic(Solver *solver, int body)
+{
+    const quad *q = solver->configuration->q[body], *rate = solver->configuration->rate[body];
+    quad J[3][3], G[3][4], omega[3], spin[3], moment[3];
+    inertia_matrix(&solver->model->body[body], J);
+    euler_rate_matrix(q + 3, G);
+    for (int i = 0; i < 3; ++i)
+        omega[i] = 2 * quad_dot(G[i], rate + 3, 4);
+    for (int i = 0; i < 3; ++i)
+        spin[i] = quad_dot(J[i], omega, 3);
+    quad_cross(omega, spin, moment);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 4; ++j)
+            solver->force[body][3 + j] -= 2 * G[i][j] * moment[i];
+}
+
+static void add_bias(Solver *solver, int body)
+{
+    quad M[BODY_COORDINATES][BODY_COORDINATES];
+    mass_matrix(&solver->model->body[body], solver->configuration->q[body], M);
+    for (int i = 0; i < BODY_COORDINATES; ++i)
+        solver->force[body][i] -= quad_dot(M[i], solver->bias[body], BODY_COORDINATES);
+}
+
+/* Accelerations of the groups, as they follow from q'' of the base and w''. */
+typedef struct Groups {
+    quad a[3], alpha[3];
+} Groups;
+
+/* q'' of the base to its groups; `moving`: with the terms of its present velocity. */
+static Groups base_groups(const Solver *solver, const quad *second, bool moving)
+{
+    static const double origin[3] = {0};
+    const quad *p = solver->configuration->q[0] + 3, *rate = solver->configuration->rate[0] + 3;
+    Groups groups;
+    quad s[3], B[3][4], B_rate[3][4], G[3][4];
+    from_com(solver->model, 0, origin, s);
+    rotation_slope(p, s, B);
+    rotation_slope(rate, s, B_rate);
+    euler_rate_matrix(p, G);
+    for (int i = 0; i < 3; ++i) {
+        groups.a[i] = second[i] + quad_dot(B[i], second + 3, 4) + (moving ? quad_dot(B_rate[i], rate, 4) : 0);
+        groups.alpha[i] = 2 * quad_dot(G[i], second + 3, 4);
+    }
+    return groups;
+}
+
+static quad norm(const quad x[3])
+{
+    return sqrtq(quad_dot(x, x, 3));
+}
+
+static quad *unknown_row(const Solver *solver, int row)
+{
+    return solver->unknown + BODY_COORDINATES * solver->moving + row;
+}
+
+/* The sum over all terms, as it grows; compared with the whole at the end. */
+typedef struct Sum {
+    Groups groups;
+    quad *w;
+} Sum;
+
+/* Solve for what solver->force alone does, and add magnitudes to the scales. */
+static void contribution(Solver *solver, Sum *sum)
+{
+    const Model *model = solver->model;
+    memset(solver->unknown, 0, (size_t)solver->augmented->size * sizeof *solver->unknown);
+    memcpy(solver->unknown, solver->force[solver->first], (size_t)solver->moving * sizeof *solver->force);
+    quad_solve(solver->augmented, solver->unknown);
+    if (model->free_base) {
+        Groups groups = base_groups(solver, solver->unknown, false);
+        for (int i = 0; i < 3; ++i) {
+            sum->groups.a[i] += groups.a[i];
+            sum->groups.alpha[i] += groups.alpha[i];
+        }
+        solver->a_scale += norm(groups.a);
+        solver->alpha_scale += norm(groups.alpha);
+    }
+    for (int c = 0; c < model->coordinates; ++c)
+        if (!model->coordinate[c].driven) {
+            quad w = *unknown_row(solver, solver->rows - model->coordinates + c);
+            sum->w[c] += w;
+            solver->w_scale[c] += fabsq(w);
+        }
+    clear_force(solver);
+}
+
+static void scales(Solver *solver, const Road *road)
+{
+    const Model *model = solver->model;
+    Sum sum = {.w = grab((size_t)model->coordinates, sizeof *sum.w)};
+    solver->a_scale = solver->alpha_scale = solver->sum_error = 0;
+    memset(solver->w_scale, 0, (size_t)model->coordinates * sizeof *solver->w_scale);
+    clear_force(solver);
+    for (int k = solver->first; k < model->bodies; ++k) {
+        add_gravity(solver, k);
+        contribution(solver, &sum);
+        add_gyroscopic(solver, k);
+        add_bias(solver, k);
+        contribution(solver, &sum);
+    }
+    for (int i = 0; i < model->forces; ++i) {
+        add_force_element(model, solver->configuration, solver->row, i, solver->force);
+        contribution(solver, &sum);
+    }
+    for (int i = 0; i < model->wheels; ++i) {
+        add_wheel(model, solver->configuration, road, i, solver->force);
+        contribution(solver, &sum);
+    }
+    for (int i = 0; i < 3 && model->free_base; ++i) {
+        quad a = fabsq(sum.groups.a[i] - solver->a[i]), alpha = fabsq(sum.groups.alpha[i] - solver->alpha[i]);
+        solver->sum_error = fmaxq(solver->sum_error, a > 0 ? a / solver->a_scale : 0);
+        solver->sum_error = fmaxq(solver->sum_error, alpha > 0 ? alpha / solver->alpha_scale : 0);
+    }
+    for (int c = 0; c < model->coordinates; ++c)
+        if (!model->coordinate[c].driven && sum.w[c] != solver->w_second[c])
+            solver->sum_error =
+                fmaxq(solver->sum_error, fabsq(sum.w[c] - solver->w_second[c]) / solver->w_scale[c]);
+    free(sum.w);
+}
+
+bool solve_accelerations(Solver *solver, const State *state, const Road *road)
+{
+    const Model *model = solver->model;
+    const Configuration *at = solver->configuration;
+    rows_evaluate(model, at, solver->row);
+    solve_bias(solver, state);
+    factor_fill(solver);
+    if (!quad_factor(solver->augmented))
+        return false;
+    clear_force(solver);
+    for (int k = solver->first; k < model->bodies; ++k) {
+        add_gravity(solver, k);
+        add_gyroscopic(solver, k);
+    }
+    for (int i = 0; i < model->forces; ++i)
+        add_force_element(model, at, solver->row, i, solver->force);
+    for (int i = 0; i < model->wheels; ++i)
+        add_wheel(model, at, road, i, solver->force);
+    memcpy(solver->unknown, solver->force[solver->first], (size_t)solver->moving * sizeof *solver->force);
+    second_sides(solver, state, solver->first, unknown_row(solver, 0));
+    quad_solve(solver->augmented, solver->unknown);
+    memset(solver->second, 0, (size_t)model->bodies * sizeof *solver->second);
+    memcpy(solver->second[solver->first], solver->unknown, (size_t)solver->moving * sizeof *solver->second);
+    for (int c = 0; c < model->coordinates; ++c) {
+        int row = solver->rows - model->coordinates + c;
+        bool driven = model->coordinate[c].driven;
+        solver->w_second[c] = driven ? state->w_second[c] : *unknown_row(solver, row);
+        /* the row's multiplier acts as -dPsi/dq lambda; along w that is dPsi/dw lambda */
+        solver->drive_force[c] = driven ? *unknown_row(solver, row) * solver->row[row].w_slope : 0;
+    }
+    if (model->free_base) {
+        Groups groups = base_groups(solver, solver->second[0], true);
+        memcpy(solver->a, groups.a, sizeof groups.a);
+        memcpy(solver->alpha, groups.alpha, sizeof groups.alpha);
+    }
+    scales(solver, road);
+    return true;
+}

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: MIT
+ * Condition of the subsets: singular values by one-sided Jacobi rotations, in double. */
+#include "solve.h"
+
+#include "support.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* One sweep over all pairs of columns of a square row-major matrix; returns the largest cosine between two of them. */
+static double sweep(double *a, int n)
+{
+    double largest = 0;
+    for (int p = 0; p < n; ++p)
+        for (int q = p + 1; q < n; ++q) {
+            double pp = 0, qq = 0, pq = 0;
+            for (int i = 0; i < n; ++i) {
+                pp += a[i * n + p] * a[i * n + p];
+                qq += a[i * n + q] * a[i * n + q];
+                pq += a[i * n + p] * a[i * n + q];
+            }
+            if (pq == 0)
+                continue;
+            largest = fmax(largest, fabs(pq) / sqrt(pp * qq));
+            double cotangent = (qq - pp) / (2 * pq);
+            double tangent = copysign(1, cotangent) / (fabs(cotangent) + hypot(1, cotangent));
+            double c = 1 / hypot(1, tangent), s = c * tangent;
+            for (int i = 0; i < n; ++i) {
+                double x = a[i * n + p], y = a[i * n + q];
+                a[i * n + p] = c * x - s * y;
+                a[i * n + q] = s * x + c * y;
+            }
+        }
+    return largest;
+}
+
+static double condition_number(double *a, int n)
+{
+    for (int i = 0; i < 60 && sweep(a, n) > 1e-14; ++i)
+        ;
+    double low = HUGE_VAL, high = 0;
+    for (int j = 0; j < n; ++j) {
+        double size = 0;
+        for (int i = 0; i < n; ++i)
+            size += a[i * n + j] * a[i * n + j];
+        low = fmin(low, size);
+        high = fmax(high, size);
+    }
+    return low > 0 ? sqrt(high / low) : HUGE_VAL;
+}
+
+/* One row of a subset's Jacobian, normalized. */
+static void twist_row(const Solver *solver, const Subset *subset, const Row *row, double length, double *out)
+{
+    int n = 6 * subset->bodies;
+    double size = 0;
+    for (int b = 0; b < subset->bodies; ++b)
+        for (int side = 0; side < 2; ++side) {
+            if (row->body[side] != subset->body[b])
+                continue;
+            quad G[3][4];
+            euler_rate_matrix(solver->configuration->q[subset->body[b]] + 3, G);
+            for (int i = 0; i < 3; ++i) {
+                /* p' = G^T omega / 2 */
+                out[6 * b + i] = (double)quad_dot(G[i], row->slope[side] + 3, 4) / (2 * length);
+                out[6 * b + 3 + i] = (double)row->slope[side][i];
+            }
+        }
+    for (int j = 0; j < n; ++j)
+        size = hypot(size, out[j]);
+    for (int j = 0; j < n && size > 0; ++j)
+        out[j] /= size;
+}
+
+static double subset_condition(const Solver *solver, const Subset *subset)
+{
+    const Model *model = solver->model;
+    int n = 6 * subset->bodies, rows = subset->coordinates, at = 0;
+    for (int i = 0; i < subset->joints; ++i)
+        rows += joint_rows[model->joint[subset->joint[i]].type];
+    if (rows != n)
+        fail("the subset of body '%s' has %d equations for %d unknowns", model->body[subset->body[0]].name, rows, n);
+    double *a = grab((size_t)n * (size_t)n, sizeof *a), length = subset_length(model, subset);
+    for (int i = 0; i < subset->joints; ++i) {
+        int joint = subset->joint[i];
+        for (int row = joint_row(model, joint); row < joint_row(model, joint + 1); ++row)
+            twist_row(solver, subset, &solver->row[row], length, a + n * at++);
+    }
+    for (int i = 0; i < subset->coordinates; ++i)
+        twist_row(solver, subset, &solver->row[joint_row(model, model->joints) + subset->coordinate[i]], length,
+                  a + n * at++);
+    double condition = condition_number(a, n);
+    free(a);
+    return condition;
+}
+
+double worst_condition(Solver *solver)
+{
+    double worst = 1;
+    for (int i = 0; i < solver->model->subsets; ++i) {
+        const Subset *subset = &solver->model->subset[i];
+        if (!(subset->bodies == 1 && subset->body[0] == 0))
+            worst = fmax(worst, subset_condition(solver, subset));
+    }
+    return worst;
+}

@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: MIT
+ * From JSON to the structures of the dumped model. */
+#include "dump.h"
+
+#include "json.h"
+#include "support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const int joint_rows[JOINT_TYPES] = {5, 3, 5, 1, 2};
+
+static const char *const joint_name[JOINT_TYPES] = {"revolute", "spherical", "prismatic", "distance",
+                                                    "revolute_spherical"};
+static const char *const coordinate_name[COORDINATE_TYPES] = {"length", "translation", "angle"};
+
+static int type_of(const Json *json, const char *const *name, int count)
+{
+    const char *type = json_text(json, "type");
+    for (int i = 0; i < count; ++i)
+        if (!strcmp(type, name[i]))
+            return i;
+    fail("type '%s' is unknown", type);
+}
+
+static int index_of(const Json *json, const char *key, int low, int count)
+{
+    double number = json_number(json, key);
+    if (!(number >= low && number < count && number == floor(number)))
+        fail("'%s' is not an index", key);
+    return (int)number;
+}
+
+static const Json *list_of(const Json *json, const char *key, int *count)
+{
+    const Json *list = json_get(json, key);
+    if (list->kind != JSON_LIST)
+        fail("'%s' is not a list", key);
+    *count = list->count;
+    return list;
+}
+
+static void read_body(Body *body, const Json *json)
+{
+    body->name = strcpy(grab(strlen(json_text(json, "name")) + 1, 1), json_text(json, "name"));
+    body->mass = json_number(json, "mass");
+    json_numbers(json, "com", body->com, 3);
+    json_numbers(json, "inertia", body->inertia, 6);
+    json_numbers(json, "position", body->position, 3);
+    json_numbers(json, "euler", body->euler, 4);
+}
+
+static void read_joint(Joint *joint, const Json *json, int bodies)
+{
+    joint->type = (JointType)type_of(json, joint_name, JOINT_TYPES);
+    joint->body[0] = index_of(json, "a", 0, bodies);
+    joint->body[1] = index_of(json, "b", 0, bodies);
+    json_numbers(json, "point_a", joint->point[0], 3);
+    json_numbers(json, "point_b", joint->point[1], 3);
+    json_numbers(json, "axis_a", joint->axis[0], 3);
+    json_numbers(json, "axis_b", joint->axis[1], 3);
+    joint->length = json_number(json, "length");
+    joint->offset = json_number(json, "offset");
+}
+
+static void read_coordinate(Coordinate *coordinate, const Json *json, int bodies)
+{
+    coordinate->name = strcpy(grab(strlen(json_text(json, "name")) + 1, 1), json_text(json, "name"));
+    coordinate->type = (CoordinateType)type_of(json, coordinate_name, COORDINATE_TYPES);
+    coordinate->body[0] = index_of(json, "a", 0, bodies);
+    coordinate->body[1] = index_of(json, "b", 0, bodies);
+    json_numbers(json, "point_a", coordinate->point[0], 3);
+    json_numbers(json, "point_b", coordinate->point[1], 3);
+    json_numbers(json, "axis_a", coordinate->axis, 3);
+    json_numbers(json, "reference_a", coordinate->reference[0], 3);
+    json_numbers(json, "reference_b", coordinate->reference[1], 3);
+    coordinate->design = json_number(json, "design");
+    coordinate->offset = json_number(json, "offset");
+    json_numbers(json, "range", coordinate->range, 2);
+    coordinate->driven = json_number(json, "driven") != 0;
+}
+
+static void read_force(Force *force, const Json *json, const Model *model)
+{
+    static const char *const name[] = {"coordinate", "points"};
+    force->coordinate = -1;
+    if (type_of(json, name, 2) == 0) {
+        force->coordinate = index_of(json, "coordinate", 0, model->coordinates);
+    } else {
+        force->body[0] = index_of(json, "a", GROUND, model->bodies);
+        force->body[1] = index_of(json, "b", GROUND, model->bodies);
+        json_numbers(json, "point_a", force->point[0], 3);
+        json_numbers(json, "point_b", force->point[1], 3);
+    }
+    force->stiffness = json_number(json, "stiffness");
+    force->damping = json_number(json, "damping");
+    force->free = json_number(json, "free");
+}
+
+static void read_wheel(Wheel *wheel, const Json *json, int bodies)
+{
+    wheel->body = index_of(json, "body", 0, bodies);
+    json_numbers(json, "center", wheel->center, 3);
+    wheel->radius = json_number(json, "radius");
+    wheel->stiffness = json_number(json, "stiffness");
+    wheel->damping = json_number(json, "damping");
+    wheel->fade = json_number(json, "fade");
+}
+
+static int *read_indices(const Json *json, const char *key, int limit, int *count)
+{
+    const Json *list = list_of(json, key, count);
+    int *index = grab((size_t)*count, sizeof *index);
+    for (int i = 0; i < *count; ++i) {
+        double number = list->item[i]->number;
+        if (list->item[i]->kind != JSON_NUMBER || !(number >= 0 && number < limit))
+            fail("'%s' of a subset has a wrong index", key);
+        index[i] = (int)number;
+    }
+    return index;
+}
+
+void design_point(const Model *model, int body, const double point[3], double out[3])
+{
+    if (body == GROUND) {
+        memcpy(out, point, 3 * sizeof *out);
+        return;
+    }
+    const Body *b = &model->body[body];
+    const double *e = b->euler;
+    /* x + 2 e0 (e x x) + 2 e x (e x x): the rotation of a unit quaternion */
+    double c[3], d[3];
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        c[i] = e[1 + j] * point[k] - e[1 + k] * point[j];
+    }
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        d[i] = e[1 + j] * c[k] - e[1 + k] * c[j];
+        out[i] = b->position[i] + point[i] + 2 * (e[0] * c[i] + d[i]);
+    }
+}
+
+/* Points of the model frame as they are collected. */
+typedef struct Cloud {
+    int count;
+    double (*point)[3];
+} Cloud;
+
+static void cloud_add(Cloud *cloud, const Model *model, int body, const double point[3])
+{
+    design_point(model, body, point, cloud->point[cloud->count++]);
+}
+
+static void cloud_joint(Cloud *cloud, const Model *model, const Joint *joint)
+{
+    for (int k = 0; k < 2; ++k)
+        cloud_add(cloud, model, joint->body[k], joint->point[k]);
+}
+
+static void cloud_coordinate(Cloud *cloud, const Model *model, const Coordinate *coordinate)
+{
+    for (int k = 0; k < 2 && coordinate->type != ANGLE; ++k)
+        cloud_add(cloud, model, coordinate->body[k], coordinate->point[k]);
+}
+
+static double cloud_size(Cloud *cloud, double otherwise)
+{
+    double size = 0;
+    for (int i = 0; i < cloud->count; ++i)
+        for (int j = 0; j < i; ++j) {
+            const double *a = cloud->point[i], *b = cloud->point[j];
+            size = fmax(size, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
+        }
+    free(cloud->point);
+    return size > 0 ? size : otherwise;
+}
+
+double subset_length(const Model *model, const Subset *subset)
+{
+    int room = subset->bodies + 2 * (subset->joints + subset->coordinates);
+    Cloud cloud = {.point = grab((size_t)room, sizeof *cloud.point)};
+    for (int i = 0; i < subset->bodies; ++i)
+        cloud_add(&cloud, model, subset->body[i], model->body[subset->body[i]].com);
+    for (int i = 0; i < subset->joints; ++i)
+        cloud_joint(&cloud, model, &model->joint[subset->joint[i]]);
+    for (int i = 0; i < subset->coordinates; ++i)
+        cloud_coordinate(&cloud, model, &model->coordinate[subset->coordinate[i]]);
+    return cloud_size(&cloud, model->length);
+}
+
+static double model_length(const Model *model)
+{
+    static const double origin[3] = {0};
+    int room = 2 * (model->bodies + model->joints + model->coordinates + model->forces) + model->wheels;
+    Cloud cloud = {.point = grab((size_t)room, sizeof *cloud.point)};
+    for (int i = 0; i < model->bodies; ++i) {
+        cloud_add(&cloud, model, i, origin);
+        cloud_add(&cloud, model, i, model->body[i].com);
+    }
+    for (int i = 0; i < model->joints; ++i)
+        cloud_joint(&cloud, model, &model->joint[i]);
+    for (int i = 0; i < model->coordinates; ++i)
+        cloud_coordinate(&cloud, model, &model->coordinate[i]);
+    for (int i = 0; i < model->forces; ++i)
+        for (int k = 0; k < 2 && model->force[i].coordinate < 0; ++k)
+            cloud_add(&cloud, model, model->force[i].body[k], model->force[i].point[k]);
+    for (int i = 0; i < model->wheels; ++i)
+        cloud_add(&cloud, model, model->wheel[i].body, model->wheel[i].center);
+    return cloud_size(&cloud, 1);
+}
+
+Model *model_parse(const char *text, const char *name)
+{
+    Json *json = json_parse(text, name);
+    Model *model = grab(1, sizeof *model);
+    if (json_number(json, "gicgen_dump") != 1)
+        fail("%s: not a dump of version 1", name);
+    json_numbers(json, "gravity", model->gravity, 3);
+    model->free_base = !strcmp(json_text(json, "base"), "free");
+    const Json *bodies = list_of(json, "bodies", &model->bodies), *joints = list_of(json, "joints", &model->joints),
+               *coordinates = list_of(json, "coordinates", &model->coordinates),
+               *forces = list_of(json, "forces", &model->forces), *wheels = list_of(json, "wheels", &model->wheels),
+               *subsets = list_of(json, "sequence", &model->subsets);
+    model->body = grab((size_t)model->bodies, sizeof *model->body);
+    model->joint = grab((size_t)model->joints, sizeof *model->joint);
+    model->coordinate = grab((size_t)model->coordinates, sizeof *model->coordinate);
+    model->force = grab((size_t)model->forces, sizeof *model->force);
+    model->wheel = grab((size_t)model->wheels, sizeof *model->wheel);
+    model->subset = grab((size_t)model->subsets, sizeof *model->subset);
+    for (int i = 0; i < model->bodies; ++i)
+        read_body(&model->body[i], bodies->item[i]);
+    for (int i = 0; i < model->joints; ++i)
+        read_joint(&model->joint[i], joints->item[i], model->bodies);
+    for (int i = 0; i < model->coordinates; ++i)
+        read_coordinate(&model->coordinate[i], coordinates->item[i], model->bodies);
+    for (int i = 0; i < model->forces; ++i)
+        read_force(&model->force[i], forces->item[i], model);
+    for (int i = 0; i < model->wheels; ++i)
+        read_wheel(&model->wheel[i], wheels->item[i], model->bodies);
+    for (int i = 0; i < model->subsets; ++i) {
+        Subset *subset = &model->subset[i];
+        subset->body = read_indices(subsets->item[i], "bodies", model->bodies, &subset->bodies);
+        subset->joint = read_indices(subsets->item[i], "joints", model->joints, &subset->joints);
+        subset->coordinate = read_indices(subsets->item[i], "coordinates", model->coordinates, &subset->coordinates);
+    }
+    json_free(json);
+    model->length = model_length(model);
+    return model;
+}
+
+Model *model_read(const char *path)
+{
+    char *text = slurp(path);
+    Model *model = model_parse(text, path);
+    free(text);
+    return model;
+}
+
+void model_free(Model *model)
+{
+    for (int i = 0; i < model->bodies; ++i)
+        free(model->body[i].name);
+    for (int i = 0; i < model->coordinates; ++i)
+        free(model->coordinate[i].name);
+    for (int i = 0; i < model->subsets; ++i) {
+        free(model->subset[i].body);
+        free(model->subset[i].joint);
+        free(model->subset[i].coordinate);
+    }
+    free(model->body);
+    free(model->joint);
+    free(model->coordinate);
+    free(model->force);
+    free(model->wheel);
+    free(model->subset);
+    free(model);
+}

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT
+ * The dumped model, models/FORMAT.md section 11, as the reference sees it. */
+#ifndef REFERENCE_DUMP_H
+#define REFERENCE_DUMP_H
+
+#include <stdbool.h>
+
+enum { GROUND = -1 };
+
+typedef struct Body {
+    char *name;
+    double mass, com[3], inertia[6], position[3], euler[4];
+} Body;
+
+typedef enum JointType { REVOLUTE, SPHERICAL, PRISMATIC, DISTANCE, REVOLUTE_SPHERICAL, JOINT_TYPES } JointType;
+
+typedef struct Joint {
+    JointType type;
+    int body[2];
+    double point[2][3], axis[2][3], length, offset;
+} Joint;
+
+typedef enum CoordinateType { LENGTH, TRANSLATION, ANGLE, COORDINATE_TYPES } CoordinateType;
+
+typedef struct Coordinate {
+    char *name;
+    CoordinateType type;
+    int body[2];
+    double point[2][3], axis[3], reference[2][3], design, offset, range[2];
+    bool driven;
+} Coordinate;
+
+typedef struct Force {
+    int coordinate; /* -1: between points */
+    int body[2];    /* GROUND possible */
+    double point[2][3], stiffness, damping, free;
+} Force;
+
+typedef struct Wheel {
+    int body;
+    double center[3], radius, stiffness, damping, fade;
+} Wheel;
+
+typedef struct Subset {
+    int bodies, *body, joints, *joint, coordinates, *coordinate;
+} Subset;
+
+typedef struct Model {
+    double gravity[3];
+    bool free_base;
+    int bodies, joints, coordinates, forces, wheels, subsets;
+    Body *body;
+    Joint *joint;
+    Coordinate *coordinate;
+    Force *force;
+    Wheel *wheel;
+    Subset *subset;
+    double length; /* length scale, m: largest distance between two points at design; 1 when all coincide */
+} Model;
+
+extern const int joint_rows[JOINT_TYPES]; /* scalar equations */
+
+/* Read a dump from a file ("-": standard input) or a text; anything unexpected fails with a message. */
+Model *model_read(const char *path);
+Model *model_parse(const char *text, const char *name);
+void model_free(Model *model);
+/* A point given in the frame of a body, in the model frame at design. */
+void design_point(const Model *model, int body, const double point[3], double out[3]);
+/* Characteristic length of a subset, m: largest distance at design between its bodies' centres of mass and the points
+ * of its joints and coordinates; the model's when they coincide. */
+double subset_length(const Model *model, const Subset *subset);
+
+#endif

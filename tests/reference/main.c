@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: MIT
+ * reference DUMP STATES [-o ACCEL] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]
+ *
+ * Accelerations, poses, subset condition and scales of a dumped model (`gicgen --dump-model`) at the states of a CSV
+ * file with the columns of `gicrun --eval`. A row's status is 0, or 1 where the state can't be reached from design or
+ * is singular; its other cells are empty then. */
+#include "solve.h"
+
+#include "support.h"
+#include "table.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] =
+    "usage: reference DUMP STATES [-o ACCEL] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]\n";
+
+static Road road_parse(const char *text)
+{
+    Road road = {0};
+    char end;
+    if (strcmp(text, "flat")
+        && sscanf(text, "sine:%lf,%lf,%lf,%lf%c", &road.amplitude, &road.wavelength, &road.x0, &road.phase_per_y, &end)
+               != 4)
+        fail("--road '%s': 'flat' or 'sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y' is wanted", text);
+    if (road.amplitude != 0 && !(road.wavelength > 0))
+        fail("--road '%s': the wavelength must be greater than zero", text);
+    return road;
+}
+
+static void vector_cells(const Table *table, int row, const char *const *name, int size, quad *out)
+{
+    for (int i = 0; i < size; ++i)
+        out[i] = table_number(table, row, table_want(table, name[i]));
+}
+
+static quad coordinate_cell(const Table *table, int row, const char *coordinate, const char *suffix)
+{
+    char name[128];
+    snprintf(name, sizeof name, "%s%s", coordinate, suffix);
+    return table_number(table, row, table_want(table, name));
+}
+
+static void state_read(const Model *model, const Table *table, int row, State *state)
+{
+    static const char *const r[] = {"r.x", "r.y", "r.z"}, *const e[] = {"e0", "e1", "e2", "e3"},
+                            *const v[] = {"v.x", "v.y", "v.z"}, *const omega[] = {"omega.x", "omega.y", "omega.z"};
+    if (model->free_base) {
+        vector_cells(table, row, r, 3, state->r);
+        vector_cells(table, row, e, 4, state->e);
+        vector_cells(table, row, v, 3, state->v);
+        vector_cells(table, row, omega, 3, state->omega);
+    }
+    for (int c = 0; c < model->coordinates; ++c) {
+        const Coordinate *coordinate = &model->coordinate[c];
+        state->w[c] = coordinate_cell(table, row, coordinate->name, "");
+        state->w_rate[c] = coordinate_cell(table, row, coordinate->name, ".rate");
+        if (coordinate->driven)
+            state->w_second[c] = coordinate_cell(table, row, coordinate->name, ".acceleration");
+    }
+}
+
+static void write_head(FILE *out, const Model *model)
+{
+    if (model->free_base)
+        fputs("a.x,a.y,a.z,alpha.x,alpha.y,alpha.z,", out);
+    for (int c = 0; c < model->coordinates; ++c)
+        if (!model->coordinate[c].driven)
+            fprintf(out, "%s.acceleration,", model->coordinate[c].name);
+    if (model->free_base)
+        fputs("scale.a,scale.alpha,", out);
+    for (int c = 0; c < model->coordinates; ++c)
+        if (!model->coordinate[c].driven)
+            fprintf(out, "scale.%s,", model->coordinate[c].name);
+    for (int k = model->free_base ? 0 : 1; k < model->bodies; ++k) {
+        const char *body = model->body[k].name;
+        fprintf(out, "%s.x,%s.y,%s.z,%s.e0,%s.e1,%s.e2,%s.e3,", body, body, body, body, body, body, body);
+    }
+    fputs("condition,status\n", out);
+}
+
+static void write_numbers(FILE *out, const quad *x, int size)
+{
+    for (int i = 0; i < size; ++i)
+        fprintf(out, "%.17g,", (double)x[i]);
+}
+
+static void write_row(FILE *out, Solver *solver)
+{
+    const Model *model = solver->model;
+    if (model->free_base) {
+        write_numbers(out, solver->a, 3);
+        write_numbers(out, solver->alpha, 3);
+    }
+    for (int c = 0; c < model->coordinates; ++c)
+        if (!model->coordinate[c].driven)
+            write_numbers(out, &solver->w_second[c], 1);
+    if (model->free_base) {
+        write_numbers(out, &solver->a_scale, 1);
+        write_numbers(out, &solver->alpha_scale, 1);
+    }
+    for (int c = 0; c < model->coordinates; ++c)
+        if (!model->coordinate[c].driven)
+            write_numbers(out, &solver->w_scale[c], 1);
+    for (int k = solver->first; k < model->bodies; ++k) {
+        quad r[3];
+        body_origin(model, solver->configuration, k, r);
+        write_numbers(out, r, 3);
+        write_numbers(out, solver->configuration->q[k] + 3, 4);
+    }
+    fprintf(out, "%.6g,0\n", worst_condition(solver));
+}
+
+static void write_unreached(FILE *out, const Model *model)
+{
+    int cells = (model->free_base ? 8 : 0) + 7 * (model->bodies - (model->free_base ? 0 : 1)) + 1;
+    for (int c = 0; c < model->coordinates; ++c)
+        cells += model->coordinate[c].driven ? 0 : 2;
+    while (cells--)
+        fputc(',', out);
+    fputs("1\n", out);
+}
+
+int main(int argc, char **argv)
+{
+    const char *path[2] = {NULL, NULL}, *out_path = NULL;
+    int paths = 0, unreached = 0;
+    Road road = {0};
+    for (int i = 1; i < argc; ++i) {
+        if (!strcmp(argv[i], "-o") && i + 1 < argc) {
+            out_path = argv[++i];
+        } else if (!strcmp(argv[i], "--road") && i + 1 < argc) {
+            road = road_parse(argv[++i]);
+        } else if (argv[i][0] != '-' && paths < 2) {
+            path[paths++] = argv[i];
+        } else {
+            fputs(usage, stderr);
+            return 2;
+        }
+    }
+    if (paths != 2) {
+        fputs(usage, stderr);
+        return 2;
+    }
+    Model *model = model_read(path[0]);
+    Table *table = table_read(path[1]);
+    Solver *solver = solver_new(model);
+    State *state = state_new(model);
+    FILE *out = output_open(out_path);
+    write_head(out, model);
+    for (int row = 0; row < table->rows; ++row) {
+        state_read(model, table, row, state);
+        bool reached = (!model->free_base || recover_largest(state->e)) && solve_positions(solver, state);
+        if (reached) {
+            solve_velocities(solver, state);
+            reached = solve_accelerations(solver, state, &road);
+        }
+        if (reached)
+            write_row(out, solver);
+        else
+            write_unreached(out, model);
+        unreached += !reached;
+    }
+    output_close(out, out_path);
+    fprintf(stderr, "reference: %d rows, %d not reached\n", table->rows, unreached);
+    state_free(state);
+    solver_free(solver);
+    table_free(table);
+    model_free(model);
+    return 0;
+}

@@ -1,0 +1,392 @@
+/* SPDX-License-Identifier: MIT
+ * Every constraint is put together from vectors that carry their own derivatives, by differences and dot products. */
+#include "mechanism.h"
+
+#include "support.h"
+
+#include <quadmath.h>
+#include <stdlib.h>
+#include <string.h>
+
+Configuration *configuration_new(const Model *model)
+{
+    Configuration *configuration = grab(1, sizeof *configuration);
+    configuration->q = grab((size_t)model->bodies, sizeof *configuration->q);
+    configuration->rate = grab((size_t)model->bodies, sizeof *configuration->rate);
+    configuration->w = grab((size_t)model->coordinates, sizeof *configuration->w);
+    configuration->w_rate = grab((size_t)model->coordinates, sizeof *configuration->w_rate);
+    return configuration;
+}
+
+void configuration_free(Configuration *configuration)
+{
+    free(configuration->q);
+    free(configuration->rate);
+    free(configuration->w);
+    free(configuration->w_rate);
+    free(configuration);
+}
+
+void configuration_copy(const Model *model, Configuration *to, const Configuration *from)
+{
+    memcpy(to->q, from->q, (size_t)model->bodies * sizeof *to->q);
+    memcpy(to->rate, from->rate, (size_t)model->bodies * sizeof *to->rate);
+    memcpy(to->w, from->w, (size_t)model->coordinates * sizeof *to->w);
+    memcpy(to->w_rate, from->w_rate, (size_t)model->coordinates * sizeof *to->w_rate);
+}
+
+/* A vector of the world frame that depends on the coordinates of two bodies. */
+typedef struct Arrow {
+    quad value[3], rate[3], bias[3];
+    bool on[2]; /* which of the two it depends on */
+    quad slope[2][3][BODY_COORDINATES];
+} Arrow;
+
+/* The vector u fixed in a body, which is number `side` of the pair. */
+static Arrow fixed_vector(const Configuration *configuration, int body, int side, const quad u[3])
+{
+    Arrow arrow = {.on = {side == 0, side == 1}};
+    const quad *q = configuration->q[body], *rate = configuration->rate[body];
+    quad B[3][4], B_rate[3][4];
+    rotation_slope(q + 3, u, B);
+    rotation_slope(rate + 3, u, B_rate);
+    rotate(q + 3, u, arrow.value);
+    for (int i = 0; i < 3; ++i) {
+        arrow.rate[i] = quad_dot(B[i], rate + 3, 4);
+        arrow.bias[i] = quad_dot(B_rate[i], rate + 3, 4);
+        memcpy(arrow.slope[side][i] + 3, B[i], sizeof B[i]);
+    }
+    return arrow;
+}
+
+/* The place of a point of a body, s from its centre of mass. */
+static Arrow body_point(const Configuration *configuration, int body, int side, const quad s[3])
+{
+    Arrow arrow = fixed_vector(configuration, body, side, s);
+    for (int i = 0; i < 3; ++i) {
+        arrow.value[i] += configuration->q[body][i];
+        arrow.rate[i] += configuration->rate[body][i];
+        arrow.slope[side][i][i] = 1;
+    }
+    return arrow;
+}
+
+/* x_b - x_a of two points given in the frames of their bodies. */
+static Arrow point_to_point(const Model *model, const Configuration *configuration, const int body[2],
+                            const double point[2][3])
+{
+    quad s[2][3];
+    from_com(model, body[0], point[0], s[0]);
+    from_com(model, body[1], point[1], s[1]);
+    Arrow a = body_point(configuration, body[0], 0, s[0]), b = body_point(configuration, body[1], 1, s[1]);
+    b.on[0] = true;
+    for (int i = 0; i < 3; ++i) {
+        b.value[i] -= a.value[i];
+        b.rate[i] -= a.rate[i];
+        b.bias[i] -= a.bias[i];
+        for (int j = 0; j < BODY_COORDINATES; ++j)
+            b.slope[0][i][j] = -a.slope[0][i][j];
+    }
+    return b;
+}
+
+static Row dot(const Arrow *a, const Arrow *b)
+{
+    Row row = {.coordinate = -1,
+               .value = quad_dot(a->value, b->value, 3),
+               .rate = quad_dot(a->value, b->rate, 3) + quad_dot(a->rate, b->value, 3),
+               .bias = quad_dot(a->value, b->bias, 3) + 2 * quad_dot(a->rate, b->rate, 3)
+                       + quad_dot(a->bias, b->value, 3)};
+    for (int side = 0; side < 2; ++side)
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < BODY_COORDINATES; ++j) {
+                if (b->on[side])
+                    row.slope[side][j] += a->value[i] * b->slope[side][i][j];
+                if (a->on[side])
+                    row.slope[side][j] += b->value[i] * a->slope[side][i][j];
+            }
+    return row;
+}
+
+static Row component(const Arrow *a, int i)
+{
+    Row row = {.coordinate = -1, .value = a->value[i], .rate = a->rate[i], .bias = a->bias[i]};
+    for (int side = 0; side < 2; ++side)
+        memcpy(row.slope[side], a->slope[side][i], sizeof row.slope[side]);
+    return row;
+}
+
+static void widen(const double *from, quad *to, int size)
+{
+    for (int i = 0; i < size; ++i)
+        to[i] = from[i];
+}
+
+/* Two unit vectors that make a right-handed frame with the unit vector u. */
+static void perpendiculars(const quad u[3], quad t[2][3])
+{
+    int least = 0;
+    for (int i = 1; i < 3; ++i)
+        if (fabsq(u[i]) < fabsq(u[least]))
+            least = i;
+    quad unit[3] = {0};
+    unit[least] = 1;
+    quad_cross(u, unit, t[0]);
+    quad norm = sqrtq(quad_dot(t[0], t[0], 3));
+    for (int i = 0; i < 3; ++i)
+        t[0][i] /= norm;
+    quad_cross(u, t[0], t[1]);
+}
+
+/* Unit vector i of the model frame, fixed in a body at design. */
+static Arrow model_axis(const Model *model, const Configuration *configuration, int body, int side, int i)
+{
+    quad p[4], unit[3] = {0}, u[3];
+    unit[i] = 1;
+    widen(model->body[body].euler, p, 4);
+    quad norm = sqrtq(quad_dot(p, p, 4));
+    for (int k = 0; k < 4; ++k)
+        p[k] /= norm;
+    rotate_back(p, unit, u);
+    return fixed_vector(configuration, body, side, u);
+}
+
+static void joint_evaluate(const Model *model, const Configuration *configuration, const Joint *joint, Row *row)
+{
+    int a = joint->body[0], b = joint->body[1];
+    quad axis[3], across[2][3];
+    widen(joint->axis[0], axis, 3);
+    Arrow d = point_to_point(model, configuration, joint->body, joint->point);
+    Row *start = row;
+    switch (joint->type) {
+    case REVOLUTE: {
+        quad axis_b[3];
+        widen(joint->axis[1], axis_b, 3);
+        Arrow u_b = fixed_vector(configuration, b, 1, axis_b);
+        perpendiculars(axis, across);
+        for (int i = 0; i < 3; ++i)
+            *row++ = component(&d, i);
+        for (int i = 0; i < 2; ++i) {
+            Arrow t = fixed_vector(configuration, a, 0, across[i]);
+            *row++ = dot(&t, &u_b);
+        }
+        break;
+    }
+    case SPHERICAL:
+        for (int i = 0; i < 3; ++i)
+            *row++ = component(&d, i);
+        break;
+    case PRISMATIC:
+        perpendiculars(axis, across);
+        for (int i = 0; i < 3; ++i) {
+            Arrow f = model_axis(model, configuration, a, 0, i);
+            Arrow g = model_axis(model, configuration, b, 1, (i + 1) % 3);
+            *row++ = dot(&f, &g);
+        }
+        for (int i = 0; i < 2; ++i) {
+            Arrow t = fixed_vector(configuration, a, 0, across[i]);
+            *row++ = dot(&t, &d);
+        }
+        break;
+    case REVOLUTE_SPHERICAL: {
+        Arrow u = fixed_vector(configuration, a, 0, axis);
+        *row = dot(&u, &d);
+        row++->value -= joint->offset;
+    }
+        /* fall through */
+    case DISTANCE:
+        *row = dot(&d, &d);
+        row++->value -= (quad)joint->length * joint->length;
+        break;
+    case JOINT_TYPES:
+        break;
+    }
+    for (Row *r = start; r < row; ++r) {
+        r->body[0] = a;
+        r->body[1] = b;
+    }
+}
+
+/* row = c row + s other, of two rows that concern the same bodies */
+static void combine(Row *row, quad c, quad s, const Row *other)
+{
+    row->value = c * row->value + s * other->value;
+    row->rate = c * row->rate + s * other->rate;
+    row->bias = c * row->bias + s * other->bias;
+    for (int side = 0; side < 2; ++side)
+        for (int j = 0; j < BODY_COORDINATES; ++j)
+            row->slope[side][j] = c * row->slope[side][j] + s * other->slope[side][j];
+}
+
+/* e_2.f_1 cos(theta) - e_1.f_1 sin(theta) = 0: the angle of FORMAT.md section 5 without a branch cut, so that it goes
+ * on over any number of turns. */
+static Row angle_row(const Configuration *configuration, const Coordinate *coordinate, quad theta, quad theta_rate)
+{
+    int a = coordinate->body[0], b = coordinate->body[1];
+    quad axis[3], reference[2][3], third[3];
+    widen(coordinate->axis, axis, 3);
+    widen(coordinate->reference[0], reference[0], 3);
+    widen(coordinate->reference[1], reference[1], 3);
+    quad_cross(axis, reference[0], third);
+    Arrow e_1 = fixed_vector(configuration, a, 0, reference[0]), e_2 = fixed_vector(configuration, a, 0, third),
+          f_1 = fixed_vector(configuration, b, 1, reference[1]);
+    Row y = dot(&e_2, &f_1), x = dot(&e_1, &f_1);
+    quad c = cosq(theta), s = sinq(theta);
+    Row row = y;
+    combine(&row, c, -s, &x);
+    row.w_slope = -(s * y.value + c * x.value);
+    row.bias -= 2 * (s * y.rate + c * x.rate) * theta_rate; /* and -value theta_rate^2, where the value is zero */
+    row.rate += row.w_slope * theta_rate;
+    return row;
+}
+
+static Row coordinate_evaluate(const Model *model, const Configuration *configuration, int index)
+{
+    const Coordinate *coordinate = &model->coordinate[index];
+    quad w = configuration->w[index], w_rate = configuration->w_rate[index];
+    Row row;
+    if (coordinate->type == ANGLE) {
+        row = angle_row(configuration, coordinate, w - coordinate->design, w_rate);
+    } else {
+        Arrow d = point_to_point(model, configuration, coordinate->body, coordinate->point);
+        if (coordinate->type == LENGTH) {
+            row = dot(&d, &d);
+            row.value -= w * w;
+            row.w_slope = -2 * w;
+            row.rate -= 2 * w * w_rate;
+            row.bias -= 2 * w_rate * w_rate;
+        } else {
+            quad axis[3];
+            widen(coordinate->axis, axis, 3);
+            Arrow u = fixed_vector(configuration, coordinate->body[0], 0, axis);
+            row = dot(&u, &d);
+            row.value -= w + coordinate->offset - coordinate->design;
+            row.w_slope = -1;
+            row.rate -= w_rate;
+        }
+    }
+    row.body[0] = coordinate->body[0];
+    row.body[1] = coordinate->body[1];
+    row.coordinate = index;
+    return row;
+}
+
+int joint_row(const Model *model, int joint)
+{
+    int row = 0;
+    for (int i = 0; i < joint; ++i)
+        row += joint_rows[model->joint[i].type];
+    return row;
+}
+
+int row_count(const Model *model)
+{
+    return joint_row(model, model->joints) + model->coordinates;
+}
+
+void rows_evaluate(const Model *model, const Configuration *configuration, Row *rows)
+{
+    for (int i = 0; i < model->joints; ++i) {
+        joint_evaluate(model, configuration, &model->joint[i], rows);
+        rows += joint_rows[model->joint[i].type];
+    }
+    for (int i = 0; i < model->coordinates; ++i)
+        rows[i] = coordinate_evaluate(model, configuration, i);
+}
+
+void from_com(const Model *model, int body, const double point[3], quad out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = (quad)point[i] - model->body[body].com[i];
+}
+
+void add_force(const Configuration *configuration, int body, const quad point[3], const quad F[3],
+               quad (*Q)[BODY_COORDINATES])
+{
+    quad B[3][4];
+    rotation_slope(configuration->q[body] + 3, point, B);
+    for (int i = 0; i < 3; ++i) {
+        Q[body][i] += F[i];
+        for (int j = 0; j < 4; ++j)
+            Q[body][3 + j] += B[i][j] * F[i];
+    }
+}
+
+/* Place and velocity of a point of a body, or of a point of the ground. */
+static void point_motion(const Model *model, const Configuration *configuration, int body, const double point[3],
+                         quad x[3], quad v[3])
+{
+    if (body == GROUND) {
+        widen(point, x, 3);
+        memset(v, 0, 3 * sizeof *v);
+        return;
+    }
+    quad s[3];
+    from_com(model, body, point, s);
+    Arrow arrow = body_point(configuration, body, 0, s);
+    memcpy(x, arrow.value, sizeof arrow.value);
+    memcpy(v, arrow.rate, sizeof arrow.rate);
+}
+
+static void add_point_spring(const Model *model, const Configuration *configuration, const Force *force,
+                             quad (*Q)[BODY_COORDINATES])
+{
+    quad x[2][3], v[2][3], d[3], d_rate[3];
+    for (int k = 0; k < 2; ++k)
+        point_motion(model, configuration, force->body[k], force->point[k], x[k], v[k]);
+    for (int i = 0; i < 3; ++i) {
+        d[i] = x[1][i] - x[0][i];
+        d_rate[i] = v[1][i] - v[0][i];
+    }
+    quad length = sqrtq(quad_dot(d, d, 3)), rate = quad_dot(d, d_rate, 3) / length;
+    quad tension = force->stiffness * (length - force->free) + force->damping * rate;
+    for (int k = 0; k < 2; ++k) {
+        if (force->body[k] == GROUND)
+            continue;
+        quad F[3], s[3];
+        for (int i = 0; i < 3; ++i)
+            F[i] = (k == 0 ? tension : -tension) * d[i] / length;
+        from_com(model, force->body[k], force->point[k], s);
+        add_force(configuration, force->body[k], s, F, Q);
+    }
+}
+
+void add_force_element(const Model *model, const Configuration *configuration, const Row *rows, int force,
+                       quad (*Q)[BODY_COORDINATES])
+{
+    const Force *element = &model->force[force];
+    if (element->coordinate < 0) {
+        add_point_spring(model, configuration, element, Q);
+        return;
+    }
+    int c = element->coordinate;
+    quad along = -(quad)element->stiffness * (configuration->w[c] - element->free)
+                 - (quad)element->damping * configuration->w_rate[c];
+    /* virtual work: along * dw, with dw = -(dc/dq dq) / (dc/dw) */
+    const Row *row = &rows[joint_row(model, model->joints) + c];
+    for (int side = 0; side < 2; ++side)
+        for (int j = 0; j < BODY_COORDINATES; ++j)
+            Q[row->body[side]][j] -= along * row->slope[side][j] / row->w_slope;
+}
+
+void add_wheel(const Model *model, const Configuration *configuration, const Road *road, int wheel,
+               quad (*Q)[BODY_COORDINATES])
+{
+    const Wheel *tire = &model->wheel[wheel];
+    quad x[3], v[3], s[3], h = 0, h_x = 0, h_y = 0;
+    from_com(model, tire->body, tire->center, s);
+    point_motion(model, configuration, tire->body, tire->center, x, v);
+    if (road->amplitude != 0) {
+        quad k = 2 * acosq(-1) / road->wavelength, phase = k * (x[0] - road->x0) + road->phase_per_y * x[1];
+        h = road->amplitude * sinq(phase);
+        h_x = road->amplitude * k * cosq(phase);
+        h_y = road->amplitude * road->phase_per_y * cosq(phase);
+    }
+    quad d = tire->radius + h - x[2], d_rate = h_x * v[0] + h_y * v[1] - v[2];
+    if (d <= 0)
+        return;
+    quad fade = fminq(d / tire->fade, 1);
+    fade = fade * fade * (3 - 2 * fade);
+    const quad F[3] = {0, 0, fmaxq(0, tire->stiffness * d + tire->damping * fade * d_rate)};
+    add_force(configuration, tire->body, s, F, Q);
+}

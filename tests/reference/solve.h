@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT
+ * Positions, velocities and accelerations of the whole mechanism: the plain augmented system of all bodies in
+ * world-frame Cartesian coordinates with Euler parameters, dense, in quadruple precision. */
+#ifndef REFERENCE_SOLVE_H
+#define REFERENCE_SOLVE_H
+
+#include "mechanism.h"
+
+/* A state as FORMAT.md section 10 has it, with driven coordinates among the others. */
+typedef struct State {
+    quad r[3], e[4], v[3], omega[3];            /* free base: origin, Euler parameters, world velocity of the origin,
+                                                   angular velocity in the base frame */
+    quad *w, *w_rate, *w_second;                /* [coordinates]; w_second is read where they are driven */
+} State;
+
+/* Work space and results for one model after another state. */
+typedef struct Solver {
+    const Model *model;
+    int rows, moving, first;                    /* constraint rows; bodies that move; the first of them */
+    Configuration *configuration, *trial;
+    Row *row;
+    Factors *dependent;                         /* bodies 1.. where base and coordinates are given */
+    Factors *augmented;                         /* all accelerations and multipliers */
+    quad *unknown;                              /* work: right-hand side, then solution */
+    quad (*force)[BODY_COORDINATES];            /* work: generalized forces, [bodies] */
+    quad (*second)[BODY_COORDINATES];           /* result: q'' of every body */
+    quad (*bias)[BODY_COORDINATES];             /* result: q'' where those of base and free coordinates are 0 */
+    quad a[3], alpha[3];                        /* result, free base: world acceleration of the origin; rate of omega */
+    quad *w_second;                             /* result: [coordinates]; driven: as given */
+    quad *drive_force;                          /* result: [coordinates] multiplier along a driven one; free: 0 */
+    /* result: sums of magnitudes of the contributions of the single terms to a, alpha, w'': gravity and velocity term
+     * of every body, every force element, every wheel */
+    quad a_scale, alpha_scale, *w_scale;
+    quad sum_error;                             /* result: largest deviation of the contributions' sum from the whole,
+                                                   relative to the scale */
+} Solver;
+
+Solver *solver_new(const Model *model);
+void solver_free(Solver *solver);
+State *state_new(const Model *model);
+void state_free(State *state);
+
+/* The Euler parameter of largest magnitude from the other three; false when they exceed unit length. */
+bool recover_largest(quad e[4]);
+
+/* Pose of all bodies by continuation from design along the straight line of coordinates, into
+ * solver->configuration->q, w. False when that is not reached: no solution, or a singular configuration on the way. */
+bool solve_positions(Solver *solver, const State *state);
+/* Rates of all bodies, into configuration->rate, w_rate. After solve_positions. */
+void solve_velocities(Solver *solver, const State *state);
+/* Everything marked "result". After solve_velocities. */
+bool solve_accelerations(Solver *solver, const State *state, const Road *road);
+
+/* World position of a body's frame origin. */
+void body_origin(const Model *model, const Configuration *configuration, int body, quad out[3]);
+/* Worst condition number (2-norm) over the subsets of the dump's sequence: Jacobian of the subset's joints and
+ * coordinates with respect to (L omega, velocity of the centre of mass) of its bodies, L = subset_length, rows
+ * normalized. After solve_positions. condition.c. */
+double worst_condition(Solver *solver);
+
+#endif

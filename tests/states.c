@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT
+ * states DUMP --count N --seed S [-o STATES]
+ *
+ * Random candidates for `gicrun --eval` and `reference`: coordinates uniform in their ranges; base anywhere within
+ * 100 m, its height within 0.3 m of design so that tires touch in some rows and not in others; every orientation in
+ * even rows, every yaw with small roll and pitch in odd ones. */
+#include "reference/dump.h"
+#include "reference/support.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] = "usage: states DUMP --count N --seed S [-o STATES]\n";
+
+static const double full_turn = 6.283185307179586;
+
+/* xorshift64*, not shared with the generator */
+static double uniform(uint64_t *state, double low, double high)
+{
+    *state ^= *state >> 12;
+    *state ^= *state << 25;
+    *state ^= *state >> 27;
+    return low + (high - low) * ((double)(*state * 0x2545f4914f6cdd1du >> 11) * 0x1p-53);
+}
+
+/* A vector of random direction and random length up to `longest`. */
+static void direction(uint64_t *random, double longest, double out[3])
+{
+    double z = uniform(random, -1, 1), angle = uniform(random, 0, full_turn), length = uniform(random, 0, longest);
+    out[0] = length * sqrt(1 - z * z) * cos(angle);
+    out[1] = length * sqrt(1 - z * z) * sin(angle);
+    out[2] = length * z;
+}
+
+/* p = p turned by `angle` about the world's axis x, y or z */
+static void turn(double p[4], int axis, double angle)
+{
+    double c = cos(angle / 2), s = sin(angle / 2), out[4];
+    int i = 1 + axis, j = 1 + (axis + 1) % 3, k = 1 + (axis + 2) % 3;
+    out[0] = c * p[0] - s * p[i];
+    out[i] = c * p[i] + s * p[0];
+    out[j] = c * p[j] - s * p[k];
+    out[k] = c * p[k] + s * p[j];
+    memcpy(p, out, sizeof out);
+}
+
+/* Uniform over all orientations (Shoemake's three random numbers). */
+static void any_orientation(uint64_t *random, double p[4])
+{
+    double share = uniform(random, 0, 1), a = uniform(random, 0, full_turn), b = uniform(random, 0, full_turn);
+    p[0] = sqrt(1 - share) * cos(a);
+    p[1] = sqrt(1 - share) * sin(a);
+    p[2] = sqrt(share) * cos(b);
+    p[3] = sqrt(share) * sin(b);
+}
+
+static void write_base(FILE *out, const Model *model, uint64_t *random, int row)
+{
+    double v[3], omega[3], p[4];
+    memcpy(p, model->body[0].euler, sizeof p);
+    if (row % 2 == 0) {
+        any_orientation(random, p);
+    } else {
+        for (int axis = 0; axis < 3; ++axis)
+            turn(p, axis, axis == 2 ? uniform(random, 0, full_turn) : uniform(random, -0.1, 0.1));
+    }
+    fprintf(out, "%.17g,", uniform(random, -100, 100));
+    fprintf(out, "%.17g,", uniform(random, -100, 100));
+    fprintf(out, "%.17g,", model->body[0].position[2] + uniform(random, -0.3, 0.3));
+    direction(random, 30, v);
+    direction(random, 2, omega);
+    fprintf(out, "%.17g,%.17g,%.17g,%.17g,", p[0], p[1], p[2], p[3]);
+    fprintf(out, "%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,", v[0], v[1], v[2], omega[0], omega[1], omega[2]);
+}
+
+static void write_states(FILE *out, const Model *model, int count, uint64_t *random)
+{
+    if (model->free_base)
+        fputs("r.x,r.y,r.z,e0,e1,e2,e3,v.x,v.y,v.z,omega.x,omega.y,omega.z,", out);
+    for (int c = 0; c < model->coordinates; ++c) {
+        const Coordinate *coordinate = &model->coordinate[c];
+        fprintf(out, "%s%s,%s.rate", c ? "," : "", coordinate->name, coordinate->name);
+        if (coordinate->driven)
+            fprintf(out, ",%s.acceleration", coordinate->name);
+    }
+    fputc('\n', out);
+    for (int row = 0; row < count; ++row) {
+        if (model->free_base)
+            write_base(out, model, random, row);
+        for (int c = 0; c < model->coordinates; ++c) {
+            const Coordinate *coordinate = &model->coordinate[c];
+            double w = uniform(random, coordinate->range[0], coordinate->range[1]), rate = uniform(random, -1, 1);
+            fprintf(out, "%s%.17g,%.17g", c ? "," : "", w, rate);
+            if (coordinate->driven)
+                fprintf(out, ",%.17g", uniform(random, -5, 5));
+        }
+        fputc('\n', out);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const char *path = NULL, *out_path = NULL;
+    double count = 0, seed = -1;
+    for (int i = 1; i < argc; ++i) {
+        if (!strcmp(argv[i], "--count") && i + 1 < argc) {
+            count = number_of(argv[++i], "--count");
+        } else if (!strcmp(argv[i], "--seed") && i + 1 < argc) {
+            seed = number_of(argv[++i], "--seed");
+        } else if (!strcmp(argv[i], "-o") && i + 1 < argc) {
+            out_path = argv[++i];
+        } else if (argv[i][0] != '-' && !path) {
+            path = argv[i];
+        } else {
+            fputs(usage, stderr);
+            return 2;
+        }
+    }
+    if (!path || !(count >= 1 && count <= 1e6) || !(seed >= 0 && seed < 0x1p53)) {
+        fputs(usage, stderr);
+        return 2;
+    }
+    /* any seed, zero too, becomes a state that is not zero */
+    uint64_t random = ((uint64_t)seed + 1) * 0x9e3779b97f4a7c15u | 1;
+    Model *model = model_read(path);
+    FILE *out = output_open(out_path);
+    write_states(out, model, (int)count, &random);
+    output_close(out, out_path);
+    model_free(model);
+    return 0;
+}
