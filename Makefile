@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+#
+#   make                build/gicgen and build/gicrun
+#   make demo           the HMMWV over the paper's road: build/demo/
+#   make test           every test
+#   make generated      generated/*.c and *.h from models/*.veh
+#   make debug          the same programs with the sanitizers, in build/debug/
+#   make deps           install the packages that all of this needs (Debian)
+#   make clean
+#
+# CC, CXX, CFLAGS, LDFLAGS and BUILD (the build folder) may be given; WERROR=-Werror makes warnings errors.
+
+BUILD := build
+CFLAGS := -O2 -g
+WERROR :=
+WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow $(WERROR)
+STANDARD := -std=c11 -D_POSIX_C_SOURCE=200809L
+# no contraction: results must not depend on which multiply-add the compiler fuses
+COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -Igenerator -Iruntime $(CFLAGS) -MMD -MP
+LIBRARIES := -lyaml -lm -ldl
+
+models := $(basename $(notdir $(wildcard models/*.veh)))
+generator := $(filter-out generator/main.c generator/embed.c,$(wildcard generator/*.c))
+runtime := $(filter-out runtime/gicrun.c,$(wildcard runtime/*.c))
+# gicgen carries what it copies into its output, gicrun what it compiles with it
+embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_runtime.c
+
+generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
+runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
+
+.PHONY: all test test-programs list-tests demo generated debug deps clean
+.DELETE_ON_ERROR:
+.SECONDARY:
+
+all: $(BUILD)/gicgen $(BUILD)/gicrun
+
+$(BUILD)/gicgen: $(BUILD)/generator/main.o $(generator_objects)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lm
+
+$(BUILD)/gicrun: $(BUILD)/runtime/gicrun.o $(runtime_objects) $(generator_objects)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
+
+$(BUILD)/embed: $(BUILD)/generator/embed.o
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
+
+$(BUILD)/embedded.c: $(BUILD)/embed $(embedded)
+	$(BUILD)/embed $(embedded) > $@
+
+$(BUILD)/embedded.o: $(BUILD)/embedded.c
+	$(COMPILE) -c -o $@ $<
+
+# the runtime core goes into other people's programs and stays C99
+$(BUILD)/runtime/gic_runtime.o: STANDARD := -std=c99
+
+$(BUILD)/%.o: %.c
+	@mkdir -p $(@D)
+	$(COMPILE) -c -o $@ $<
+
+# ---- tests: each tests/test_*.c is a program of its own, the other tests/*.c are tools of tests/test_*.sh
+
+tested := $(BUILD)/check/tested.a
+reference := $(patsubst %.c,$(BUILD)/%.o,$(filter-out tests/reference/main.c,$(wildcard tests/reference/*.c)))
+programs := $(basename $(notdir $(wildcard tests/*.c)))
+variants := test_runtime_float test_runtime_fast
+
+test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) reference)
+
+# an archive, for a test takes what it tests and no more
+$(tested): $(generator_objects) $(runtime_objects)
+	@mkdir -p $(@D)
+	rm -f $@
+	$(AR) rcs $@ $^
+
+$(BUILD)/check/test_%: $(BUILD)/tests/test_%.o $(tested)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBRARIES)
+
+# what checks the generator shares no code with it
+$(BUILD)/check/test_reference: $(BUILD)/tests/test_reference.o $(reference)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lquadmath -lm
+
+$(BUILD)/check/reference: $(BUILD)/tests/reference/main.o $(reference)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm
+
+$(BUILD)/check/states $(BUILD)/check/agree: $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm
+
+$(BUILD)/check/compare_dump: $(BUILD)/tests/compare_dump.o $(tested)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
+
+# the runtime core in the other ways that users build it
+$(BUILD)/check/test_runtime_float: VARIANT := -DGIC_FLOAT
+$(BUILD)/check/test_runtime_fast: VARIANT := -ffast-math
+$(BUILD)/check/test_runtime_float $(BUILD)/check/test_runtime_fast: tests/test_runtime.c runtime/gic_runtime.c
+	@mkdir -p $(@D)
+	$(COMPILE) $(VARIANT) -MF $@.d -o $@ $^ $(LDFLAGS) -lcmocka -lm
+
+test:
+	sh tests/run.sh
+
+list-tests:
+	@echo $(filter test_%,$(programs) $(variants))
+
+# ---- what people ask for
+
+demo: all
+	@mkdir -p $(BUILD)/demo
+	$(BUILD)/gicrun models/hmmwv.veh models/scenes/paper_run.scene -o $(BUILD)/demo/hmmwv.csv \
+	    --plot $(BUILD)/demo/hmmwv.svg
+	@echo "picture: $(BUILD)/demo/hmmwv.svg"
+	@echo "numbers: $(BUILD)/demo/hmmwv.csv"
+
+generated: $(BUILD)/gicgen
+	@mkdir -p generated
+	for model in $(models); do $(BUILD)/gicgen models/$$model.veh -o generated/$$model.c || exit 1; done
+
+debug:
+	$(MAKE) BUILD=$(BUILD)/debug \
+	    CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
+
+deps:
+	sh tests/install.sh test
+
+clean:
+	rm -rf $(BUILD)
+
+-include $(shell test -d $(BUILD) && find $(BUILD) -name '*.d')

@@ -1,0 +1,33 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# install.sh [test]: installs the Debian packages that building and the demonstration need, with `test` those of the
+# tests too. Does nothing where all are there; asks for nothing. This is the one list of what the project depends on.
+packages="gcc libc6-dev make libyaml-dev gnuplot-nox"
+[ "$1" = test ] && packages="$packages g++ libcmocka-dev graphviz"
+
+if ! command -v dpkg-query >/dev/null; then
+    echo "This is no Debian system: make sure that it has what these packages hold: $packages" >&2
+    exit 0
+fi
+missing=
+for package in $packages; do
+    state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)
+    [ "$state" = installed ] || missing="$missing $package"
+done
+[ -n "$missing" ] || exit 0
+
+echo "Installing:$missing" >&2
+if [ "$(id -u)" -eq 0 ]; then
+    as_root=
+elif command -v sudo >/dev/null; then
+    as_root=sudo
+else
+    echo "These packages are missing, and installing them needs root or sudo. As root: apt-get install$missing" >&2
+    exit 1
+fi
+export DEBIAN_FRONTEND=noninteractive
+# shellcheck disable=SC2086  # lists of words
+if ! { $as_root apt-get -q update && $as_root apt-get -q install -y --no-install-recommends $missing; } >&2; then
+    echo "The packages could not be installed:$missing" >&2
+    exit 1
+fi
