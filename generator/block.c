@@ -13,6 +13,11 @@ void block_store(Block *block, Ex value, const char *format, ...)
 
 void block_check(Block *block, Ex value, bool magnitude, double least, const char *status)
 {
+    if (magnitude && block->dag->node[value].op == OP_NEG)
+        value = block->dag->node[value].arg[0];
+    for (int i = 0; i < block->checks; ++i)
+        if (block->check[i].value == value && block->check[i].magnitude == magnitude && block->check[i].least >= least)
+            return;
     *POOL_PUSH(block->dag->pool, block->check, block->checks) = (Check){value, least, magnitude, status};
 }
 

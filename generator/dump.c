@@ -81,22 +81,39 @@ static void bodies(Text *out, const Model *model)
     }
 }
 
+/* What a type of joint has, of FORMAT.md section 4. */
+static bool has_points(JointType type)
+{
+    return type != JOINT_PARALLEL && type != JOINT_PERPENDICULAR;
+}
+
+static bool has_axis_b(JointType type)
+{
+    return type == JOINT_REVOLUTE || type == JOINT_PRISMATIC || type == JOINT_CYLINDRICAL || type == JOINT_UNIVERSAL ||
+           type == JOINT_PARALLEL || type == JOINT_PERPENDICULAR;
+}
+
+static bool has_axis_a(JointType type)
+{
+    return has_axis_b(type) || type == JOINT_REVOLUTE_SPHERICAL || type == JOINT_POINT_ON_LINE ||
+           type == JOINT_POINT_IN_PLANE;
+}
+
 static void joints(Text *out, const Model *model)
 {
     for (int i = 0; i < model->joints; ++i) {
         const Joint *joint = model->joint + i;
-        bool link = joint->type == JOINT_REVOLUTE_SPHERICAL;
-        bool hinge = joint->type == JOINT_REVOLUTE || joint->type == JOINT_PRISMATIC;
+        bool hinged = joint->type == JOINT_REVOLUTE_SPHERICAL;
         begin(out, i, joint->name);
         text_pair(out, "type", joint_type_name[joint->type]);
         integer_pair(out, "a", joint->body[0]);
         integer_pair(out, "b", joint->body[1]);
-        number_pair(out, "point_a", joint->point[0], 3, true);
-        number_pair(out, "point_b", joint->point[1], 3, true);
-        number_pair(out, "axis_a", joint->axis[0], 3, hinge || link);
-        number_pair(out, "axis_b", joint->axis[1], 3, hinge);
-        number_pair(out, "length", &joint->length, 0, link || joint->type == JOINT_DISTANCE);
-        number_pair(out, "offset", &joint->offset, 0, link);
+        number_pair(out, "point_a", joint->point[0], 3, has_points(joint->type));
+        number_pair(out, "point_b", joint->point[1], 3, has_points(joint->type));
+        number_pair(out, "axis_a", joint->axis[0], 3, has_axis_a(joint->type));
+        number_pair(out, "axis_b", joint->axis[1], 3, has_axis_b(joint->type));
+        number_pair(out, "length", &joint->length, 0, hinged || joint->type == JOINT_DISTANCE);
+        number_pair(out, "offset", &joint->offset, 0, hinged);
         add(out, "}");
     }
 }
@@ -116,6 +133,7 @@ static void coordinates(Text *out, const Model *model)
         number_pair(out, "reference_a", coordinate->reference[0], 3, angle);
         number_pair(out, "reference_b", coordinate->reference[1], 3, angle);
         number_pair(out, "design", &coordinate->design, 0, true);
+        number_pair(out, "initial", &coordinate->initial, 0, true);
         number_pair(out, "offset", &coordinate->offset, 0, !angle && !length);
         number_pair(out, "range", coordinate->range, 2, true);
         key(out, "driven");
@@ -129,7 +147,7 @@ static void forces(Text *out, const Model *model)
         const Force *force = model->force + i;
         bool points = force->type == FORCE_POINTS;
         begin(out, i, force->name);
-        text_pair(out, "type", points ? "points" : "coordinate");
+        text_pair(out, "type", points ? "points" : force->type == FORCE_CONSTANT ? "constant" : "coordinate");
         integer_pair(out, "coordinate", force->coordinate);
         for (int k = 0; k < 2; ++k)
             if (points)
@@ -141,6 +159,7 @@ static void forces(Text *out, const Model *model)
         number_pair(out, "stiffness", &force->stiffness, 0, true);
         number_pair(out, "damping", &force->damping, 0, true);
         number_pair(out, "free", &force->free, 0, true);
+        number_pair(out, "constant", &force->constant, 0, true);
         add(out, "}");
     }
 }

@@ -6,6 +6,12 @@
 #include <math.h>
 #include <string.h>
 
+void subset_set_known(Work *w, int known, int s, const double pose[12])
+{
+    for (int entry = 0; entry < 12; ++entry)
+        ex_set_sample(w->dag, entry < 3 ? w->known[known].c[entry] : w->known[known].A[entry - 3], s, pose[entry]);
+}
+
 /* Coordinates and knowns of sample s at one step of its path; a dead sample stays at the design. */
 static void place_sample(Work *w, const Sampling *sampling, int s, int step)
 {
@@ -15,20 +21,17 @@ static void place_sample(Work *w, const Sampling *sampling, int s, int step)
         step = 0;
     for (int j = 0; j < w->first->deps; ++j)
         ex_set_sample(w->dag, w->x[j], s, sampling_coordinate(sampling, w->model, step, configuration, member->dep[j]));
-    for (int i = 0; i < w->first->knowns; ++i) {
-        const double *pose = sampling_pose(sampling, step, configuration, member->known[i]);
-        for (int entry = 0; entry < 12; ++entry)
-            ex_set_sample(w->dag, entry < 3 ? w->known[i].c[entry] : w->known[i].A[entry - 3], s, pose[entry]);
-    }
+    for (int i = 0; i < w->first->knowns; ++i)
+        subset_set_known(w, i, s, sampling_pose(sampling, step, configuration, member->known[i]));
 }
 
-static void set_poses(Work *w, const double *q, int s)
+void subset_set_poses(Work *w, const double *q, int s)
 {
     for (int i = 0; i < 7 * w->first->bodies; ++i)
         ex_set_sample(w->dag, w->q[i], s, q[i]);
 }
 
-static void move_pose(double q[7], const double twist[6])
+void subset_move_pose(double q[7], const double twist[6])
 {
     const double e0 = q[3], e[3] = {q[4], q[5], q[6]};
     double cross[3];
@@ -52,12 +55,12 @@ static bool solve_sample(const Work *w, int s, double *b)
     return linear_solve_numeric(w->n, A, b);
 }
 
-/* One Newton correction of q; its relative size, or infinity where the matrix is singular. */
-static double correct_sample(Work *w, double *q, int s)
+/* One Newton correction of q towards residuals `slack` [n] (NULL: 0); its relative size, or infinity where the matrix is singular. */
+static double correct_sample(Work *w, double *q, int s, const double *slack)
 {
     double b[w->n], step = 0;
     for (int r = 0; r < w->n; ++r)
-        b[r] = -ex_value(w->dag, w->row[r].value, s);
+        b[r] = (slack ? slack[r] : 0) - ex_value(w->dag, w->row[r].value, s);
     if (!solve_sample(w, s, b))
         return INFINITY;
     for (int j = 0; j < w->n; ++j) {
@@ -66,19 +69,19 @@ static double correct_sample(Work *w, double *q, int s)
             b[j] /= w->size;
     }
     for (int body = 0; body < w->first->bodies; ++body)
-        move_pose(q + 7 * body, b + 6 * body);
+        subset_move_pose(q + 7 * body, b + 6 * body);
     return step;
 }
 
 /* Newton at one step of the path. */
-static bool converge(Work *w, double *q, int s)
+bool subset_converge(Work *w, double *q, int s, const double *slack)
 {
     const int iterations = 12;
     const double converged = 1e-12, leap = 0.5; /* a larger correction may land on another assembly mode */
     for (int i = 0; i < iterations; ++i) {
-        set_poses(w, q, s);
+        subset_set_poses(w, q, s);
         dag_evaluate(w->dag, s, 1);
-        double step = correct_sample(w, q, s);
+        double step = correct_sample(w, q, s, slack);
         if (!(step < leap))
             return false;
         if (step < converged)
@@ -87,7 +90,7 @@ static bool converge(Work *w, double *q, int s)
     return false;
 }
 
-/* Design poses of a member's bodies relative to the base. */
+/* Design poses of a member's bodies relative to the base, as they stand in the model. */
 static void design_poses(const Work *w, const Sampling *sampling, const Subset *member, double *q)
 {
     for (int b = 0; b < member->bodies; ++b, q += 7) {
@@ -135,6 +138,30 @@ static void store_unit_velocities(Work *w, Sampling *sampling, const Subset *mem
     }
 }
 
+void subset_to_design(Work *w, const Sampling *sampling, int subset, double *q)
+{
+    int s = subset_index(w, subset) * w->configurations;
+    design_poses(w, sampling, &w->sequence->subset[subset], q);
+    place_sample(w, sampling, s, 0);
+    subset_set_poses(w, q, s);
+    dag_evaluate(w->dag, s, 1);
+}
+
+void subset_get_poses(const Work *w, const Subset *member, int s, double (*pose)[12])
+{
+    for (int b = 0; b < member->bodies; ++b)
+        for (int i = 0; i < 12; ++i)
+            pose[member->body[b]][i] = ex_value(w->dag, i < 3 ? w->pose[b].c[i] : w->pose[b].A[i - 3], s);
+}
+
+double subset_determinant(const Work *w, int s)
+{
+    double A[w->n * w->n];
+    for (int i = 0; i < w->n * w->n; ++i)
+        A[i] = ex_value(w->dag, w->J[i], s) / (i % w->n % 6 < 3 ? w->size : 1);
+    return linear_determinant(w->n, A);
+}
+
 void subset_follow(Work *w, Sampling *sampling, int index)
 {
     const Subset *member = subset_member(w, index);
@@ -152,11 +179,11 @@ void subset_follow(Work *w, Sampling *sampling, int index)
         memcpy(q, design, sizeof q);
         for (int step = 0; step <= sampling->steps; ++step) {
             place_sample(w, sampling, s, step);
-            if (step && w->alive[s] && !converge(w, q, s)) {
+            if (step && w->alive[s] && !subset_converge(w, q, s, NULL)) {
                 w->alive[s] = false;
                 place_sample(w, sampling, s, step);
             }
-            set_poses(w, w->alive[s] ? q : design, s);
+            subset_set_poses(w, w->alive[s] ? q : design, s);
             dag_evaluate(w->dag, s, 1);
             store_poses(w, sampling, member, s, step);
         }
@@ -164,4 +191,29 @@ void subset_follow(Work *w, Sampling *sampling, int index)
         for (int b = 0; b < member->bodies; ++b)
             sampling->usable[member->body[b] * w->configurations + c] = w->alive[s];
     }
+}
+
+bool subset_assemble(Work *w, Sampling *sampling, int index, double *q)
+{
+    const int steps = 64;
+    const Subset *member = subset_member(w, index);
+    int s = index * w->configurations;
+    double drawn[w->n], slack[w->n];
+    design_poses(w, sampling, member, q);
+    w->alive[s] = true;
+    place_sample(w, sampling, s, 0);
+    subset_set_poses(w, q, s);
+    dag_evaluate(w->dag, s, 1);
+    for (int r = 0; r < w->n; ++r)
+        drawn[r] = ex_value(w->dag, w->row[r].value, s);
+    for (int step = 1; step <= steps; ++step) {
+        for (int r = 0; r < w->n; ++r)
+            slack[r] = drawn[r] * (steps - step) / steps;
+        if (!subset_converge(w, q, s, slack))
+            return false;
+    }
+    subset_set_poses(w, q, s);
+    dag_evaluate(w->dag, s, 1);
+    store_poses(w, sampling, member, s, 0);
+    return true;
 }

@@ -449,7 +449,7 @@ static void write_initial(Generation *g, Text *out, int indent)
             value = i < 3 ? g->model->body[BODY_BASE].position[i] : g->model->body[BODY_BASE].euler[i - 3];
         for (int w = 0; w < g->model->coordinates; ++w)
             if (g->plan->coordinate_state[w] == i)
-                value = g->model->coordinate[w].design;
+                value = g->model->coordinate[w].initial;
         line(out, indent, "%s, /* %s */", emit_number(g->pool, value), name);
     }
     if (!g->plan->states)

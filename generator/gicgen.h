@@ -139,8 +139,15 @@ typedef enum JointType {
     JOINT_REVOLUTE,
     JOINT_SPHERICAL,
     JOINT_PRISMATIC,
+    JOINT_CYLINDRICAL,
+    JOINT_UNIVERSAL,
+    JOINT_FIXED,
     JOINT_DISTANCE,
     JOINT_REVOLUTE_SPHERICAL,
+    JOINT_POINT_ON_LINE,
+    JOINT_POINT_IN_PLANE,
+    JOINT_PARALLEL,
+    JOINT_PERPENDICULAR,
     JOINT_TYPES
 } JointType;
 
@@ -150,7 +157,9 @@ typedef struct Joint {
     JointType type;
     int body[2];
     double point[2][3], axis[2][3]; /* each in the frame of its body; axes are unit vectors */
-    double length, offset;          /* at design, where the type has them */
+    double side[2][3];              /* a direction perpendicular to the axis of body[0] in the drawing, in both bodies */
+    double length, offset;          /* as the equations have them, where the type does */
+    bool drawn;                     /* length and offset are those of the drawing: nothing to assemble */
 } Joint;
 
 typedef enum CoordinateType {
@@ -167,7 +176,7 @@ typedef struct Coordinate {
     int body[2];
     double point[2][3], axis[3] /* frame of body[0] */;
     double reference[2][3]; /* angle: e_1 in the frame of body[0], f_1 in that of body[1] */
-    double design, offset, range[2];
+    double design, initial, offset, range[2];
     bool driven;
     int input; /* driven: index of its value in inputs; rate and acceleration follow */
 } Coordinate;
@@ -177,16 +186,17 @@ typedef struct Input {
     double initial;
 } Input;
 
-typedef enum ForceType { FORCE_COORDINATE, FORCE_POINTS, FORCE_TYPES } ForceType;
+typedef enum ForceType { FORCE_COORDINATE, FORCE_POINTS, FORCE_CONSTANT, FORCE_TYPES } ForceType;
 
 typedef struct Force {
     const char *name;
     Place at;
     ForceType type;
-    int coordinate; /* FORCE_COORDINATE */
+    int coordinate; /* FORCE_COORDINATE, FORCE_CONSTANT */
     int body[2];    /* FORCE_POINTS; BODY_GROUND possible */
     double point[2][3];
     double stiffness, damping, free;
+    double constant; /* FORCE_CONSTANT: generalised force along the coordinate */
 } Force;
 
 typedef struct Wheel {
@@ -405,6 +415,8 @@ Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A);
 void linear_solve(Dag *dag, const Factors *factors, const Ex *b, Ex *x);
 /* Dense numeric solve with row-scaled partial pivoting, in place: b [n] becomes x. False when singular. A is destroyed. */
 bool linear_solve_numeric(int n, double *A, double *b);
+/* Determinant of A with its rows scaled to largest entries of 1; 0 when singular. A is destroyed. */
+double linear_determinant(int n, double *A);
 
 /* ---- motion.c: how bodies move relative to the base ------------------------------------------------------ */
 
@@ -451,12 +463,11 @@ typedef struct Fixture {
     Ex square, offset; /* length at design squared; offset */
 } Fixture;
 
-enum { ROWS_MAX = 5, FIXTURE_NUMBERS = sizeof(Fixture) / sizeof(Ex) };
+enum { ROWS_MAX = 6, FIXTURE_NUMBERS = sizeof(Fixture) / sizeof(Ex) };
 
 /* The same as numbers, in the order of Fixture's members; origin: reference points [bodies][3], body frames. */
-void fixture_of_joint(const Model *model, const Joint *joint, const double (*origin)[3], double number[FIXTURE_NUMBERS]);
-void fixture_of_coordinate(const Model *model, const Coordinate *coordinate, const double (*origin)[3],
-                           double number[FIXTURE_NUMBERS]);
+void fixture_of_joint(const Joint *joint, const double (*origin)[3], double number[FIXTURE_NUMBERS]);
+void fixture_of_coordinate(const Coordinate *coordinate, const double (*origin)[3], double number[FIXTURE_NUMBERS]);
 int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2], Row row[ROWS_MAX]);
 /* x, rate: value and rate of the coordinate. */
 Row coordinate_row(Dag *dag, CoordinateType type, const Fixture *fixture, const Motion *const end[2], Ex x, Ex rate);
@@ -539,6 +550,12 @@ Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence *sequ
                             Sampling *sampling);
 /* Reference points of all bodies [bodies][3], body frames: where a joint to something known sits. */
 double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3];
+
+/* ---- assemble.c: the design configuration that fits the given lengths ----------------------------------------- */
+
+/* The model with its bodies' design poses moved to where every joint fits (FORMAT.md section 4); the same model where nothing
+ * moves. Ends in diag_fail when there is no way there. */
+const Model *model_assemble(Pool *pool, const Model *drawn, const Sequence *sequence);
 
 /* ---- whole.c: the whole mechanism, once all subsets are recovered ---------------------------------------------- */
 

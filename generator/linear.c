@@ -217,17 +217,21 @@ void linear_solve(Dag *dag, const Factors *f, const Ex *b, Ex *x)
         x[f->column[k]] = y[k];
 }
 
-bool linear_solve_numeric(int n, double *A, double *b)
+/* Rows scaled to 1, then eliminated with partial pivoting; b (or NULL) goes along. The product of the pivots with the sign of the
+ * exchanges, 0 where one is rounding. */
+static double eliminate_numeric(int n, double *A, double *b)
 {
+    double determinant = 1;
     for (int i = 0; i < n; ++i) {
         double largest = 0;
         for (int j = 0; j < n; ++j)
             largest = fmax(largest, fabs(A[n * i + j]));
         if (!(largest > 0))
-            return false;
+            return 0;
         for (int j = 0; j < n; ++j)
             A[n * i + j] /= largest;
-        b[i] /= largest;
+        if (b)
+            b[i] /= largest;
     }
     for (int k = 0; k < n; ++k) {
         int pivot = k;
@@ -235,22 +239,38 @@ bool linear_solve_numeric(int n, double *A, double *b)
             if (fabs(A[n * i + k]) > fabs(A[n * pivot + k]))
                 pivot = i;
         if (!(fabs(A[n * pivot + k]) > 1e-12))
-            return false;
-        for (int j = 0; j < n; ++j) {
+            return 0;
+        for (int j = 0; pivot != k && j < n; ++j) {
             double t = A[n * k + j];
             A[n * k + j] = A[n * pivot + j];
             A[n * pivot + j] = t;
         }
-        double t = b[k];
-        b[k] = b[pivot];
-        b[pivot] = t;
+        if (pivot != k && b) {
+            double t = b[k];
+            b[k] = b[pivot];
+            b[pivot] = t;
+        }
+        determinant *= pivot != k ? -A[n * k + k] : A[n * k + k];
         for (int i = k + 1; i < n; ++i) {
             double multiplier = A[n * i + k] / A[n * k + k];
-            for (int j = k; j < n; ++j)
+            for (int j = k; multiplier != 0 && j < n; ++j)
                 A[n * i + j] -= multiplier * A[n * k + j];
-            b[i] -= multiplier * b[k];
+            if (b)
+                b[i] -= multiplier * b[k];
         }
     }
+    return determinant;
+}
+
+double linear_determinant(int n, double *A)
+{
+    return eliminate_numeric(n, A, NULL);
+}
+
+bool linear_solve_numeric(int n, double *A, double *b)
+{
+    if (eliminate_numeric(n, A, b) == 0)
+        return false;
     for (int k = n - 1; k >= 0; --k) {
         for (int j = k + 1; j < n; ++j)
             b[k] -= A[n * k + j] * b[j];

@@ -39,6 +39,14 @@ static void add_force(Whole *whole, Loads *loads, int index)
 {
     Dag *dag = whole->dag;
     const Force *force = &whole->model->force[index];
+    if (force->type == FORCE_CONSTANT) {
+        int w = force->coordinate;
+        Ex Q = ex_literal(dag, force->constant);
+        loads->element[index] = Q;
+        loads->along[w] = ex_add(dag, loads->along[w], Q);
+        loads->power = ex_add(dag, loads->power, ex_mul(dag, Q, whole->xd[w]));
+        return;
+    }
     if (force->type == FORCE_COORDINATE) {
         int w = force->coordinate;
         Ex Q = ex_neg(dag, spring_damper(whole, loads, force, whole->x[w], whole->xd[w]));

@@ -124,6 +124,7 @@ int main(int count, char **word)
     Pool *pool = pool_new();
     const Model *model = model_read(pool, options.model);
     const Sequence *sequence = sequence_find(pool, model);
+    model = model_assemble(pool, model, sequence);
     Text text = {.pool = pool};
     switch (options.task) {
     case TASK_GENERATE:

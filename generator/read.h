@@ -19,6 +19,7 @@ typedef enum KeyKind {
     KEY_RANGE,         /* number[0] < number[1] */
     KEY_VECTOR,        /* number[0..2] */
     KEY_AXIS,          /* number[0..2], unit length */
+    KEY_AXES,          /* number[0..2], number[3..5], each of unit length */
     KEY_EULER,         /* number[0..3] */
     KEY_POINT,         /* number[0..2] */
     KEY_POINTS,        /* number[0..2], number[3..5] */

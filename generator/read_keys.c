@@ -20,6 +20,7 @@ static const char *const kind_example[KEY_KINDS] = {
     [KEY_RANGE] = "[low, high]",
     [KEY_VECTOR] = "[x, y, z]",
     [KEY_AXIS] = "[x, y, z]",
+    [KEY_AXES] = "[[x, y, z], [x, y, z]]",
     [KEY_EULER] = "[e0, e1, e2, e3]",
     [KEY_POINT] = "[x, y, z]",
     [KEY_POINTS] = "[[x, y, z], [x, y, z]]",
@@ -169,6 +170,13 @@ static void read_point(Reader *reader, const Item *item, const char *what, doubl
         doc_vector(item, what, x, 3);
 }
 
+static void read_axis(const Item *item, const char *what, double u[3])
+{
+    doc_vector(item, what, u, 3);
+    if (!vector_normalize(u, 3))
+        diag_fail(item->at, "write a direction, such as [0, 0, 1]", "%s has no direction: it is zero", what);
+}
+
 static void read_number(const Key *key, const Item *item, const char *what, double *number)
 {
     *number = doc_number(item, what);
@@ -202,9 +210,15 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         doc_vector(item, what, value->number, 3);
         break;
     case KEY_AXIS:
-        doc_vector(item, what, value->number, 3);
-        if (!vector_normalize(value->number, 3))
-            diag_fail(item->at, "write a direction, such as [0, 0, 1]", "%s has no direction: it is zero", what);
+        read_axis(item, what, value->number);
+        break;
+    case KEY_AXES:
+        if (item->kind != ITEM_LIST || item->count != 2)
+            diag_fail(item->at, "write [u_a, u_b]; each is a direction [x, y, z]",
+                      "%s must be a list of two directions", what);
+        for (int i = 0; i < 2; ++i)
+            read_axis(item->value[i], pool_print(reader->pool, "the %s of %s", i ? "second" : "first", what),
+                      value->number + 3 * i);
         break;
     case KEY_EULER:
         doc_vector(item, what, value->number, 4);
@@ -293,6 +307,31 @@ int section_type(Reader *reader, const Section *section, const Entry *entry)
     diag_fail(item->at, remedy, "%s: there is no type '%s'", entry->what, word);
 }
 
+/* The key of that name, which check_known_keys has seen. */
+static int key_index(const Section *section, const char *name)
+{
+    int k = 0;
+    while (strcmp(section->key[k].name, name))
+        ++k;
+    return k;
+}
+
+/* A key that the form needs is not there. If one with nearly its name stands in its place (`axis` for `axes`), that is
+ * the mistake. */
+static _Noreturn void missing_key(Reader *reader, const Section *section, int form, const Entry *entry, const Key *key,
+                                  const char *what)
+{
+    const char *wanted = pool_print(reader->pool, "`%s: %s`", key->name, kind_example[key->kind]);
+    for (int i = 0; i < entry->item->count; ++i) {
+        const Item *name = entry->item->key[i];
+        if (!(section->key[key_index(section, name->text)].allowed & FORM(form)) &&
+            diag_nearest(name->text, &key->name, 1))
+            diag_fail(name->at, pool_print(reader->pool, "write %s", wanted), "the key '%s' does not apply to %s",
+                      name->text, what);
+    }
+    diag_fail(entry->at, pool_print(reader->pool, "add %s", wanted), "%s lacks the key '%s'", what, key->name);
+}
+
 void section_read(Reader *reader, const Section *section, int form, const Entry *entry, Value *value)
 {
     check_known_keys(reader, section, entry);
@@ -307,14 +346,11 @@ void section_read(Reader *reader, const Section *section, int form, const Entry 
         const Item *item = doc_find(entry->item, key->name);
         value[k] = (Value){.item = item, .number = {key->fallback}};
         if (!item && key->required & FORM(form))
-            diag_fail(entry->at, pool_print(reader->pool, "add `%s: %s`", key->name, kind_example[key->kind]),
-                      "%s lacks the key '%s'", what, key->name);
+            missing_key(reader, section, form, entry, key, what);
     }
     for (int i = 0; i < entry->item->count; ++i) {
         const Item *name = entry->item->key[i];
-        int k = 0;
-        while (strcmp(section->key[k].name, name->text))
-            ++k;
+        int k = key_index(section, name->text);
         const Key *key = section->key + k;
         if (!(key->allowed & FORM(form)))
             diag_fail(name->at, pool_print(reader->pool, "its keys are: %s", list), "the key '%s' does not apply to %s",

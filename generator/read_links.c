@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Joints and dual coordinates (FORMAT.md sections 4 and 5): points and axes from the design configuration into the
- * frames of their bodies, distances and offsets at design. */
+ * frames of their bodies, lengths and offsets, where coordinates start. */
 #include "read.h"
 
 #include <math.h>
@@ -10,16 +10,30 @@ const char *const joint_type_name[JOINT_TYPES] = {
     [JOINT_REVOLUTE] = "revolute",
     [JOINT_SPHERICAL] = "spherical",
     [JOINT_PRISMATIC] = "prismatic",
+    [JOINT_CYLINDRICAL] = "cylindrical",
+    [JOINT_UNIVERSAL] = "universal",
+    [JOINT_FIXED] = "fixed",
     [JOINT_DISTANCE] = "distance",
     [JOINT_REVOLUTE_SPHERICAL] = "revolute_spherical",
+    [JOINT_POINT_ON_LINE] = "point_on_line",
+    [JOINT_POINT_IN_PLANE] = "point_in_plane",
+    [JOINT_PARALLEL] = "parallel",
+    [JOINT_PERPENDICULAR] = "perpendicular",
 };
 
 const int joint_equations[JOINT_TYPES] = {
     [JOINT_REVOLUTE] = 5,
     [JOINT_SPHERICAL] = 3,
     [JOINT_PRISMATIC] = 5,
+    [JOINT_CYLINDRICAL] = 4,
+    [JOINT_UNIVERSAL] = 4,
+    [JOINT_FIXED] = 6,
     [JOINT_DISTANCE] = 1,
     [JOINT_REVOLUTE_SPHERICAL] = 2,
+    [JOINT_POINT_ON_LINE] = 2,
+    [JOINT_POINT_IN_PLANE] = 1,
+    [JOINT_PARALLEL] = 2,
+    [JOINT_PERPENDICULAR] = 1,
 };
 
 const char *const coordinate_type_name[COORDINATE_TYPES] = {
@@ -28,20 +42,45 @@ const char *const coordinate_type_name[COORDINATE_TYPES] = {
     [COORDINATE_ANGLE] = "angle",
 };
 
-/* Joints with two points, and so a distance between them; joints with an axis. */
-#define JOINT_LINKS (FORM(JOINT_DISTANCE) | FORM(JOINT_REVOLUTE_SPHERICAL))
-#define JOINT_AXES (FORM(JOINT_REVOLUTE) | FORM(JOINT_PRISMATIC) | FORM(JOINT_REVOLUTE_SPHERICAL))
-#define JOINT_POINT (FORM(JOINT_REVOLUTE) | FORM(JOINT_SPHERICAL))
+/* Joints with two points, and so a distance between them; with one direction, with one on each body; with one point
+ * for both bodies, or where that need not be given. */
+#define LINKS (FORM(JOINT_DISTANCE) | FORM(JOINT_REVOLUTE_SPHERICAL))
+#define ONE_AXIS \
+    (FORM(JOINT_REVOLUTE) | FORM(JOINT_PRISMATIC) | FORM(JOINT_CYLINDRICAL) | FORM(JOINT_REVOLUTE_SPHERICAL) | \
+     FORM(JOINT_POINT_ON_LINE) | FORM(JOINT_POINT_IN_PLANE) | FORM(JOINT_PARALLEL))
+#define TWO_AXES (FORM(JOINT_UNIVERSAL) | FORM(JOINT_PERPENDICULAR))
+#define ONE_POINT \
+    (FORM(JOINT_REVOLUTE) | FORM(JOINT_SPHERICAL) | FORM(JOINT_CYLINDRICAL) | FORM(JOINT_UNIVERSAL) | \
+     FORM(JOINT_POINT_ON_LINE) | FORM(JOINT_POINT_IN_PLANE))
+#define MAYBE_POINT (FORM(JOINT_PRISMATIC) | FORM(JOINT_FIXED))
 
-enum { LINK_TYPE, LINK_BODIES, LINK_POINT, LINK_POINTS, LINK_AXIS, LINK_KEYS };
+enum {
+    LINK_TYPE,
+    LINK_BODIES,
+    LINK_POINT,
+    LINK_POINTS,
+    LINK_AXIS,
+    LINK_AXES,
+    LINK_LENGTH,
+    LINK_OFFSET,
+    LINK_KEYS
+};
 
 static const Key joint_key[LINK_KEYS] = {
     [LINK_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [LINK_BODIES] = {"bodies", KEY_BODIES, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
-    [LINK_POINT] = {"point", KEY_POINT, JOINT_POINT | FORM(JOINT_PRISMATIC), JOINT_POINT, BOUND_NONE, 0},
-    [LINK_POINTS] = {"points", KEY_POINTS, JOINT_LINKS, JOINT_LINKS, BOUND_NONE, 0},
-    [LINK_AXIS] = {"axis", KEY_AXIS, JOINT_AXES, JOINT_AXES, BOUND_NONE, 0},
+    [LINK_POINT] = {"point", KEY_POINT, ONE_POINT | MAYBE_POINT, ONE_POINT, BOUND_NONE, 0},
+    [LINK_POINTS] = {"points", KEY_POINTS, LINKS, LINKS, BOUND_NONE, 0},
+    [LINK_AXIS] = {"axis", KEY_AXIS, ONE_AXIS, ONE_AXIS, BOUND_NONE, 0},
+    [LINK_AXES] = {"axes", KEY_AXES, TWO_AXES, TWO_AXES, BOUND_NONE, 0},
+    [LINK_LENGTH] = {"length", KEY_NUMBER, LINKS, 0, BOUND_POSITIVE, 0},
+    [LINK_OFFSET] = {"offset", KEY_NUMBER, FORM(JOINT_REVOLUTE_SPHERICAL), 0, BOUND_NONE, 0},
 };
+
+/* Given lengths and offsets that differ by less than this part of the length are the drawing's, with its rounding. */
+static const double drawn_tolerance = 1e-12;
+/* Largest angle by which a given u_b may miss the plane perpendicular to u_a, degrees. */
+static const double axes_tolerance = 10;
 
 static const Section joint_section = {joint_key, LINK_KEYS, joint_type_name, JOINT_TYPES, joint_type_name};
 
@@ -52,6 +91,7 @@ enum {
     DUAL_AXIS,
     DUAL_DESIGN,
     DUAL_RANGE,
+    DUAL_INITIAL,
     DUAL_DRIVEN,
     DUAL_KEYS
 };
@@ -66,6 +106,7 @@ static const Key coordinate_key[DUAL_KEYS] = {
     [DUAL_AXIS] = {"axis", KEY_AXIS, DUAL_AXES, DUAL_AXES, BOUND_NONE, 0},
     [DUAL_DESIGN] = {"design", KEY_NUMBER, DUAL_AXES, 0, BOUND_NONE, 0},
     [DUAL_RANGE] = {"range", KEY_RANGE, ALL_FORMS, 0, BOUND_NONE, 0},
+    [DUAL_INITIAL] = {"initial", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
     [DUAL_DRIVEN] = {"driven", KEY_FLAG, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
@@ -86,45 +127,9 @@ double points_distance(const Value *points, const char *what, double d[3])
     return length;
 }
 
-static void joint_read(Reader *reader, const Entry *entry, Joint *joint)
-{
-    Value value[LINK_KEYS];
-    JointType type = (JointType)section_type(reader, &joint_section, entry);
-    section_read(reader, &joint_section, (int)type, entry, value);
-    const int *body = value[LINK_BODIES].index;
-    const double *axis = value[LINK_AXIS].number;
-    *joint = (Joint){.name = entry->name, .at = entry->at, .type = type, .body = {body[0], body[1]}};
-    if (FORM(type) & JOINT_AXES)
-        body_direction(reader, body[0], axis, joint->axis[0]);
-    if (type == JOINT_REVOLUTE || type == JOINT_PRISMATIC)
-        body_direction(reader, body[1], axis, joint->axis[1]);
-    if (FORM(type) & JOINT_LINKS) {
-        const Value *points = value + LINK_POINTS;
-        double d[3];
-        joint->length = points_distance(points, entry->what, d);
-        joint->offset = type == JOINT_REVOLUTE_SPHERICAL ? vec_dot(axis, d) : 0;
-        for (int i = 0; i < 2; ++i)
-            body_point(reader, body[i], points->number + 3 * i, points->item->value[i]->at, joint->point[i]);
-        return;
-    }
-    const Value *point = value + LINK_POINT;
-    const double *x = point->item ? point->number : reader->model->body[body[1]].position;
-    for (int i = 0; i < 2; ++i)
-        body_point(reader, body[i], x, point->item ? point->item->at : entry->at, joint->point[i]);
-}
-
-void joints_read(Reader *reader, const Item *map)
-{
-    Model *model = reader->model;
-    Entry *entry = section_entries(reader, map, "joint", &model->joints);
-    model->joint = pool_alloc(reader->pool, sizeof *model->joint * (size_t)(model->joints + 1));
-    for (int i = 0; i < model->joints; ++i)
-        joint_read(reader, entry + i, model->joint + i);
-}
-
-/* e_1 and f_1 of FORMAT.md section 5: perpendicular to the axis, as near as can be to the axis of the model frame
- * that the axis is least parallel to. */
-static void reference_set(const Reader *reader, const double axis[3], Coordinate *coordinate)
+/* The unit vector perpendicular to a unit axis that is as near as can be to the axis of the model frame to which it is
+ * least parallel (e_1 of FORMAT.md section 5), fixed in both bodies; all in the model frame but `out`. */
+static void perpendicular_set(const Reader *reader, const double axis[3], const int body[2], double out[2][3])
 {
     int least = 0;
     double e[3];
@@ -135,7 +140,103 @@ static void reference_set(const Reader *reader, const double axis[3], Coordinate
         e[i] = (i == least) - axis[least] * axis[i];
     vector_normalize(e, 3);
     for (int i = 0; i < 2; ++i)
-        body_direction(reader, coordinate->body[i], e, coordinate->reference[i]);
+        body_direction(reader, body[i], e, out[i]);
+}
+
+/* Replace the second of two given axes by its part perpendicular to the first. */
+static void axes_square(Value *axes, const Entry *entry)
+{
+    const double degree = acos(-1.0) / 180;
+    const double *a = axes->number;
+    double *b = axes->number + 3, along = vec_dot(a, b);
+    double miss = asin(fmin(fabs(along), 1)) / degree;
+    if (!(miss < axes_tolerance))
+        diag_fail(axes->item->value[1]->at, "turn one of them; in a universal joint they are the arms of the cross",
+                  "axes of %s: the angle between them is %.4g degrees, which is not near 90", entry->what, 90 - miss);
+    for (int i = 0; i < 3; ++i)
+        b[i] -= along * a[i];
+    vector_normalize(b, 3);
+}
+
+/* Axes, and what is perpendicular to the first. A fixed joint has no axis of its own: any direction serves. */
+static void joint_axes_set(const Reader *reader, Value *value, const Entry *entry, Joint *joint)
+{
+    static const double x[3] = {1, 0, 0};
+    const double *axis[2];
+    if (FORM(joint->type) & TWO_AXES) {
+        axes_square(value + LINK_AXES, entry);
+        axis[0] = value[LINK_AXES].number;
+        axis[1] = value[LINK_AXES].number + 3;
+    } else if (FORM(joint->type) & ONE_AXIS)
+        axis[0] = axis[1] = value[LINK_AXIS].number;
+    else if (joint->type == JOINT_FIXED)
+        axis[0] = axis[1] = x;
+    else
+        return;
+    for (int i = 0; i < 2; ++i)
+        body_direction(reader, joint->body[i], axis[i], joint->axis[i]);
+    perpendicular_set(reader, axis[0], joint->body, joint->side);
+}
+
+/* A length or an offset: the drawing's unless another one is given. */
+static double link_number(const Value *given, double drawn, double length, Joint *joint)
+{
+    if (!given->item || fabs(given->number[0] - drawn) <= drawn_tolerance * length)
+        return drawn;
+    joint->drawn = false;
+    return given->number[0];
+}
+
+/* Points of a link, its length and, hinged about an axis, the offset along that. */
+static void link_set(const Reader *reader, const Value *value, const Entry *entry, Joint *joint)
+{
+    const Value *points = value + LINK_POINTS, *given_length = value + LINK_LENGTH, *given_offset = value + LINK_OFFSET;
+    double d[3], drawn = points_distance(points, entry->what, d);
+    for (int i = 0; i < 2; ++i)
+        body_point(reader, joint->body[i], points->number + 3 * i, points->item->value[i]->at, joint->point[i]);
+    joint->length = link_number(given_length, drawn, drawn, joint);
+    double square = joint->length * joint->length;
+    if (!(square > 0 && isfinite(square)))
+        diag_fail(given_length->item->at, "lengths are in metres", "length of %s is out of all proportion", entry->what);
+    if (joint->type != JOINT_REVOLUTE_SPHERICAL)
+        return;
+    joint->offset = link_number(given_offset, vec_dot(value[LINK_AXIS].number, d), drawn, joint);
+    if (fabs(joint->offset) < joint->length * (1 - drawn_tolerance))
+        return;
+    const Item *culprit = given_offset->item ? given_offset->item : given_length->item;
+    if (culprit)
+        diag_fail(culprit->at, "take a longer `length` or a smaller `offset`",
+                  "%s: no link of length %.9g reaches %.9g along its axis and can still turn", entry->what,
+                  joint->length, joint->offset);
+    diag_fail(points->item->at, "choose points or an axis so that the link stands out from the axis",
+              "%s: the link lies along its own axis, so turning about it moves nothing", entry->what);
+}
+
+static void joint_read(Reader *reader, const Entry *entry, Joint *joint)
+{
+    Value value[LINK_KEYS];
+    JointType type = (JointType)section_type(reader, &joint_section, entry);
+    section_read(reader, &joint_section, (int)type, entry, value);
+    const int *body = value[LINK_BODIES].index;
+    *joint = (Joint){.name = entry->name, .at = entry->at, .type = type, .body = {body[0], body[1]}, .drawn = true};
+    joint_axes_set(reader, value, entry, joint);
+    if (FORM(type) & LINKS)
+        link_set(reader, value, entry, joint);
+    else if (FORM(type) & (ONE_POINT | MAYBE_POINT)) {
+        const Value *point = value + LINK_POINT;
+        const double *x = point->item ? point->number : reader->model->body[body[1]].position;
+        for (int i = 0; i < 2; ++i)
+            body_point(reader, body[i], x, point->item ? point->item->at : entry->at, joint->point[i]);
+    }
+}
+
+void joints_read(Reader *reader, const Item *map)
+{
+    Model *model = reader->model;
+    Entry *entry = section_entries(reader, map, "joint", &model->joints);
+    model->joint = pool_alloc(reader->pool, sizeof *model->joint * (size_t)(model->joints + 1));
+    for (int i = 0; i < model->joints; ++i)
+        joint_read(reader, entry + i, model->joint + i);
 }
 
 /* The default range, or the given one, around the design value. */
@@ -161,6 +262,17 @@ static void range_set(const Value *range, const Entry *entry, Coordinate *coordi
                   "range of %s: the design value %.9g lies outside", entry->what, design);
 }
 
+/* The value that set-up starts from: the design value unless another one inside the range is given. */
+static void initial_set(const Value *initial, const Entry *entry, Coordinate *coordinate)
+{
+    const double *range = coordinate->range;
+    coordinate->initial = initial->item ? initial->number[0] : coordinate->design;
+    if (coordinate->initial < range[0] || coordinate->initial > range[1])
+        diag_fail(initial->item->at, "take a value inside, or write a wider `range: [low, high]`",
+                  "initial of %s: %.9g is outside the range %.9g to %.9g", entry->what, coordinate->initial, range[0],
+                  range[1]);
+}
+
 static void coordinate_read(Reader *reader, const Entry *entry, Coordinate *coordinate)
 {
     Value value[DUAL_KEYS];
@@ -177,7 +289,7 @@ static void coordinate_read(Reader *reader, const Entry *entry, Coordinate *coor
     if (type == COORDINATE_LENGTH)
         coordinate->design = points_distance(points, entry->what, d);
     else if (type == COORDINATE_ANGLE)
-        reference_set(reader, axis, coordinate);
+        perpendicular_set(reader, axis, body, coordinate->reference);
     if (FORM(type) & DUAL_ENDS)
         for (int i = 0; i < 2; ++i) {
             const double *x = points->item ? points->number + 3 * i : reader->model->body[body[1]].position;
@@ -189,6 +301,7 @@ static void coordinate_read(Reader *reader, const Entry *entry, Coordinate *coor
         coordinate->offset = vec_dot(axis, d);
     }
     range_set(value + DUAL_RANGE, entry, coordinate);
+    initial_set(value + DUAL_INITIAL, entry, coordinate);
 }
 
 void coordinates_read(Reader *reader, const Item *map)

@@ -21,27 +21,33 @@ enum {
     SPRING_STIFFNESS,
     SPRING_DAMPING,
     SPRING_FREE,
+    SPRING_VALUE,
     SPRING_KEYS
 };
 
+#define FORCE_ALONG (FORM(FORCE_COORDINATE) | FORM(FORCE_CONSTANT))
+#define FORCE_SPRING (FORM(FORCE_COORDINATE) | FORM(FORCE_POINTS))
+
 static const Key force_key[SPRING_KEYS] = {
     [SPRING_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
-    [SPRING_COORDINATE] = {"coordinate", KEY_COORDINATE, FORM(FORCE_COORDINATE), FORM(FORCE_COORDINATE), BOUND_NONE, 0},
+    [SPRING_COORDINATE] = {"coordinate", KEY_COORDINATE, FORCE_ALONG, FORCE_ALONG, BOUND_NONE, 0},
     [SPRING_BODIES] = {"bodies", KEY_FORCE_BODIES, FORM(FORCE_POINTS), FORM(FORCE_POINTS), BOUND_NONE, 0},
     [SPRING_POINTS] = {"points", KEY_POINTS, FORM(FORCE_POINTS), FORM(FORCE_POINTS), BOUND_NONE, 0},
-    [SPRING_STIFFNESS] = {"stiffness", KEY_NUMBER, ALL_FORMS, 0, BOUND_NOT_NEGATIVE, 0},
-    [SPRING_DAMPING] = {"damping", KEY_NUMBER, ALL_FORMS, 0, BOUND_NOT_NEGATIVE, 0},
-    [SPRING_FREE] = {"free", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
+    [SPRING_STIFFNESS] = {"stiffness", KEY_NUMBER, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
+    [SPRING_DAMPING] = {"damping", KEY_NUMBER, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
+    [SPRING_FREE] = {"free", KEY_NUMBER, FORCE_SPRING, 0, BOUND_NONE, 0},
+    [SPRING_VALUE] = {"value", KEY_NUMBER, FORM(FORCE_CONSTANT), FORM(FORCE_CONSTANT), BOUND_NONE, 0},
 };
 
-static const char *const force_type_name[] = {"spring_damper"};
+static const char *const force_type_name[] = {"spring_damper", "constant"};
 
 static const char *const force_form_name[FORCE_TYPES] = {
     [FORCE_COORDINATE] = "along a coordinate",
     [FORCE_POINTS] = "between two points",
+    [FORCE_CONSTANT] = "constant",
 };
 
-static const Section force_section = {force_key, SPRING_KEYS, force_type_name, 1, force_form_name};
+static const Section force_section = {force_key, SPRING_KEYS, force_type_name, 2, force_form_name};
 
 enum { TIRE_BODY, TIRE_CENTER, TIRE_RADIUS, TIRE_STIFFNESS, TIRE_DAMPING, TIRE_FADE, TIRE_KEYS };
 
@@ -67,7 +73,7 @@ static void driven_inputs(Reader *reader, Coordinate *coordinate)
         model->input[model->inputs++] = (Input){
             .name = pool_print(reader->pool, "%s%s", coordinate->name, suffix[i]),
             .unit = unit[coordinate->type == COORDINATE_ANGLE][i],
-            .initial = i == 0 ? coordinate->design : 0,
+            .initial = i == 0 ? coordinate->initial : 0,
         };
 }
 
@@ -104,13 +110,13 @@ void inputs_read(Reader *reader, const Item *map)
 static void force_read(Reader *reader, const Entry *entry, Force *force)
 {
     Value value[SPRING_KEYS];
-    section_type(reader, &force_section, entry);
+    bool constant = section_type(reader, &force_section, entry) == 1;
     bool along = doc_find(entry->item, "coordinate");
     bool between = doc_find(entry->item, "bodies") || doc_find(entry->item, "points");
-    if (!along && !between)
+    if (!along && !between && !constant)
         diag_fail(entry->at, "add `coordinate: name`, or `bodies: [a, b]` and `points: [p_a, p_b]`",
                   "%s acts nowhere: neither a coordinate nor two bodies are given", entry->what);
-    ForceType type = along ? FORCE_COORDINATE : FORCE_POINTS;
+    ForceType type = constant ? FORCE_CONSTANT : along ? FORCE_COORDINATE : FORCE_POINTS;
     section_read(reader, &force_section, (int)type, entry, value);
     *force = (Force){
         .name = entry->name,
@@ -120,8 +126,9 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
         .body = {BODY_GROUND, BODY_GROUND},
         .stiffness = value[SPRING_STIFFNESS].number[0],
         .damping = value[SPRING_DAMPING].number[0],
+        .constant = value[SPRING_VALUE].number[0],
     };
-    if (along) {
+    if (type != FORCE_POINTS) {
         force->coordinate = value[SPRING_COORDINATE].index[0];
         force->free = reader->model->coordinate[force->coordinate].design;
     } else {

@@ -16,30 +16,31 @@ enum {
 };
 _Static_assert(FIXTURE_NUMBERS == 26, "Fixture and its numbers go together");
 
-/* Vector of end 0's frame at design into end 1's. */
-static void carry(const Model *model, const int body[2], const double in_a[3], double in_b[3])
-{
-    double A[9], world[3];
-    mat_from_euler(model->body[body[0]].euler, A);
-    mat_apply(A, in_a, world);
-    mat_from_euler(model->body[body[1]].euler, A);
-    mat_apply_transposed(A, world, in_b);
-}
+/* What a joint is made of. */
+enum {
+    PART_POINT = 1,    /* x_a = x_b: 3 equations */
+    PART_PARALLEL = 2, /* u_a parallel to u_b: 2 */
+    PART_LOCK = 4,     /* no turn about the common axis: 1 */
+    PART_LINE = 8,     /* x_b - x_a parallel to u_a: 2 */
+    PART_LENGTH = 16,  /* norm(x_b - x_a): 1 */
+    PART_ALONG = 32,   /* u_a . (x_b - x_a): 1 */
+    PART_CROSS = 64    /* u_a perpendicular to u_b: 1 */
+};
 
-/* Two unit vectors perpendicular to u and each other: from the axis to which u is least parallel. */
-static void perpendicular(const double u[3], double t1[3], double t2[3])
-{
-    int least = 0;
-    for (int i = 1; i < 3; ++i)
-        if (fabs(u[i]) < fabs(u[least]))
-            least = i;
-    for (int i = 0; i < 3; ++i)
-        t1[i] = (i == least) - u[least] * u[i];
-    double norm = vec_norm(t1);
-    for (int i = 0; i < 3; ++i)
-        t1[i] /= norm;
-    vec_cross(u, t1, t2);
-}
+static const int joint_parts[JOINT_TYPES] = {
+    [JOINT_REVOLUTE] = PART_POINT | PART_PARALLEL,
+    [JOINT_SPHERICAL] = PART_POINT,
+    [JOINT_PRISMATIC] = PART_PARALLEL | PART_LOCK | PART_LINE,
+    [JOINT_CYLINDRICAL] = PART_PARALLEL | PART_LINE,
+    [JOINT_UNIVERSAL] = PART_POINT | PART_CROSS,
+    [JOINT_FIXED] = PART_POINT | PART_PARALLEL | PART_LOCK,
+    [JOINT_DISTANCE] = PART_LENGTH,
+    [JOINT_REVOLUTE_SPHERICAL] = PART_LENGTH | PART_ALONG,
+    [JOINT_POINT_ON_LINE] = PART_LINE,
+    [JOINT_POINT_IN_PLANE] = PART_ALONG,
+    [JOINT_PARALLEL] = PART_PARALLEL,
+    [JOINT_PERPENDICULAR] = PART_CROSS,
+};
 
 static void relative_points(const int body[2], const double point[2][3], const double (*origin)[3],
                       double number[FIXTURE_NUMBERS])
@@ -49,28 +50,23 @@ static void relative_points(const int body[2], const double point[2][3], const d
             number[NUMBER_POINT + 3 * end + i] = point[end][i] - origin[body[end]][i];
 }
 
-void fixture_of_joint(const Model *model, const Joint *joint, const double (*origin)[3],
-                      double number[FIXTURE_NUMBERS])
+void fixture_of_joint(const Joint *joint, const double (*origin)[3], double number[FIXTURE_NUMBERS])
 {
     memset(number, 0, FIXTURE_NUMBERS * sizeof number[0]);
-    relative_points(joint->body, joint->point, origin, number);
+    if (joint_parts[joint->type] & (PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG))
+        relative_points(joint->body, joint->point, origin, number);
     memcpy(number + NUMBER_AXIS, joint->axis, sizeof joint->axis);
-    if (joint->type == JOINT_REVOLUTE || joint->type == JOINT_PRISMATIC) {
-        double side[2][3];
-        perpendicular(joint->axis[0], side[0], side[1]);
-        for (int which = 0; which < 2; ++which) {
-            memcpy(number + NUMBER_SIDE + 6 * which, side[which], sizeof side[which]);
-            carry(model, joint->body, side[which], number + NUMBER_SIDE + 6 * which + 3);
-        }
+    for (int end = 0; end < 2; ++end) {
+        memcpy(number + NUMBER_SIDE + 3 * end, joint->side[end], sizeof joint->side[end]);
+        vec_cross(joint->axis[end], joint->side[end], number + NUMBER_SIDE + 6 + 3 * end);
     }
     number[NUMBER_SQUARE] = joint->length * joint->length;
     number[NUMBER_OFFSET] = joint->offset;
 }
 
-void fixture_of_coordinate(const Model *model, const Coordinate *coordinate, const double (*origin)[3],
+void fixture_of_coordinate(const Coordinate *coordinate, const double (*origin)[3],
                       double number[FIXTURE_NUMBERS])
 {
-    (void)model;
     memset(number, 0, FIXTURE_NUMBERS * sizeof number[0]);
     if (coordinate->type != COORDINATE_ANGLE)
         relative_points(coordinate->body, coordinate->point, origin, number);
@@ -159,33 +155,31 @@ static Row row_length(Dag *dag, const Link *link, Ex square)
 
 int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2], Row row[ROWS_MAX])
 {
+    int rows = 0, parts = joint_parts[type];
     Link link = link_between(dag, fixture, end);
-    int rows = 0;
-    if (type == JOINT_REVOLUTE || type == JOINT_SPHERICAL)
-        for (int i = 0; i < 3; ++i)
-            row[rows++] = row_component(dag, &link, i);
-    if (type == JOINT_REVOLUTE || type == JOINT_PRISMATIC) {
-        Vector axis = vector_axis(dag, end[1], fixture->axis[1]);
-        for (int which = 0; which < 2; ++which) {
-            Vector side = vector_axis(dag, end[0], fixture->side[which][0]);
-            row[rows++] = row_angle(dag, &side, &axis);
-        }
+    Vector axis[2], side[2], other;
+    for (int i = 0; i < 2; ++i) {
+        axis[i] = vector_axis(dag, end[i], fixture->axis[i]);
+        side[i] = vector_axis(dag, end[0], fixture->side[i][0]);
     }
-    if (type == JOINT_PRISMATIC) {
-        Vector side[2] = {vector_axis(dag, end[0], fixture->side[0][0]), vector_axis(dag, end[0], fixture->side[1][0])};
-        Vector other = vector_axis(dag, end[1], fixture->side[1][1]);
+    other = vector_axis(dag, end[1], fixture->side[1][1]);
+    for (int i = 0; parts & PART_POINT && i < 3; ++i)
+        row[rows++] = row_component(dag, &link, i);
+    for (int i = 0; parts & PART_PARALLEL && i < 2; ++i)
+        row[rows++] = row_angle(dag, &side[i], &axis[1]);
+    if (parts & PART_LOCK)
         row[rows++] = row_angle(dag, &side[0], &other);
-        for (int which = 0; which < 2; ++which)
-            row[rows++] = row_along(dag, &link, 0, &side[which]);
-    }
-    if (type == JOINT_DISTANCE || type == JOINT_REVOLUTE_SPHERICAL)
+    for (int i = 0; parts & PART_LINE && i < 2; ++i)
+        row[rows++] = row_along(dag, &link, 0, &side[i]);
+    if (parts & PART_LENGTH)
         row[rows++] = row_length(dag, &link, fixture->square);
-    if (type == JOINT_REVOLUTE_SPHERICAL) {
-        Vector axis = vector_axis(dag, end[0], fixture->axis[0]);
-        row[rows] = row_along(dag, &link, 0, &axis);
+    if (parts & PART_ALONG) {
+        row[rows] = row_along(dag, &link, 0, &axis[0]);
         row[rows].value = ex_sub(dag, row[rows].value, fixture->offset);
         ++rows;
     }
+    if (parts & PART_CROSS)
+        row[rows++] = row_angle(dag, &axis[0], &axis[1]);
     return rows;
 }
 

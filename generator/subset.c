@@ -25,17 +25,21 @@ static int place_of(const int *list, int count, int what)
 /* ---- reference points ---------------------------------------------------------------------------------- */
 
 /* How much a joint simplifies its subset when the reference point of one end sits on it. */
-static int joint_merit(const Model *model, const Sequence *sequence, int subset, const Joint *joint, int end)
+static int joint_merit(const Sequence *sequence, int subset, const Joint *joint, int end)
 {
     static const int merit[JOINT_TYPES] = {[JOINT_REVOLUTE] = 4,
                                            [JOINT_SPHERICAL] = 4,
+                                           [JOINT_UNIVERSAL] = 4,
+                                           [JOINT_FIXED] = 4,
                                            [JOINT_PRISMATIC] = 2,
+                                           [JOINT_CYLINDRICAL] = 2,
+                                           [JOINT_POINT_ON_LINE] = 2,
                                            [JOINT_DISTANCE] = 1,
+                                           [JOINT_POINT_IN_PLANE] = 1,
                                            [JOINT_REVOLUTE_SPHERICAL] = 1};
     int other = joint->body[1 - end];
     bool known = other == BODY_BASE || sequence->body_subset[other] != subset;
-    (void)model;
-    return 2 * merit[joint->type] + known;
+    return merit[joint->type] ? 2 * merit[joint->type] + known : 0;
 }
 
 double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3]
@@ -49,7 +53,7 @@ double (*reference_points(Pool *pool, const Model *model, const Sequence *sequen
                 int body = joint->body[end];
                 if (body == BODY_BASE || sequence->body_subset[body] != s)
                     continue;
-                int merit = joint_merit(model, sequence, s, joint, end);
+                int merit = joint_merit(sequence, s, joint, end);
                 if (merit > best[body]) {
                     best[body] = merit;
                     memcpy(origin[body], joint->point[end], sizeof origin[body]);
@@ -76,9 +80,9 @@ static void make_fixture(Work *w, Connection *tie, int position)
     for (int i = 0; i < members; ++i) {
         const Subset *subset = subset_member(w, i);
         if (tie->is_coordinate)
-            fixture_of_coordinate(w->model, &w->model->coordinate[subset->coordinate[position]], w->origin, number[i]);
+            fixture_of_coordinate(&w->model->coordinate[subset->coordinate[position]], w->origin, number[i]);
         else
-            fixture_of_joint(w->model, &w->model->joint[subset->joint[position]], w->origin, number[i]);
+            fixture_of_joint(&w->model->joint[subset->joint[position]], w->origin, number[i]);
     }
     Ex *out = (Ex *)&tie->fixture;
     for (int j = 0; j < FIXTURE_NUMBERS; ++j) {
@@ -211,32 +215,10 @@ static void make_jacobian(const Work *w, const Row *row, const int *row_of, Ex *
         }
 }
 
-/* ---- factorization with diagnosis ---------------------------------------------------------------------------------- */
+/* ---- factorization ------------------------------------------------------------------------------------------------- */
 
-/* Names of the links whose rows found no pivot. */
-static const char *connections_named(const Work *w, const bool *row_left)
-{
-    Text names = {.pool = w->pool};
-    int last = -1;
-    for (int r = 0; r < w->n; ++r) {
-        if (!row_left[r] || w->row_of[r] == last)
-            continue;
-        const Connection *tie = &w->connection[last = w->row_of[r]];
-        text_print(&names, "%s%s '%s'", names.size ? ", " : "", tie->is_coordinate ? "coordinate" : "joint",
-                   tie->is_coordinate ? w->model->coordinate[tie->index].name : w->model->joint[tie->index].name);
-    }
-    return names.s;
-}
-
-static const char *bodies_named(const Work *w)
-{
-    Text names = {.pool = w->pool};
-    for (int b = 0; b < w->first->bodies; ++b)
-        text_print(&names, "%s'%s'", b ? ", " : "", w->model->body[w->first->body[b]].name);
-    return names.s;
-}
-
-static Factors *factor_or_explain(Work *w)
+/* Pivots good at all samples, else at the design: where the others are lost, scan.c has warned. */
+static Factors *factor(Work *w)
 {
     double column_scale[w->n];
     bool row_left[w->n], design[w->dag->samples];
@@ -248,19 +230,12 @@ static Factors *factor_or_explain(Work *w)
         return f;
     for (int s = 0; s < w->dag->samples; ++s)
         design[s] = s % w->configurations == 0;
-    const char *names = connections_named(w, row_left);
-    Place at = w->model->body[w->first->body[0]].at;
     f = linear_factor(w->dag, w->n, w->J, column_scale, design, &rank, row_left);
-    if (f) {
-        diag_warn(at, "narrow the coordinates' ranges, or choose a coordinate that stays independent",
-                  "inside its range the subset of bodies %s passes a singular configuration: %s", bodies_named(w), names);
+    if (f)
         return f;
-    }
-    names = connections_named(w, row_left);
-    diag_fail(at, "some of these equations repeat others or contradict them at the design configuration: move a point, turn an "
-                  "axis, or replace a joint or coordinate",
-              "bodies %s can't be determined from their joints and coordinates (%d of %d equations are independent): %s",
-              bodies_named(w), rank, w->n, names);
+    Place at = w->model->body[w->first->body[0]].at;
+    diag_fail(at, "move the points or axes of its joints a little", "the equations of body '%s' are too near to singular (%d of %d pivots)",
+              w->model->body[w->first->body[0]].name, rank, w->n);
 }
 
 /* ---- blocks ---------------------------------------------------------------------------------------------------------- */
@@ -449,8 +424,8 @@ static void make_residual(Work *w, Formula *formula)
     block_store(&formula->residual, worst, "worst");
 }
 
-static Work *open_class(Pool *pool, const Model *model, const Sequence *sequence, const Class *class,
-                        const double (*origin)[3], const Sampling *sampling)
+Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, const Class *class, const double (*origin)[3],
+                  const Sampling *sampling)
 {
     Work *w = pool_alloc(pool, sizeof *w);
     const Subset *first = &sequence->subset[class->member[0]];
@@ -476,6 +451,11 @@ static Work *open_class(Pool *pool, const Model *model, const Sequence *sequence
     return w;
 }
 
+int subset_index(const Work *w, int subset)
+{
+    return place_of(w->class->member, w->class->members, subset);
+}
+
 static Layout make_layout(const Work *w, int factors)
 {
     int bodies = w->first->bodies, deps = w->first->deps;
@@ -497,7 +477,7 @@ static Formula *formulate_class(Work *w)
     Formula *formula = pool_alloc(pool, sizeof *formula);
     formula->dag = formula->predict.dag = formula->chord.dag = formula->solve.dag = formula->residual.dag = dag;
     formula->size = w->size;
-    Factors *factors = factor_or_explain(w);
+    Factors *factors = factor(w);
     Ex *stored = pool_alloc(pool, (size_t)(w->n * w->n) * sizeof *stored), *q = pool_alloc(pool, (size_t)(7 * bodies) * sizeof *q);
     int count;
     Factors *remembered = factors_from_memory(w, factors, stored, &count);
@@ -531,12 +511,15 @@ Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence *sequ
     Formula **formula = pool_alloc(pool, (size_t)(sequence->classes + 1) * sizeof *formula);
     Work **work = pool_alloc(pool, (size_t)(sequence->classes + 1) * sizeof *work);
     for (int c = 0; c < sequence->classes; ++c)
-        work[c] = open_class(pool, model, sequence, &sequence->class[c], origin, sampling);
+        work[c] = subset_open(pool, model, sequence, &sequence->class[c], origin, sampling);
     for (int s = 0; s < sequence->subsets; ++s) {
         int c = sequence->subset[s].class;
-        if (c >= 0)
-            subset_follow(work[c], sampling, place_of(work[c]->class->member, work[c]->class->members, s));
+        if (c < 0)
+            continue;
+        subset_explain_singular(work[c], sampling, s);
+        subset_follow(work[c], sampling, subset_index(work[c], s));
     }
+    subsets_scan(pool, model, sequence, work, sampling);
     for (int c = 0; c < sequence->classes; ++c)
         formula[c] = formulate_class(work[c]);
     return formula;

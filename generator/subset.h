@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * One class of subsets while its formulas are made: shared by subset.c, follow.c and inertia.c alone. */
+ * One class of subsets while its formulas are made: shared by the files that treat subsets, and by no other. */
 #ifndef GICGEN_SUBSET_H
 #define GICGEN_SUBSET_H
 
@@ -52,6 +52,33 @@ Ex subset_constant(Work *w, double (*get)(const Work *, int member, int a, int b
 /* follow.c: take one member through its sample paths. Sets the graph's samples of that member to the ends of the paths, w->alive, and what
  * later subsets need of it in `sampling`. */
 void subset_follow(Work *w, Sampling *sampling, int member);
+
+/* follow.c: take one member, at the design values of its coordinates, from the drawing to where all equations hold. q [7 bodies]: its poses
+ * then, relative to the base; they go into step 0 of the sampling. False when it can't be followed. */
+bool subset_assemble(Work *w, Sampling *sampling, int member, double *q);
+
+/* follow.c, pieces for scan.c and singular.c. s: a sample of the class's graph; q [7 bodies]; twists [6 bodies]; slack [n]. */
+void subset_set_known(Work *w, int known, int s, const double pose[12]);
+void subset_set_poses(Work *w, const double *q, int s);
+void subset_move_pose(double q[7], const double twist[6]);
+/* Newton from q, which moves, towards residuals `slack` (NULL: 0). False when it leaps or does not converge. */
+bool subset_converge(Work *w, double *q, int s, const double *slack);
+/* The sample of a subset at the design configuration; q: the poses there. */
+void subset_to_design(Work *w, const Sampling *sampling, int subset, double *q);
+void subset_get_poses(const Work *w, const Subset *member, int s, double (*pose)[12]);
+double subset_determinant(const Work *w, int s);
+
+/* scan.c: warn of coordinates that stop being independent inside their ranges. */
+void subsets_scan(Pool *pool, const Model *model, const Sequence *sequence, Work **work, const Sampling *sampling);
+
+/* singular.c: end with a message when a subset is singular at the design configuration. */
+void subset_explain_singular(Work *w, const Sampling *sampling, int subset);
+
+/* A class with its connections, inputs and equations, ready to be followed. */
+Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, const Class *class, const double (*origin)[3],
+                  const Sampling *sampling);
+/* Which member of the class a subset is. */
+int subset_index(const Work *w, int subset);
 
 /* inertia.c: store what the bodies, moving as given, add to the equations of motion. */
 void subset_inertia(Work *w, const Layout *layout, const Motion *motion, Block *block);

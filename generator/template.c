@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Templates: readable C in which a line that is nothing but a comment with a name between two @ marks is replaced. */
+ * Templates: readable C in which a line that is nothing but a comment with a name between two @ marks is replaced, and a line that
+ * begins with a comment's opening and a minus sign is a remark that is not copied. */
 #include "gicgen.h"
 
 #include <ctype.h>
@@ -79,9 +80,10 @@ void template_expand(Pool *pool, Text *out, const char *templates, const char *n
         size_t length = (size_t)((end ? end : text + size) - line);
         int indent;
         const char *what = insertion(pool, line, length, &indent);
+        bool remark = length >= 3 && !memcmp(line, "/*-", 3);
         if (what) {
             insert(context, what, out, indent);
-        } else {
+        } else if (!remark) {
             expand_line(out, line, length, prefix, upper, class);
             text_print(out, "\n");
         }

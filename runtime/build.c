@@ -31,10 +31,9 @@ static void remove_folder(Pool *pool, const char *folder)
 }
 
 /* Model and runtime as source files. */
-static bool put_sources(Pool *pool, const char *folder, const char *name, const Text *c, const Text *h)
+static bool put_sources(Pool *pool, const char *folder, const Text *c, const Text *h)
 {
-    bool good = put(pool, folder, pool_print(pool, "%s.c", name), c->s, c->size) &&
-                put(pool, folder, pool_print(pool, "%s.h", name), h->s, h->size);
+    bool good = put(pool, folder, "model.c", c->s, c->size) && put(pool, folder, "model.h", h->s, h->size);
     for (const Embedded *file = embedded; good && file->name; ++file)
         if (!strncmp(file->name, "gic_runtime.", strlen("gic_runtime.")))
             good = put(pool, folder, file->name, file->bytes, file->size);
@@ -42,12 +41,12 @@ static bool put_sources(Pool *pool, const char *folder, const char *name, const 
 }
 
 /* Words of the compiler command (a user may add options), then ours. */
-static char *const *compiler_command(Pool *pool, const char *compiler, const char *folder, const char *name)
+static char *const *compiler_command(Pool *pool, const char *compiler, const char *folder)
 {
     const char *const ours[] = {
         "-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-math-errno",
-        "-o", pool_print(pool, "%s/%s.so", folder, name),
-        pool_print(pool, "%s/%s.c", folder, name), pool_print(pool, "%s/gic_runtime.c", folder), "-lm",
+        "-o", pool_print(pool, "%s/model.so", folder),
+        pool_print(pool, "%s/model.c", folder), pool_print(pool, "%s/gic_runtime.c", folder), "-lm",
     };
     char **argv = NULL, *rest;
     int count = 0;
@@ -65,15 +64,15 @@ typedef struct Failure {
     const char *message, *remedy;
 } Failure;
 
-static void *compile_and_load(Pool *pool, const char *folder, const char *name, const char *compiler, const Text *c,
-                              const Text *h, Failure *failure)
+static void *compile_and_load(Pool *pool, const char *folder, const char *compiler, const Text *c, const Text *h,
+                              Failure *failure)
 {
-    if (!put_sources(pool, folder, name, c, h)) {
+    if (!put_sources(pool, folder, c, h)) {
         *failure = (Failure){pool_print(pool, "can't write to %s: %s", folder, strerror(errno)),
                              "make room there, or set TMPDIR to another folder"};
         return NULL;
     }
-    char *const *argv = compiler_command(pool, compiler, folder, name);
+    char *const *argv = compiler_command(pool, compiler, folder);
     const char *said;
     int status = process_run(pool, argv, "", &said);
     if (status == PROCESS_INTERRUPTED)
@@ -90,7 +89,7 @@ static void *compile_and_load(Pool *pool, const char *folder, const char *name, 
                              "is it a C99 compiler with libc headers (Debian: libc6-dev)? Try another one with --cc"};
         return NULL;
     }
-    void *library = dlopen(pool_print(pool, "%s/%s.so", folder, name), RTLD_NOW | RTLD_LOCAL);
+    void *library = dlopen(pool_print(pool, "%s/model.so", folder), RTLD_NOW | RTLD_LOCAL);
     if (!library)
         *failure = (Failure){pool_print(pool, "the compiled model can't be loaded: %s", dlerror()),
                              "if the folder forbids execution, set TMPDIR to one that allows it"};
@@ -102,14 +101,15 @@ const gic_model *build_model(Pool *pool, const Model *model, const char *compile
     Text c = {.pool = pool}, h = {.pool = pool};
     if (!compiler[strspn(compiler, " \t")])
         diag_fail(gicrun_place, "name it: --cc gcc, or set CC", "the compiler command is empty");
-    generate(pool, model, sequence_find(pool, model), NULL, pool_print(pool, "%s.h", model->name), &c, &h);
+    const Sequence *sequence = sequence_find(pool, model);
+    generate(pool, model_assemble(pool, model, sequence), sequence, NULL, "model.h", &c, &h);
 
     interrupt_hold();
     char *folder = pool_print(pool, "%s/gicrun-XXXXXX", temporary_folder());
     Failure failure = {NULL, NULL};
     void *library = NULL;
     if (mkdtemp(folder)) {
-        library = compile_and_load(pool, folder, model->name, compiler, &c, &h, &failure);
+        library = compile_and_load(pool, folder, compiler, &c, &h, &failure);
         remove_folder(pool, folder);
     } else {
         failure = (Failure){pool_print(pool, "can't make a folder in %s: %s", temporary_folder(), strerror(errno)),

@@ -45,11 +45,17 @@ void csv_name(Csv *csv, const char *name, const char *unit)
     fprintf(csv->file, unit ? "%s [%s]" : "%s", name, unit);
 }
 
+void csv_time(Csv *csv, double value)
+{
+    cell(csv);
+    fprintf(csv->file, "%.15g", value);
+}
+
 void csv_number(Csv *csv, double value)
 {
     char text[32];
     cell(csv);
-    snprintf(text, sizeof text, "%.15g", value); /* 0.015 rather than 0.014999999999999999 */
+    snprintf(text, sizeof text, "%.15g", value); /* 0.1 rather than 0.10000000000000001 */
     if (strtod(text, NULL) != value)
         snprintf(text, sizeof text, "%.17g", value);
     fputs(text, csv->file);

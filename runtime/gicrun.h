@@ -107,6 +107,7 @@ typedef struct Csv {
 
 Csv csv_open(Pool *pool, const char *path);
 void csv_name(Csv *csv, const char *name, const char *unit); /* a cell `name [unit]`; unit may be NULL */
+void csv_time(Csv *csv, double value);                       /* to 15 digits: 0.28, as a person would write it */
 void csv_number(Csv *csv, double value);                     /* reads back bit-exactly */
 void csv_text(Csv *csv, const char *text);                   /* in quotes; NULL: an empty cell */
 void csv_end_row(Csv *csv);

@@ -70,7 +70,8 @@ static const char *plot_script(Pool *pool, const Plot *plot, const char *path, c
     text_print(&script, "set terminal %s size %d,%d noenhanced\nset output ",
                ends_with(path, ".svg") ? "svg background 'white'" : "pngcairo", WIDTH, PANEL_HEIGHT * panels + 40);
     quoted(&script, temporary);
-    text_print(&script, "\nset grid\nset key outside center top horizontal\nset lmargin 10\nset multiplot layout %d,1 title ", panels);
+    text_print(&script, "\nset grid\nset key outside center top horizontal\nset lmargin 10\nset tmargin 4\n"
+                        "set multiplot layout %d,1 title ", panels);
     quoted(&script, plot->title);
     text_print(&script, "\n");
     for (int i = 0; i < plot->curves; ++i)

@@ -73,7 +73,8 @@ static void write_header(Run *run)
 static void prepare_plot(Run *run)
 {
     const Scene *scene = run->scene;
-    run->plot.title = run->request->scene;
+    const char *slash = strrchr(run->request->scene, '/');
+    run->plot.title = pool_print(run->pool, "%s: %s", run->model->name, slash ? slash + 1 : run->request->scene);
     run->plot.curves = scene->curves;
     run->plot.name = pool_alloc(run->pool, sizeof *run->plot.name * (size_t)scene->curves);
     run->plot.unit = pool_alloc(run->pool, sizeof *run->plot.unit * (size_t)scene->curves);
@@ -98,7 +99,7 @@ static void record(Run *run)
     const Scene *scene = run->scene;
     const double *output = instance_array(run->copy, run->model->output_offset), time = gic_time(run->self);
     if (run->csv.file) {
-        csv_number(&run->csv, time);
+        csv_time(&run->csv, time);
         for (int i = 0; i < scene->columns; ++i)
             csv_number(&run->csv, output[scene->column[i]]);
         csv_end_row(&run->csv);

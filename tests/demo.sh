@@ -5,4 +5,5 @@
 set -e
 cd "$(dirname "$0")/.."
 sh tests/install.sh
-exec make --no-print-directory demo
+echo "Building ..." >&2
+exec make --no-print-directory -s demo

@@ -42,4 +42,4 @@ done
 if [ -s "$work/again" ] && cmp -s "$work/dump" "$work/again"; then pass; else fail "standard input gives another dump than the file"; fi
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 6 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 9 ]

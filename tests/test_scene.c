@@ -96,7 +96,8 @@ static void test_initial(void **unused)
     Pool *pool = pool_new();
     const double yaw = 0.7, pitch = -0.4, roll = 2.1;
     const Scene *scene = scene_of(pool, "initial: {orientation: {yaw: 0.7, pitch: -0.4, roll: 2.1}, speed: 3,\n"
-                                        "  angular_velocity: [1, 2, 3], coordinates: {lift: 0.03}, rates: {lift: -2}}\n");
+                                        "  angular_velocity: [1, 2, 3],\n"
+                                        "  coordinates: {lift: 0.03}, rates: {lift: -2}}\n");
     /* Rz(yaw) Ry(pitch) Rx(roll), written out */
     const double expected[9] = {
         cos(yaw) * cos(pitch), cos(yaw) * sin(pitch) * sin(roll) - sin(yaw) * cos(roll),
@@ -114,7 +115,8 @@ static void test_initial(void **unused)
     }
     assert_true(scene->value[1] == 0.03 && scene->rate[1] == -2);
 
-    scene = scene_of(pool, "initial: {orientation: {euler: [0, 0.6, 0, -0.8]}, velocity: [1, 2, 3], position: [7, 8, 9]}\n");
+    scene = scene_of(pool, "initial: {orientation: {euler: [0, 0.6, 0, -0.8]},\n"
+                           "  velocity: [1, 2, 3], position: [7, 8, 9]}\n");
     assert_near(scene->euler[1], 0.6, 1e-15);
     assert_near(scene->euler[3], -0.8, 1e-15);
     assert_true(scene->velocity[2] == 3 && scene->position[0] == 7);
@@ -192,11 +194,13 @@ static void test_profiles(void **unused)
     (void)unused;
     Pool *pool = pool_new();
     double out[3];
-    const Scene *scene = scene_of(pool, "inputs: {rack: {knots: {times: [0.2, 0.7, 1.9], values: [0.01, 0.04, -0.03]}}}\n");
+    const Scene *scene = scene_of(pool, "inputs:\n  rack: {knots: {times: [0.2, 0.7, 1.9],\n"
+                                        "                 values: [0.01, 0.04, -0.03]}}\n");
     const Profile *profile = scene->profile;
     assert_true(scene->profiles == 1 && profile->input == 0 && profile->driven);
     check_profile(profile, 2.5, 60 * 0.03 / pow(0.5, 3));
-    const double knots[][2] = {{-1, 0.01}, {0.2, 0.01}, {0.45, 0.025}, {0.7, 0.04}, {1.3, 0.005}, {1.9, -0.03}, {5, -0.03}};
+    const double knots[][2] = {{-1, 0.01},   {0.2, 0.01},  {0.45, 0.025}, {0.7, 0.04},
+                               {1.3, 0.005}, {1.9, -0.03}, {5, -0.03}};
     for (size_t i = 0; i < sizeof knots / sizeof *knots; ++i) {
         profile_at(profile, knots[i][0], out);
         assert_near(out[0], knots[i][1], 1e-16);

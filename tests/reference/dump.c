@@ -96,6 +96,7 @@ static void read_force(Force *force, const Json *json, const Model *model)
     force->stiffness = json_number(json, "stiffness");
     force->damping = json_number(json, "damping");
     force->free = json_number(json, "free");
+    force->constant = json_number(json, "constant");
 }
 
 static void read_wheel(Wheel *wheel, const Json *json, int bodies)

@@ -34,6 +34,7 @@ typedef struct Force {
     int coordinate; /* -1: between points */
     int body[2];    /* GROUND possible */
     double point[2][3], stiffness, damping, free;
+    double constant; /* added along the coordinate */
 } Force;
 
 typedef struct Wheel {

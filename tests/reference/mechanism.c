@@ -360,7 +360,7 @@ void add_force_element(const Model *model, const Configuration *configuration, c
         return;
     }
     int c = element->coordinate;
-    quad along = -(quad)element->stiffness * (configuration->w[c] - element->free)
+    quad along = element->constant - (quad)element->stiffness * (configuration->w[c] - element->free)
                  - (quad)element->damping * configuration->w_rate[c];
     /* virtual work: along * dw, with dw = -(dc/dq dq) / (dc/dw) */
     const Row *row = &rows[joint_row(model, model->joints) + c];

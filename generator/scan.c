@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT
+ * Where along its range does a coordinate stop being independent? Each coordinate is moved alone from its design value to both ends of
+ * its range; a subset whose determinant changes its sign, or that can't be followed, marks the place. */
+#include "subset.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct Scan {
+    Pool *pool;
+    const Model *model;
+    const Sequence *sequence;
+    Work **work;
+    const Sampling *sampling;
+    int coordinate;
+    double **q;          /* [subsets] poses of its bodies at the last good value */
+    double (*pose)[12];  /* [bodies] c, A of all bodies at the present value */
+    double *determinant; /* [subsets] scaled, at the design */
+} Scan;
+
+static bool depends(const Subset *subset, int coordinate)
+{
+    for (int j = 0; j < subset->deps; ++j)
+        if (subset->dep[j] == coordinate)
+            return true;
+    return false;
+}
+
+/* Recover one subset with the scanned coordinate at `value`, from q, which moves. False where it is lost. */
+static bool scan_subset(Scan *scan, int s, double value, double *q)
+{
+    const Subset *subset = &scan->sequence->subset[s];
+    Work *w = scan->work[subset->class];
+    int sample = subset_index(w, s) * w->configurations;
+    for (int j = 0; j < subset->deps; ++j) {
+        int dep = subset->dep[j];
+        ex_set_sample(w->dag, w->x[j], sample, dep == scan->coordinate ? value : scan->model->coordinate[dep].design);
+    }
+    for (int i = 0; i < subset->knowns; ++i)
+        subset_set_known(w, i, sample, scan->pose[subset->known[i]]);
+    if (!subset_converge(w, q, sample, NULL))
+        return false;
+    subset_get_poses(w, subset, sample, scan->pose);
+    double determinant = subset_determinant(w, sample);
+    return determinant * scan->determinant[s] > 0;
+}
+
+/* All subsets that follow the coordinate, at `value`; q is updated where all of them are good. Returns the lost one, or -1. */
+static int scan_value(Scan *scan, double value)
+{
+    const Sequence *sequence = scan->sequence;
+    double *moved[sequence->subsets];
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        moved[s] = NULL;
+        if (subset->class < 0 || !depends(subset, scan->coordinate))
+            continue;
+        size_t size = (size_t)(7 * subset->bodies) * sizeof(double);
+        moved[s] = pool_grow(scan->pool, scan->q[s], size, size);
+        if (!scan_subset(scan, s, value, moved[s]))
+            return s;
+    }
+    for (int s = 0; s < sequence->subsets; ++s)
+        if (moved[s])
+            scan->q[s] = moved[s];
+    return -1;
+}
+
+/* Put every subset that follows the coordinate back to the design. */
+static void reset(Scan *scan)
+{
+    for (int b = 0; b < scan->model->bodies; ++b)
+        memcpy(scan->pose[b], sampling_pose(scan->sampling, 0, 0, b), sizeof scan->pose[b]);
+    for (int s = 0; s < scan->sequence->subsets; ++s) {
+        const Subset *subset = &scan->sequence->subset[s];
+        if (subset->class < 0 || !depends(subset, scan->coordinate))
+            continue;
+        Work *w = scan->work[subset->class];
+        int sample = subset_index(w, s) * w->configurations;
+        scan->q[s] = pool_alloc(scan->pool, (size_t)(7 * subset->bodies) * sizeof(double));
+        subset_to_design(w, scan->sampling, s, scan->q[s]);
+        scan->determinant[s] = subset_determinant(w, sample);
+    }
+}
+
+static void scan_end(Scan *scan, double end)
+{
+    const int steps_least = 8, steps_most = 400, halvings = 20;
+    const double turn = 0.1; /* of a body in one step, or move relative to the subset's size */
+    const Coordinate *c = &scan->model->coordinate[scan->coordinate];
+    double wanted = fabs(end - c->design) * scan->sampling->swing[scan->coordinate] / turn;
+    int steps = wanted < steps_least ? steps_least : wanted > steps_most ? steps_most : (int)wanted;
+    reset(scan);
+    for (int step = 1; step <= steps; ++step) {
+        double good = c->design + (end - c->design) * (step - 1) / steps, bad = c->design + (end - c->design) * step / steps;
+        int lost = scan_value(scan, bad);
+        if (lost < 0)
+            continue;
+        for (int i = 0; i < halvings; ++i) {
+            double middle = good + (bad - good) / 2;
+            if (scan_value(scan, middle) < 0)
+                good = middle;
+            else
+                bad = middle;
+        }
+        Text bodies = {.pool = scan->pool};
+        for (int b = 0; b < scan->sequence->subset[lost].bodies; ++b)
+            text_print(&bodies, "%s'%s'", b ? ", " : "", scan->model->body[scan->sequence->subset[lost].body[b]].name);
+        diag_warn(c->at, "end the range before that value, or choose a coordinate that keeps determining these bodies",
+                  "coordinate '%s' stops being independent at %.6g, inside its range [%g, %g]: beyond it bodies %s are no longer "
+                  "determined (the others at their design values)",
+                  c->name, good, c->range[0], c->range[1], bodies.s);
+        return;
+    }
+}
+
+void subsets_scan(Pool *pool, const Model *model, const Sequence *sequence, Work **work, const Sampling *sampling)
+{
+    size_t subsets = (size_t)sequence->subsets + 1;
+    Scan scan = {.pool = pool,
+                 .model = model,
+                 .sequence = sequence,
+                 .work = work,
+                 .sampling = sampling,
+                 .q = pool_alloc(pool, subsets * sizeof *scan.q),
+                 .pose = pool_alloc(pool, (size_t)model->bodies * sizeof *scan.pose),
+                 .determinant = pool_alloc(pool, subsets * sizeof *scan.determinant)};
+    for (scan.coordinate = 0; scan.coordinate < model->coordinates; ++scan.coordinate) {
+        for (int end = 0; end < 2; ++end)
+            scan_end(&scan, model->coordinate[scan.coordinate].range[end]);
+        reset(&scan); /* the samples belong to the design again */
+    }
+}
