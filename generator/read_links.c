@@ -190,7 +190,8 @@ static double link_number(const Value *given, double drawn, double length, Joint
 /* Points of a link, its length and, hinged about an axis, the offset along that. */
 static void link_set(const Reader *reader, const Value *value, const Entry *entry, Joint *joint)
 {
-    const Value *points = value + LINK_POINTS, *given_length = value + LINK_LENGTH, *given_offset = value + LINK_OFFSET;
+    const Value *points = value + LINK_POINTS;
+    const Value *given_length = value + LINK_LENGTH, *given_offset = value + LINK_OFFSET;
     double d[3], drawn = points_distance(points, entry->what, d);
     for (int i = 0; i < 2; ++i)
         body_point(reader, joint->body[i], points->number + 3 * i, points->item->value[i]->at, joint->point[i]);

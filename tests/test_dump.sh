@@ -39,7 +39,11 @@ done
 
 # `-` is standard input
 "$gicgen" --dump-model - <"$here/dump/free_base.veh" >"$work/again"
-if [ -s "$work/again" ] && cmp -s "$work/dump" "$work/again"; then pass; else fail "standard input gives another dump than the file"; fi
+if [ -s "$work/again" ] && cmp -s "$work/dump" "$work/again"; then
+    pass
+else
+    fail "standard input gives another dump than the file"
+fi
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ] && [ "$passed" -ge 9 ]
