@@ -141,25 +141,109 @@ static void coordinates(Text *out, const Model *model)
     }
 }
 
+/* A formula as nested lists, operator first; parameters as their values. */
+static void formula(Text *out, const Law *law, const Model *model)
+{
+    static const char *const word[] = {[LAW_INPUT] = "input", [LAW_VALUE] = "value", [LAW_RATE] = "rate", [LAW_TABLE] = "table"};
+    switch (law->op) {
+    case LAW_NUMBER:
+    case LAW_PARAMETER:
+        text_print(out, "%.17g", law_number(law, model));
+        return;
+    case LAW_TIME:
+    case LAW_LOCAL:
+        text_print(out, "[\"%s\"]", law->name);
+        return;
+    case LAW_CALL:
+        text_print(out, "[\"%s\"", law->name);
+        break;
+    default:
+        text_print(out, "[\"%s\", %d", word[law->op], law->index);
+    }
+    for (int i = 0; i < 3 && law->arg[i]; ++i) {
+        add(out, ", ");
+        formula(out, law->arg[i], model);
+    }
+    add(out, "]");
+}
+
 static void forces(Text *out, const Model *model)
 {
+    static const char *const type[FORCE_TYPES] = {[FORCE_COORDINATE] = "coordinate",
+                                                  [FORCE_POINTS] = "points",
+                                                  [FORCE_COORDINATE_LAW] = "coordinate_law",
+                                                  [FORCE_POINTS_LAW] = "points_law",
+                                                  [FORCE_LOAD] = "load"};
     for (int i = 0; i < model->forces; ++i) {
         const Force *force = model->force + i;
-        bool points = force->type == FORCE_POINTS;
+        bool spring = force->stiffness, along = force->coordinate >= 0;
+        double number[3] = {0};
+        if (spring) {
+            number[0] = law_number(force->stiffness, model);
+            number[1] = law_number(force->damping, model);
+            number[2] = law_number(force->free, model);
+        }
         begin(out, i, force->name);
-        text_pair(out, "type", points ? "points" : force->type == FORCE_CONSTANT ? "constant" : "coordinate");
+        text_pair(out, "type", type[force->type]);
         integer_pair(out, "coordinate", force->coordinate);
         for (int k = 0; k < 2; ++k)
-            if (points)
+            if (!along)
                 integer_pair(out, k ? "b" : "a", force->body[k]);
             else
                 number_pair(out, k ? "b" : "a", NULL, 0, false);
-        number_pair(out, "point_a", force->point[0], 3, points);
-        number_pair(out, "point_b", force->point[1], 3, points);
-        number_pair(out, "stiffness", &force->stiffness, 0, true);
-        number_pair(out, "damping", &force->damping, 0, true);
-        number_pair(out, "free", &force->free, 0, true);
-        number_pair(out, "constant", &force->constant, 0, true);
+        number_pair(out, "point_a", force->point[0], 3, !along);
+        number_pair(out, "point_b", force->point[1], 3, !along && force->type != FORCE_LOAD);
+        number_pair(out, "stiffness", &number[0], 0, spring);
+        number_pair(out, "damping", &number[1], 0, spring);
+        number_pair(out, "free", &number[2], 0, spring);
+        key(out, "law");
+        add(out, "[");
+        for (int k = 0; k < (force->type == FORCE_LOAD ? 6 : !spring); ++k) {
+            add(out, k ? ", " : "");
+            if (force->law[k])
+                formula(out, force->law[k], model);
+            else
+                add(out, "0");
+        }
+        add(out, "]}");
+    }
+}
+
+static void tables(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->tables; ++i) {
+        const Table *table = model->table + i;
+        begin(out, i, table->name);
+        key(out, "x");
+        vector(out, table->x, table->count);
+        key(out, "y");
+        vector(out, table->y, table->count);
+        text_pair(out, "interpolation", table->cubic ? "cubic" : "linear");
+        text_pair(out, "beyond", table->onward ? "linear" : "constant");
+        add(out, "}");
+    }
+}
+
+static void parameters(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->parameters; ++i) {
+        const Parameter *parameter = model->parameter + i;
+        begin(out, i, parameter->name);
+        text_pair(out, "unit", parameter->unit);
+        number_pair(out, "value", &parameter->value, 0, true);
+        key(out, "tunable");
+        add(out, parameter->tunable ? "true}" : "false}");
+    }
+}
+
+static void ports(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->ports; ++i) {
+        const Port *port = model->port + i;
+        begin(out, i, port->name);
+        integer_pair(out, "body", port->body);
+        number_pair(out, "point", port->point, 3, true);
+        integer_pair(out, "in", port->in);
         add(out, "}");
     }
 }
@@ -244,7 +328,8 @@ void model_dump(Text *out, const Model *model, const Sequence *sequence)
         void (*entries)(Text *out, const Model *model);
     } list[] = {
         {"bodies", bodies}, {"joints", joints}, {"coordinates", coordinates}, {"forces", forces},
-        {"wheels", wheels}, {"inputs", inputs}, {"outputs", outputs},
+        {"wheels", wheels}, {"inputs", inputs}, {"parameters", parameters}, {"tables", tables},
+        {"ports", ports},   {"outputs", outputs},
     };
     add(out, "{\"gicgen_dump\": 1");
     text_pair(out, "model", model->name);

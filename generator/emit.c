@@ -127,6 +127,12 @@ static void write_text(Emitter *m, Text *line, Ex e, int strength)
         text_print(line, "road%d[%d]", m->temporary[node->arg[0]], (int)node->arg[1]);
         return;
     }
+    if (node->op == OP_TABLE) {
+        text_print(line, "gic_table_value(&table[%d], ", (int)node->arg[1]);
+        write_text(m, line, node->arg[0], 0);
+        text_print(line, ")");
+        return;
+    }
     int own = strength_of(node);
     if (own < strength)
         text_print(line, "(");

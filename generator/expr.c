@@ -3,6 +3,7 @@
 #include "gicgen.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const int op_arity[OP_COUNT] = {
@@ -131,7 +132,7 @@ void portable_sincos(double x, double *sine, double *cosine)
     }
 }
 
-static double op_evaluate(Op op, double a, double b, double c)
+double op_value(Op op, double a, double b, double c)
 {
     double sine, cosine;
     switch (op) {
@@ -144,12 +145,19 @@ static double op_evaluate(Op op, double a, double b, double c)
     case OP_ABS: return fabs(a);
     case OP_SIN: portable_sincos(a, &sine, &cosine); return sine;
     case OP_COS: portable_sincos(a, &sine, &cosine); return cosine;
+    case OP_TAN: return tan(a);
     case OP_ASIN: return asin(a);
+    case OP_ACOS: return acos(a);
+    case OP_ATAN: return atan(a);
+    case OP_EXP: return exp(a);
+    case OP_LOG: return log(a);
+    case OP_TANH: return tanh(a);
+    case OP_POW: return pow(a, b);
     case OP_ATAN2: return atan2(a, b);
     case OP_MIN: return a < b ? a : b;
     case OP_MAX: return a > b ? a : b;
     case OP_POSITIVE: return a > 0 ? b : c;
-    default: return 0; /* the road is not known before run time: flat */
+    default: return 0; /* roads and tables are not known to the graph: flat */
     }
 }
 
@@ -160,7 +168,7 @@ static void node_evaluate(const Dag *dag, const Node *node, double *out, int fir
     const double *a = dag->value + node->arg[0] * samples, *b = dag->value + node->arg[1] * samples,
                  *c = dag->value + node->arg[2] * samples;
     for (int s = first; s < first + count; ++s)
-        out[s] = op_evaluate((Op)node->op, a[s], b[s], c[s]);
+        out[s] = op_value((Op)node->op, a[s], b[s], c[s]);
 }
 
 Ex ex_literal(Dag *dag, double value)
@@ -212,10 +220,10 @@ Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c)
     for (int i = 0; i < arity; ++i)
         if (dag->node[node.arg[i]].level > node.level)
             node.level = dag->node[node.arg[i]].level;
-    if (op == OP_ROAD || op == OP_ROAD_PART)
+    if (op == OP_ROAD || op == OP_ROAD_PART || op == OP_TABLE)
         node.level = LEVEL_VARIABLE;
     double sample[dag->samples];
-    if (op == OP_ROAD_PART) {
+    if (op == OP_ROAD_PART || op == OP_TABLE) {
         memset(sample, 0, sizeof sample);
         return intern(dag, &node, sample);
     }
@@ -322,6 +330,19 @@ Ex ex_sqrt(Dag *dag, Ex a)
     return ex_op(dag, OP_SQRT, a, 0, 0);
 }
 
+Ex ex_pow(Dag *dag, Ex a, Ex b)
+{
+    const int exponent_most = 8;
+    double exponent = dag->node[b].op == OP_LITERAL ? ex_value(dag, b, 0) : 0.5;
+    int n = fabs(exponent) <= exponent_most ? (int)exponent : 0;
+    if (exponent != n || dag->node[b].op != OP_LITERAL)
+        return ex_op(dag, OP_POW, a, b, 0);
+    Ex product = ex_literal(dag, 1);
+    for (int i = 0; i < abs(n); ++i)
+        product = ex_mul(dag, product, a);
+    return n < 0 ? ex_div(dag, ex_literal(dag, 1), product) : product;
+}
+
 Ex ex_dot(Dag *dag, const Ex a[3], const Ex b[3])
 {
     return ex_add(dag, ex_add(dag, ex_mul(dag, a[0], b[0]), ex_mul(dag, a[1], b[1])), ex_mul(dag, a[2], b[2]));
@@ -392,7 +413,8 @@ void dag_evaluate(Dag *dag, int first, int count)
 {
     for (Ex e = 0; e < (Ex)dag->nodes; ++e) {
         const Node *node = &dag->node[e];
-        if (node->level == LEVEL_VARIABLE && node->op != OP_INPUT && node->op != OP_ROAD_PART)
+        if (node->level == LEVEL_VARIABLE && node->op != OP_INPUT && node->op != OP_ROAD_PART &&
+            node->op != OP_TABLE)
             node_evaluate(dag, node, dag->value + (size_t)e * (size_t)dag->samples, first, count);
     }
 }

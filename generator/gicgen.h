@@ -124,6 +124,45 @@ void doc_vector(const Item *item, const char *what, double *out, int size);
 /* Every key of `map` must be one of `allowed`; the message lists them and suggests the nearest. */
 void doc_check_keys(const Item *map, const char *what, const char *const *allowed, int count);
 
+/* ---- law.c: formulas of force laws, as FORMAT.md section 10 defines them -------------------------------------------- */
+
+typedef enum LawOp {
+    LAW_NUMBER,    /* number */
+    LAW_PARAMETER, /* index */
+    LAW_INPUT,     /* index */
+    LAW_VALUE,     /* of coordinate index */
+    LAW_RATE,
+    LAW_TIME,
+    LAW_LOCAL,     /* index: what the place of the formula offers, such as `length` */
+    LAW_TABLE,     /* index, arg[0] */
+    LAW_CALL       /* op `call` of the expression graph with arguments */
+} LawOp;
+
+typedef struct Law {
+    LawOp op;
+    int call; /* an Op */
+    double number;
+    int index;
+    const struct Law *arg[3];
+    const char *name; /* as written, for the dump */
+} Law;
+
+/* What the names in a formula mean. */
+typedef struct LawNames {
+    const struct Model *model;  /* coordinates, inputs, parameters, tables */
+    const char *const *local;   /* names of this place, or NULL */
+    int locals;
+    bool constant;              /* nothing but numbers and parameters is allowed */
+    const char *remedy;         /* why, when that is broken */
+} LawNames;
+
+/* Parse a scalar of the file as a formula; mistakes end in diag_fail at their place inside the text. */
+const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNames *names);
+/* Does the law change at run time through a tunable parameter? */
+bool law_is_tunable(const Law *law, const struct Model *model);
+/* Its value with parameters at their file's values, for laws of numbers and parameters alone. */
+double law_number(const Law *law, const struct Model *model);
+
 /* ---- read.c, dump.c: the model, as models/FORMAT.md defines it ----------------------------------- */
 
 enum { BODY_BASE = 0, BODY_GROUND = -1 };
@@ -186,18 +225,54 @@ typedef struct Input {
     double initial;
 } Input;
 
-typedef enum ForceType { FORCE_COORDINATE, FORCE_POINTS, FORCE_CONSTANT, FORCE_TYPES } ForceType;
+typedef struct Parameter {
+    const char *name, *unit;
+    Place at;
+    double value;
+    bool tunable;
+    int index; /* tunable: place among parameters at run time */
+} Parameter;
+
+/* y over rising x; slopes make it a monotone cubic (FORMAT.md section 7). */
+typedef struct Table {
+    const char *name;
+    Place at;
+    int count;
+    double *x, *y, *slope;
+    bool cubic;
+    bool onward; /* beyond the ends: goes on straight; else constant */
+} Table;
+
+/* An external force and torque on a body, supplied at run time. */
+typedef struct Port {
+    const char *name;
+    Place at;
+    int body, in;
+    double point[3];
+} Port;
+
+typedef enum ForceType {
+    FORCE_COORDINATE,     /* spring and damper along a coordinate */
+    FORCE_POINTS,         /* spring and damper between points */
+    FORCE_COORDINATE_LAW, /* any law along a coordinate */
+    FORCE_POINTS_LAW,     /* any law between points */
+    FORCE_LOAD,           /* force and torque on a body */
+    FORCE_TYPES
+} ForceType;
 
 typedef struct Force {
     const char *name;
     Place at;
     ForceType type;
-    int coordinate; /* FORCE_COORDINATE, FORCE_CONSTANT */
-    int body[2];    /* FORCE_POINTS; BODY_GROUND possible */
+    int coordinate; /* along a coordinate, else -1 */
+    int body[2];    /* between points, BODY_GROUND possible; FORCE_LOAD: body, and in whose frame */
     double point[2][3];
-    double stiffness, damping, free;
-    double constant; /* FORCE_CONSTANT: generalised force along the coordinate */
+    const struct Law *stiffness, *damping, *free; /* of numbers and parameters */
+    const struct Law *law[6]; /* [0]: generalised force or tension; FORCE_LOAD: force, torque, NULL: 0 */
 } Force;
+
+enum { FORCE_LOCALS = 2 }; /* of FORCE_POINTS_LAW: length, speed */
+extern const char *const force_local[FORCE_LOCALS];
 
 typedef struct Wheel {
     const char *name;
@@ -243,6 +318,7 @@ typedef struct Model {
     double gravity[3];
     bool free_base; /* body 0 is the base: the chassis, or ground with mass 0 */
     int bodies, joints, coordinates, forces, wheels, inputs, outputs, output_components;
+    int parameters, tunables, tables, ports;
     Body *body;
     Joint *joint;
     Coordinate *coordinate;
@@ -250,6 +326,9 @@ typedef struct Model {
     Wheel *wheel;
     Input *input;
     Output *output;
+    Parameter *parameter;
+    Table *table;
+    Port *port;
 } Model;
 
 extern const char *const joint_type_name[JOINT_TYPES];           /* as in the file: "revolute" */
@@ -321,11 +400,19 @@ typedef uint32_t Ex;
     X(OP_ABS, 1, "GIC_FABS(%0)", "") \
     X(OP_SIN, 1, "GIC_SIN(%0)", "function") \
     X(OP_COS, 1, "GIC_COS(%0)", "function") \
+    X(OP_TAN, 1, "GIC_TAN(%0)", "function") \
     X(OP_ASIN, 1, "GIC_ASIN(%0)", "function") \
+    X(OP_ACOS, 1, "GIC_ACOS(%0)", "function") \
+    X(OP_ATAN, 1, "GIC_ATAN(%0)", "function") \
+    X(OP_EXP, 1, "GIC_EXP(%0)", "function") \
+    X(OP_LOG, 1, "GIC_LOG(%0)", "function") \
+    X(OP_TANH, 1, "GIC_TANH(%0)", "function") \
+    X(OP_POW, 2, "GIC_POW(%0, %1)", "function") \
     X(OP_ATAN2, 2, "GIC_ATAN2(%0, %1)", "function") \
     X(OP_MIN, 2, "GIC_MIN(%0, %1)", "") \
     X(OP_MAX, 2, "GIC_MAX(%0, %1)", "") \
     X(OP_POSITIVE, 3, "(%0 > GIC_R(0) ? %1 : %2)", "") \
+    X(OP_TABLE, 1, "", "function") \
     X(OP_ROAD, 2, "", "function") \
     X(OP_ROAD_PART, 1, "", "")
 
@@ -341,7 +428,7 @@ typedef enum Level { LEVEL_LITERAL, LEVEL_CONSTANT, LEVEL_VARIABLE } Level;
 
 typedef struct Node {
     uint8_t op, level;
-    Ex arg[3];        /* OP_ROAD_PART: arg[1] is 0, 1 or 2 for h, dh/dx, dh/dy */
+    Ex arg[3];        /* OP_ROAD_PART: arg[1] is 0, 1 or 2 for h, dh/dx, dh/dy; OP_TABLE: arg[1] is the table's index */
     const char *name; /* OP_INPUT: the C expression that reads it */
 } Node;
 
@@ -377,11 +464,14 @@ void ex_zero3(Dag *dag, Ex out[3]);
 void ex_apply(Dag *dag, const Ex A[9], const Ex x[3], Ex out[3]);            /* A x; out may not alias x */
 void ex_apply_transposed(Dag *dag, const Ex A[9], const Ex x[3], Ex out[3]); /* A^T x */
 void ex_rotation(Dag *dag, const Ex p[4], Ex A[9]);                          /* A(p), p normalized */
+Ex ex_pow(Dag *dag, Ex a, Ex b);                                             /* small whole exponents by products */
 bool ex_is(const Dag *dag, Ex e, double value);                              /* the literal `value`? */
 double ex_value(const Dag *dag, Ex e, int sample);
 void ex_set_sample(Dag *dag, Ex input, int sample, double value);
 /* Recompute samples first .. first + count - 1 of every node after inputs changed. */
 void dag_evaluate(Dag *dag, int first, int count);
+/* What an operation does to numbers. */
+double op_value(Op op, double a, double b, double c);
 /* sin and cos without libm: the same digits on every machine. */
 void portable_sincos(double x, double *sine, double *cosine);
 
@@ -604,6 +694,12 @@ void whole_inertia(Whole *whole, int body, Ex J[6]);
 void whole_unit_velocity(Whole *whole, int body, const Vector *point, int coordinate, Ex linear[3], Ex angular[3]);
 /* Coordinates that a body's motion depends on. */
 const Subset *whole_subset(const Whole *whole, int body);
+
+/* ---- table.c: tables of FORMAT.md section 7 ------------------------------------------------------------------------ */
+
+/* Slopes of the monotone cubic (Fritsch and Carlson), from x and y. */
+void table_slopes(Table *table);
+double table_value(const Table *table, double x);
 
 /* ---- loads.c: applied forces -------------------------------------------------------------------------------------- */
 

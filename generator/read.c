@@ -18,6 +18,9 @@ enum {
     FILE_JOINTS,
     FILE_COORDINATES,
     FILE_INPUTS,
+    FILE_PARAMETERS,
+    FILE_TABLES,
+    FILE_PORTS,
     FILE_FORCES,
     FILE_WHEELS,
     FILE_OUTPUTS,
@@ -35,6 +38,9 @@ static const Key file_key[FILE_KEYS] = {
     [FILE_JOINTS] = {"joints", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_COORDINATES] = {"coordinates", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_INPUTS] = {"inputs", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_PARAMETERS] = {"parameters", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_TABLES] = {"tables", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_PORTS] = {"ports", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_FORCES] = {"forces", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_WHEELS] = {"wheels", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_OUTPUTS] = {"outputs", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
@@ -65,7 +71,7 @@ static void points_read(Reader *reader, const Item *map)
     reader->point = pool_alloc(reader->pool, sizeof *reader->point * (size_t)(reader->points + 1));
     for (int i = 0; i < reader->points; ++i) {
         reader->point[i].name = entry[i].name;
-        doc_vector(entry[i].item, entry[i].what, reader->point[i].x, 3);
+        vector_read(reader, entry[i].item, entry[i].what, reader->point[i].x, 3);
     }
 }
 
@@ -86,11 +92,14 @@ const Model *model_read(Pool *pool, const char *path)
     model_name_check(model->name, value[FILE_MODEL].item->at);
     if (value[FILE_GRAVITY].item)
         memcpy(model->gravity, value[FILE_GRAVITY].number, sizeof model->gravity);
+    parameters_read(&reader, value[FILE_PARAMETERS].item);
+    tables_read(&reader, value[FILE_TABLES].item);
     points_read(&reader, value[FILE_POINTS].item);
     bodies_read(&reader, value[FILE_BASE].item, value[FILE_BODIES].item);
     joints_read(&reader, value[FILE_JOINTS].item);
     coordinates_read(&reader, value[FILE_COORDINATES].item);
     inputs_read(&reader, value[FILE_INPUTS].item);
+    ports_read(&reader, value[FILE_PORTS].item);
     forces_read(&reader, value[FILE_FORCES].item);
     wheels_read(&reader, value[FILE_WHEELS].item);
     outputs_read(&reader, value[FILE_OUTPUTS].item);

@@ -90,6 +90,9 @@ Entry *section_entries(Reader *reader, const Item *map, const char *thing, int *
 int section_type(Reader *reader, const Section *section, const Entry *entry);
 /* Check an entry against the keys of a form and read them: value[k] belongs to section->key[k]. */
 void section_read(Reader *reader, const Section *section, int form, const Entry *entry, Value *value);
+/* A number, or a formula of parameters that are not tunable; a vector of such. */
+double number_read(Reader *reader, const Item *item, const char *what);
+void vector_read(Reader *reader, const Item *item, const char *what, double *out, int size);
 /* The prefix of all generated names must be an identifier that C and C++ leave free. */
 void model_name_check(const char *name, Place at);
 /* A text that ends up in a comment and in a string of the generated code: one line. */
@@ -107,6 +110,12 @@ void body_point(const Reader *reader, int body, const double x[3], Place at, dou
 void body_direction(const Reader *reader, int body, const double x[3], double out[3]);
 
 /* ---- read_links.c: joints and dual coordinates; read_loads.c: inputs, forces, wheels; read_outputs.c ---- */
+
+/* ---- read_laws.c: parameters, tables, ports ---- */
+
+void parameters_read(Reader *reader, const Item *map);
+void tables_read(Reader *reader, const Item *map);
+void ports_read(Reader *reader, const Item *map);
 
 void joints_read(Reader *reader, const Item *map);
 void coordinates_read(Reader *reader, const Item *map);

@@ -72,7 +72,7 @@ static void inertia_read(Reader *reader, const Item *item, const Entry *body, do
         for (int i = 0; i < 6; ++i)
             inertia[i] = value[i].number[0];
     } else if (item->kind == ITEM_LIST && item->count == 3)
-        doc_vector(item, what, inertia, 3);
+        vector_read(reader, item, what, inertia, 3);
     else
         diag_fail(item->at, "write [Ixx, Iyy, Izz] or {xx: , yy: , zz: , xy: , xz: , yz: }",
                   "%s must be a list of three numbers or a map", what);

@@ -159,6 +159,47 @@ static void find_bodies(Reader *reader, const Item *item, const char *what, bool
         diag_fail(item->value[1]->at, "name two different bodies", "%s: both are '%s'", what, item->value[1]->text);
 }
 
+/* Does the text mention a parameter? Then it is a formula; anything else that is no number gets doc_number's message. */
+static bool mentions_parameter(const Reader *reader, const Item *item)
+{
+    for (int i = 0; item->kind == ITEM_SCALAR && i < reader->model->parameters; ++i) {
+        const char *name = reader->model->parameter[i].name;
+        size_t length = strlen(name);
+        for (const char *s = item->text; (s = strstr(s, name)); s += length) {
+            bool begins = s == item->text || !(isalnum((unsigned char)s[-1]) || s[-1] == '_');
+            if (begins && !isalnum((unsigned char)s[length]) && s[length] != '_')
+                return true;
+        }
+    }
+    return false;
+}
+
+double number_read(Reader *reader, const Item *item, const char *what)
+{
+    if (!mentions_parameter(reader, item))
+        return doc_number(item, what);
+    LawNames names = {.model = reader->model, .constant = true, .remedy = "put what changes with time into a force element"};
+    const Law *law = law_parse(reader->pool, item, what, &names);
+    if (law_is_tunable(law, reader->model))
+        diag_fail(item->at, "leave out `tunable: true` of that parameter, or use it in force elements only",
+                  "%s is fixed when the code is generated, but '%s' has a tunable parameter", what, item->text);
+    double number = law_number(law, reader->model);
+    if (!isfinite(number))
+        diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number", what);
+    return number;
+}
+
+void vector_read(Reader *reader, const Item *item, const char *what, double *out, int size)
+{
+    bool formulas = false;
+    for (int i = 0; item->kind == ITEM_LIST && item->count == size && i < size; ++i)
+        formulas = formulas || mentions_parameter(reader, item->value[i]);
+    if (!formulas)
+        doc_vector(item, what, out, size);
+    for (int i = 0; formulas && i < size; ++i)
+        out[i] = number_read(reader, item->value[i], what);
+}
+
 static void read_point(Reader *reader, const Item *item, const char *what, double x[3])
 {
     if (item->kind == ITEM_SCALAR) {
@@ -167,19 +208,19 @@ static void read_point(Reader *reader, const Item *item, const char *what, doubl
         int i = find(reader, item, what, "point", reader->point, reader->points, sizeof *reader->point);
         memcpy(x, reader->point[i].x, sizeof reader->point[i].x);
     } else
-        doc_vector(item, what, x, 3);
+        vector_read(reader, item, what, x, 3);
 }
 
-static void read_axis(const Item *item, const char *what, double u[3])
+static void read_axis(Reader *reader, const Item *item, const char *what, double u[3])
 {
-    doc_vector(item, what, u, 3);
+    vector_read(reader, item, what, u, 3);
     if (!vector_normalize(u, 3))
         diag_fail(item->at, "write a direction, such as [0, 0, 1]", "%s has no direction: it is zero", what);
 }
 
-static void read_number(const Key *key, const Item *item, const char *what, double *number)
+static void read_number(Reader *reader, const Key *key, const Item *item, const char *what, double *number)
 {
-    *number = doc_number(item, what);
+    *number = number_read(reader, item, what);
     if (key->bound == BOUND_POSITIVE && !(*number > 0))
         diag_fail(item->at, "write a positive number", "%s must be greater than zero, not %s", what, item->text);
     if (key->bound == BOUND_NOT_NEGATIVE && *number < 0)
@@ -196,32 +237,32 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         text_check(value->text, what, item->at);
         break;
     case KEY_NUMBER:
-        read_number(key, item, what, value->number);
+        read_number(reader, key, item, what, value->number);
         break;
     case KEY_FLAG:
         value->flag = doc_bool(item, what);
         break;
     case KEY_RANGE:
-        doc_vector(item, what, value->number, 2);
+        vector_read(reader, item, what, value->number, 2);
         if (!(value->number[0] < value->number[1]))
             diag_fail(item->at, "write [low, high]", "%s: the low end must be below the high end", what);
         break;
     case KEY_VECTOR:
-        doc_vector(item, what, value->number, 3);
+        vector_read(reader, item, what, value->number, 3);
         break;
     case KEY_AXIS:
-        read_axis(item, what, value->number);
+        read_axis(reader, item, what, value->number);
         break;
     case KEY_AXES:
         if (item->kind != ITEM_LIST || item->count != 2)
             diag_fail(item->at, "write [u_a, u_b]; each is a direction [x, y, z]",
                       "%s must be a list of two directions", what);
         for (int i = 0; i < 2; ++i)
-            read_axis(item->value[i], pool_print(reader->pool, "the %s of %s", i ? "second" : "first", what),
+            read_axis(reader, item->value[i], pool_print(reader->pool, "the %s of %s", i ? "second" : "first", what),
                       value->number + 3 * i);
         break;
     case KEY_EULER:
-        doc_vector(item, what, value->number, 4);
+        vector_read(reader, item, what, value->number, 4);
         break;
     case KEY_POINT:
         read_point(reader, item, what, value->number);

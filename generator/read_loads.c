@@ -2,6 +2,7 @@
  * Inputs, force elements and wheels (FORMAT.md sections 6 to 8). */
 #include "read.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { INPUT_UNIT, INPUT_DEFAULT, INPUT_KEYS };
@@ -14,40 +15,62 @@ static const Key input_key[INPUT_KEYS] = {
 static const Section input_section = {input_key, INPUT_KEYS, NULL, 0, NULL};
 
 enum {
-    SPRING_TYPE,
-    SPRING_COORDINATE,
-    SPRING_BODIES,
-    SPRING_POINTS,
-    SPRING_STIFFNESS,
-    SPRING_DAMPING,
-    SPRING_FREE,
-    SPRING_VALUE,
-    SPRING_KEYS
+    ELEMENT_TYPE,
+    ELEMENT_COORDINATE,
+    ELEMENT_BODIES,
+    ELEMENT_POINTS,
+    ELEMENT_STIFFNESS,
+    ELEMENT_DAMPING,
+    ELEMENT_FREE,
+    ELEMENT_VALUE,
+    ELEMENT_BODY,
+    ELEMENT_POINT,
+    ELEMENT_IN,
+    ELEMENT_FORCE,
+    ELEMENT_TORQUE,
+    ELEMENT_KEYS
 };
 
-#define FORCE_ALONG (FORM(FORCE_COORDINATE) | FORM(FORCE_CONSTANT))
+#define FORCE_ALONG (FORM(FORCE_COORDINATE) | FORM(FORCE_COORDINATE_LAW))
+#define FORCE_BETWEEN (FORM(FORCE_POINTS) | FORM(FORCE_POINTS_LAW))
 #define FORCE_SPRING (FORM(FORCE_COORDINATE) | FORM(FORCE_POINTS))
+#define FORCE_LAWS (FORM(FORCE_COORDINATE_LAW) | FORM(FORCE_POINTS_LAW))
 
-static const Key force_key[SPRING_KEYS] = {
-    [SPRING_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
-    [SPRING_COORDINATE] = {"coordinate", KEY_COORDINATE, FORCE_ALONG, FORCE_ALONG, BOUND_NONE, 0},
-    [SPRING_BODIES] = {"bodies", KEY_FORCE_BODIES, FORM(FORCE_POINTS), FORM(FORCE_POINTS), BOUND_NONE, 0},
-    [SPRING_POINTS] = {"points", KEY_POINTS, FORM(FORCE_POINTS), FORM(FORCE_POINTS), BOUND_NONE, 0},
-    [SPRING_STIFFNESS] = {"stiffness", KEY_NUMBER, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
-    [SPRING_DAMPING] = {"damping", KEY_NUMBER, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
-    [SPRING_FREE] = {"free", KEY_NUMBER, FORCE_SPRING, 0, BOUND_NONE, 0},
-    [SPRING_VALUE] = {"value", KEY_NUMBER, FORM(FORCE_CONSTANT), FORM(FORCE_CONSTANT), BOUND_NONE, 0},
+static const Key force_key[ELEMENT_KEYS] = {
+    [ELEMENT_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [ELEMENT_COORDINATE] = {"coordinate", KEY_COORDINATE, FORCE_ALONG, FORCE_ALONG, BOUND_NONE, 0},
+    [ELEMENT_BODIES] = {"bodies", KEY_FORCE_BODIES, FORCE_BETWEEN, FORCE_BETWEEN, BOUND_NONE, 0},
+    [ELEMENT_POINTS] = {"points", KEY_POINTS, FORCE_BETWEEN, FORCE_BETWEEN, BOUND_NONE, 0},
+    [ELEMENT_STIFFNESS] = {"stiffness", KEY_ITEM, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
+    [ELEMENT_DAMPING] = {"damping", KEY_ITEM, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
+    [ELEMENT_FREE] = {"free", KEY_ITEM, FORCE_SPRING, 0, BOUND_NONE, 0},
+    [ELEMENT_VALUE] = {"value", KEY_ITEM, FORCE_LAWS, FORCE_LAWS, BOUND_NONE, 0},
+    [ELEMENT_BODY] = {"body", KEY_BODY, FORM(FORCE_LOAD), FORM(FORCE_LOAD), BOUND_NONE, 0},
+    [ELEMENT_POINT] = {"point", KEY_POINT, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
+    [ELEMENT_IN] = {"in", KEY_FRAME, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
+    [ELEMENT_FORCE] = {"force", KEY_ITEM, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
+    [ELEMENT_TORQUE] = {"torque", KEY_ITEM, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
 };
 
-static const char *const force_type_name[] = {"spring_damper", "constant"};
+enum { TYPE_SPRING, TYPE_FORCE, TYPE_LOAD, TYPES };
+
+static const char *const force_type_name[TYPES] = {
+    [TYPE_SPRING] = "spring_damper",
+    [TYPE_FORCE] = "force",
+    [TYPE_LOAD] = "load",
+};
 
 static const char *const force_form_name[FORCE_TYPES] = {
     [FORCE_COORDINATE] = "along a coordinate",
     [FORCE_POINTS] = "between two points",
-    [FORCE_CONSTANT] = "constant",
+    [FORCE_COORDINATE_LAW] = "along a coordinate",
+    [FORCE_POINTS_LAW] = "between two points",
+    [FORCE_LOAD] = "load",
 };
 
-static const Section force_section = {force_key, SPRING_KEYS, force_type_name, 2, force_form_name};
+const char *const force_local[FORCE_LOCALS] = {"length", "speed"};
+
+static const Section force_section = {force_key, ELEMENT_KEYS, force_type_name, TYPES, force_form_name};
 
 enum { TIRE_BODY, TIRE_CENTER, TIRE_RADIUS, TIRE_STIFFNESS, TIRE_DAMPING, TIRE_FADE, TIRE_KEYS };
 
@@ -107,41 +130,94 @@ void inputs_read(Reader *reader, const Item *map)
     generated_names_check(reader, "input", name, at, model->inputs);
 }
 
+static const Law *literal_law(Reader *reader, double value)
+{
+    Law *law = pool_alloc(reader->pool, sizeof *law);
+    *law = (Law){.op = LAW_NUMBER, .number = value};
+    return law;
+}
+
+/* Stiffness, damping or free length: numbers and parameters, so that the law stays a linear one. */
+static const Law *spring_law(Reader *reader, const Entry *entry, const Value *value, int key, double fallback)
+{
+    if (!value[key].item)
+        return literal_law(reader, fallback);
+    const Item *item = value[key].item;
+    const char *what = pool_print(reader->pool, "%s of %s", force_key[key].name, entry->what);
+    LawNames names = {.model = reader->model, .constant = true, .remedy = "use the element type `force` for any other law"};
+    const Law *law = law_parse(reader->pool, item, what, &names);
+    double number = law_number(law, reader->model);
+    if (!isfinite(number))
+        diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number", what);
+    if (force_key[key].bound == BOUND_NOT_NEGATIVE && number < 0)
+        diag_fail(item->at, "write zero or a positive number", "%s must not be negative (%s)", what, item->text);
+    return law;
+}
+
+static void read_load(Reader *reader, const Entry *entry, const Value *value, Force *force)
+{
+    static const int key[2] = {ELEMENT_FORCE, ELEMENT_TORQUE};
+    LawNames names = {.model = reader->model};
+    if (!value[ELEMENT_FORCE].item && !value[ELEMENT_TORQUE].item)
+        diag_fail(entry->at, "add `force: [x, y, z]` or `torque: [x, y, z]`; each may be a formula", "%s has neither force nor torque",
+                  entry->what);
+    force->body[0] = value[ELEMENT_BODY].index[0];
+    force->body[1] = value[ELEMENT_IN].item ? value[ELEMENT_IN].index[0] : BODY_GROUND;
+    if (!reader->model->free_base && force->body[0] == BODY_BASE)
+        diag_fail(value[ELEMENT_BODY].item->at, "name a body that can move", "%s: a load on ground moves nothing", entry->what);
+    if (value[ELEMENT_POINT].item)
+        body_point(reader, force->body[0], value[ELEMENT_POINT].number, value[ELEMENT_POINT].item->at, force->point[0]);
+    for (int part = 0; part < 2; ++part) {
+        const Item *item = value[key[part]].item;
+        const char *what = pool_print(reader->pool, "%s of %s", force_key[key[part]].name, entry->what);
+        if (!item)
+            continue;
+        if (item->kind != ITEM_LIST || item->count != 3)
+            diag_fail(item->at, "write [x, y, z]; each may be a formula", "%s must be a list of 3 numbers or formulas", what);
+        for (int i = 0; i < 3; ++i)
+            force->law[3 * part + i] = law_parse(reader->pool, item->value[i], what, &names);
+    }
+}
+
 static void force_read(Reader *reader, const Entry *entry, Force *force)
 {
-    Value value[SPRING_KEYS];
-    bool constant = section_type(reader, &force_section, entry) == 1;
+    Value value[ELEMENT_KEYS];
+    int type = section_type(reader, &force_section, entry);
     bool along = doc_find(entry->item, "coordinate");
     bool between = doc_find(entry->item, "bodies") || doc_find(entry->item, "points");
-    if (!along && !between && !constant)
+    if (!along && !between && type != TYPE_LOAD)
         diag_fail(entry->at, "add `coordinate: name`, or `bodies: [a, b]` and `points: [p_a, p_b]`",
                   "%s acts nowhere: neither a coordinate nor two bodies are given", entry->what);
-    ForceType type = constant ? FORCE_CONSTANT : along ? FORCE_COORDINATE : FORCE_POINTS;
-    section_read(reader, &force_section, (int)type, entry, value);
-    *force = (Force){
-        .name = entry->name,
-        .at = entry->at,
-        .type = type,
-        .coordinate = -1,
-        .body = {BODY_GROUND, BODY_GROUND},
-        .stiffness = value[SPRING_STIFFNESS].number[0],
-        .damping = value[SPRING_DAMPING].number[0],
-        .constant = value[SPRING_VALUE].number[0],
-    };
-    if (type != FORCE_POINTS) {
-        force->coordinate = value[SPRING_COORDINATE].index[0];
-        force->free = reader->model->coordinate[force->coordinate].design;
+    ForceType form = type == TYPE_LOAD     ? FORCE_LOAD
+                     : type == TYPE_SPRING ? (along ? FORCE_COORDINATE : FORCE_POINTS)
+                                           : (along ? FORCE_COORDINATE_LAW : FORCE_POINTS_LAW);
+    section_read(reader, &force_section, (int)form, entry, value);
+    *force = (Force){.name = entry->name, .at = entry->at, .type = form, .coordinate = -1, .body = {BODY_GROUND, BODY_GROUND}};
+    double fallback = 0;
+    if (form == FORCE_LOAD) {
+        read_load(reader, entry, value, force);
+    } else if (along) {
+        force->coordinate = value[ELEMENT_COORDINATE].index[0];
+        fallback = reader->model->coordinate[force->coordinate].design;
     } else {
-        const Value *points = value + SPRING_POINTS;
+        const Value *points = value + ELEMENT_POINTS;
         double d[3];
-        force->free = points_distance(points, entry->what, d);
+        fallback = points_distance(points, entry->what, d);
         for (int i = 0; i < 2; ++i) {
-            force->body[i] = value[SPRING_BODIES].index[i];
+            force->body[i] = value[ELEMENT_BODIES].index[i];
             body_point(reader, force->body[i], points->number + 3 * i, points->item->value[i]->at, force->point[i]);
         }
     }
-    if (value[SPRING_FREE].item)
-        force->free = value[SPRING_FREE].number[0];
+    if (form == FORCE_COORDINATE || form == FORCE_POINTS) {
+        force->stiffness = spring_law(reader, entry, value, ELEMENT_STIFFNESS, 0);
+        force->damping = spring_law(reader, entry, value, ELEMENT_DAMPING, 0);
+        force->free = spring_law(reader, entry, value, ELEMENT_FREE, fallback);
+    } else if (form != FORCE_LOAD) {
+        LawNames names = {.model = reader->model,
+                          .local = form == FORCE_POINTS_LAW ? force_local : NULL,
+                          .locals = form == FORCE_POINTS_LAW ? FORCE_LOCALS : 0};
+        force->law[0] = law_parse(reader->pool, value[ELEMENT_VALUE].item, pool_print(reader->pool, "value of %s", entry->what), &names);
+    }
 }
 
 void forces_read(Reader *reader, const Item *map)

@@ -164,7 +164,7 @@ static const char *column_name(Pool *pool, const Source *source, Cell c)
     return cell_text(pool, &c);
 }
 
-static void read_header(Pool *pool, Table *table, const char *s, const char *end)
+static void read_header(Pool *pool, States *table, const char *s, const char *end)
 {
     int places = 0;
     for (Cell c; next_cell(&s, end, &c);) {
@@ -177,7 +177,7 @@ static void read_header(Pool *pool, Table *table, const char *s, const char *end
     }
 }
 
-static void read_row(Pool *pool, Table *table, int *values, const char *s, const char *end)
+static void read_row(Pool *pool, States *table, int *values, const char *s, const char *end)
 {
     const Source *source = table->source;
     Cell c = {s, s};
@@ -194,7 +194,7 @@ static void read_row(Pool *pool, Table *table, int *values, const char *s, const
     ++table->rows;
 }
 
-const Table *csv_read(Pool *pool, const char *path)
+const States *csv_read(Pool *pool, const char *path)
 {
     Source *source = pool_alloc(pool, sizeof *source);
     source->path = path;
@@ -203,7 +203,7 @@ const Table *csv_read(Pool *pool, const char *path)
         source->bytes += 3;
         source->size -= 3;
     }
-    Table *table = pool_alloc(pool, sizeof *table);
+    States *table = pool_alloc(pool, sizeof *table);
     table->source = source;
     int values = 0;
     for (const char *s = source->bytes, *stop = s + source->size, *end; s < stop; s = end + 1) {

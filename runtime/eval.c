@@ -28,7 +28,7 @@ static bool is_needed(const gic_model *model, int i)
     return false;
 }
 
-static Columns find_columns(Pool *pool, const gic_model *model, const Table *table)
+static Columns find_columns(Pool *pool, const gic_model *model, const States *table)
 {
     Columns columns = {.states = model->slow_count, .inputs = model->input_count};
     const int numbers = columns.states + columns.inputs;
@@ -117,7 +117,7 @@ static void write_row(Pool *pool, const gic_model *model, Csv *csv, const gic_he
 
 void evaluate(Pool *pool, const gic_model *model, const Scene *scene, const Request *request)
 {
-    const Table *table = csv_read(pool, request->states);
+    const States *table = csv_read(pool, request->states);
     const Columns columns = find_columns(pool, model, table);
     gic_head *self = instance_new(pool, model);
     double *state = instance_array(self, model->state_offset), *input = instance_array(self, model->input_offset);

@@ -310,6 +310,30 @@ int gic_road_table_setup(gic_road_table *road)
 
 /* ---- inputs --------------------------------------------------------------------------------------------- */
 
+gic_real gic_table_value(const gic_table *table, gic_real x)
+{
+    int32_t low = 0, high = table->count - 1;
+    if (x <= table->x[0])
+        return table->y[0] + (table->onward ? (x - table->x[0]) * table->slope[0] : GIC_R(0.0));
+    if (x >= table->x[high])
+        return table->y[high] + (table->onward ? (x - table->x[high]) * table->slope[high] : GIC_R(0.0));
+    while (high - low > 1) {
+        const int32_t middle = low + (high - low) / 2;
+        if (x < table->x[middle])
+            high = middle;
+        else
+            low = middle;
+    }
+    {
+        const gic_real h = table->x[high] - table->x[low], t = (x - table->x[low]) / h, u = GIC_R(1.0) - t;
+        if (!table->cubic)
+            return table->y[low] + t * (table->y[high] - table->y[low]);
+        return (GIC_R(1.0) + GIC_R(2.0) * t) * u * u * table->y[low] + t * u * u * h * table->slope[low] +
+               t * t * (GIC_R(3.0) - GIC_R(2.0) * t) * table->y[high] - t * t * u * h * table->slope[high];
+    }
+}
+
+
 void gic_quintic(gic_real time, gic_real t0, gic_real t1, gic_real y0, gic_real y1, gic_real out[3])
 {
     out[1] = out[2] = GIC_R(0.0);

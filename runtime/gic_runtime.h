@@ -221,6 +221,18 @@ void gic_table_height(const gic_road *road, int32_t lane, gic_real time, gic_rea
 #define gic_road_table_setup GIC_NAME(gic_road_table_setup)
 int gic_road_table_setup(gic_road_table *road);
 
+/* ---- tables -------------------------------------------------------------------------------------------- */
+
+/* y over rising x, `count` of them. cubic: with `slope`, monotone between the points; else straight lines. onward: beyond the ends on
+ * along the end's slope; else constant. */
+typedef struct gic_table {
+    const gic_real *x, *y, *slope;
+    int32_t count, cubic, onward;
+} gic_table;
+
+#define gic_table_value GIC_NAME(gic_table_value)
+gic_real gic_table_value(const gic_table *table, gic_real x);
+
 /* ---- inputs ------------------------------------------------------------------------------------------- */
 
 /* A twice continuously differentiable move from y0 at t0 to y1 at t1 (quintic, at rest at both ends, constant outside):

@@ -72,6 +72,7 @@ typedef struct Scene {
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
     double *value, *rate; /* [coordinates] at time 0; not used where driven */
     const gic_road *road; /* NULL: flat at z = 0 */
+    double *parameter; /* [tunables] */
     int profiles, columns, curves;
     Profile *profile;
     int *column, *curve; /* output components in results and picture, indices into output[] */
@@ -114,15 +115,15 @@ void csv_end_row(Csv *csv);
 void csv_close(Csv *csv); /* exits with a message where not all could be written */
 
 /* A table of numbers with named columns; units in brackets behind the names are dropped. */
-typedef struct Table {
+typedef struct States {
     const Source *source;
     int columns, rows;
     const char **name;
     Place *at;     /* of the names */
     double *value; /* [rows][columns] */
-} Table;
+} States;
 
-const Table *csv_read(Pool *pool, const char *path);
+const States *csv_read(Pool *pool, const char *path);
 
 /* ---- plot.c --------------------------------------------------------------------------------------------- */
 

@@ -294,6 +294,26 @@ static void read_inputs(Reader *reader, const Item *map)
     }
 }
 
+/* Values of tunable parameters for this scene. */
+static void read_parameters(Reader *reader, const Item *map)
+{
+    const Model *model = reader->model;
+    const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(model->parameters + 1));
+    for (int i = 0; i < model->parameters; ++i)
+        name[i] = model->parameter[i].name;
+    if (map->kind != ITEM_MAP)
+        diag_fail(map->at, "write {name: number}", "parameters must be a map");
+    for (int k = 0; k < map->count; ++k) {
+        const Item *key = map->key[k];
+        const Parameter *parameter = &model->parameter[name_index(reader, key, key->text, "parameter", name, model->parameters)];
+        if (!parameter->tunable)
+            diag_fail(key->at, pool_print(reader->pool, "write `tunable: true` for it in %s, or change it there", model->source->path),
+                      "parameter '%s' is fixed when the code is generated", parameter->name);
+        reader->scene->parameter[parameter->index] =
+            doc_number(map->value[k], pool_print(reader->pool, "parameter '%s'", parameter->name));
+    }
+}
+
 void profile_at(const Profile *profile, double time, double out[3])
 {
     if (profile->count) {
@@ -392,7 +412,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model)
     Scene *scene = pool_alloc(pool, sizeof *scene);
     Reader reader = {pool, model, scene};
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "output_step", "initial",
-               "road", "inputs", "outputs", "plot");
+               "road", "inputs", "parameters", "outputs", "plot");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
     if (doc_number(version, "gicscene") != 1)
@@ -406,7 +426,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model)
     scene->value = pool_alloc(pool, sizeof(double) * (size_t)(model->coordinates + 1));
     scene->rate = pool_alloc(pool, sizeof(double) * (size_t)(model->coordinates + 1));
     for (int i = 0; i < model->coordinates; ++i)
-        scene->value[i] = model->coordinate[i].design;
+        scene->value[i] = model->coordinate[i].initial;
     const Item *initial = doc_find(root, "initial"), *road = doc_find(root, "road"), *inputs = doc_find(root, "inputs");
     const Item *outputs = doc_find(root, "outputs"), *plot = doc_find(root, "plot");
     if (initial)
@@ -415,6 +435,12 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model)
         scene->road = road_read(pool, road);
     if (inputs)
         read_inputs(&reader, inputs);
+    scene->parameter = pool_alloc(pool, sizeof(double) * (size_t)(model->tunables + 1));
+    for (int i = 0; i < model->parameters; ++i)
+        if (model->parameter[i].tunable)
+            scene->parameter[model->parameter[i].index] = model->parameter[i].value;
+    if (doc_find(root, "parameters"))
+        read_parameters(&reader, doc_find(root, "parameters"));
     scene->column = outputs ? read_names(&reader, outputs, "outputs", &scene->columns)
                             : all_outputs(&reader, &scene->columns);
     scene->curve = plot ? read_names(&reader, plot, "plot", &scene->curves) : default_curves(&reader, &scene->curves);

@@ -42,6 +42,7 @@ static double seconds(clockid_t clock_id)
 static void set_state(const gic_model *model, const Scene *scene, gic_head *self)
 {
     double *state = instance_array(self, model->state_offset);
+    memcpy(instance_array(self, model->parameter_offset), scene->parameter, sizeof(double) * (size_t)model->parameter_count);
     const int half = model->slow_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
     if (model->free_base) {
         memcpy(state, scene->position, sizeof scene->position);

@@ -1,0 +1,415 @@
+/* SPDX-License-Identifier: MIT
+ * Formulas: a text like `-k * deflection - 40e3 * max(0, strut - 0.3)` into a tree, by recursive descent. Precedence, weakest first:
+ * or, and, not, comparison, + -, * /, sign, ^ (from the right). A condition is a number too: true where it is positive. */
+#include "gicgen.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEPTH_MOST = 100, NAME_ROOM = 64 };
+
+typedef struct Parser {
+    Pool *pool;
+    const Item *item;
+    const char *what;
+    const LawNames *names;
+    const char *s; /* next character */
+    int depth;
+} Parser;
+
+/* Functions by name: the operation and the number of arguments. */
+static const struct {
+    const char *name;
+    Op op;
+    int arguments;
+} function[] = {{"sqrt", OP_SQRT, 1},  {"abs", OP_ABS, 1},     {"sin", OP_SIN, 1},     {"cos", OP_COS, 1},  {"tan", OP_TAN, 1},
+                {"asin", OP_ASIN, 1},  {"acos", OP_ACOS, 1},   {"atan", OP_ATAN, 1},   {"exp", OP_EXP, 1},  {"log", OP_LOG, 1},
+                {"tanh", OP_TANH, 1},  {"atan2", OP_ATAN2, 2}, {"pow", OP_POW, 2},     {"min", OP_MIN, 2},  {"max", OP_MAX, 2}};
+
+enum { FUNCTIONS = sizeof function / sizeof *function };
+
+static _Noreturn void fail(Parser *p, const char *where, const char *remedy, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* At a place inside the text. Escapes and folded lines shift it; then the formula's beginning has to do. */
+static _Noreturn void fail(Parser *p, const char *where, const char *remedy, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    const char *message = pool_vprint(p->pool, format, args);
+    va_end(args);
+    Place at = p->item->at;
+    const Source *source = at.source;
+    size_t length = strlen(p->item->text);
+    const char *line = source->bytes;
+    for (int i = 1; i < at.line; ++i)
+        line += strcspn(line, "\n") + 1;
+    const char *start = line + at.column - 1 + p->item->quoted;
+    if (start + length <= source->bytes + source->size && !memcmp(start, p->item->text, length))
+        at.column += p->item->quoted + (int)(where - p->item->text);
+    diag_fail(at, remedy, "%s: %s", p->what, message);
+}
+
+static void skip(Parser *p)
+{
+    while (isspace((unsigned char)*p->s))
+        ++p->s;
+}
+
+static bool take(Parser *p, const char *token)
+{
+    skip(p);
+    size_t length = strlen(token);
+    if (strncmp(p->s, token, length))
+        return false;
+    if (isalpha((unsigned char)token[0]) && (isalnum((unsigned char)p->s[length]) || p->s[length] == '_'))
+        return false;
+    p->s += length;
+    return true;
+}
+
+static void expect(Parser *p, const char *token)
+{
+    if (!take(p, token))
+        fail(p, p->s, pool_print(p->pool, "write `%s` here", token), "`%s` is missing%s%s", token, *p->s ? " before " : " at the end",
+             *p->s ? pool_print(p->pool, "'%.12s'", p->s) : "");
+}
+
+static const Law *number(Parser *p, double value)
+{
+    Law *law = pool_alloc(p->pool, sizeof *law);
+    *law = (Law){.op = LAW_NUMBER, .number = value};
+    return law;
+}
+
+/* Of numbers it is a number. */
+static const Law *call(Parser *p, Op op, const char *name, const Law *a, const Law *b, const Law *c)
+{
+    Law *law = pool_alloc(p->pool, sizeof *law);
+    *law = (Law){.op = LAW_CALL, .call = op, .arg = {a, b, c}, .name = name};
+    return law;
+}
+
+static const Law *parse_or(Parser *p);
+
+static const Law *negative(Parser *p, const Law *a)
+{
+    return call(p, OP_NEG, "-", a, NULL, NULL);
+}
+
+static const Law *difference(Parser *p, const Law *a, const Law *b)
+{
+    return call(p, OP_SUB, "-", a, b, NULL);
+}
+
+/* 1 where t is positive, else -1, and the other way round. */
+static const Law *truth(Parser *p, const Law *t, bool yes)
+{
+    return call(p, OP_POSITIVE, "if", t, number(p, yes ? 1 : -1), number(p, yes ? -1 : 1));
+}
+
+static const Law *reference(Parser *p, LawOp op, int index, const char *name)
+{
+    Law *law = pool_alloc(p->pool, sizeof *law);
+    *law = (Law){.op = op, .index = index, .name = name};
+    return law;
+}
+
+static int coordinate_named(const Model *model, const char *name)
+{
+    for (int i = 0; i < model->coordinates; ++i)
+        if (!strcmp(model->coordinate[i].name, name))
+            return i;
+    return -1;
+}
+
+static void only_constants(Parser *p, const char *where, const char *name)
+{
+    if (p->names->constant)
+        fail(p, where, p->names->remedy, "'%s' changes with time, but only numbers and parameters can stand here", name);
+}
+
+static _Noreturn void unknown(Parser *p, const char *where, const char *name)
+{
+    const Model *model = p->names->model;
+    const char **known = NULL;
+    int count = 0;
+    for (int i = 0; i < p->names->locals; ++i)
+        *POOL_PUSH(p->pool, known, count) = p->names->local[i];
+    for (int i = 0; i < model->coordinates && !p->names->constant; ++i)
+        *POOL_PUSH(p->pool, known, count) = model->coordinate[i].name;
+    for (int i = 0; i < model->parameters; ++i)
+        *POOL_PUSH(p->pool, known, count) = model->parameter[i].name;
+    for (int i = 0; i < model->inputs && !p->names->constant; ++i)
+        *POOL_PUSH(p->pool, known, count) = model->input[i].name;
+    *POOL_PUSH(p->pool, known, count) = "time";
+    *POOL_PUSH(p->pool, known, count) = "pi";
+    const char *nearest = diag_nearest(name, known, count);
+    Text list = {.pool = p->pool};
+    for (int i = 0; i < count && list.size < 200; ++i)
+        text_print(&list, "%s%s", i ? ", " : "", known[i]);
+    fail(p, where, nearest ? pool_print(p->pool, "did you mean '%s'?", nearest) : pool_print(p->pool, "names known here: %s", list.s),
+         "there is no '%s'", name);
+}
+
+/* rate(name), acceleration is not to be had: it depends on the forces. */
+static const Law *parse_rate(Parser *p)
+{
+    skip(p);
+    const char *where = p->s;
+    char name[NAME_ROOM];
+    size_t length = 0;
+    while (length < sizeof name - 1 && (isalnum((unsigned char)*p->s) || *p->s == '_'))
+        name[length++] = *p->s++;
+    name[length] = 0;
+    int index = coordinate_named(p->names->model, name);
+    if (index < 0)
+        fail(p, where, "write rate(name) with the name of a dual coordinate", "'%s' is not a coordinate", name);
+    expect(p, ")");
+    return reference(p, LAW_RATE, index, p->names->model->coordinate[index].name);
+}
+
+static const Law *parse_call(Parser *p, const char *where, const char *name)
+{
+    if (!strcmp(name, "rate")) {
+        only_constants(p, where, name);
+        return parse_rate(p);
+    }
+    const Law *arg[3] = {NULL};
+    int count = 0;
+    do {
+        if (count == 3)
+            fail(p, p->s, "functions take one, two or three", "too many arguments for '%s'", name);
+        arg[count++] = parse_or(p);
+    } while (take(p, ","));
+    expect(p, ")");
+    if (!strcmp(name, "if")) {
+        if (count != 3)
+            fail(p, where, "write if(condition, value, other)", "'if' takes 3 arguments, not %d", count);
+        return call(p, OP_POSITIVE, "if", arg[0], arg[1], arg[2]);
+    }
+    for (int i = 0; i < FUNCTIONS; ++i)
+        if (!strcmp(function[i].name, name)) {
+            /* min and max of three are two of two */
+            bool three = count == 3 && (function[i].op == OP_MIN || function[i].op == OP_MAX);
+            if (count != function[i].arguments && !three)
+                fail(p, where, "separate arguments by commas", "'%s' takes %d argument%s, not %d", name, function[i].arguments,
+                     function[i].arguments > 1 ? "s" : "", count);
+            const Law *two = call(p, function[i].op, function[i].name, arg[0], arg[1], NULL);
+            return three ? call(p, function[i].op, function[i].name, two, arg[2], NULL) : two;
+        }
+    const Model *model = p->names->model;
+    for (int i = 0; i < model->tables; ++i)
+        if (!strcmp(model->table[i].name, name)) {
+            if (count != 1)
+                fail(p, where, "a table is a function of one number", "table '%s' takes 1 argument, not %d", name, count);
+            Law *law = pool_alloc(p->pool, sizeof *law);
+            *law = (Law){.op = LAW_TABLE, .index = i, .arg = {arg[0]}, .name = model->table[i].name};
+            return law;
+        }
+    const char **known = NULL;
+    int names = 0;
+    for (int i = 0; i < FUNCTIONS; ++i)
+        *POOL_PUSH(p->pool, known, names) = function[i].name;
+    for (int i = 0; i < model->tables; ++i)
+        *POOL_PUSH(p->pool, known, names) = model->table[i].name;
+    *POOL_PUSH(p->pool, known, names) = "if";
+    *POOL_PUSH(p->pool, known, names) = "rate";
+    const char *nearest = diag_nearest(name, known, names);
+    fail(p, where,
+         nearest ? pool_print(p->pool, "did you mean '%s'?", nearest)
+                 : "functions: sqrt abs sin cos tan asin acos atan atan2 exp log pow tanh min max if rate, and the model's tables",
+         "there is no function or table '%s'", name);
+}
+
+static const Law *parse_name(Parser *p)
+{
+    const char *where = p->s;
+    char name[NAME_ROOM];
+    size_t length = 0;
+    while (isalnum((unsigned char)*p->s) || *p->s == '_' || *p->s == '.') {
+        if (length == sizeof name - 1)
+            fail(p, where, "names have at most 40 characters", "the name '%.20s...' is too long", where);
+        name[length++] = *p->s++;
+    }
+    name[length] = 0;
+    if (take(p, "("))
+        return parse_call(p, where, name);
+    const Model *model = p->names->model;
+    for (int i = 0; i < p->names->locals; ++i)
+        if (!strcmp(name, p->names->local[i]))
+            return reference(p, LAW_LOCAL, i, p->names->local[i]);
+    for (int i = 0; i < model->parameters; ++i)
+        if (!strcmp(name, model->parameter[i].name))
+            return reference(p, LAW_PARAMETER, i, model->parameter[i].name);
+    if (!strcmp(name, "pi"))
+        return number(p, 3.14159265358979323846);
+    int coordinate = coordinate_named(model, name);
+    bool is_time = !strcmp(name, "time");
+    if (coordinate >= 0 || is_time)
+        only_constants(p, where, name);
+    if (coordinate >= 0)
+        return reference(p, LAW_VALUE, coordinate, model->coordinate[coordinate].name);
+    if (is_time)
+        return reference(p, LAW_TIME, 0, "time");
+    for (int i = 0; i < model->inputs; ++i)
+        if (!strcmp(name, model->input[i].name)) {
+            only_constants(p, where, name);
+            return reference(p, LAW_INPUT, i, model->input[i].name);
+        }
+    unknown(p, where, name);
+}
+
+static const Law *parse_atom(Parser *p)
+{
+    skip(p);
+    if (take(p, "(")) {
+        const Law *law = parse_or(p);
+        expect(p, ")");
+        return law;
+    }
+    if (isdigit((unsigned char)*p->s) || (*p->s == '.' && isdigit((unsigned char)p->s[1]))) {
+        char *end;
+        if (p->s[0] == '0' && (p->s[1] == 'x' || p->s[1] == 'X'))
+            fail(p, p->s, "write decimal numbers", "'%.12s' is not a decimal number", p->s);
+        double value = strtod(p->s, &end);
+        if (!isfinite(value))
+            fail(p, p->s, "numbers must be below 1.8e308 in magnitude", "the number is too large");
+        if (isalpha((unsigned char)*end) || *end == '_')
+            fail(p, end, "put an operator between them, and leave units away: everything is SI", "a number runs into '%.12s'", end);
+        p->s = end;
+        return number(p, value);
+    }
+    if (isalpha((unsigned char)*p->s))
+        return parse_name(p);
+    fail(p, p->s, "a number, a name, a function or ( belongs here", *p->s ? "'%.12s' is unexpected" : "the formula ends too early%s",
+         *p->s ? p->s : "");
+}
+
+static const Law *parse_sign(Parser *p);
+
+static const Law *parse_power(Parser *p)
+{
+    const Law *base = parse_atom(p);
+    skip(p);
+    if (!strncmp(p->s, "**", 2))
+        fail(p, p->s, "write a ^ b", "powers are written with ^");
+    return take(p, "^") ? call(p, OP_POW, "pow", base, parse_sign(p), NULL) : base;
+}
+
+static const Law *parse_sign(Parser *p)
+{
+    if (++p->depth > DEPTH_MOST)
+        fail(p, p->s, "split the law into several force elements", "the formula is nested too deeply");
+    const Law *law = take(p, "-") ? negative(p, parse_sign(p)) : take(p, "+") ? parse_sign(p) : parse_power(p);
+    --p->depth;
+    return law;
+}
+
+static const Law *parse_product(Parser *p)
+{
+    const Law *law = parse_sign(p);
+    for (;;) {
+        if (take(p, "*"))
+            law = call(p, OP_MUL, "*", law, parse_sign(p), NULL);
+        else if (take(p, "/"))
+            law = call(p, OP_DIV, "/", law, parse_sign(p), NULL);
+        else
+            return law;
+    }
+}
+
+static const Law *parse_sum(Parser *p)
+{
+    const Law *law = parse_product(p);
+    for (;;) {
+        if (take(p, "+"))
+            law = call(p, OP_ADD, "+", law, parse_product(p), NULL);
+        else if (take(p, "-"))
+            law = difference(p, law, parse_product(p));
+        else
+            return law;
+    }
+}
+
+static const Law *parse_comparison(Parser *p)
+{
+    const Law *a = parse_sum(p);
+    if (take(p, "<="))
+        return truth(p, difference(p, a, parse_sum(p)), false);
+    if (take(p, ">="))
+        return truth(p, difference(p, parse_sum(p), a), false);
+    if (take(p, "<"))
+        return difference(p, parse_sum(p), a);
+    if (take(p, ">"))
+        return difference(p, a, parse_sum(p));
+    skip(p);
+    if (*p->s == '=')
+        fail(p, p->s, "compare with < <= > >=; equal numbers are a matter of rounding", "'=' compares nothing");
+    return a;
+}
+
+static const Law *parse_not(Parser *p)
+{
+    if (++p->depth > DEPTH_MOST)
+        fail(p, p->s, "split the law into several force elements", "the formula is nested too deeply");
+    const Law *law = take(p, "not") ? truth(p, parse_not(p), false) : parse_comparison(p);
+    --p->depth;
+    return law;
+}
+
+static const Law *parse_and(Parser *p)
+{
+    const Law *law = parse_not(p);
+    while (take(p, "and"))
+        law = call(p, OP_MIN, "min", law, parse_not(p), NULL);
+    return law;
+}
+
+static const Law *parse_or(Parser *p)
+{
+    const Law *law = parse_and(p);
+    while (take(p, "or"))
+        law = call(p, OP_MAX, "max", law, parse_and(p), NULL);
+    return law;
+}
+
+const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNames *names)
+{
+    Parser p = {.pool = pool, .item = item, .what = what, .names = names, .s = item->text};
+    if (item->kind != ITEM_SCALAR)
+        diag_fail(item->at, "write a number or a formula in quotes", "%s must be a number or a formula", what);
+    const Law *law = parse_or(&p);
+    skip(&p);
+    if (*p.s)
+        fail(&p, p.s, "an operator is missing, or one parenthesis is too many", "'%.12s' is unexpected", p.s);
+    return law;
+}
+
+bool law_is_tunable(const Law *law, const Model *model)
+{
+    if (law->op == LAW_PARAMETER)
+        return model->parameter[law->index].tunable;
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        if (law_is_tunable(law->arg[i], model))
+            return true;
+    return false;
+}
+
+double law_number(const Law *law, const Model *model)
+{
+    switch (law->op) {
+    case LAW_NUMBER: return law->number;
+    case LAW_PARAMETER: return model->parameter[law->index].value;
+    case LAW_TABLE: return table_value(&model->table[law->index], law_number(law->arg[0], model));
+    case LAW_CALL: {
+        double x[3] = {0};
+        for (int i = 0; i < 3 && law->arg[i]; ++i)
+            x[i] = law_number(law->arg[i], model);
+        return op_value((Op)law->call, x[0], x[1], x[2]);
+    }
+    default: return 0;
+    }
+}

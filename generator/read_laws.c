@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT
+ * What formulas refer to: parameters, tables, ports (FORMAT.md section 7). */
+#include "read.h"
+
+#include <string.h>
+
+enum { PARAMETER_VALUE, PARAMETER_UNIT, PARAMETER_TUNABLE, PARAMETER_KEYS };
+
+static const Key parameter_key[PARAMETER_KEYS] = {
+    [PARAMETER_VALUE] = {"value", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [PARAMETER_UNIT] = {"unit", KEY_TEXT, ALL_FORMS, 0, BOUND_NONE, 0},
+    [PARAMETER_TUNABLE] = {"tunable", KEY_FLAG, ALL_FORMS, 0, BOUND_NONE, 0},
+};
+
+static const Section parameter_section = {parameter_key, PARAMETER_KEYS, NULL, 0, NULL};
+
+enum { TABLE_X, TABLE_Y, TABLE_INTERPOLATION, TABLE_BEYOND, TABLE_KEYS };
+
+static const Key table_key[TABLE_KEYS] = {
+    [TABLE_X] = {"x", KEY_ITEM, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [TABLE_Y] = {"y", KEY_ITEM, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [TABLE_INTERPOLATION] = {"interpolation", KEY_TEXT, ALL_FORMS, 0, BOUND_NONE, 0},
+    [TABLE_BEYOND] = {"beyond", KEY_TEXT, ALL_FORMS, 0, BOUND_NONE, 0},
+};
+
+static const Section table_section = {table_key, TABLE_KEYS, NULL, 0, NULL};
+
+enum { PORT_BODY, PORT_POINT, PORT_IN, PORT_KEYS };
+
+static const Key port_key[PORT_KEYS] = {
+    [PORT_BODY] = {"body", KEY_BODY, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [PORT_POINT] = {"point", KEY_POINT, ALL_FORMS, 0, BOUND_NONE, 0},
+    [PORT_IN] = {"in", KEY_FRAME, ALL_FORMS, 0, BOUND_NONE, 0},
+};
+
+static const Section port_section = {port_key, PORT_KEYS, NULL, 0, NULL};
+
+/* A parameter is `name: number` or `name: {value: number, ...}`. */
+void parameters_read(Reader *reader, const Item *map)
+{
+    Model *model = reader->model;
+    int count;
+    Entry *entry = section_entries(reader, map, "parameter", &count);
+    model->parameter = pool_alloc(reader->pool, sizeof *model->parameter * (size_t)(count + 1));
+    const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(count + 1));
+    Place *at = pool_alloc(reader->pool, sizeof *at * (size_t)(count + 1));
+    /* each may use those before it */
+    for (int i = 0; i < count; model->parameters = ++i) {
+        Value value[PARAMETER_KEYS] = {{0}};
+        if (entry[i].item->kind == ITEM_MAP)
+            section_read(reader, &parameter_section, 0, entry + i, value);
+        else
+            value[PARAMETER_VALUE].number[0] = number_read(reader, entry[i].item, entry[i].what);
+        model->parameter[i] = (Parameter){
+            .name = entry[i].name,
+            .at = entry[i].at,
+            .unit = value[PARAMETER_UNIT].item ? value[PARAMETER_UNIT].text : "1",
+            .value = value[PARAMETER_VALUE].number[0],
+            .tunable = value[PARAMETER_TUNABLE].flag,
+            .index = value[PARAMETER_TUNABLE].flag ? model->tunables++ : -1,
+        };
+        name[i] = entry[i].name;
+        at[i] = entry[i].at;
+    }
+    generated_names_check(reader, "parameter", name, at, model->parameters);
+}
+
+static double *numbers(Reader *reader, const Value *value, const char *what, int *count)
+{
+    const Item *item = value->item;
+    if (item->kind != ITEM_LIST || item->count < 2)
+        diag_fail(item->at, "write [first, second, ...], at least two numbers", "%s must be a list of numbers", what);
+    double *out = pool_alloc(reader->pool, sizeof *out * (size_t)item->count);
+    vector_read(reader, item, what, out, item->count);
+    *count = item->count;
+    return out;
+}
+
+/* One of two words. */
+static bool second_word(const Value *value, const char *what, const char *first, const char *second)
+{
+    if (!value->item || !strcmp(value->text, first))
+        return false;
+    if (strcmp(value->text, second))
+        diag_fail(value->item->at, "choose one of the two", "%s is `%s` or `%s`, not '%s'", what, first, second, value->text);
+    return true;
+}
+
+void tables_read(Reader *reader, const Item *map)
+{
+    Model *model = reader->model;
+    Entry *entry = section_entries(reader, map, "table", &model->tables);
+    model->table = pool_alloc(reader->pool, sizeof *model->table * (size_t)(model->tables + 1));
+    for (int i = 0; i < model->tables; ++i) {
+        Value value[TABLE_KEYS];
+        Table *table = &model->table[i];
+        int count;
+        section_read(reader, &table_section, 0, entry + i, value);
+        *table = (Table){.name = entry[i].name, .at = entry[i].at};
+        table->x = numbers(reader, &value[TABLE_X], pool_print(reader->pool, "x of %s", entry[i].what), &table->count);
+        table->y = numbers(reader, &value[TABLE_Y], pool_print(reader->pool, "y of %s", entry[i].what), &count);
+        if (count != table->count)
+            diag_fail(value[TABLE_Y].item->at, "give one y for every x", "%s has %d x but %d y", entry[i].what, table->count, count);
+        for (int k = 1; k < count; ++k)
+            if (!(table->x[k] > table->x[k - 1]))
+                diag_fail(value[TABLE_X].item->value[k]->at, "sort the table by x, without repetitions", "x of %s must rise", entry[i].what);
+        table->cubic = second_word(&value[TABLE_INTERPOLATION], pool_print(reader->pool, "interpolation of %s", entry[i].what), "linear", "cubic");
+        table->onward = second_word(&value[TABLE_BEYOND], pool_print(reader->pool, "beyond of %s", entry[i].what), "constant", "linear");
+        table->slope = pool_alloc(reader->pool, sizeof *table->slope * (size_t)count);
+        table_slopes(table);
+    }
+}
+
+void ports_read(Reader *reader, const Item *map)
+{
+    Model *model = reader->model;
+    Entry *entry = section_entries(reader, map, "port", &model->ports);
+    model->port = pool_alloc(reader->pool, sizeof *model->port * (size_t)(model->ports + 1));
+    for (int i = 0; i < model->ports; ++i) {
+        Value value[PORT_KEYS];
+        section_read(reader, &port_section, 0, entry + i, value);
+        Port *port = &model->port[i];
+        *port = (Port){.name = entry[i].name,
+                       .at = entry[i].at,
+                       .body = value[PORT_BODY].index[0],
+                       .in = value[PORT_IN].item ? value[PORT_IN].index[0] : BODY_GROUND};
+        if (!model->free_base && port->body == BODY_BASE)
+            diag_fail(value[PORT_BODY].item->at, "name a body that can move", "%s: a force on ground moves nothing", entry[i].what);
+        if (value[PORT_POINT].item)
+            body_point(reader, port->body, value[PORT_POINT].number, value[PORT_POINT].item->at, port->point);
+    }
+}
