@@ -629,14 +629,16 @@ typedef struct Formula {
     Dag *dag;
     Layout layout;
     double size;   /* largest distance between points of a subset, m */
+    double distance; /* largest of its reference points from the base's origin at the design, relative to size */
     Block predict; /* q from the start and `change`; reach: squared relative size of that move */
     Block chord;   /* one correction of q with the start's factors; step: its squared relative size */
     Block solve;   /* factors, S, last correction, motion and inertia */
     Block residual; /* worst: largest constraint residual at q, relative to size */
 } Formula;
 
-/* All classes [classes]. Fills the sampling on the way. Singular subsets end in diag_fail. */
-Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence *sequence, const double (*origin)[3],
+/* All classes [classes]. Fills the sampling on the way. Members that need other pivots than their class's first one get a class of their
+ * own: *sequence is replaced by one that says so. Singular subsets end in diag_fail. */
+Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **sequence, const double (*origin)[3],
                             Sampling *sampling);
 /* Reference points of all bodies [bodies][3], body frames: where a joint to something known sits. */
 double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3];
