@@ -84,7 +84,6 @@ static const Law *number(Parser *p, double value)
     return law;
 }
 
-/* Of numbers it is a number. */
 static const Law *call(Parser *p, Op op, const char *name, const Law *a, const Law *b, const Law *c)
 {
     Law *law = pool_alloc(p->pool, sizeof *law);
@@ -96,6 +95,8 @@ static const Law *parse_or(Parser *p);
 
 static const Law *negative(Parser *p, const Law *a)
 {
+    if (a->op == LAW_NUMBER)
+        return number(p, -a->number);
     return call(p, OP_NEG, "-", a, NULL, NULL);
 }
 

@@ -12,6 +12,7 @@
 typedef enum KeyKind {
     KEY_TYPE,          /* one of the section's types, for section_type */
     KEY_ITEM,          /* read by the section itself: item */
+    KEY_FORMULA,       /* likewise, a number or a formula */
     KEY_TEXT,          /* text */
     KEY_NAME,          /* text */
     KEY_NUMBER,        /* number[0] */
@@ -90,6 +91,8 @@ Entry *section_entries(Reader *reader, const Item *map, const char *thing, int *
 int section_type(Reader *reader, const Section *section, const Entry *entry);
 /* Check an entry against the keys of a form and read them: value[k] belongs to section->key[k]. */
 void section_read(Reader *reader, const Section *section, int form, const Entry *entry, Value *value);
+/* Does the text of a scalar mention a parameter? */
+bool mentions_parameter(const Reader *reader, const Item *item);
 /* A number, or a formula of parameters that are not tunable; a vector of such. */
 double number_read(Reader *reader, const Item *item, const char *what);
 void vector_read(Reader *reader, const Item *item, const char *what, double *out, int size);

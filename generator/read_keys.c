@@ -13,6 +13,7 @@ enum { NAME_LENGTH = 40 };
 static const char *const kind_example[KEY_KINDS] = {
     [KEY_TYPE] = "name",
     [KEY_ITEM] = "{...}",
+    [KEY_FORMULA] = "formula",
     [KEY_TEXT] = "text",
     [KEY_NAME] = "name",
     [KEY_NUMBER] = "number",
@@ -159,8 +160,7 @@ static void find_bodies(Reader *reader, const Item *item, const char *what, bool
         diag_fail(item->value[1]->at, "name two different bodies", "%s: both are '%s'", what, item->value[1]->text);
 }
 
-/* Does the text mention a parameter? Then it is a formula; anything else that is no number gets doc_number's message. */
-static bool mentions_parameter(const Reader *reader, const Item *item)
+bool mentions_parameter(const Reader *reader, const Item *item)
 {
     for (int i = 0; item->kind == ITEM_SCALAR && i < reader->model->parameters; ++i) {
         const char *name = reader->model->parameter[i].name;
@@ -174,6 +174,7 @@ static bool mentions_parameter(const Reader *reader, const Item *item)
     return false;
 }
 
+/* What mentions no parameter and is no number gets doc_number's message. */
 double number_read(Reader *reader, const Item *item, const char *what)
 {
     if (!mentions_parameter(reader, item))
@@ -301,6 +302,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         break;
     case KEY_TYPE:
     case KEY_ITEM:
+    case KEY_FORMULA:
     case KEY_KINDS:
         break;
     }

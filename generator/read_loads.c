@@ -41,10 +41,10 @@ static const Key force_key[ELEMENT_KEYS] = {
     [ELEMENT_COORDINATE] = {"coordinate", KEY_COORDINATE, FORCE_ALONG, FORCE_ALONG, BOUND_NONE, 0},
     [ELEMENT_BODIES] = {"bodies", KEY_FORCE_BODIES, FORCE_BETWEEN, FORCE_BETWEEN, BOUND_NONE, 0},
     [ELEMENT_POINTS] = {"points", KEY_POINTS, FORCE_BETWEEN, FORCE_BETWEEN, BOUND_NONE, 0},
-    [ELEMENT_STIFFNESS] = {"stiffness", KEY_ITEM, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
-    [ELEMENT_DAMPING] = {"damping", KEY_ITEM, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
-    [ELEMENT_FREE] = {"free", KEY_ITEM, FORCE_SPRING, 0, BOUND_NONE, 0},
-    [ELEMENT_VALUE] = {"value", KEY_ITEM, FORCE_LAWS, FORCE_LAWS, BOUND_NONE, 0},
+    [ELEMENT_STIFFNESS] = {"stiffness", KEY_FORMULA, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
+    [ELEMENT_DAMPING] = {"damping", KEY_FORMULA, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
+    [ELEMENT_FREE] = {"free", KEY_FORMULA, FORCE_SPRING, 0, BOUND_NONE, 0},
+    [ELEMENT_VALUE] = {"value", KEY_FORMULA, FORCE_LAWS, FORCE_LAWS, BOUND_NONE, 0},
     [ELEMENT_BODY] = {"body", KEY_BODY, FORM(FORCE_LOAD), FORM(FORCE_LOAD), BOUND_NONE, 0},
     [ELEMENT_POINT] = {"point", KEY_POINT, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
     [ELEMENT_IN] = {"in", KEY_FRAME, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
@@ -145,7 +145,8 @@ static const Law *spring_law(Reader *reader, const Entry *entry, const Value *va
     const Item *item = value[key].item;
     const char *what = pool_print(reader->pool, "%s of %s", force_key[key].name, entry->what);
     LawNames names = {.model = reader->model, .constant = true, .remedy = "use the element type `force` for any other law"};
-    const Law *law = law_parse(reader->pool, item, what, &names);
+    bool formula = item->quoted || mentions_parameter(reader, item);
+    const Law *law = formula ? law_parse(reader->pool, item, what, &names) : literal_law(reader, doc_number(item, what));
     double number = law_number(law, reader->model);
     if (!isfinite(number))
         diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number", what);

@@ -22,11 +22,11 @@
 #define ALONG(coordinate, stiffness, damping, free) \
     "{\"name\": \"f\", \"type\": \"coordinate\", \"coordinate\": " coordinate ", \"a\": null, \"b\": null, " \
     "\"point_a\": null, \"point_b\": null, \"stiffness\": " stiffness ", \"damping\": " damping ", \"free\": " free \
-    ", \"constant\": null}"
+    ", \"law\": []}"
 #define BETWEEN(a, b, point_a, point_b, stiffness, damping, free) \
     "{\"name\": \"f\", \"type\": \"points\", \"coordinate\": -1, \"a\": " a ", \"b\": " b ", \"point_a\": " point_a \
     ", \"point_b\": " point_b ", \"stiffness\": " stiffness ", \"damping\": " damping ", \"free\": " free \
-    ", \"constant\": null}"
+    ", \"law\": []}"
 #define WHEEL(body, center, radius, stiffness, damping) \
     "{\"name\": \"t\", \"body\": " body ", \"center\": " center ", \"radius\": " radius ", \"stiffness\": " stiffness \
     ", \"damping\": " damping ", \"fade\": 0.01}"
@@ -34,7 +34,7 @@
 #define COORDINATES "], \"coordinates\": ["
 #define FORCES "], \"forces\": ["
 #define WHEELS "], \"wheels\": ["
-#define SEQUENCE "], \"inputs\": [], \"outputs\": [], \"sequence\": ["
+#define SEQUENCE "], \"inputs\": [], \"tables\": [], \"outputs\": [], \"sequence\": ["
 #define TAIL "]}"
 
 /* A body of mass 2 on a hinge at the origin about y, centre of mass (0.5, 0.1, -0.3) at design. */
@@ -208,7 +208,8 @@ static void free_body(const char *dump, const Road *road, const real spring_poin
             arm[i] = point[k][i] - com[i];
         }
         if (k == 0) {
-            static const Force spring = {-1, {GROUND, 0}, {{0}}, 70, 9, 2, 0};
+            static const Force spring = {.coordinate = -1, .body = {GROUND, 0}, .point = {{0}},
+             .stiffness = 70, .damping = 9, .free = 2};
             real end[2][3] = {{1, 2, 3}, {x[0], x[1], x[2]}},
                  end_rate[2][3] = {{0}, {x_rate[0], x_rate[1], x_rate[2]}};
             spring_force(&spring, end, end_rate, F);

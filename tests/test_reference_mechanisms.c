@@ -94,8 +94,10 @@ static Mechanism *corners(void)
         {.coordinate = 1, .stiffness = 90000, .damping = 6000, .free = 0.5},
         {.coordinate = 2, .stiffness = 4000, .damping = 300},
         {.coordinate = 0, .stiffness = 5000, .damping = 100},
-        {-1, {CHASSIS, KNUCKLE}, {{1.5, 0.4, 0.3}, {0.1, 0.1, 0.1}}, 2000, 150, 0.4, 0},
-        {-1, {GROUND, CHASSIS}, {{1, 2, 3}, {0.5, 0, 0.25}}, 700, 90, 2, 0},
+        {.coordinate = -1, .body = {CHASSIS, KNUCKLE}, .point = {{1.5, 0.4, 0.3}, {0.1, 0.1, 0.1}},
+         .stiffness = 2000, .damping = 150, .free = 0.4},
+        {.coordinate = -1, .body = {GROUND, CHASSIS}, .point = {{1, 2, 3}, {0.5, 0, 0.25}},
+         .stiffness = 700, .damping = 90, .free = 2},
     };
     static const Wheel wheel[] = {
         {KNUCKLE, {0.02, 0.01, 0}, 0.47, 300000, 500, 0.01},
@@ -119,6 +121,7 @@ static void add_length(Mechanism *mechanism, int a, int b, const double x_a[3], 
 /* The joints that the corners don't have, one after the other and back to the hull. */
 static Mechanism *train(void)
 {
+    static Formula steady = {.number = 25};
     enum { HULL, DRUM, SHAFT, CAP, SLIDER, LEVER, PARTS };
     static const Body body[PARTS] = {
         {"hull", 900, {0.05, 0.01, 0.2}, {300, 800, 900, 10, -20, 5}, {0.1, 0, 0.5}, {0.96, 0, 0.28, 0}},
@@ -164,10 +167,12 @@ static Mechanism *train(void)
     add_length(mechanism, HULL, SLIDER, (const double[3]){2.3, 2.4, 0.7}, (const double[3]){2.3, 1.6, 1.3});
     add_length(mechanism, DRUM, LEVER, (const double[3]){1.4, 0.2, 1.2}, (const double[3]){3, 1, 1.1});
     static const Force force[] = {
-        {.coordinate = 1, .stiffness = 400, .damping = 30, .constant = 25},
+        {.coordinate = 1, .stiffness = 400, .damping = 30, .law = {&steady}},
         {.coordinate = 2, .stiffness = 9000, .damping = 600, .free = 0.5},
-        {-1, {HULL, LEVER}, {{1.5, 0.4, 0.3}, {0.1, 0.1, 0.1}}, 2000, 150, 0.4, 0},
-        {-1, {GROUND, SLIDER}, {{1, 2, 3}, {0.5, 0, 0.25}}, 700, 90, 2, 0},
+        {.coordinate = -1, .body = {HULL, LEVER}, .point = {{1.5, 0.4, 0.3}, {0.1, 0.1, 0.1}},
+         .stiffness = 2000, .damping = 150, .free = 0.4},
+        {.coordinate = -1, .body = {GROUND, SLIDER}, .point = {{1, 2, 3}, {0.5, 0, 0.25}},
+         .stiffness = 700, .damping = 90, .free = 2},
     };
     static const Wheel wheel[] = {
         {SLIDER, {0.02, 0.01, 0}, 2, 3000, 50, 0.01},
@@ -466,7 +471,7 @@ static void test_balances(void **state_of_test)
         int c = element->coordinate;
         if (c >= 0) {
             real w = (real)state->w[c], rate = (real)state->w_rate[c];
-            power -= (element->constant - element->stiffness * (w - element->free) - element->damping * rate) * rate;
+            power -= ((element->law[0] ? element->law[0]->number : 0) - element->stiffness * (w - element->free) - element->damping * rate) * rate;
             continue;
         }
         real x[2][3], x_rate[2][3], pull[3], about[3];

@@ -84,11 +84,11 @@ static void read_coordinate(Coordinate *coordinate, const Json *json, int bodies
 
 static void read_force(Force *force, const Json *json, const Model *model)
 {
-    static const char *const name[] = {"points", "coordinate", "constant"};
-    force->coordinate = -1;
-    if (type_of(json, name, 3) > 0) {
-        force->coordinate = index_of(json, "coordinate", 0, model->coordinates);
-    } else {
+    static const char *const name[] = {"coordinate", "coordinate_law", "points", "points_law", "load"};
+    int type = type_of(json, name, 5), laws;
+    force->coordinate = type < 2 ? index_of(json, "coordinate", 0, model->coordinates) : -1;
+    force->load = type == 4;
+    if (type >= 2) {
         force->body[0] = index_of(json, "a", GROUND, model->bodies);
         force->body[1] = index_of(json, "b", GROUND, model->bodies);
         json_numbers(json, "point_a", force->point[0], 3);
@@ -97,7 +97,11 @@ static void read_force(Force *force, const Json *json, const Model *model)
     force->stiffness = json_number(json, "stiffness");
     force->damping = json_number(json, "damping");
     force->free = json_number(json, "free");
-    force->constant = json_number(json, "constant");
+    const Json *law = list_of(json, "law", &laws);
+    if (laws != (type == 4 ? 6 : type % 2))
+        fail("a force has %d formulas", laws);
+    for (int i = 0; i < laws; ++i)
+        force->law[i] = formula_read(law->item[i]);
 }
 
 static void read_wheel(Wheel *wheel, const Json *json, int bodies)
@@ -208,7 +212,7 @@ static double model_length(const Model *model)
     for (int i = 0; i < model->coordinates; ++i)
         cloud_coordinate(&cloud, model, &model->coordinate[i]);
     for (int i = 0; i < model->forces; ++i)
-        for (int k = 0; k < 2 && model->force[i].coordinate < 0; ++k)
+        for (int k = 0; k < 2 - model->force[i].load && model->force[i].coordinate < 0; ++k)
             cloud_add(&cloud, model, model->force[i].body[k], model->force[i].point[k]);
     for (int i = 0; i < model->wheels; ++i)
         cloud_add(&cloud, model, model->wheel[i].body, model->wheel[i].center);
@@ -226,7 +230,14 @@ Model *model_parse(const char *text, const char *name)
     const Json *bodies = list_of(json, "bodies", &model->bodies), *joints = list_of(json, "joints", &model->joints),
                *coordinates = list_of(json, "coordinates", &model->coordinates),
                *forces = list_of(json, "forces", &model->forces), *wheels = list_of(json, "wheels", &model->wheels),
-               *subsets = list_of(json, "sequence", &model->subsets);
+               *subsets = list_of(json, "sequence", &model->subsets),
+               *inputs = list_of(json, "inputs", &model->inputs), *tables = list_of(json, "tables", &model->tables);
+    model->input = grab((size_t)model->inputs, sizeof *model->input);
+    model->table = grab((size_t)model->tables, sizeof *model->table);
+    for (int i = 0; i < model->inputs; ++i)
+        model->input[i] = json_number(inputs->item[i], "default");
+    for (int i = 0; i < model->tables; ++i)
+        lookup_read(&model->table[i], tables->item[i]);
     model->body = grab((size_t)model->bodies, sizeof *model->body);
     model->joint = grab((size_t)model->joints, sizeof *model->joint);
     model->coordinate = grab((size_t)model->coordinates, sizeof *model->coordinate);
@@ -273,6 +284,13 @@ void model_free(Model *model)
         free(model->subset[i].joint);
         free(model->subset[i].coordinate);
     }
+    for (int i = 0; i < model->forces; ++i)
+        for (int k = 0; k < 6; ++k)
+            formula_free(model->force[i].law[k]);
+    for (int i = 0; i < model->tables; ++i)
+        lookup_free(&model->table[i]);
+    free(model->input);
+    free(model->table);
     free(model->body);
     free(model->joint);
     free(model->coordinate);

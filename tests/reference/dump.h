@@ -3,6 +3,8 @@
 #ifndef REFERENCE_DUMP_H
 #define REFERENCE_DUMP_H
 
+#include "formula.h"
+
 #include <stdbool.h>
 
 enum { GROUND = -1 };
@@ -45,10 +47,11 @@ typedef struct Coordinate {
 } Coordinate;
 
 typedef struct Force {
-    int coordinate; /* -1: between points */
-    int body[2];    /* GROUND possible */
+    int coordinate; /* -1: between points, or a load */
+    int body[2];    /* GROUND possible; a load: body, and in whose frame (GROUND: world) */
     double point[2][3], stiffness, damping, free;
-    double constant; /* added along the coordinate */
+    Formula *law[6]; /* NULL, or [0]: what is added to spring and damper; a load: force and torque */
+    bool load;
 } Force;
 
 typedef struct Wheel {
@@ -70,6 +73,9 @@ typedef struct Model {
     Force *force;
     Wheel *wheel;
     Subset *subset;
+    int inputs, tables;
+    double *input; /* values */
+    Lookup *table;
     double length; /* length scale, m: largest distance between two points at design; 1 when all coincide */
 } Model;
 

@@ -364,8 +364,28 @@ static void point_motion(const Model *model, const Configuration *configuration,
     memcpy(v, arrow.rate, sizeof arrow.rate);
 }
 
-static void add_point_spring(const Model *model, const Configuration *configuration, const Force *force,
-                             quad (*Q)[BODY_COORDINATES])
+/* What a formula sees; the first inputs are those of driven coordinates (FORMAT.md section 5). */
+static quad law_value(const Model *model, const Configuration *configuration, const Formula *law, quad length, quad speed)
+{
+    if (!law)
+        return 0;
+    quad input[model->inputs + 1];
+    int next = 0;
+    for (int i = 0; i < model->inputs; ++i)
+        input[i] = model->input[i];
+    for (int c = 0; c < model->coordinates; ++c)
+        if (model->coordinate[c].driven) {
+            input[next] = configuration->w[c];
+            input[next + 1] = configuration->w_rate[c];
+            next += 3;
+        }
+    Surroundings around = {.w = configuration->w, .w_rate = configuration->w_rate, .input = input, .table = model->table,
+                           .length = length, .speed = speed};
+    return formula_value(law, &around);
+}
+
+static void add_between(const Model *model, const Configuration *configuration, const Force *force,
+                        quad (*Q)[BODY_COORDINATES])
 {
     quad x[2][3], v[2][3], d[3], d_rate[3];
     for (int k = 0; k < 2; ++k)
@@ -375,7 +395,8 @@ static void add_point_spring(const Model *model, const Configuration *configurat
         d_rate[i] = v[1][i] - v[0][i];
     }
     quad length = sqrtq(quad_dot(d, d, 3)), rate = quad_dot(d, d_rate, 3) / length;
-    quad tension = force->stiffness * (length - force->free) + force->damping * rate;
+    quad tension = force->stiffness * (length - force->free) + force->damping * rate +
+                   law_value(model, configuration, force->law[0], length, rate);
     for (int k = 0; k < 2; ++k) {
         if (force->body[k] == GROUND)
             continue;
@@ -387,17 +408,36 @@ static void add_point_spring(const Model *model, const Configuration *configurat
     }
 }
 
+/* Force and torque on a body: the torque's generalized force is 2 G^T times its components in the body. */
+static void add_load(const Model *model, const Configuration *configuration, const Force *force, quad (*Q)[BODY_COORDINATES])
+{
+    quad given[6], world[6], s[3], own[3], G[3][4];
+    int body = force->body[0], in = force->body[1];
+    for (int i = 0; i < 6; ++i)
+        world[i] = given[i] = law_value(model, configuration, force->law[i], 0, 0);
+    for (int part = 0; in != GROUND && part < 2; ++part)
+        rotate(configuration->q[in] + 3, given + 3 * part, world + 3 * part);
+    from_com(model, body, force->point[0], s);
+    add_force(configuration, body, s, world, Q);
+    rotate_back(configuration->q[body] + 3, world + 3, own);
+    euler_rate_matrix(configuration->q[body] + 3, G);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 4; ++j)
+            Q[body][3 + j] += 2 * G[i][j] * own[i];
+}
+
 void add_force_element(const Model *model, const Configuration *configuration, const Row *rows, int force,
                        quad (*Q)[BODY_COORDINATES])
 {
     const Force *element = &model->force[force];
     if (element->coordinate < 0) {
-        add_point_spring(model, configuration, element, Q);
+        (element->load ? add_load : add_between)(model, configuration, element, Q);
         return;
     }
     int c = element->coordinate;
-    quad along = element->constant - (quad)element->stiffness * (configuration->w[c] - element->free)
-                 - (quad)element->damping * configuration->w_rate[c];
+    quad along = law_value(model, configuration, element->law[0], 0, 0) -
+                 (quad)element->stiffness * (configuration->w[c] - element->free) -
+                 (quad)element->damping * configuration->w_rate[c];
     /* virtual work: along * dw, with dw = -(dc/dq dq) / (dc/dw) */
     const Row *row = &rows[joint_row(model, model->joints) + c];
     for (int side = 0; side < 2; ++side)

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ * Formulas and tables of the dumped model (FORMAT.md sections 6 and 11), evaluated in quad precision. */
+#ifndef REFERENCE_FORMULA_H
+#define REFERENCE_FORMULA_H
+
+#include "json.h"
+#include "quad.h"
+
+typedef struct Formula {
+    char *op;      /* NULL: a number */
+    double number;
+    int index;     /* of a coordinate, input or table */
+    int arguments;
+    struct Formula *argument[3];
+} Formula;
+
+typedef struct Lookup {
+    int count;
+    double *x, *y;
+    bool cubic, onward;
+} Lookup;
+
+/* What a formula's names stand for. */
+typedef struct Surroundings {
+    const quad *w, *w_rate; /* of the coordinates */
+    const quad *input;
+    const Lookup *table;
+    quad time, length, speed;
+} Surroundings;
+
+Formula *formula_read(const Json *json);
+void formula_free(Formula *formula);
+quad formula_value(const Formula *formula, const Surroundings *around);
+
+void lookup_read(Lookup *table, const Json *json);
+void lookup_free(Lookup *table);
+quad lookup_at(const Lookup *table, quad x);
+
+#endif
