@@ -13,13 +13,18 @@ enum { NAME_LENGTH = 40 };
 static const char *const kind_example[KEY_KINDS] = {
     [KEY_TYPE] = "name",
     [KEY_ITEM] = "{...}",
+    [KEY_INERTIA] = "[Ixx, Iyy, Izz]",
+    [KEY_ORIENTATION] = "{...}",
     [KEY_TEXT] = "text",
     [KEY_NAME] = "name",
     [KEY_NUMBER] = "number",
+    [KEY_ODD] = "number",
     [KEY_FLAG] = "true",
     [KEY_RANGE] = "[low, high]",
     [KEY_VECTOR] = "[x, y, z]",
     [KEY_AXIS] = "[x, y, z]",
+    [KEY_TURN] = "[x, y, z]",
+    [KEY_DUAL_AXIS] = "[x, y, z]",
     [KEY_AXES] = "[[x, y, z], [x, y, z]]",
     [KEY_EULER] = "[e0, e1, e2, e3]",
     [KEY_POINT] = "[x, y, z]",
@@ -46,7 +51,7 @@ static const char *const keyword[] = {
     "void", "volatile", "wchar_t", "while", "xor", "xor_eq",
 };
 
-static void name_check(const char *name, const char *what, Place at)
+void name_check(const char *name, const char *what, Place at)
 {
     size_t length = strlen(name);
     bool good = length > 0 && !(name[0] >= '0' && name[0] <= '9') && name[0] != '_';
@@ -196,6 +201,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         text_check(value->text, what, item->at);
         break;
     case KEY_NUMBER:
+    case KEY_ODD:
         read_number(key, item, what, value->number);
         break;
     case KEY_FLAG:
@@ -210,6 +216,8 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         doc_vector(item, what, value->number, 3);
         break;
     case KEY_AXIS:
+    case KEY_TURN:
+    case KEY_DUAL_AXIS:
         read_axis(item, what, value->number);
         break;
     case KEY_AXES:
@@ -260,6 +268,8 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         break;
     case KEY_TYPE:
     case KEY_ITEM:
+    case KEY_INERTIA:
+    case KEY_ORIENTATION:
     case KEY_KINDS:
         break;
     }

@@ -11,7 +11,7 @@ static const Key input_key[INPUT_KEYS] = {
     [INPUT_DEFAULT] = {"default", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-static const Section input_section = {input_key, INPUT_KEYS, NULL, 0, NULL};
+const Section input_section = {input_key, INPUT_KEYS, NULL, 0, NULL};
 
 enum {
     SPRING_TYPE,
@@ -47,7 +47,7 @@ static const char *const force_form_name[FORCE_TYPES] = {
     [FORCE_CONSTANT] = "constant",
 };
 
-static const Section force_section = {force_key, SPRING_KEYS, force_type_name, 2, force_form_name};
+const Section force_section = {force_key, SPRING_KEYS, force_type_name, 2, force_form_name};
 
 enum { TIRE_BODY, TIRE_CENTER, TIRE_RADIUS, TIRE_STIFFNESS, TIRE_DAMPING, TIRE_FADE, TIRE_KEYS };
 
@@ -60,7 +60,7 @@ static const Key wheel_key[TIRE_KEYS] = {
     [TIRE_FADE] = {"fade", KEY_NUMBER, ALL_FORMS, 0, BOUND_POSITIVE, 0.01},
 };
 
-static const Section wheel_section = {wheel_key, TIRE_KEYS, NULL, 0, NULL};
+const Section wheel_section = {wheel_key, TIRE_KEYS, NULL, 0, NULL};
 
 /* The three inputs of a driven coordinate: value, rate, acceleration. */
 static void driven_inputs(Reader *reader, Coordinate *coordinate)
