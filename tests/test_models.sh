@@ -56,8 +56,8 @@ for claim in '10 bodies, 15 joints, 5 dual coordinates' '70 coordinates, 59 equa
 done
 # stage 1: chassis; stage 2: rack and four arms; stage 3: four wheel assemblies
 awk '/^stage/ { stage = $2 } $1 == "bodies" { $1 = ""; print stage $0 }' "$work/sequence" | sort >"$work/stages"
-printf '%s\n' '1 chassis' '2 lca_fl' '2 lca_fr' '2 lca_rl' '2 lca_rr' '2 rack' '3 wheel_fl' '3 wheel_fr' '3 wheel_rl' \
-    '3 wheel_rr' | cmp -s - "$work/stages"
+printf '%s\n' '1 chassis' '2 lca_f_l' '2 lca_f_r' '2 lca_r_l' '2 lca_r_r' '2 rack' '3 wheel_f_l' '3 wheel_f_r' \
+    '3 wheel_r_l' '3 wheel_r_r' | cmp -s - "$work/stages"
 check $? "the HMMWV's stages are $(tr '\n' ';' <"$work/stages")"
 
 # ---- the pendulum's published positions (IFToMM benchmark A01) ---------------------------------------------
@@ -102,12 +102,12 @@ near "$(at end bounce.value)" 0 1e-4 "rest of the quarter car"
 scene "duration: 2" "step: 0.005" "output_step: 0.1" \
     "initial: {position: [0, 0, 0.4740625], orientation: {pitch: 0.0004326}}"
 run hmmwv
-load=$(for wheel in fl fr rl rr; do at 0 tire_$wheel.fz; done | awk '{ sum += $1 } END { printf "%.9g\n", sum }')
+load=$(for wheel in f_l f_r r_l r_r; do at 0 tire_$wheel.fz; done | awk '{ sum += $1 } END { printf "%.9g\n", sum }')
 near "$load" "$(awk 'BEGIN { print 9.81 * (2086.52 + 9.072 + 4 * (23.965 + 90.555)) }')" 10 "load on the HMMWV's tires"
 for time in 0 1 2; do
     near "$(at $time chassis.z)" 0.4740625 1e-5 "height of the resting chassis at $time s"
     near "$(at $time chassis_attitude.pitch)" 0.0004326 1e-5 "pitch of the resting chassis at $time s"
-    near "$(at $time spring_fl.value)" 0.246463 1e-5 "spring of the resting HMMWV at $time s"
+    near "$(at $time spring_f_l.value)" 0.246463 1e-5 "spring of the resting HMMWV at $time s"
 done
 
 # ---- the paper's run at the largest step, against RK4 at a tenth of it ------------------------------------------
@@ -117,7 +117,7 @@ for how in "ab3 0.01" "rk4 0.001"; do
     run hmmwv
     cp "$work/csv" "$work/${how% *}.csv"
 done
-for name in chassis.z wheel_rl.z wheel_fl.z; do
+for name in chassis.z wheel_r_l.z wheel_f_l.z; do
     for time in 1 2 3 4; do
         cp "$work/rk4.csv" "$work/csv"
         value=$(at $time $name)
