@@ -52,17 +52,25 @@ static Item *map_new(Pool *pool, Place at)
     return map;
 }
 
-/* Room for the value of a key, which may be there already. */
-static Item **value_of(Pool *pool, Item *map, Item *key)
+static void add(Pool *pool, Item *map, Item *key, Item *value)
+{
+    int keys = map->count;
+    *POOL_PUSH(pool, map->key, keys) = key;
+    *POOL_PUSH(pool, map->value, map->count) = value;
+}
+
+/* Where the value of a key stands or is to stand. `before`: the key that was there, NULL: none. */
+static Item **value_of(Pool *pool, Item *map, Item *key, const Item **before)
 {
     for (int i = 0; i < map->count; ++i)
         if (!strcmp(map->key[i]->text, key->text)) {
+            *before = map->key[i];
             map->key[i] = key;
             return &map->value[i];
         }
-    int keys = map->count;
-    *POOL_PUSH(pool, map->key, keys) = key;
-    return POOL_PUSH(pool, map->value, map->count);
+    *before = NULL;
+    add(pool, map, key, NULL);
+    return &map->value[map->count - 1];
 }
 
 static bool is_named_group(const Item *key, const Item *value)
@@ -75,21 +83,23 @@ static bool is_named_group(const Item *key, const Item *value)
 static void put_over(Pool *pool, Item *out, const Item *file, const Item *part)
 {
     for (int i = 0; i < file->count; ++i) {
-        Item *key = file->key[i], *value = file->value[i], **place = value_of(pool, out, key);
-        if (*place && is_group(key->text) && (*place)->kind != ITEM_MAP)
+        const Item *before;
+        Item *key = file->key[i], *value = file->value[i], **place = value_of(pool, out, key, &before);
+        if (before && is_group(key->text) && (*place)->kind != ITEM_MAP)
             continue; /* no map of entries: for the reader to refuse */
         if (!is_named_group(key, value)) {
             *place = value;
             continue;
         }
-        Item *map = *place ? *place : map_new(pool, value->at);
+        Item *map = before ? *place : map_new(pool, value->at);
         *place = map;
         for (int k = 0; k < value->count; ++k) {
-            Item **entry = value_of(pool, map, value->key[k]);
-            if (*entry && part)
+            const Item *name = value->key[k];
+            Item **entry = value_of(pool, map, value->key[k], &before);
+            if (before && part)
                 diag_fail(part->at, "write `{file: ..., prefix: ...}` to give its entries other names",
-                          "'%s' of %s is in an included file before; %s has it in line %d", value->key[k]->text,
-                          key->text, value->key[k]->at.source->path, value->key[k]->at.line);
+                          "'%s' of %s comes from two included files: %s:%d and %s:%d", name->text, key->text,
+                          before->at.source->path, before->at.line, name->at.source->path, name->at.line);
             *entry = value->value[k];
         }
     }
@@ -116,10 +126,10 @@ static const Item *part_placed(Pool *pool, const Item *file, const Value *value)
         else if (is_named_group(key, from)) {
             to = map_new(pool, from->at);
             for (int k = 0; k < from->count; ++k)
-                *value_of(pool, to, name_rewrite(&rewrite, key->text, from->key[k])) =
-                    entry_rewrite(&rewrite, key->text, from->value[k]);
+                add(pool, to, name_rewrite(&rewrite, key->text, from->key[k]),
+                    entry_rewrite(&rewrite, key->text, from->value[k]));
         }
-        *value_of(pool, out, key) = to;
+        add(pool, out, key, to);
     }
     return out;
 }
