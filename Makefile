@@ -76,7 +76,7 @@ $(BUILD)/check/test_%: $(BUILD)/tests/test_%.o $(tested)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBRARIES)
 
 # what checks the generator shares no code with it
-$(BUILD)/check/test_reference: $(BUILD)/tests/test_reference.o $(reference)
+$(BUILD)/check/test_reference $(BUILD)/check/test_reference_mechanisms: $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lquadmath -lm
 
@@ -84,7 +84,7 @@ $(BUILD)/check/reference: $(BUILD)/tests/reference/main.o $(reference)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm
 
-$(BUILD)/check/states $(BUILD)/check/agree: $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
+$(BUILD)/check/states $(BUILD)/check/agree $(BUILD)/check/random_vehicle: $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm
 
@@ -98,6 +98,39 @@ $(BUILD)/check/test_runtime_fast: VARIANT := -ffast-math
 $(BUILD)/check/test_runtime_float $(BUILD)/check/test_runtime_fast: tests/test_runtime.c runtime/gic_runtime.c
 	@mkdir -p $(@D)
 	$(COMPILE) $(VARIANT) -MF $@.d -o $@ $^ $(LDFLAGS) -lcmocka -lm
+
+# ---- tests that drive generated code: of the models, and of variants of the HMMWV
+
+code := $(BUILD)/check/code
+driven := hmmwv quarter_car pendulum steered undamped glider
+driving := test_motion test_instance
+
+# the rack moved by inputs
+steered := s/^  rack: *{type: translation,/& driven: true,/; s/^  energy: .*/&\n  drive: {type: drive_force, coordinate: rack}/
+# nothing takes energy away
+undamped := s/damping: [0-9.]*/damping: 0/
+# springs at ease at design, so that the suspension stays within reach in the air
+glider := $(undamped); s/, free: [0-9.]*//
+
+$(code)/%.c: models/%.veh $(BUILD)/gicgen
+	@mkdir -p $(@D)
+	$(BUILD)/gicgen $< -o $@
+
+$(code)/%.c: models/hmmwv.veh $(BUILD)/gicgen
+	@mkdir -p $(@D)
+	sed 's/^model: .*/model: $*/; $($*)' $< > $(@:.c=.veh)
+	$(BUILD)/gicgen $(@:.c=.veh) -o $@
+
+$(code)/%.o: $(code)/%.c
+	$(COMPILE) -c -o $@ $<
+
+$(driving:%=$(BUILD)/tests/%.o): $(BUILD)/%.o: %.c $(driven:%=$(code)/%.c)
+	@mkdir -p $(@D)
+	$(COMPILE) -I$(code) -c -o $@ $<
+
+$(driving:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/%.o $(driven:%=$(code)/%.o) $(BUILD)/runtime/gic_runtime.o
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
 
 test:
 	sh tests/run.sh

@@ -636,7 +636,7 @@ void generate(Pool *pool, const Model *model, const Sequence *sequence, const ch
     double(*origin)[3] = reference_points(pool, model, sequence);
     const double(*fixed)[3] = (const double(*)[3])origin;
     Sampling *sampling = sampling_new(pool, model, sequence, fixed);
-    Formula **formula = subsets_formulate(pool, model, sequence, fixed, sampling);
+    Formula **formula = subsets_formulate(pool, model, &sequence, fixed, sampling);
     Plan *plan = plan_new(pool, model, sequence, formula, fixed);
     Generation g = {.pool = pool,
                     .model = model,

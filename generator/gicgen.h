@@ -548,8 +548,9 @@ typedef struct Formula {
     Block residual; /* worst: largest constraint residual at q, relative to size */
 } Formula;
 
-/* All classes [classes]. Fills the sampling on the way. Singular subsets end in diag_fail. */
-Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence *sequence, const double (*origin)[3],
+/* All classes [classes]. Fills the sampling on the way. Members that need other pivots than their class's first one get a class of their
+ * own: *sequence is replaced by one that says so. Singular subsets end in diag_fail. */
+Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **sequence, const double (*origin)[3],
                             Sampling *sampling);
 /* Reference points of all bodies [bodies][3], body frames: where a joint to something known sits. */
 double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3];

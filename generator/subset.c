@@ -505,13 +505,78 @@ static Formula *formulate_class(Work *w)
     return formula;
 }
 
-Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence *sequence, const double (*origin)[3],
-                            Sampling *sampling)
+/* ---- classes whose members need different pivots -------------------------------------------------------------------------- */
+
+/* Is there one pivot order for these members of a class, at the design? */
+static bool share_pivots(Work *w, const bool *with)
 {
-    Formula **formula = pool_alloc(pool, (size_t)(sequence->classes + 1) * sizeof *formula);
-    Work **work = pool_alloc(pool, (size_t)(sequence->classes + 1) * sizeof *work);
-    for (int c = 0; c < sequence->classes; ++c)
-        work[c] = subset_open(pool, model, sequence, &sequence->class[c], origin, sampling);
+    double column_scale[w->n];
+    bool row_left[w->n], usable[w->dag->samples];
+    int rank;
+    for (int j = 0; j < w->n; ++j)
+        column_scale[j] = j % 6 < 3 ? w->size : 1;
+    for (int s = 0; s < w->dag->samples; ++s)
+        usable[s] = s % w->configurations == 0 && with[s / w->configurations];
+    return linear_factor(w->dag, w->n, w->J, column_scale, usable, &rank, row_left);
+}
+
+static const char *split_name(Pool *pool, const Sequence *sequence, const char *name)
+{
+    for (int number = 2;; ++number) {
+        const char *candidate = pool_print(pool, "%.36s_%d", name, number);
+        bool taken = false;
+        for (int c = 0; c < sequence->classes; ++c)
+            taken = taken || !strcmp(sequence->class[c].name, candidate);
+        if (!taken)
+            return candidate;
+    }
+}
+
+/* Leave in class c the members that share pivots with its first one, and make a class of the others. False when all of them do. */
+static bool split_class(Pool *pool, Sequence *sequence, int c, Work *w)
+{
+    Class *class = &sequence->class[c];
+    bool with[class->members];
+    for (int i = 0; i < class->members; ++i)
+        with[i] = true;
+    if (class->members == 1 || share_pivots(w, with))
+        return false;
+    memset(with, 0, sizeof with);
+    for (int i = 0; i < class->members; ++i) {
+        with[i] = true;
+        with[i] = i == 0 || share_pivots(w, with);
+    }
+    Class *other = &sequence->class[sequence->classes];
+    *other = (Class){.name = split_name(pool, sequence, class->name),
+                     .member = pool_alloc(pool, (size_t)class->members * sizeof(int))};
+    int kept = 0, *member = pool_alloc(pool, (size_t)class->members * sizeof *member);
+    for (int i = 0; i < class->members; ++i) {
+        if (with[i]) {
+            member[kept++] = class->member[i];
+        } else {
+            other->member[other->members++] = class->member[i];
+            sequence->subset[class->member[i]].class = sequence->classes;
+        }
+    }
+    class->member = member;
+    class->members = kept;
+    ++sequence->classes;
+    return true;
+}
+
+/* A copy in which classes can be split: there are never more of them than subsets. */
+static Sequence *copy_sequence(Pool *pool, const Sequence *sequence)
+{
+    size_t subsets = (size_t)sequence->subsets, classes = (size_t)sequence->classes;
+    Sequence *copy = pool_grow(pool, (void *)sequence, sizeof *copy, sizeof *copy);
+    copy->subset = pool_grow(pool, sequence->subset, subsets * sizeof *copy->subset, subsets * sizeof *copy->subset);
+    copy->class = pool_grow(pool, sequence->class, classes * sizeof *copy->class, (subsets + 1) * sizeof *copy->class);
+    return copy;
+}
+
+/* Follow all subsets in computational order. */
+static void follow_all(const Sequence *sequence, Work **work, Sampling *sampling)
+{
     for (int s = 0; s < sequence->subsets; ++s) {
         int c = sequence->subset[s].class;
         if (c < 0)
@@ -519,8 +584,32 @@ Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence *sequ
         subset_explain_singular(work[c], sampling, s);
         subset_follow(work[c], sampling, subset_index(work[c], s));
     }
-    subsets_scan(pool, model, sequence, work, sampling);
-    for (int c = 0; c < sequence->classes; ++c)
+}
+
+Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **sequence, const double (*origin)[3],
+                            Sampling *sampling)
+{
+    Sequence *split = copy_sequence(pool, *sequence);
+    Formula **formula = pool_alloc(pool, (size_t)(split->subsets + 1) * sizeof *formula);
+    Work **work = pool_alloc(pool, (size_t)(split->subsets + 1) * sizeof *work);
+    for (int c = 0; c < split->classes; ++c)
+        work[c] = subset_open(pool, model, split, &split->class[c], origin, sampling);
+    follow_all(split, work, sampling);
+    bool any = false;
+    for (int c = 0; c < split->classes; ++c)
+        if (split_class(pool, split, c, work[c])) {
+            int last = split->classes - 1;
+            any = true;
+            work[c] = subset_open(pool, model, split, &split->class[c], origin, sampling);
+            work[last] = subset_open(pool, model, split, &split->class[last], origin, sampling);
+            for (int i = 0; i < split->class[last].members; ++i) /* so that it can be split again */
+                subset_follow(work[last], sampling, i);
+        }
+    if (any)
+        follow_all(split, work, sampling);
+    subsets_scan(pool, model, split, work, sampling);
+    for (int c = 0; c < split->classes; ++c)
         formula[c] = formulate_class(work[c]);
+    *sequence = split;
     return formula;
 }

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 # test_andrews.sh GICRUN: Andrews' squeezing mechanism (models/andrews.veh) at 0.03 s against published values.
 #
-# Two sets of values. CONVERGED: the limit on which two integrations by other programs agree (an eighth-order Runge-Kutta
-# pair in double, RK4 in long double), to 13 digits. PUBLISHED: the Test Set for IVP Solvers; its digits belong to a
-# time 1e-12 s earlier, so at a crank speed of 1140 rad/s the angles differ by 1.5e-9 and the velocities by 5e-7.
+# Two sets of values. CONVERGED: the limit on which two integrations by other programs agree (an eighth-order
+# Runge-Kutta pair in double, RK4 in long double), to 13 digits. PUBLISHED: the Test Set for IVP Solvers; its digits
+# belong to a time 1e-12 s off, so that at speeds of 1140 and 1424 rad/s angles differ by 1.5e-9, velocities by 5e-7.
 #
 # What is compared. q = (beta, Theta, gamma, Phi, delta, Omega, epsilon) and q'. Yaw and yaw rate of the bodies' frames
 # are (see andrews.veh)

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_models.sh GICGEN GICRUN: what models and scenes claim: sequence and counts of the paper, the pendulum's published
-# positions, orders of the integrators, energy, rest at the design configuration, stability at 10 ms.
+# test_models.sh GICGEN GICRUN: what models and scenes claim: sequences derived by hand, the pendulum's published
+# positions, orders of the integrators, energy, rest at the design configuration, accuracy at the scenes' steps, cost
+# that grows with the number of bodies and no faster.
 gicgen=$1
 gicrun=$2
 root=$(dirname "$0")/..
@@ -27,12 +28,14 @@ scene() {
 
 # run MODEL [SCENE]: simulates, $work/csv holds the results
 run() {
+    rm -f "$work/csv"
     "$gicrun" --quiet "$models/$1.veh" "${2:-$work/scene}" -o "$work/csv"
     check $? "$1 does not run"
 }
 
 # at TIME COLUMN: a value of $work/csv; TIME may be `end`
 at() {
+    [ -f "$work/csv" ] || return 0
     awk -F, -v time="$1" -v name="$2" '
         NR == 1 { for (i = 1; i <= NF; ++i) { split($i, word, " "); if (word[1] == name) column = i } next }
         time == "end" || ($1 - time)^2 < 1e-18 { value = $column }
@@ -45,20 +48,58 @@ near() {
     check $? "$4: $1 instead of $2 (+- $3)"
 }
 
-# ---- the sequence of the paper ----------------------------------------------------------------------------
+# ---- sequences, against tests/expected/MODEL.txt -------------------------------------------------------------
+# Each of these says how it was derived: a set of bodies is a subset when the equations of joints and dual coordinates
+# among them and to known bodies are 6 a body, and those of no smaller set are. Then come totals and a line a subset,
+# `STAGE: bodies <- joints and coordinates`, names and lines in alphabetical order.
 
-"$gicgen" --sequence "$models/hmmwv.veh" >"$work/sequence"
-check $? "no sequence"
-for claim in '10 bodies, 15 joints, 5 dual coordinates' '70 coordinates, 59 equations' '11 degrees of freedom' \
-    '10 subsets in 3 stages'; do
-    grep -q "$claim" "$work/sequence"
-    check $? "the HMMWV's sequence does not say '$claim'"
+# subsets: what gicgen --sequence printed, in that form
+subsets() {
+    awk '
+        function sorted(list, n, i, k, word, text) {
+            n = split(list, word, " ")
+            for (i = 2; i <= n; ++i)
+                for (k = i; k > 1 && word[k - 1] > word[k]; --k) {
+                    text = word[k]
+                    word[k] = word[k - 1]
+                    word[k - 1] = text
+                }
+            text = ""
+            for (i = 1; i <= n; ++i)
+                text = text (i > 1 ? " " : "") word[i]
+            return text
+        }
+        function finish() {
+            if (bodies)
+                print stage ": " sorted(bodies) " <-" (equations ? " " sorted(equations) : "")
+            bodies = equations = kind = ""
+        }
+        function add() {
+            gsub(/\([^)]*\)|,/, " ")
+            if (kind == "bodies")
+                bodies = bodies " " $0
+            else if (kind == "joints" || kind == "coordinates")
+                equations = equations " " $0
+        }
+        /^stage/ || /^ *[0-9]+  [0-9]+ x/ || /^classes/ { finish() }
+        /^stage/ { stage = $2 }
+        /^ +(bodies|joints|coordinates|known before) / { kind = $1; sub(/^ +[a-z]+/, ""); add(); next }
+        /^ / && kind { add() }
+        END { finish() }' "$1" | LC_ALL=C sort
+}
+
+for file in "$models"/*.veh; do
+    name=$(basename "$file" .veh)
+    "$gicgen" --sequence "$file" >"$work/sequence"
+    check $? "$name has no sequence"
+    grep -v '^#' "$root/tests/expected/$name.txt" >"$work/expected"
+    check $? "no expected sequence for $name"
+    {
+        sed -n 's/^\([0-9]* coordinates, [0-9]* equations\) .*), /total: \1, /p' "$work/sequence"
+        subsets "$work/sequence"
+    } | diff "$work/expected" - >"$work/difference"
+    check $? "sequence of $name: $(cat "$work/difference")"
 done
-# stage 1: chassis; stage 2: rack and four arms; stage 3: four wheel assemblies
-awk '/^stage/ { stage = $2 } $1 == "bodies" { $1 = ""; print stage $0 }' "$work/sequence" | sort >"$work/stages"
-printf '%s\n' '1 chassis' '2 lca_f_l' '2 lca_f_r' '2 lca_r_l' '2 lca_r_r' '2 rack' '3 wheel_f_l' '3 wheel_f_r' \
-    '3 wheel_r_l' '3 wheel_r_r' | cmp -s - "$work/stages"
-check $? "the HMMWV's stages are $(tr '\n' ';' <"$work/stages")"
 
 # ---- the pendulum's published positions (IFToMM benchmark A01) ---------------------------------------------
 
@@ -99,21 +140,39 @@ run quarter_car "$models/scenes/quarter_car.scene"
 near "$(at end tire.fz)" "$(awk 'BEGIN { print 9.81 * (525.59 + 23.965 + 90.555) }')" 1 "load on the rig's tire"
 near "$(at end bounce.value)" 0 1e-4 "rest of the quarter car"
 
-scene "duration: 2" "step: 0.005" "output_step: 0.1" \
-    "initial: {position: [0, 0, 0.4740625], orientation: {pitch: 0.0004326}}"
-run hmmwv
-load=$(for wheel in f_l f_r r_l r_r; do at 0 tire_$wheel.fz; done | awk '{ sum += $1 } END { printf "%.9g\n", sum }')
-near "$load" "$(awk 'BEGIN { print 9.81 * (2086.52 + 9.072 + 4 * (23.965 + 90.555)) }')" 10 "load on the HMMWV's tires"
-for time in 0 1 2; do
-    near "$(at $time chassis.z)" 0.4740625 1e-5 "height of the resting chassis at $time s"
-    near "$(at $time chassis_attitude.pitch)" 0.0004326 1e-5 "pitch of the resting chassis at $time s"
-    near "$(at $time spring_f_l.value)" 0.246463 1e-5 "spring of the resting HMMWV at $time s"
-done
+# rest MODEL HEIGHT PITCH COORDINATE MASS: at this pose of the chassis, coordinates at their design values, springs and
+# tires balance the weight of MASS kg, so that nothing moves: to 10 N and 0.01 mm, which is what the rounding of pitch
+# and free lengths leaves.
+rest() {
+    scene "duration: 2" "step: 0.005" "output_step: 0.1" "initial: {position: [0, 0, $2], orientation: {pitch: $3}}"
+    run "$1"
+    case $4 in
+    *_l) corners="f_l f_r r_l r_r" ;;
+    *) corners="fl fr rl rr" ;;
+    esac
+    load=$(for wheel in $corners; do at 0 tire_$wheel.fz; done | awk '{ sum += $1 } END { printf "%.9g\n", sum }')
+    near "$load" "$(awk -v mass="$5" 'BEGIN { print 9.81 * mass }')" 10 "load on the tires of $1"
+    value=$(at 0 "$4.value")
+    for time in 0 1 2; do
+        near "$(at $time chassis.z)" "$2" 1e-5 "height of the resting chassis at $time s, $1"
+        near "$(at $time chassis_attitude.pitch)" "$3" 1e-5 "pitch of the resting chassis at $time s, $1"
+        near "$(at $time "$4.value")" "$value" 1e-5 "$4 at rest at $time s, $1"
+    done
+}
+
+# masses: chassis and rack, then arms, wheel assemblies, axle
+rest hmmwv 0.4740625 0.0004326 spring_f_l "$(awk 'BEGIN { print 2095.592 + 4 * (23.965 + 90.555) }')"
+near "$(at 0 spring_f_l.value)" 0.246463 1e-6 "front spring at its design length"
+rest hmmwv14 0.473856 0.0004314 spring_rl "$(awk 'BEGIN { print 2095.592 + 4 * (23.965 + 5.813 + 90.555) }')"
+rest five_link 0.474472 0.0006879 spring_rl "$(awk 'BEGIN { print 2095.592 + 2 * 23.965 + 4 * 90.555 }')"
+rest solid_axle 0.473694 0.0002147 spring_rl "$(awk 'BEGIN { print 2095.592 + 2 * (23.965 + 90.555) + 271.11 }')"
+rest trailing_arm 0.474126 0.0005099 bar_rl "$(awk 'BEGIN { print 2095.592 + 2 * (23.965 + 90.555 + 110.555) }')"
 
 # ---- the paper's run at the largest step, against RK4 at a tenth of it ------------------------------------------
 
 for how in "ab3 0.01" "rk4 0.001"; do
-    sed "s/^step:.*/step: ${how#* }/; s/^integrator:.*/integrator: ${how% *}/" "$models/scenes/paper_run.scene" >"$work/scene"
+    sed "s/^step:.*/step: ${how#* }/; s/^integrator:.*/integrator: ${how% *}/" "$models/scenes/paper_run.scene" \
+        >"$work/scene"
     run hmmwv
     cp "$work/csv" "$work/${how% *}.csv"
 done
@@ -124,6 +183,34 @@ for name in chassis.z wheel_r_l.z wheel_f_l.z; do
         cp "$work/ab3.csv" "$work/csv"
         near "$(at $time $name)" "$value" 1e-3 "$name at $time s, AB3 at 10 ms against RK4 at 1 ms"
     done
+done
+
+# ---- scenes of the other vehicles: AB3 at their step against RK4 at a tenth of it -----------------------------------
+
+for name in hmmwv14 five_link solid_axle trailing_arm; do
+    file=$models/scenes/$name.scene
+    run $name "$file"
+    for column in chassis.z wheel_fl.z wheel_rl.z; do at end $column; done >"$work/coarse"
+    sed 's/^step:.*/step: 0.0005/; s/^integrator:.*/integrator: rk4/' "$file" >"$work/scene"
+    run $name
+    for column in chassis.z wheel_fl.z wheel_rl.z; do
+        near "$(sed -n 1p "$work/coarse")" "$(at end $column)" 2e-4 "$column at the end of $name.scene, step 5 ms"
+        sed -i 1d "$work/coarse"
+    done
+done
+
+# ---- cost grows with the number of bodies, not faster ------------------------------------------------------------
+
+# operations BODIES: of one right-hand side per body, as the generated header states them
+operations() {
+    sh "$root/tests/axle_chain.sh" "$1" >"$work/chain.veh" && "$gicgen" "$work/chain.veh" -o "$work/chain.c" &&
+        awk -v n="$1" '/all together/ { print ($4 + $5 + $6 + $7 + $8) / n }' "$work/chain.h"
+}
+
+few=$(operations 10)
+for bodies in 20 40 60; do
+    near "$(operations $bodies)" "$few" "$(awk -v few="$few" 'BEGIN { print 0.2 * few }')" \
+        "operations per body, $bodies bodies against 10"
 done
 
 echo "$passed passed, $failed failed"

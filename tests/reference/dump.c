@@ -9,10 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-const int joint_rows[JOINT_TYPES] = {5, 3, 5, 1, 2};
+const int joint_rows[JOINT_TYPES] = {5, 3, 5, 4, 4, 6, 1, 2, 2, 1, 2, 1};
 
-static const char *const joint_name[JOINT_TYPES] = {"revolute", "spherical", "prismatic", "distance",
-                                                    "revolute_spherical"};
+static const char *const joint_name[JOINT_TYPES] = {
+    "revolute", "spherical",          "prismatic",     "cylindrical",    "universal", "fixed",
+    "distance", "revolute_spherical", "point_on_line", "point_in_plane", "parallel",  "perpendicular"};
 static const char *const coordinate_name[COORDINATE_TYPES] = {"length", "translation", "angle"};
 
 static int type_of(const Json *json, const char *const *name, int count)
@@ -83,9 +84,9 @@ static void read_coordinate(Coordinate *coordinate, const Json *json, int bodies
 
 static void read_force(Force *force, const Json *json, const Model *model)
 {
-    static const char *const name[] = {"coordinate", "points"};
+    static const char *const name[] = {"points", "coordinate", "constant"};
     force->coordinate = -1;
-    if (type_of(json, name, 2) == 0) {
+    if (type_of(json, name, 3) > 0) {
         force->coordinate = index_of(json, "coordinate", 0, model->coordinates);
     } else {
         force->body[0] = index_of(json, "a", GROUND, model->bodies);
@@ -156,7 +157,8 @@ static void cloud_add(Cloud *cloud, const Model *model, int body, const double p
 
 static void cloud_joint(Cloud *cloud, const Model *model, const Joint *joint)
 {
-    for (int k = 0; k < 2; ++k)
+    bool has_points = joint->type != PARALLEL && joint->type != PERPENDICULAR;
+    for (int k = 0; k < 2 && has_points; ++k)
         cloud_add(cloud, model, joint->body[k], joint->point[k]);
 }
 

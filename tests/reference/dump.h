@@ -12,7 +12,21 @@ typedef struct Body {
     double mass, com[3], inertia[6], position[3], euler[4];
 } Body;
 
-typedef enum JointType { REVOLUTE, SPHERICAL, PRISMATIC, DISTANCE, REVOLUTE_SPHERICAL, JOINT_TYPES } JointType;
+typedef enum JointType {
+    REVOLUTE,
+    SPHERICAL,
+    PRISMATIC,
+    CYLINDRICAL,
+    UNIVERSAL,
+    FIXED,
+    DISTANCE,
+    REVOLUTE_SPHERICAL,
+    POINT_ON_LINE,
+    POINT_IN_PLANE,
+    PARALLEL,
+    PERPENDICULAR,
+    JOINT_TYPES
+} JointType;
 
 typedef struct Joint {
     JointType type;

@@ -151,60 +151,96 @@ static Arrow model_axis(const Model *model, const Configuration *configuration, 
     return fixed_vector(configuration, body, side, u);
 }
 
+/* x_a = x_b */
+static Row *points_meet(Row *row, const Arrow *d)
+{
+    for (int i = 0; i < 3; ++i)
+        *row++ = component(d, i);
+    return row;
+}
+
+/* The vector is parallel to an axis of body a: nothing of it across. */
+static Row *along_axis(Row *row, const Configuration *configuration, int a, const quad axis[3], const Arrow *vector)
+{
+    quad across[2][3];
+    perpendiculars(axis, across);
+    for (int i = 0; i < 2; ++i) {
+        Arrow t = fixed_vector(configuration, a, 0, across[i]);
+        *row++ = dot(&t, vector);
+    }
+    return row;
+}
+
+/* b does not rotate relative to a: three pairs of axes that stay perpendicular. */
+static Row *no_rotation(Row *row, const Model *model, const Configuration *configuration, const int body[2])
+{
+    for (int i = 0; i < 3; ++i) {
+        Arrow f = model_axis(model, configuration, body[0], 0, i);
+        Arrow g = model_axis(model, configuration, body[1], 1, (i + 1) % 3);
+        *row++ = dot(&f, &g);
+    }
+    return row;
+}
+
 static void joint_evaluate(const Model *model, const Configuration *configuration, const Joint *joint, Row *row)
 {
-    int a = joint->body[0], b = joint->body[1];
-    quad axis[3], across[2][3];
-    widen(joint->axis[0], axis, 3);
-    Arrow d = point_to_point(model, configuration, joint->body, joint->point);
+    int a = joint->body[0];
+    quad axis[2][3];
+    Arrow d = point_to_point(model, configuration, joint->body, joint->point), u[2];
+    for (int side = 0; side < 2; ++side) {
+        widen(joint->axis[side], axis[side], 3);
+        u[side] = fixed_vector(configuration, joint->body[side], side, axis[side]);
+    }
     Row *start = row;
     switch (joint->type) {
-    case REVOLUTE: {
-        quad axis_b[3];
-        widen(joint->axis[1], axis_b, 3);
-        Arrow u_b = fixed_vector(configuration, b, 1, axis_b);
-        perpendiculars(axis, across);
-        for (int i = 0; i < 3; ++i)
-            *row++ = component(&d, i);
-        for (int i = 0; i < 2; ++i) {
-            Arrow t = fixed_vector(configuration, a, 0, across[i]);
-            *row++ = dot(&t, &u_b);
-        }
+    case REVOLUTE:
+        row = points_meet(row, &d);
+        row = along_axis(row, configuration, a, axis[0], &u[1]);
         break;
-    }
     case SPHERICAL:
-        for (int i = 0; i < 3; ++i)
-            *row++ = component(&d, i);
+        row = points_meet(row, &d);
         break;
     case PRISMATIC:
-        perpendiculars(axis, across);
-        for (int i = 0; i < 3; ++i) {
-            Arrow f = model_axis(model, configuration, a, 0, i);
-            Arrow g = model_axis(model, configuration, b, 1, (i + 1) % 3);
-            *row++ = dot(&f, &g);
-        }
-        for (int i = 0; i < 2; ++i) {
-            Arrow t = fixed_vector(configuration, a, 0, across[i]);
-            *row++ = dot(&t, &d);
-        }
+        row = no_rotation(row, model, configuration, joint->body);
+        row = along_axis(row, configuration, a, axis[0], &d);
         break;
-    case REVOLUTE_SPHERICAL: {
-        Arrow u = fixed_vector(configuration, a, 0, axis);
-        *row = dot(&u, &d);
+    case CYLINDRICAL:
+        row = along_axis(row, configuration, a, axis[0], &u[1]);
+        row = along_axis(row, configuration, a, axis[0], &d);
+        break;
+    case UNIVERSAL:
+        row = points_meet(row, &d);
+        *row++ = dot(&u[0], &u[1]);
+        break;
+    case FIXED:
+        row = points_meet(row, &d);
+        row = no_rotation(row, model, configuration, joint->body);
+        break;
+    case REVOLUTE_SPHERICAL:
+        *row = dot(&u[0], &d);
         row++->value -= joint->offset;
-    }
         /* fall through */
     case DISTANCE:
         *row = dot(&d, &d);
         row++->value -= (quad)joint->length * joint->length;
         break;
+    case POINT_ON_LINE:
+        row = along_axis(row, configuration, a, axis[0], &d);
+        break;
+    case POINT_IN_PLANE:
+        *row++ = dot(&u[0], &d);
+        break;
+    case PARALLEL:
+        row = along_axis(row, configuration, a, axis[0], &u[1]);
+        break;
+    case PERPENDICULAR:
+        *row++ = dot(&u[0], &u[1]);
+        break;
     case JOINT_TYPES:
         break;
     }
-    for (Row *r = start; r < row; ++r) {
-        r->body[0] = a;
-        r->body[1] = b;
-    }
+    for (Row *r = start; r < row; ++r)
+        memcpy(r->body, joint->body, sizeof r->body);
 }
 
 /* row = c row + s other, of two rows that concern the same bodies */

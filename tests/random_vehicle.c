@@ -1,0 +1,885 @@
+/* SPDX-License-Identifier: MIT
+ * random_vehicle --seed S [--broken]
+ *
+ * Prints a random vehicle in the format of models/FORMAT.md: bodies that hold suspensions, drawn from a grammar of axles
+ * and corners, each of which brings as many equations and coordinates as its bodies have freedoms. Equal seeds give
+ * equal vehicles.
+ *
+ * With --broken one mistake is made: the format stays valid, the mechanism does not. The first line of stderr then names
+ * the culprits, bodies, joints and coordinates of which an error message must name at least one. */
+#include "reference/support.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] = "usage: random_vehicle --seed S [--broken]\n";
+
+typedef enum Kind { BODY, JOINT, COORDINATE, FORCE, WHEEL, OUTPUT, KINDS } Kind;
+
+typedef enum Mistake {
+    NO_MISTAKE,
+    JOINT_MISSING,
+    COORDINATE_MISSING,
+    JOINT_TOO_MANY,
+    COORDINATE_TOO_MANY,
+    BODY_LOOSE,
+    PRISMATIC_TWICE,      /* the rack guided twice */
+    PARALLEL_TWICE,       /* as many equations as unknowns, and yet one thing said twice */
+    TIE_ROD_ON_KINGPIN,   /* singular everywhere */
+    SPRING_THROUGH_HINGE, /* singular at the design */
+    MISTAKES
+} Mistake;
+
+enum { MOST = 160, BASE = 0, NOTHING = -1 };
+
+typedef struct Entry {
+    char name[24], text[360];
+    int end[2];     /* bodies that it concerns, or NOTHING */
+    int coordinate; /* of a force, or NOTHING */
+    bool dropped;
+} Entry;
+
+typedef struct Section {
+    int count;
+    Entry entry[MOST];
+} Section;
+
+typedef struct Vehicle {
+    uint64_t random;
+    bool fixed; /* the base is the ground */
+    int names;
+    Mistake mistake; /* still to be made while the vehicle is put together */
+    char culprits[300];
+    Section section[KINDS];
+} Vehicle;
+
+/* xorshift64* */
+static double uniform(Vehicle *v, double low, double high)
+{
+    v->random ^= v->random >> 12;
+    v->random ^= v->random << 25;
+    v->random ^= v->random >> 27;
+    return low + (high - low) * ((double)(v->random * 0x2545f4914f6cdd1du >> 11) * 0x1p-53);
+}
+
+static bool chance(Vehicle *v, double probability)
+{
+    return uniform(v, 0, 1) < probability;
+}
+
+static int pick(Vehicle *v, int count)
+{
+    return (int)uniform(v, 0, count);
+}
+
+/* ---- points and directions, model frame --------------------------------------------------------------------- */
+
+typedef struct Vec {
+    double x[3];
+} Vec;
+
+/* Whole millimetres, so that points made of others by halving and doubling lie exactly where they should. */
+static Vec near_to(Vehicle *v, double x, double y, double z, double spread)
+{
+    Vec out = {{x, y, z}};
+    for (int i = 0; i < 3; ++i)
+        out.x[i] = round(1000 * (out.x[i] + uniform(v, -spread, spread))) / 1000;
+    return out;
+}
+
+static Vec point(Vehicle *v, double x, double y, double z)
+{
+    return near_to(v, x, y, z, 0.025);
+}
+
+/* A direction not far from the one given, its length is of no account. */
+static Vec direction(Vehicle *v, double x, double y, double z)
+{
+    return near_to(v, x, y, z, 0.15);
+}
+
+static Vec combine(double p, Vec a, double q, Vec b)
+{
+    for (int i = 0; i < 3; ++i)
+        a.x[i] = p * a.x[i] + q * b.x[i];
+    return a;
+}
+
+static Vec cross(Vec a, Vec b)
+{
+    Vec out;
+    for (int i = 0; i < 3; ++i)
+        out.x[i] = a.x[(i + 1) % 3] * b.x[(i + 2) % 3] - a.x[(i + 2) % 3] * b.x[(i + 1) % 3];
+    return out;
+}
+
+static double norm(Vec a)
+{
+    return sqrt(a.x[0] * a.x[0] + a.x[1] * a.x[1] + a.x[2] * a.x[2]);
+}
+
+/* Some direction perpendicular to u. */
+static Vec across(Vehicle *v, Vec u)
+{
+    Vec other, out;
+    do {
+        other = near_to(v, 0, 0, 0, 1);
+        out = cross(u, other);
+    } while (norm(out) < 0.5 * norm(u) * norm(other));
+    return out;
+}
+
+/* ---- entries ----------------------------------------------------------------------------------------------------- */
+
+static void append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+static void append(char *text, size_t size, const char *format, ...)
+{
+    size_t used = strlen(text);
+    va_list args;
+    va_start(args, format);
+    int wanted = vsnprintf(text + used, size - used, format, args);
+    va_end(args);
+    if (wanted < 0 || (size_t)wanted >= size - used)
+        fail("an entry is too long: %s", text);
+}
+
+#define SAY(entry, ...) append((entry)->text, sizeof(entry)->text, __VA_ARGS__)
+
+static void say_vector(Entry *entry, const char *lead, Vec u)
+{
+    SAY(entry, "%s[%.9g, %.9g, %.9g]", lead, u.x[0], u.x[1], u.x[2]);
+}
+
+static Entry *add(Vehicle *v, Kind kind, const char *prefix)
+{
+    Section *section = &v->section[kind];
+    if (section->count == MOST)
+        fail("the vehicle is too large");
+    Entry *entry = &section->entry[section->count++];
+    snprintf(entry->name, sizeof entry->name, "%s_%d", prefix, ++v->names);
+    entry->end[0] = entry->end[1] = entry->coordinate = NOTHING;
+    return entry;
+}
+
+static const char *body_name(const Vehicle *v, int body)
+{
+    return body == NOTHING ? "ground" : v->section[BODY].entry[body].name;
+}
+
+static void culprit(Vehicle *v, const char *name)
+{
+    append(v->culprits, sizeof v->culprits, "%s%s", *v->culprits ? " " : "", name);
+}
+
+static void culprit_bodies(Vehicle *v, const Entry *entry)
+{
+    for (int side = 0; side < 2; ++side)
+        if (entry->end[side] > BASE)
+            culprit(v, body_name(v, entry->end[side]));
+}
+
+/* ---- bodies ------------------------------------------------------------------------------------------------------ */
+
+/* Random Euler parameters and their rotation matrix. */
+static void any_rotation(Vehicle *v, double p[4], double A[3][3])
+{
+    double size;
+    do {
+        size = 0;
+        for (int i = 0; i < 4; ++i) {
+            p[i] = uniform(v, -1, 1);
+            size += p[i] * p[i];
+        }
+    } while (size > 1 || size < 0.1);
+    for (int i = 0; i < 4; ++i)
+        p[i] /= sqrt(size);
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        A[i][i] = 2 * (p[0] * p[0] + p[1 + i] * p[1 + i]) - 1;
+        A[i][j] = 2 * (p[1 + i] * p[1 + j] - p[0] * p[1 + k]);
+        A[i][k] = 2 * (p[1 + i] * p[1 + k] + p[0] * p[1 + j]);
+    }
+}
+
+static void say_orientation(Vehicle *v, Entry *body)
+{
+    double p[4], A[3][3];
+    any_rotation(v, p, A);
+    switch (pick(v, 4)) {
+    case 0:
+        SAY(body, ", orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}", p[0], p[1], p[2], p[3]);
+        break;
+    case 1:
+        SAY(body, ", orientation: {axis: [%.6g, %.6g, %.6g], angle: %.6g}", p[1], p[2], p[3], uniform(v, -3, 3));
+        break;
+    case 2: {
+        Vec x = near_to(v, 0.5, 0.5, 0.5, 0.45);
+        say_vector(body, ", orientation: {x: ", x);
+        say_vector(body, ", z: ", across(v, x));
+        SAY(body, "}");
+        break;
+    }
+    }
+}
+
+/* An ellipsoid of random half axes about `size`, turned against the body frame; its frame stands anywhere near. */
+static int add_body(Vehicle *v, const char *prefix, Vec com, double mass, double size)
+{
+    Entry *body = add(v, BODY, prefix);
+    double p[4], A[3][3], half[3], J[3][3] = {{0}};
+    any_rotation(v, p, A);
+    mass *= uniform(v, 0.7, 1.4);
+    for (int i = 0; i < 3; ++i)
+        half[i] = size * uniform(v, 0.5, 1.5);
+    for (int k = 0; k < 3; ++k) {
+        double principal = mass / 5 * (half[(k + 1) % 3] * half[(k + 1) % 3] + half[(k + 2) % 3] * half[(k + 2) % 3]);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                J[i][j] += principal * A[i][k] * A[j][k];
+    }
+    SAY(body, "mass: %.4g", mass);
+    say_vector(body, ", com: ", com);
+    SAY(body, ", inertia: {xx: %.9g, yy: %.9g, zz: %.9g, xy: %.9g, xz: %.9g, yz: %.9g}", J[0][0], J[1][1], J[2][2],
+        J[0][1], J[0][2], J[1][2]);
+    if (chance(v, 0.7))
+        say_vector(body, ", position: ", near_to(v, com.x[0], com.x[1], com.x[2], 0.2));
+    say_orientation(v, body);
+    return v->section[BODY].count - 1;
+}
+
+/* ---- joints -------------------------------------------------------------------------------------------------------- */
+
+/* What a joint or coordinate is made of; members that its type does not have are NULL. */
+typedef struct Geometry {
+    const Vec *point, *points[2], *axis, *axes[2];
+    bool ordered; /* bodies must not change places */
+} Geometry;
+
+static void say_connection(Vehicle *v, Entry *entry, const char *type, int a, int b, const Geometry *with)
+{
+    bool swap = !with->ordered && chance(v, 0.5);
+    entry->end[0] = a;
+    entry->end[1] = b;
+    SAY(entry, "type: %s, bodies: [%s, %s]", type, body_name(v, swap ? b : a), body_name(v, swap ? a : b));
+    if (with->point)
+        say_vector(entry, ", point: ", *with->point);
+    if (with->points[0]) {
+        say_vector(entry, ", points: [", *with->points[swap]);
+        say_vector(entry, ", ", *with->points[!swap]);
+        SAY(entry, "]");
+    }
+    if (with->axis)
+        say_vector(entry, ", axis: ", *with->axis);
+    if (with->axes[0]) {
+        say_vector(entry, ", axes: [", *with->axes[swap]);
+        say_vector(entry, ", ", *with->axes[!swap]);
+        SAY(entry, "]");
+    }
+}
+
+static Entry *join(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with)
+{
+    Entry *joint = add(v, JOINT, prefix);
+    say_connection(v, joint, type, a, b, with);
+    return joint;
+}
+
+/* b turns on a about u: a revolute, or what is equal to it. */
+static Entry *hinge(Vehicle *v, int a, int b, Vec p, Vec u)
+{
+    Entry *first;
+    switch (chance(v, 0.7) ? 0 : 1 + pick(v, 2)) {
+    case 1:
+        first = join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
+        join(v, "stop", "point_in_plane", a, b, &(Geometry){.point = &p, .axis = &u});
+        return first;
+    case 2:
+        first = join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
+        join(v, "same", "parallel", a, b, &(Geometry){.axis = &u});
+        return first;
+    default:
+        return join(v, "hinge", "revolute", a, b, &(Geometry){.point = &p, .axis = &u});
+    }
+}
+
+/* b slides on a along u. */
+static Entry *guide(Vehicle *v, int a, int b, Vec p, Vec u, bool plain)
+{
+    if (plain || chance(v, 0.7))
+        return join(v, "guide", "prismatic", a, b, &(Geometry){.point = chance(v, 0.5) ? &p : NULL, .axis = &u});
+    Vec s = across(v, u), t = cross(u, s);
+    Entry *first = join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
+    join(v, "key", "perpendicular", a, b, &(Geometry){.axes = {&s, &t}});
+    return first;
+}
+
+static void weld(Vehicle *v, int a, int b, Vec p)
+{
+    if (chance(v, 0.7)) {
+        join(v, "weld", "fixed", a, b, &(Geometry){.point = chance(v, 0.5) ? &p : NULL});
+        return;
+    }
+    Vec u = near_to(v, 0.5, 0.5, 0.5, 0.45), s = across(v, u), t = cross(u, s);
+    hinge(v, a, b, p, u);
+    join(v, "key", "perpendicular", a, b, &(Geometry){.axes = {&s, &t}});
+}
+
+static Entry *ball(Vehicle *v, int a, int b, Vec p)
+{
+    return join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
+}
+
+/* A rod, sometimes of another length than drawn. */
+static Entry *rod(Vehicle *v, int a, int b, Vec p_a, Vec p_b)
+{
+    Entry *joint = join(v, "rod", "distance", a, b, &(Geometry){.points = {&p_a, &p_b}});
+    if (chance(v, 0.1))
+        SAY(joint, ", length: %.6g", norm(combine(1, p_a, -1, p_b)) * uniform(v, 0.985, 1.015));
+    return joint;
+}
+
+/* ---- coordinates --------------------------------------------------------------------------------------------------- */
+
+static void add_spring(Vehicle *v, int coordinate, double stiffness, double free)
+{
+    Entry *force = add(v, FORCE, "force");
+    force->coordinate = coordinate;
+    const char *name = v->section[COORDINATE].entry[coordinate].name;
+    if (chance(v, 0.1))
+        SAY(force, "type: constant, coordinate: %s, value: %.4g", name, uniform(v, -0.02, 0.02) * stiffness);
+    else
+        SAY(force, "type: spring_damper, coordinate: %s, stiffness: %.4g, damping: %.4g, free: %.6g", name,
+            stiffness * uniform(v, 0.5, 2), stiffness * uniform(v, 0, 0.1), free);
+}
+
+/* `reach` is the half width of the range; stiffness 0: no spring. */
+static Entry *coordinate(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with, double reach,
+                         double stiffness, bool may_drive)
+{
+    Entry *entry = add(v, COORDINATE, prefix);
+    int index = v->section[COORDINATE].count - 1;
+    bool length = !strcmp(type, "length");
+    double design = length ? norm(combine(1, *with->points[0], -1, *with->points[1])) : 0;
+    say_connection(v, entry, type, a, b, with);
+    if (!length && chance(v, 0.3)) {
+        design = round(100 * uniform(v, -1, 1)) / 100;
+        SAY(entry, ", design: %.9g", design);
+    }
+    SAY(entry, ", range: [%.9g, %.9g]", design - reach * uniform(v, 0.7, 1.2), design + reach * uniform(v, 0.7, 1.2));
+    if (chance(v, 0.2))
+        SAY(entry, ", initial: %.9g", design + reach * uniform(v, -0.5, 0.5));
+    if (may_drive && index > 0 && chance(v, 0.4))
+        SAY(entry, ", driven: true");
+    if (stiffness > 0 && chance(v, 0.9))
+        add_spring(v, index, stiffness, design + reach * uniform(v, -1, 1));
+    return entry;
+}
+
+/* What holds up an arm that turns about u through p: the angle, or a spring to `foot` on the arm from `seat`. */
+static void suspend(Vehicle *v, int carrier, int arm, Vec p, Vec u, Vec seat, Vec foot)
+{
+    if (v->mistake == SPRING_THROUGH_HINGE) {
+        v->mistake = NO_MISTAKE;
+        foot = combine(2, p, -1, seat);
+        Entry *entry = coordinate(v, "spring", "length", carrier, arm, &(Geometry){.points = {&seat, &foot}}, 0.02, 40000,
+                                  false);
+        culprit(v, entry->name);
+        culprit_bodies(v, entry);
+    } else if (chance(v, 0.35)) {
+        coordinate(v, "bar", "angle", carrier, arm, &(Geometry){.axis = &u}, 0.2, 8000, false);
+    } else {
+        coordinate(v, "spring", "length", carrier, arm, &(Geometry){.points = {&seat, &foot}}, 0.025, 40000, false);
+    }
+}
+
+/* ---- what holds a corner ----------------------------------------------------------------------------------------- */
+
+/* A body between the base and an axle: on a hinge, a guide, or on primitives that leave it to turn and slide. */
+static int add_frame(Vehicle *v, int carrier, double x)
+{
+    Vec com = point(v, x, 0, 0.45), p = point(v, x, 0.05, 0.5);
+    int frame = add_body(v, "frame", com, 60, 0.4);
+    bool twice = v->mistake == PARALLEL_TWICE;
+    switch (twice ? 2 : pick(v, 4)) {
+    case 0: {
+        Vec u = direction(v, 1, 0, 0);
+        hinge(v, carrier, frame, p, u);
+        coordinate(v, "roll", "angle", carrier, frame, &(Geometry){.axis = &u}, 0.1, 60000, false);
+        break;
+    }
+    case 1: {
+        Vec u = direction(v, 0.2, 0, 1);
+        guide(v, carrier, frame, p, u, false);
+        coordinate(v, "lift", "translation", carrier, frame, &(Geometry){.axis = &u}, 0.03, 300000, true);
+        break;
+    }
+    case 2: {
+        Vec u = direction(v, 0, 1, 0);
+        Entry *same = join(v, "same", "parallel", carrier, frame, &(Geometry){.axis = &u});
+        join(v, "line", "point_on_line", carrier, frame, &(Geometry){.point = &p, .axis = &u});
+        if (twice) {
+            v->mistake = NO_MISTAKE;
+            culprit(v, same->name);
+            culprit(v, join(v, "same", "parallel", carrier, frame, &(Geometry){.axis = &u})->name);
+            culprit(v, body_name(v, frame));
+            break;
+        }
+        coordinate(v, "pitch", "angle", carrier, frame, &(Geometry){.axis = &u}, 0.1, 60000, false);
+        if (chance(v, 0.5))
+            coordinate(v, "shift", "translation", carrier, frame, &(Geometry){.points = {&p, &p}, .axis = &u}, 0.03, 300000,
+                       false);
+        else
+            join(v, "cam", "point_in_plane", carrier, frame,
+                 &(Geometry){.point = &com, .axis = &(Vec){{0.2, 1, uniform(v, -0.3, 0.3)}}});
+        break;
+    }
+    default: {
+        Vec s = direction(v, 1, 0, 0), t = cross(s, direction(v, 0, 0, 1));
+        join(v, "cross", "universal", carrier, frame, &(Geometry){.point = &p, .axes = {&s, &t}});
+        for (int side = -1; side <= 1; side += 2) {
+            Vec seat = point(v, x + 0.4, 0.45 * side, 0.9), foot = point(v, x + 0.35, 0.4 * side, 0.5);
+            coordinate(v, "mount", "length", carrier, frame, &(Geometry){.points = {&seat, &foot}}, 0.02, 300000, false);
+        }
+    }
+    }
+    return frame;
+}
+
+/* The bodies that the tie rods of the left and right corner begin at. */
+typedef struct Steering {
+    int body[2];
+} Steering;
+
+static int pitman(Vehicle *v, int carrier, double x, double side, Vec axis)
+{
+    int arm = add_body(v, "pitman", point(v, x - 0.25, 0.3 * side, 0.33), 3, 0.15);
+    hinge(v, carrier, arm, point(v, x - 0.38, 0.35 * side, 0.33), axis);
+    return arm;
+}
+
+static Steering add_steering(Vehicle *v, int carrier, double x)
+{
+    bool twice = v->mistake == PRISMATIC_TWICE;
+    Vec y = direction(v, 0, 1, 0), z = direction(v, 0, 0, 1), middle = point(v, x - 0.15, 0, 0.33);
+    int kind = twice ? 0 : pick(v, 4);
+    if (kind == 3)
+        return (Steering){{carrier, carrier}};
+    if (kind == 0) {
+        int rack = add_body(v, "rack", middle, 8, 0.3);
+        Entry *first = guide(v, carrier, rack, middle, y, twice);
+        if (twice) {
+            v->mistake = NO_MISTAKE;
+            culprit(v, first->name);
+            culprit(v, guide(v, carrier, rack, middle, y, true)->name);
+            culprit(v, body_name(v, rack));
+        }
+        coordinate(v, "rack", "translation", carrier, rack, &(Geometry){.axis = &y}, 0.03, 60000, true);
+        return (Steering){{rack, rack}};
+    }
+    /* two arms, and between them a massless link or a body */
+    int left = pitman(v, carrier, x, 1, z), right = pitman(v, carrier, x, -1, direction(v, 0, 0, 1));
+    Vec end[2] = {point(v, x - 0.16, 0.3, 0.33), point(v, x - 0.16, -0.3, 0.33)};
+    if (kind == 1) {
+        rod(v, left, right, end[0], end[1]);
+    } else {
+        int relay = add_body(v, "relay", point(v, x - 0.16, 0, 0.33), 4, 0.2);
+        Vec s = direction(v, 0, 0, 1), t = cross(s, y);
+        ball(v, left, relay, end[0]);
+        join(v, "cross", "universal", right, relay, &(Geometry){.point = &end[1], .axes = {&s, &t}});
+    }
+    coordinate(v, "steer", "angle", carrier, left, &(Geometry){.axis = &z}, 0.12, 8000, true);
+    return (Steering){{left, right}};
+}
+
+/* ---- corners: each ends in the body that carries the wheel ------------------------------------------------------- */
+
+typedef struct Place {
+    int carrier, steering; /* bodies that links and tie rods begin at */
+    double x, side;        /* of the axle; 1 left, -1 right */
+} Place;
+
+static Vec at(Vehicle *v, const Place *place, double dx, double y, double z)
+{
+    return point(v, place->x + dx, y * place->side, z);
+}
+
+static int add_knuckle(Vehicle *v, const Place *place)
+{
+    return add_body(v, "knuckle", at(v, place, 0, 0.72, 0.34), 40, 0.2);
+}
+
+/* An arm on a hinge, held up directly or through a rocker that it pushes. */
+static int add_arm(Vehicle *v, const Place *place)
+{
+    int arm = add_body(v, "arm", at(v, place, 0, 0.5, 0.27), 10, 0.2), carrier = place->carrier;
+    Vec p = at(v, place, 0, 0.33, 0.3), u = direction(v, 1, 0, 0), foot = at(v, place, 0.02, 0.55, 0.28);
+    hinge(v, carrier, arm, p, u);
+    if (v->mistake != SPRING_THROUGH_HINGE && chance(v, 0.25)) {
+        int rocker = add_body(v, "rocker", at(v, place, 0, 0.32, 0.67), 2, 0.1);
+        Vec pivot = at(v, place, 0, 0.3, 0.65), r = direction(v, 1, 0, 0);
+        hinge(v, carrier, rocker, pivot, r);
+        rod(v, rocker, arm, at(v, place, 0.02, 0.42, 0.68), foot);
+        suspend(v, carrier, rocker, pivot, r, at(v, place, 0, 0.1, 0.75), at(v, place, 0, 0.28, 0.8));
+    } else {
+        suspend(v, carrier, arm, p, u, at(v, place, 0.03, 0.45, 0.75), foot);
+    }
+    if (chance(v, 0.15)) {
+        int bar = add_body(v, "roll_bar", at(v, place, -0.2, 0.45, 0.41), 3, 0.15);
+        hinge(v, carrier, bar, at(v, place, -0.3, 0.35, 0.4), direction(v, 0, 1, 0));
+        rod(v, bar, arm, at(v, place, -0.05, 0.5, 0.42), at(v, place, -0.05, 0.52, 0.27));
+    }
+    return arm;
+}
+
+/* The knuckle turns about the line between two balls; the tie rod holds it. */
+static void tie_knuckle(Vehicle *v, const Place *place, int knuckle, Vec low, Vec high)
+{
+    Vec end = at(v, place, -0.14, 0.66, 0.34);
+    bool on_kingpin = v->mistake == TIE_ROD_ON_KINGPIN;
+    if (on_kingpin)
+        end = combine(0.5, low, 0.5, high);
+    Vec start = at(v, place, -0.15, 0.36, 0.32);
+    if (!on_kingpin) {
+        rod(v, place->steering, knuckle, start, end);
+        return;
+    }
+    v->mistake = NO_MISTAKE;
+    culprit(v, join(v, "rod", "distance", place->steering, knuckle, &(Geometry){.points = {&start, &end}})->name);
+    culprit(v, body_name(v, knuckle));
+}
+
+static int wishbones(Vehicle *v, const Place *place)
+{
+    int arm = add_arm(v, place), knuckle = add_knuckle(v, place);
+    Vec low = at(v, place, 0, 0.68, 0.24), high = at(v, place, -0.02, 0.62, 0.62), in = at(v, place, -0.01, 0.38, 0.58),
+        u = direction(v, 1, 0, 0);
+    ball(v, arm, knuckle, low);
+    if (chance(v, 0.5)) {
+        join(v, "link", "revolute_spherical", place->carrier, knuckle,
+             &(Geometry){.points = {&in, &high}, .axis = &u, .ordered = true});
+    } else {
+        int upper = add_body(v, "upper", at(v, place, 0, 0.5, 0.6), 6, 0.15);
+        hinge(v, place->carrier, upper, in, u);
+        ball(v, upper, knuckle, high);
+    }
+    tie_knuckle(v, place, knuckle, low, high);
+    return knuckle;
+}
+
+static int strut(Vehicle *v, const Place *place)
+{
+    int arm = add_arm(v, place), knuckle = add_knuckle(v, place);
+    int damper = add_body(v, "strut", at(v, place, -0.04, 0.58, 0.7), 5, 0.15);
+    Vec low = at(v, place, 0, 0.68, 0.24), seat = at(v, place, -0.01, 0.62, 0.45), top = at(v, place, -0.05, 0.55, 0.85),
+        u = combine(1, top, -1, seat), s = across(v, u), t = cross(u, s);
+    ball(v, arm, knuckle, low);
+    if (chance(v, 0.5)) {
+        guide(v, knuckle, damper, seat, u, false);
+        ball(v, damper, place->carrier, top);
+    } else {
+        join(v, "sleeve", "cylindrical", knuckle, damper, &(Geometry){.point = &seat, .axis = &u});
+        join(v, "cross", "universal", place->carrier, damper, &(Geometry){.point = &top, .axes = {&s, &t}});
+    }
+    tie_knuckle(v, place, knuckle, low, top);
+    return knuckle;
+}
+
+static int five_links(Vehicle *v, const Place *place)
+{
+    static const double in[5][3] = {
+        {0.3, 0.35, 0.25}, {-0.35, 0.35, 0.27}, {0.25, 0.4, 0.55}, {-0.2, 0.42, 0.57}, {-0.25, 0.37, 0.35}};
+    static const double out[5][3] = {
+        {0.05, 0.68, 0.22}, {-0.06, 0.68, 0.23}, {0.03, 0.64, 0.58}, {-0.04, 0.63, 0.6}, {-0.16, 0.66, 0.36}};
+    int knuckle = add_knuckle(v, place);
+    for (int i = 0; i < 5; ++i)
+        rod(v, i == 4 ? place->steering : place->carrier, knuckle, at(v, place, in[i][0], in[i][1], in[i][2]),
+            at(v, place, out[i][0], out[i][1], out[i][2]));
+    Vec seat = at(v, place, 0.03, 0.5, 0.85), foot = at(v, place, 0.02, 0.64, 0.3);
+    coordinate(v, "spring", "length", place->carrier, knuckle, &(Geometry){.points = {&seat, &foot}}, 0.03, 40000, false);
+    return knuckle;
+}
+
+static int trailing_arm(Vehicle *v, const Place *place)
+{
+    int arm = add_body(v, "trailing", at(v, place, 0.1, 0.6, 0.35), 30, 0.25);
+    Vec p = at(v, place, 0.45, 0.45, 0.35), u = direction(v, 0, 1, 0);
+    hinge(v, place->carrier, arm, p, u);
+    suspend(v, place->carrier, arm, p, u, at(v, place, 0.15, 0.5, 0.75), at(v, place, 0.15, 0.52, 0.35));
+    return arm;
+}
+
+static int swing_axle(Vehicle *v, const Place *place)
+{
+    int arm = add_body(v, "swing", at(v, place, 0, 0.5, 0.34), 30, 0.25);
+    Vec p = at(v, place, 0, 0.2, 0.35), u = direction(v, 1, 0, 0);
+    hinge(v, place->carrier, arm, p, u);
+    suspend(v, place->carrier, arm, p, u, at(v, place, 0.05, 0.4, 0.75), at(v, place, 0.05, 0.5, 0.35));
+    return arm;
+}
+
+/* A shaft from the carrier to the wheel's carrier, free to become longer. */
+static void add_shaft(Vehicle *v, const Place *place, int knuckle)
+{
+    Vec in = at(v, place, 0, 0.2, 0.38), out = at(v, place, 0, 0.62, 0.35), u = combine(1, out, -1, in), s = across(v, u),
+        t = cross(u, s);
+    int shaft = add_body(v, "shaft", combine(0.5, in, 0.5, out), 6, 0.15);
+    if (chance(v, 0.5)) {
+        join(v, "cross", "universal", place->carrier, shaft, &(Geometry){.point = &in, .axes = {&s, &t}});
+        join(v, "line", "point_on_line", shaft, knuckle, &(Geometry){.point = &out, .axis = &u, .ordered = true});
+    } else {
+        ball(v, knuckle, shaft, out);
+        join(v, "line", "point_on_line", shaft, place->carrier, &(Geometry){.point = &in, .axis = &u, .ordered = true});
+        join(v, "key", "perpendicular", knuckle, shaft, &(Geometry){.axes = {&s, &t}});
+    }
+}
+
+static void add_wheel(Vehicle *v, const Place *place, int carrier)
+{
+    Vec center = at(v, place, 0, 0.78, 0.32);
+    double choice = uniform(v, 0, 1);
+    if (choice < 0.35) {
+        int hub = add_body(v, "hub", center, 20, 0.25);
+        Vec u = direction(v, 0, 1, 0);
+        if (choice < 0.15) {
+            weld(v, carrier, hub, center);
+        } else {
+            hinge(v, carrier, hub, center, u);
+            coordinate(v, "spin", "angle", carrier, hub, &(Geometry){.axis = &u}, 2, 0, true);
+        }
+        carrier = hub;
+    }
+    Entry *wheel = add(v, WHEEL, "wheel");
+    SAY(wheel, "body: %s", body_name(v, carrier));
+    say_vector(wheel, ", center: ", center);
+    SAY(wheel, ", radius: %.3g, stiffness: %.4g, damping: %.3g", uniform(v, 0.3, 0.36), uniform(v, 1e5, 3e5),
+        uniform(v, 0, 800));
+}
+
+static void add_corner(Vehicle *v, const Place *place)
+{
+    int kind = v->mistake == TIE_ROD_ON_KINGPIN ? pick(v, 2) : v->mistake == SPRING_THROUGH_HINGE ? 3 + pick(v, 2) : pick(v, 5);
+    int carrier;
+    switch (kind) {
+    case 0:
+        carrier = wishbones(v, place);
+        break;
+    case 1:
+        carrier = strut(v, place);
+        break;
+    case 2:
+        carrier = five_links(v, place);
+        break;
+    case 3:
+        carrier = trailing_arm(v, place);
+        break;
+    default:
+        carrier = swing_axle(v, place);
+    }
+    if (chance(v, 0.2))
+        add_shaft(v, place, carrier);
+    add_wheel(v, place, carrier);
+}
+
+/* ---- axles --------------------------------------------------------------------------------------------------------- */
+
+/* Two lower links, and two upper ones or one with a track bar. */
+static void solid_axle(Vehicle *v, int carrier, double x)
+{
+    double ahead = chance(v, 0.5) ? 0.6 : -0.6;
+    int axle = add_body(v, "axle", point(v, x, 0, 0.36), 120, 0.4);
+    bool track_bar = chance(v, 0.5);
+    for (int side = -1; side <= 1; side += 2) {
+        Place place = {carrier, carrier, x, side};
+        Vec seat = at(v, &place, 0.02, 0.48, 0.75), foot = at(v, &place, 0, 0.52, 0.4);
+        rod(v, carrier, axle, at(v, &place, ahead, 0.45, 0.35), at(v, &place, 0, 0.5, 0.27));
+        if (!track_bar)
+            rod(v, carrier, axle, at(v, &place, 0.8 * ahead, 0.45, 0.53), at(v, &place, 0, 0.12, 0.56));
+        coordinate(v, "spring", "length", carrier, axle, &(Geometry){.points = {&seat, &foot}}, 0.03, 40000, false);
+        add_wheel(v, &place, axle);
+    }
+    if (track_bar) {
+        rod(v, carrier, axle, point(v, x + 0.8 * ahead, 0.05, 0.55), point(v, x, 0.03, 0.57));
+        rod(v, carrier, axle, point(v, x - 0.1, -0.45, 0.45), point(v, x - 0.08, 0.45, 0.41));
+    }
+}
+
+/* A planar linkage somewhere on a carrier, closed by a point on a line. */
+static void four_bar(Vehicle *v, int carrier)
+{
+    Vec u = direction(v, 0, 1, 0), p[4] = {point(v, 0, 0.2, 1), point(v, 0.02, 0.2, 1.2), point(v, 0.4, 0.2, 1.3),
+                                           point(v, 0.45, 0.2, 1)};
+    int crank = add_body(v, "crank", combine(0.5, p[0], 0.5, p[1]), 2, 0.1),
+        coupler = add_body(v, "coupler", combine(0.5, p[1], 0.5, p[2]), 3, 0.15),
+        rocker = add_body(v, "rocker", combine(0.5, p[2], 0.5, p[3]), 3, 0.1);
+    join(v, "hinge", "revolute", carrier, crank, &(Geometry){.point = &p[0], .axis = &u});
+    join(v, "hinge", "revolute", crank, coupler, &(Geometry){.point = &p[1], .axis = &u});
+    join(v, "hinge", "revolute", carrier, rocker, &(Geometry){.point = &p[3], .axis = &u});
+    join(v, "line", "point_on_line", coupler, rocker, &(Geometry){.point = &p[2], .axis = &u});
+    coordinate(v, "crank", "angle", carrier, crank, &(Geometry){.axis = &u}, 0.3, 50, true);
+}
+
+static void add_axle(Vehicle *v, double x)
+{
+    int carrier = BASE;
+    bool wants_frame = v->mistake == PARALLEL_TWICE;
+    for (double probability = wants_frame ? 1 : 0.35; chance(v, probability); probability = 0.3)
+        carrier = add_frame(v, carrier, x);
+    bool wants_corner = v->mistake == TIE_ROD_ON_KINGPIN || v->mistake == SPRING_THROUGH_HINGE;
+    if (!wants_corner && v->mistake != PRISMATIC_TWICE && chance(v, 0.2)) {
+        solid_axle(v, carrier, x);
+        return;
+    }
+    Steering steering = {{carrier, carrier}};
+    if (v->mistake == PRISMATIC_TWICE || chance(v, 0.6))
+        steering = add_steering(v, carrier, x);
+    for (int i = 0; i < 2; ++i)
+        add_corner(v, &(Place){carrier, steering.body[i], x, i ? -1 : 1});
+}
+
+/* ---- the whole vehicle --------------------------------------------------------------------------------------------- */
+
+static void point_spring(Vehicle *v)
+{
+    int count = v->section[BODY].count, b = BASE + 1 + pick(v, count - 1), a = pick(v, b + 1) - 1;
+    Entry *force = add(v, FORCE, "tie");
+    say_connection(v, force, "spring_damper", a, b,
+                   &(Geometry){.points = {&(Vec){{0.1, 0.2, 0.3}}, &(Vec){{0.8, uniform(v, -1, 1), 0.9}}}});
+    SAY(force, ", stiffness: %.4g, damping: %.4g", uniform(v, 0, 5000), uniform(v, 0, 500));
+}
+
+static void add_outputs(Vehicle *v)
+{
+    static const char *const type[] = {"position", "velocity", "acceleration", "orientation", "roll_pitch_yaw",
+                                       "angular_velocity"};
+    for (int i = 0; i < 4; ++i) {
+        int body = (v->fixed ? 1 : 0) + pick(v, v->section[BODY].count - (v->fixed ? 1 : 0));
+        SAY(add(v, OUTPUT, "out"), "type: %s, body: %s", type[pick(v, 6)], body_name(v, body));
+    }
+    for (int i = 0; i < v->section[COORDINATE].count; ++i)
+        if (!v->section[COORDINATE].entry[i].dropped && chance(v, 0.3))
+            SAY(add(v, OUTPUT, "out"), "type: coordinate, coordinate: %s", v->section[COORDINATE].entry[i].name);
+    SAY(add(v, OUTPUT, "out"), "type: energy");
+}
+
+static void build(Vehicle *v)
+{
+    static const double x[] = {1.4, -1.4, -2.4};
+    v->fixed = chance(v, 0.15);
+    Vec com = point(v, 0, 0, 0.6);
+    int base = add_body(v, "chassis", com, 1500, 0.9), axles = 1 + pick(v, 2) + chance(v, 0.2);
+    if (v->fixed) {
+        Entry *ground = &v->section[BODY].entry[base];
+        strcpy(ground->name, "ground");
+        ground->dropped = true;
+    }
+    for (int i = 0; i < axles; ++i)
+        add_axle(v, x[i]);
+    if (chance(v, 0.2))
+        four_bar(v, BASE);
+    for (int i = pick(v, 3); i > 0; --i)
+        point_spring(v);
+}
+
+static void drop(Vehicle *v, Kind kind)
+{
+    Section *section = &v->section[kind];
+    int index = pick(v, section->count);
+    Entry *entry = &section->entry[index];
+    entry->dropped = true;
+    culprit_bodies(v, entry);
+    for (int i = 0; i < v->section[FORCE].count && kind == COORDINATE; ++i)
+        if (v->section[FORCE].entry[i].coordinate == index)
+            v->section[FORCE].entry[i].dropped = true;
+}
+
+/* The mistakes that need no place of their own in the vehicle. */
+static void make_mistake(Vehicle *v, Mistake mistake)
+{
+    int body = BASE + 1 + pick(v, v->section[BODY].count - 1);
+    Vec p = near_to(v, 0, 0, 0.5, 1), q = near_to(v, 0, 0, 1.5, 1);
+    Entry *extra = NULL;
+    switch (mistake) {
+    case JOINT_MISSING:
+        drop(v, JOINT);
+        break;
+    case COORDINATE_MISSING:
+        drop(v, COORDINATE);
+        break;
+    case JOINT_TOO_MANY:
+        extra = rod(v, BASE, body, p, q);
+        break;
+    case COORDINATE_TOO_MANY:
+        extra = coordinate(v, "extra", "length", BASE, body, &(Geometry){.points = {&p, &q}}, 0.05, 1000, false);
+        break;
+    case BODY_LOOSE:
+        culprit(v, body_name(v, add_body(v, "loose", p, 5, 0.2)));
+        break;
+    default:
+        break;
+    }
+    if (extra) {
+        culprit(v, extra->name);
+        culprit_bodies(v, extra);
+    }
+}
+
+/* The entries of a section in random order. */
+static void print_section(Vehicle *v, Kind kind, const char *title)
+{
+    Section *section = &v->section[kind];
+    int order[MOST];
+    for (int i = 0; i < section->count; ++i) {
+        int j = pick(v, i + 1);
+        order[i] = order[j];
+        order[j] = i;
+    }
+    if (section->count)
+        printf("%s:\n", title);
+    for (int i = 0; i < section->count; ++i) {
+        const Entry *entry = &section->entry[order[i]];
+        if (!entry->dropped)
+            printf("  %s: {%s}\n", entry->name, entry->text);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    static const char *const title[KINDS] = {"bodies", "joints", "coordinates", "forces", "wheels", "outputs"};
+    double seed = -1;
+    bool broken = false;
+    for (int i = 1; i < argc; ++i) {
+        if (!strcmp(argv[i], "--seed") && i + 1 < argc) {
+            seed = number_of(argv[++i], "--seed");
+        } else if (!strcmp(argv[i], "--broken")) {
+            broken = true;
+        } else {
+            fputs(usage, stderr);
+            return 2;
+        }
+    }
+    if (!(seed >= 0 && seed < 0x1p53)) {
+        fputs(usage, stderr);
+        return 2;
+    }
+    Vehicle *v = grab(1, sizeof *v);
+    v->random = ((uint64_t)seed + 1) * 0x9e3779b97f4a7c15u | 1;
+    for (int i = 0; i < 20; ++i)
+        uniform(v, 0, 1); /* neighbouring seeds part */
+    Mistake mistake = broken ? (Mistake)(1 + (int)fmod(seed, MISTAKES - 1)) : NO_MISTAKE;
+    v->mistake = mistake;
+    build(v);
+    make_mistake(v, mistake);
+    add_outputs(v);
+    printf("gicgen: 1\nmodel: random_%.0f\nbase: %s\n", seed, body_name(v, BASE));
+    for (Kind kind = BODY; kind < KINDS; ++kind)
+        print_section(v, kind, title[kind]);
+    if (broken)
+        fprintf(stderr, "%s\n", v->culprits);
+    free(v);
+    return 0;
+}
