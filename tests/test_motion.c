@@ -208,7 +208,7 @@ static void fly(int steps, double *off, double *drift)
             *off = fmax(*off, fabs(centre[i] - expected));
         }
         assert_int_equal(car.model->outputs(car.head), GIC_OK);
-        assert_true(car.output[GLIDER_OUTPUT_TIRE_FL_FZ] == 0);
+        assert_true(car.output[GLIDER_OUTPUT_TIRE_F_L_FZ] == 0);
         *drift = fmax(*drift, fabs(car.output[GLIDER_OUTPUT_ENERGY_KINETIC] + car.output[GLIDER_OUTPUT_ENERGY_POTENTIAL] -
                                    energy));
     }

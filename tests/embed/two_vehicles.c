@@ -81,7 +81,7 @@ int main(void)
         if (pose[2] != car->output[HMMWV_OUTPUT_CHASSIS_Z])
             return report("chassis is the first body", NULL, GIC_OK);
         printf("%.9g %.9g %.9g %.9g\n", (double)hmmwv_time(car), (double)pose[0], (double)pose[2],
-               (double)car->output[HMMWV_OUTPUT_WHEEL_FL_Z]);
+               (double)car->output[HMMWV_OUTPUT_WHEEL_F_L_Z]);
     }
     if (pendulum_outputs(&fleet.clock) != GIC_OK)
         return 1;
