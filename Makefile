@@ -84,9 +84,14 @@ $(BUILD)/check/reference: $(BUILD)/tests/reference/main.o $(reference)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm
 
-$(BUILD)/check/states $(BUILD)/check/agree $(BUILD)/check/random_vehicle: $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
+$(BUILD)/check/states $(BUILD)/check/agree: $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm
+
+$(BUILD)/check/random_vehicle: $(patsubst %.c,$(BUILD)/%.o,tests/random_vehicle.c tests/random/vehicle.c \
+    tests/reference/support.c)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 $(BUILD)/check/compare_dump: $(BUILD)/tests/compare_dump.o $(tested)
 	@mkdir -p $(@D)
@@ -160,5 +165,8 @@ deps:
 
 clean:
 	rm -rf $(BUILD)
+
+# made by the compiler, not by a rule
+%.d: ;
 
 -include $(shell test -d $(BUILD) && find $(BUILD) -name '*.d')

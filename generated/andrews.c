@@ -66,7 +66,8 @@
 #define GIC_COS(x) cosf(x)
 #define GIC_ASIN(x) asinf(x)
 #define GIC_ATAN2(y, x) atan2f(y, x)
-#define GIC_STEP_SQUARE R(1.6e-11) /* a correction of 4e-6 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-7)
 #else
 #define GIC_SQRT(x) sqrt(x)
 #define GIC_FABS(x) fabs(x)
@@ -74,11 +75,14 @@
 #define GIC_COS(x) cos(x)
 #define GIC_ASIN(x) asin(x)
 #define GIC_ATAN2(y, x) atan2(y, x)
-#define GIC_STEP_SQUARE R(1e-26) /* a correction of 1e-13 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-18)
 #endif
 #define GIC_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
+
+/* far: square of a subset's distance from the base relative to its size; 16 epsilon of the distance is rounding. */
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
  * pieces in which a change of the coordinates is followed. */
@@ -116,7 +120,8 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 13; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(1.1800861256301873e-38));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -169,11 +174,11 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
                 const gic_real t8 = x[0] - R(-0.06171389001427645);
                 const gic_real t9 = R(0.061674723509842204) * (R(1.0) - (q[4] * t1 + t6)) + R(0.9980963022073495) * (t2 + t4);
                 const gic_real t10 = q[4] * t3 + q[3] * t5;
-                const gic_real t11 = q[3] * t1 - q[6] * t5;
-                const gic_real t12 = t7 * GIC_SIN(t8) - t9 * GIC_COS(t8) - t10 * f[4] + t11 * f[5];
-                const gic_real t13 = f[6] * t12;
+                const gic_real t11 = t7 * GIC_SIN(t8) - t9 * GIC_COS(t8) - t10 * f[4];
+                const gic_real t12 = q[3] * t1 - q[6] * t5;
+                const gic_real t13 = f[6] * (t11 + t12 * f[5]);
                 const gic_real t14 = R(0.5) * t13;
-                const gic_real t15 = f[2] * (t11 - f[3] * t13);
+                const gic_real t15 = f[2] * (t12 - f[3] * t13);
                 const gic_real t16 = R(0.5) * t15;
                 const gic_real t17 = f[0] * (t10 + f[1] * t13);
                 const gic_real t18 = R(0.5) * t17;
@@ -200,7 +205,7 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -401,7 +406,8 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -409,6 +415,7 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -431,8 +438,9 @@ static gic_real andrews_residual_K1(const gic_real *GIC_RESTRICT k, const andrew
         const gic_real t8 = R(0.061674723509842204) * (R(1.0) - (q[4] * t4 + t5)) + R(0.9980963022073495) * (t6 + t7);
         const gic_real t9 = x[0] - R(-0.06171389001427645);
         const gic_real t10 = R(0.061674723509842204) * (t6 - t7) + R(0.9980963022073495) * (R(1.0) - (q[5] * t2 + t5));
-        const gic_real t11 = GIC_MAX(GIC_MAX(t3, GIC_FABS(q[6] * t2 - q[3] * t4)), GIC_FABS(t8 * GIC_COS(t9) - t10 * GIC_SIN(t9)));
-        worst = t11;
+        const gic_real t11 = GIC_FABS(t8 * GIC_COS(t9) - t10 * GIC_SIN(t9));
+        const gic_real t12 = GIC_MAX(GIC_MAX(t3, GIC_FABS(q[6] * t2 - q[3] * t4)), t11);
+        worst = t12;
     }
     return worst;
 }
@@ -456,7 +464,8 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
     const gic_real *const s = old + 14; /* unit velocities at the start */
     const gic_real *const f = old + 26; /* factors at the start */
     gic_real q[14];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(1.9531227755102036));
     int i;
     (void)k;
     for (i = 0; i < 14; ++i)
@@ -648,7 +657,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -1161,7 +1170,8 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -1169,6 +1179,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -1181,58 +1192,60 @@ static gic_real andrews_residual_K2_K3(const gic_real *GIC_RESTRICT k, const and
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_MAX(GIC_FABS((q[7] - R(-0.03635)) * R(28.571428571428562)), GIC_FABS((q[8] - R(0.03273)) * R(28.571428571428562))), GIC_FABS(q[9] * R(28.571428571428562)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((q[7] - R(-0.03635)) * R(28.571428571428562)), GIC_FABS((q[8] - R(0.03273)) * R(28.571428571428562)));
         const gic_real t2 = q[13] + q[13];
         const gic_real t3 = q[11] * t2;
         const gic_real t4 = q[12] + q[12];
         const gic_real t5 = q[10] * t4;
-        const gic_real t6 = q[13] * t4;
-        const gic_real t7 = q[11] + q[11];
-        const gic_real t8 = q[10] * t7;
-        const gic_real t9 = (q[0] - (m0[0] + (R(-1.1519648082658485e-19) * m0[4] + R(0.006999999999999999) * m0[3]))) * R(28.571428571428562);
-        const gic_real t10 = (q[1] - (m0[1] + (R(-1.1519648082658485e-19) * m0[7] + R(0.006999999999999999) * m0[6]))) * R(28.571428571428562);
-        const gic_real t11 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(t1, GIC_FABS(t3 + t5)), GIC_FABS(t6 - t8)), GIC_FABS(t9)), GIC_FABS(t10));
-        const gic_real t12 = (q[2] - (m0[2] + (R(-1.1519648082658485e-19) * m0[10] + R(0.006999999999999999) * m0[9]))) * R(28.571428571428562);
-        const gic_real t13 = q[4] + q[4];
-        const gic_real t14 = q[4] * t13;
-        const gic_real t15 = q[5] + q[5];
-        const gic_real t16 = q[5] * t15;
-        const gic_real t17 = R(1.0) - (t14 + t16);
-        const gic_real t18 = q[6] * t15;
-        const gic_real t19 = q[3] * t13;
-        const gic_real t20 = t18 - t19;
-        const gic_real t21 = q[6] + q[6];
-        const gic_real t22 = q[4] * t21;
-        const gic_real t23 = q[3] * t15;
-        const gic_real t24 = t22 + t23;
-        const gic_real t25 = t20 * (R(0.061674723509842204) * m0[7] + R(0.9980963022073495) * m0[6]) + t24 * (R(0.061674723509842204) * m0[4] + R(0.9980963022073495) * m0[3]);
-        const gic_real t26 = GIC_MAX(GIC_MAX(t11, GIC_FABS(t12)), GIC_FABS(t17 * (R(0.061674723509842204) * m0[10] + R(0.9980963022073495) * m0[9]) + t25));
-        const gic_real t27 = t20 * (R(0.9980963022073495) * m0[7] + R(-0.061674723509842204) * m0[6]) + t24 * (R(0.9980963022073495) * m0[4] + R(-0.061674723509842204) * m0[3]);
-        const gic_real t28 = GIC_MAX(t26, GIC_FABS(t17 * (R(0.9980963022073495) * m0[10] + R(-0.061674723509842204) * m0[9]) + t27));
-        const gic_real t29 = q[2] + (R(2.168404344971009e-19) * (t18 + t19) + R(-0.027999999999999997) * (t22 - t23));
-        const gic_real t30 = t6 + t8;
-        const gic_real t31 = t29 - (q[9] + R(-0.03500000000000001) * t30);
-        const gic_real t32 = t3 - t5;
-        const gic_real t33 = q[6] * t21;
-        const gic_real t34 = q[5] * t13;
-        const gic_real t35 = q[3] * t21;
-        const gic_real t36 = R(2.168404344971009e-19) * (R(1.0) - (t14 + t33)) + R(-0.027999999999999997) * (t34 + t35);
-        const gic_real t37 = q[13] * t2;
-        const gic_real t38 = R(1.0) - (q[11] * t7 + t37);
-        const gic_real t39 = q[1] + t36 - (q[8] + R(-0.03500000000000001) * t38);
-        const gic_real t40 = q[12] * t7;
-        const gic_real t41 = q[10] * t2;
-        const gic_real t42 = t40 + t41;
-        const gic_real t43 = R(2.168404344971009e-19) * (t34 - t35) + R(-0.027999999999999997) * (R(1.0) - (t16 + t33));
-        const gic_real t44 = t40 - t41;
-        const gic_real t45 = q[0] + t43 - (q[7] + R(-0.03500000000000001) * t44);
-        const gic_real t46 = R(1.0) - (q[12] * t4 + t37);
-        const gic_real t47 = t39 * (R(-0.43971364724701895) * t38 + R(0.898138023036952) * t42) + t45 * (R(-0.43971364724701895) * t44 + R(0.898138023036952) * t46);
-        const gic_real t48 = (t31 * (R(-0.43971364724701895) * t30 + R(0.898138023036952) * t32) + t47) * R(28.57142857142856);
-        const gic_real t49 = (R(0.8981380230369522) * t38 + R(0.43971364724701906) * t42) * t39 + (R(0.8981380230369522) * t44 + R(0.43971364724701906) * t46) * t45;
-        const gic_real t50 = ((R(0.8981380230369522) * t30 + R(0.43971364724701906) * t32) * t31 + t49) * R(28.57142857142855);
-        const gic_real t51 = GIC_MAX(GIC_MAX(t28, GIC_FABS(t48)), GIC_FABS(t50));
-        worst = t51;
+        const gic_real t6 = GIC_MAX(GIC_MAX(t1, GIC_FABS(q[9] * R(28.571428571428562))), GIC_FABS(t3 + t5));
+        const gic_real t7 = q[13] * t4;
+        const gic_real t8 = q[11] + q[11];
+        const gic_real t9 = q[10] * t8;
+        const gic_real t10 = (q[0] - (m0[0] + (R(-1.1519648082658485e-19) * m0[4] + R(0.006999999999999999) * m0[3]))) * R(28.571428571428562);
+        const gic_real t11 = (q[1] - (m0[1] + (R(-1.1519648082658485e-19) * m0[7] + R(0.006999999999999999) * m0[6]))) * R(28.571428571428562);
+        const gic_real t12 = GIC_MAX(GIC_MAX(GIC_MAX(t6, GIC_FABS(t7 - t9)), GIC_FABS(t10)), GIC_FABS(t11));
+        const gic_real t13 = (q[2] - (m0[2] + (R(-1.1519648082658485e-19) * m0[10] + R(0.006999999999999999) * m0[9]))) * R(28.571428571428562);
+        const gic_real t14 = q[4] + q[4];
+        const gic_real t15 = q[4] * t14;
+        const gic_real t16 = q[5] + q[5];
+        const gic_real t17 = q[5] * t16;
+        const gic_real t18 = R(1.0) - (t15 + t17);
+        const gic_real t19 = q[6] * t16;
+        const gic_real t20 = q[3] * t14;
+        const gic_real t21 = t19 - t20;
+        const gic_real t22 = q[6] + q[6];
+        const gic_real t23 = q[4] * t22;
+        const gic_real t24 = q[3] * t16;
+        const gic_real t25 = t23 + t24;
+        const gic_real t26 = t21 * (R(0.061674723509842204) * m0[7] + R(0.9980963022073495) * m0[6]) + t25 * (R(0.061674723509842204) * m0[4] + R(0.9980963022073495) * m0[3]);
+        const gic_real t27 = GIC_FABS(t18 * (R(0.061674723509842204) * m0[10] + R(0.9980963022073495) * m0[9]) + t26);
+        const gic_real t28 = t21 * (R(0.9980963022073495) * m0[7] + R(-0.061674723509842204) * m0[6]) + t25 * (R(0.9980963022073495) * m0[4] + R(-0.061674723509842204) * m0[3]);
+        const gic_real t29 = GIC_FABS(t18 * (R(0.9980963022073495) * m0[10] + R(-0.061674723509842204) * m0[9]) + t28);
+        const gic_real t30 = q[2] + (R(2.168404344971009e-19) * (t19 + t20) + R(-0.027999999999999997) * (t23 - t24));
+        const gic_real t31 = t7 + t9;
+        const gic_real t32 = t30 - (q[9] + R(-0.03500000000000001) * t31);
+        const gic_real t33 = t3 - t5;
+        const gic_real t34 = q[6] * t22;
+        const gic_real t35 = q[5] * t14;
+        const gic_real t36 = q[3] * t22;
+        const gic_real t37 = R(2.168404344971009e-19) * (R(1.0) - (t15 + t34)) + R(-0.027999999999999997) * (t35 + t36);
+        const gic_real t38 = q[13] * t2;
+        const gic_real t39 = R(1.0) - (q[11] * t8 + t38);
+        const gic_real t40 = q[1] + t37 - (q[8] + R(-0.03500000000000001) * t39);
+        const gic_real t41 = q[12] * t8;
+        const gic_real t42 = q[10] * t2;
+        const gic_real t43 = t41 + t42;
+        const gic_real t44 = R(2.168404344971009e-19) * (t35 - t36) + R(-0.027999999999999997) * (R(1.0) - (t17 + t34));
+        const gic_real t45 = t41 - t42;
+        const gic_real t46 = q[0] + t44 - (q[7] + R(-0.03500000000000001) * t45);
+        const gic_real t47 = R(1.0) - (q[12] * t4 + t38);
+        const gic_real t48 = t40 * (R(-0.43971364724701895) * t39 + R(0.898138023036952) * t43) + t46 * (R(-0.43971364724701895) * t45 + R(0.898138023036952) * t47);
+        const gic_real t49 = (t32 * (R(-0.43971364724701895) * t31 + R(0.898138023036952) * t33) + t48) * R(28.57142857142856);
+        const gic_real t50 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(t12, GIC_FABS(t13)), t27), t29), GIC_FABS(t49));
+        const gic_real t51 = (R(0.8981380230369522) * t39 + R(0.43971364724701906) * t43) * t40 + (R(0.8981380230369522) * t45 + R(0.43971364724701906) * t47) * t46;
+        const gic_real t52 = ((R(0.8981380230369522) * t31 + R(0.43971364724701906) * t33) * t32 + t51) * R(28.57142857142855);
+        const gic_real t53 = GIC_MAX(t50, GIC_FABS(t52));
+        worst = t53;
     }
     return worst;
 }
@@ -1267,7 +1280,8 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
     const gic_real *const s = old + 14; /* unit velocities at the start */
     const gic_real *const f = old + 26; /* factors at the start */
     gic_real q[14];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(3.0082428125000003));
     int i;
     (void)k;
     for (i = 0; i < 14; ++i)
@@ -1462,7 +1476,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -2000,7 +2014,8 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -2008,6 +2023,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -2020,58 +2036,60 @@ static gic_real andrews_residual_K5_K4(const gic_real *GIC_RESTRICT k, const and
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_MAX(GIC_FABS((q[0] - R(-0.06934)) * R(24.999999999999996)), GIC_FABS((q[1] - R(-0.00227)) * R(24.999999999999996))), GIC_FABS(q[2] * R(24.999999999999996)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(-0.06934)) * R(24.999999999999996)), GIC_FABS((q[1] - R(-0.00227)) * R(24.999999999999996)));
         const gic_real t2 = q[6] + q[6];
         const gic_real t3 = q[4] * t2;
         const gic_real t4 = q[5] + q[5];
         const gic_real t5 = q[3] * t4;
-        const gic_real t6 = q[6] * t4;
-        const gic_real t7 = q[4] + q[4];
-        const gic_real t8 = q[3] * t7;
-        const gic_real t9 = q[5] * t7;
-        const gic_real t10 = q[3] * t2;
-        const gic_real t11 = t9 - t10;
-        const gic_real t12 = q[6] * t2;
-        const gic_real t13 = R(1.0) - (q[5] * t4 + t12);
-        const gic_real t14 = (q[7] - (q[0] + (k[6] * t11 + k[7] * t13))) * R(24.999999999999996);
-        const gic_real t15 = R(1.0) - (q[4] * t7 + t12);
-        const gic_real t16 = t9 + t10;
-        const gic_real t17 = (q[8] - (q[1] + (k[6] * t15 + k[7] * t16))) * R(24.999999999999996);
-        const gic_real t18 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(t1, GIC_FABS(t3 + t5)), GIC_FABS(t6 - t8)), GIC_FABS(t14)), GIC_FABS(t17));
-        const gic_real t19 = t6 + t8;
-        const gic_real t20 = t3 - t5;
-        const gic_real t21 = (q[9] - (q[2] + (k[6] * t19 + k[7] * t20))) * R(24.999999999999996);
-        const gic_real t22 = q[11] + q[11];
-        const gic_real t23 = q[11] * t22;
-        const gic_real t24 = q[12] + q[12];
-        const gic_real t25 = q[12] * t24;
-        const gic_real t26 = k[3] * (R(1.0) - (t23 + t25));
-        const gic_real t27 = q[13] * t24;
-        const gic_real t28 = q[10] * t22;
-        const gic_real t29 = k[3] * (t27 - t28);
-        const gic_real t30 = q[13] + q[13];
-        const gic_real t31 = q[11] * t30;
-        const gic_real t32 = q[10] * t24;
-        const gic_real t33 = k[3] * (t31 + t32);
-        const gic_real t34 = (k[1] * t15 + k[2] * t16) * t29 + (k[1] * t11 + k[2] * t13) * t33;
-        const gic_real t35 = ((k[1] * t19 + k[2] * t20) * t26 + t34) * k[16];
-        const gic_real t36 = (k[4] * t15 + k[5] * t16) * t29 + (k[4] * t11 + k[5] * t13) * t33;
-        const gic_real t37 = ((k[4] * t19 + k[5] * t20) * t26 + t36) * k[17];
-        const gic_real t38 = q[9] + (k[8] * (t27 + t28) + k[9] * (t31 - t32));
-        const gic_real t39 = t38 - (m0[2] + R(-0.03500000000000001) * m0[10]);
-        const gic_real t40 = q[13] * t30;
-        const gic_real t41 = q[12] * t22;
-        const gic_real t42 = q[10] * t30;
-        const gic_real t43 = k[8] * (R(1.0) - (t23 + t40)) + k[9] * (t41 + t42);
-        const gic_real t44 = q[8] + t43 - (m0[1] + R(-0.03500000000000001) * m0[7]);
-        const gic_real t45 = k[8] * (t41 - t42) + k[9] * (R(1.0) - (t25 + t40));
-        const gic_real t46 = q[7] + t45 - (m0[0] + R(-0.03500000000000001) * m0[4]);
-        const gic_real t47 = t44 * (R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6]) + t46 * (R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3]);
-        const gic_real t48 = (t39 * (R(-0.43971364724701895) * m0[10] + R(0.898138023036952) * m0[9]) + t47) * R(24.99999999999999);
-        const gic_real t49 = t44 * (R(0.8981380230369522) * m0[7] + R(0.43971364724701906) * m0[6]) + t46 * (R(0.8981380230369522) * m0[4] + R(0.43971364724701906) * m0[3]);
-        const gic_real t50 = (t39 * (R(0.8981380230369522) * m0[10] + R(0.43971364724701906) * m0[9]) + t49) * R(24.999999999999982);
-        const gic_real t51 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(t18, GIC_FABS(t21)), GIC_FABS(t35)), GIC_FABS(t37)), GIC_FABS(t48)), GIC_FABS(t50));
-        worst = t51;
+        const gic_real t6 = GIC_MAX(GIC_MAX(t1, GIC_FABS(q[2] * R(24.999999999999996))), GIC_FABS(t3 + t5));
+        const gic_real t7 = q[6] * t4;
+        const gic_real t8 = q[4] + q[4];
+        const gic_real t9 = q[3] * t8;
+        const gic_real t10 = q[5] * t8;
+        const gic_real t11 = q[3] * t2;
+        const gic_real t12 = t10 - t11;
+        const gic_real t13 = q[6] * t2;
+        const gic_real t14 = R(1.0) - (q[5] * t4 + t13);
+        const gic_real t15 = (q[7] - (q[0] + (k[6] * t12 + k[7] * t14))) * R(24.999999999999996);
+        const gic_real t16 = R(1.0) - (q[4] * t8 + t13);
+        const gic_real t17 = t10 + t11;
+        const gic_real t18 = (q[8] - (q[1] + (k[6] * t16 + k[7] * t17))) * R(24.999999999999996);
+        const gic_real t19 = GIC_MAX(GIC_MAX(GIC_MAX(t6, GIC_FABS(t7 - t9)), GIC_FABS(t15)), GIC_FABS(t18));
+        const gic_real t20 = t7 + t9;
+        const gic_real t21 = t3 - t5;
+        const gic_real t22 = (q[9] - (q[2] + (k[6] * t20 + k[7] * t21))) * R(24.999999999999996);
+        const gic_real t23 = q[11] + q[11];
+        const gic_real t24 = q[11] * t23;
+        const gic_real t25 = q[12] + q[12];
+        const gic_real t26 = q[12] * t25;
+        const gic_real t27 = k[3] * (R(1.0) - (t24 + t26));
+        const gic_real t28 = q[13] * t25;
+        const gic_real t29 = q[10] * t23;
+        const gic_real t30 = k[3] * (t28 - t29);
+        const gic_real t31 = q[13] + q[13];
+        const gic_real t32 = q[11] * t31;
+        const gic_real t33 = q[10] * t25;
+        const gic_real t34 = k[3] * (t32 + t33);
+        const gic_real t35 = (k[1] * t16 + k[2] * t17) * t30 + (k[1] * t12 + k[2] * t14) * t34;
+        const gic_real t36 = ((k[1] * t20 + k[2] * t21) * t27 + t35) * k[16];
+        const gic_real t37 = (k[4] * t16 + k[5] * t17) * t30 + (k[4] * t12 + k[5] * t14) * t34;
+        const gic_real t38 = ((k[4] * t20 + k[5] * t21) * t27 + t37) * k[17];
+        const gic_real t39 = GIC_MAX(GIC_MAX(GIC_MAX(t19, GIC_FABS(t22)), GIC_FABS(t36)), GIC_FABS(t38));
+        const gic_real t40 = q[9] + (k[8] * (t28 + t29) + k[9] * (t32 - t33));
+        const gic_real t41 = t40 - (m0[2] + R(-0.03500000000000001) * m0[10]);
+        const gic_real t42 = q[13] * t31;
+        const gic_real t43 = q[12] * t23;
+        const gic_real t44 = q[10] * t31;
+        const gic_real t45 = k[8] * (R(1.0) - (t24 + t42)) + k[9] * (t43 + t44);
+        const gic_real t46 = q[8] + t45 - (m0[1] + R(-0.03500000000000001) * m0[7]);
+        const gic_real t47 = k[8] * (t43 - t44) + k[9] * (R(1.0) - (t26 + t42));
+        const gic_real t48 = q[7] + t47 - (m0[0] + R(-0.03500000000000001) * m0[4]);
+        const gic_real t49 = t46 * (R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6]) + t48 * (R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3]);
+        const gic_real t50 = (t41 * (R(-0.43971364724701895) * m0[10] + R(0.898138023036952) * m0[9]) + t49) * R(24.99999999999999);
+        const gic_real t51 = t46 * (R(0.8981380230369522) * m0[7] + R(0.43971364724701906) * m0[6]) + t48 * (R(0.8981380230369522) * m0[4] + R(0.43971364724701906) * m0[3]);
+        const gic_real t52 = (t41 * (R(0.8981380230369522) * m0[10] + R(0.43971364724701906) * m0[9]) + t51) * R(24.999999999999982);
+        const gic_real t53 = GIC_MAX(GIC_MAX(t39, GIC_FABS(t50)), GIC_FABS(t52));
+        worst = t53;
     }
     return worst;
 }
@@ -2241,247 +2259,248 @@ static int andrews_measure(const andrews *self, gic_real time, const gic_real *y
         const gic_real t1 = m[62] + (m[70] * R(-0.018000000000000002) + m[69] * R(0.020000000000000004));
         const gic_real t2 = m[61] + (m[67] * R(-0.018000000000000002) + m[66] * R(0.020000000000000004)) - R(0.072);
         const gic_real t3 = m[60] + (m[64] * R(-0.018000000000000002) + m[63] * R(0.020000000000000004)) - R(0.014);
-        const gic_real t4 = GIC_SQRT(t1 * t1 + (t2 * t2 + t3 * t3)) - R(0.07785);
-        const gic_real t5 = t4 * R(4530.0);
-        const gic_real t6 = m[11] * (m[11] * R(2.194e-06)) + (m[10] * (m[10] * R(2.194e-06)) + m[9] * (m[9] * R(2.194e-06)));
-        const gic_real t7 = m[8] * R(2.194e-06);
-        const gic_real t8 = m[7] * R(2.194e-06);
-        const gic_real t9 = m[6] * R(2.194e-06);
-        const gic_real t10 = m[11] * t7 + (m[10] * t8 + m[9] * t9);
-        const gic_real t11 = m[5] * R(2.194e-06);
-        const gic_real t12 = m[4] * R(2.194e-06);
-        const gic_real t13 = m[3] * R(2.194e-06);
-        const gic_real t14 = m[11] * t11 + (m[10] * t12 + m[9] * t13);
-        const gic_real t15 = m[14] * (m[14] * t6 + (m[13] * t10 + m[12] * t14));
-        const gic_real t16 = m[13] * (m[8] * t7 + (m[7] * t8 + m[6] * t9));
-        const gic_real t17 = m[8] * t11 + (m[7] * t12 + m[6] * t13);
-        const gic_real t18 = m[12] * (m[5] * t11 + (m[4] * t12 + m[3] * t13));
-        const gic_real t19 = m[13] * (m[14] * t10 + (t16 + m[12] * t17)) + m[12] * (m[14] * t14 + (m[13] * t17 + t18));
-        const gic_real t20 = m[7] * R(-6.776263578034403e-21) + m[6] * R(0.00092);
-        const gic_real t21 = m[4] * R(-6.776263578034403e-21) + m[3] * R(0.00092);
-        const gic_real t22 = m[17] + (m[12] * t20 - m[13] * t21);
-        const gic_real t23 = m[10] * R(-6.776263578034403e-21) + m[9] * R(0.00092);
-        const gic_real t24 = m[16] + (m[14] * t21 - m[12] * t23);
-        const gic_real t25 = m[15] + (m[13] * t23 - m[14] * t20);
-        const gic_real t26 = R(0.04325) * (t22 * t22 + (t24 * t24 + t25 * t25));
-        const gic_real t27 = m[41] * (m[41] * R(4.41e-07)) + (m[40] * (m[40] * R(4.41e-07)) + m[39] * (m[39] * R(4.41e-07)));
-        const gic_real t28 = m[38] * R(4.41e-07);
-        const gic_real t29 = m[37] * R(4.41e-07);
-        const gic_real t30 = m[36] * R(4.41e-07);
-        const gic_real t31 = m[41] * t28 + (m[40] * t29 + m[39] * t30);
-        const gic_real t32 = m[35] * R(4.41e-07);
-        const gic_real t33 = m[34] * R(4.41e-07);
-        const gic_real t34 = m[33] * R(4.41e-07);
-        const gic_real t35 = m[41] * t32 + (m[40] * t33 + m[39] * t34);
-        const gic_real t36 = m[44] * (m[44] * t27 + (m[43] * t31 + m[42] * t35));
-        const gic_real t37 = m[43] * (m[38] * t28 + (m[37] * t29 + m[36] * t30));
-        const gic_real t38 = m[38] * t32 + (m[37] * t33 + m[36] * t34);
-        const gic_real t39 = m[42] * (m[35] * t32 + (m[34] * t33 + m[33] * t34));
-        const gic_real t40 = m[43] * (m[44] * t31 + (t37 + m[42] * t38)) + m[42] * (m[44] * t35 + (m[43] * t38 + t39));
-        const gic_real t41 = m[36] * R(-0.0115);
-        const gic_real t42 = m[33] * R(-0.0115);
-        const gic_real t43 = m[47] + (m[42] * t41 - m[43] * t42);
-        const gic_real t44 = m[39] * R(-0.0115);
-        const gic_real t45 = m[46] + (m[44] * t42 - m[42] * t44);
-        const gic_real t46 = m[45] + (m[43] * t44 - m[44] * t41);
-        const gic_real t47 = R(0.00365) * (t43 * t43 + (t45 * t45 + t46 * t46));
-        const gic_real t48 = R(0.5) * (t15 + t19 + t26) + R(0.5) * (t36 + t40 + t47);
-        const gic_real t49 = m[71] * (m[71] * R(5.255e-06)) + (m[70] * (m[70] * R(5.255e-06)) + m[69] * (m[69] * R(5.255e-06)));
-        const gic_real t50 = m[68] * R(5.255e-06);
-        const gic_real t51 = m[67] * R(5.255e-06);
-        const gic_real t52 = m[66] * R(5.255e-06);
-        const gic_real t53 = m[71] * t50 + (m[70] * t51 + m[69] * t52);
-        const gic_real t54 = m[65] * R(5.255e-06);
-        const gic_real t55 = m[64] * R(5.255e-06);
-        const gic_real t56 = m[63] * R(5.255e-06);
-        const gic_real t57 = m[71] * t54 + (m[70] * t55 + m[69] * t56);
-        const gic_real t58 = m[74] * (m[74] * t49 + (m[73] * t53 + m[72] * t57));
-        const gic_real t59 = m[73] * (m[68] * t50 + (m[67] * t51 + m[66] * t52));
-        const gic_real t60 = m[68] * t54 + (m[67] * t55 + m[66] * t56);
-        const gic_real t61 = m[72] * (m[65] * t54 + (m[64] * t55 + m[63] * t56));
-        const gic_real t62 = m[73] * (m[74] * t53 + (t59 + m[72] * t60)) + m[72] * (m[74] * t57 + (m[73] * t60 + t61));
-        const gic_real t63 = m[67] * R(-0.018740000000000003) + m[66] * R(0.010430000000000002);
-        const gic_real t64 = m[64] * R(-0.018740000000000003) + m[63] * R(0.010430000000000002);
-        const gic_real t65 = m[77] + (m[72] * t63 - m[73] * t64);
-        const gic_real t66 = m[70] * R(-0.018740000000000003) + m[69] * R(0.010430000000000002);
-        const gic_real t67 = m[76] + (m[74] * t64 - m[72] * t66);
-        const gic_real t68 = m[75] + (m[73] * t66 - m[74] * t63);
-        const gic_real t69 = R(0.02373) * (t65 * t65 + (t67 * t67 + t68 * t68));
-        const gic_real t70 = m[131] * (m[131] * R(5.667e-07)) + (m[130] * (m[130] * R(5.667e-07)) + m[129] * (m[129] * R(5.667e-07)));
-        const gic_real t71 = m[128] * R(5.667e-07);
-        const gic_real t72 = m[127] * R(5.667e-07);
-        const gic_real t73 = m[126] * R(5.667e-07);
-        const gic_real t74 = m[131] * t71 + (m[130] * t72 + m[129] * t73);
-        const gic_real t75 = m[125] * R(5.667e-07);
-        const gic_real t76 = m[124] * R(5.667e-07);
-        const gic_real t77 = m[123] * R(5.667e-07);
-        const gic_real t78 = m[131] * t75 + (m[130] * t76 + m[129] * t77);
-        const gic_real t79 = m[134] * (m[134] * t70 + (m[133] * t74 + m[132] * t78));
-        const gic_real t80 = m[133] * (m[128] * t71 + (m[127] * t72 + m[126] * t73));
-        const gic_real t81 = m[128] * t75 + (m[127] * t76 + m[126] * t77);
-        const gic_real t82 = m[132] * (m[125] * t75 + (m[124] * t76 + m[123] * t77));
-        const gic_real t83 = m[133] * (m[134] * t74 + (t80 + m[132] * t81)) + m[132] * (m[134] * t78 + (m[133] * t81 + t82));
-        const gic_real t84 = m[127] * R(-0.005789999999999998) + m[126] * R(1.3010426069826053e-18);
-        const gic_real t85 = m[124] * R(-0.005789999999999998) + m[123] * R(1.3010426069826053e-18);
-        const gic_real t86 = m[137] + (m[132] * t84 - m[133] * t85);
-        const gic_real t87 = m[130] * R(-0.005789999999999998) + m[129] * R(1.3010426069826053e-18);
-        const gic_real t88 = m[136] + (m[134] * t85 - m[132] * t87);
-        const gic_real t89 = m[135] + (m[133] * t87 - m[134] * t84);
-        const gic_real t90 = R(0.00706) * (t86 * t86 + (t88 * t88 + t89 * t89));
-        const gic_real t91 = t48 + R(0.5) * (t58 + t62 + t69) + R(0.5) * (t79 + t83 + t90);
-        const gic_real t92 = m[101] * (m[101] * R(1.169e-05)) + (m[100] * (m[100] * R(1.169e-05)) + m[99] * (m[99] * R(1.169e-05)));
-        const gic_real t93 = m[98] * R(1.169e-05);
-        const gic_real t94 = m[97] * R(1.169e-05);
-        const gic_real t95 = m[96] * R(1.169e-05);
-        const gic_real t96 = m[101] * t93 + (m[100] * t94 + m[99] * t95);
-        const gic_real t97 = m[95] * R(1.169e-05);
-        const gic_real t98 = m[94] * R(1.169e-05);
-        const gic_real t99 = m[93] * R(1.169e-05);
-        const gic_real t100 = m[101] * t97 + (m[100] * t98 + m[99] * t99);
-        const gic_real t101 = m[104] * (m[104] * t92 + (m[103] * t96 + m[102] * t100));
-        const gic_real t102 = m[103] * (m[98] * t93 + (m[97] * t94 + m[96] * t95));
-        const gic_real t103 = m[98] * t97 + (m[97] * t98 + m[96] * t99);
-        const gic_real t104 = m[102] * (m[95] * t97 + (m[94] * t98 + m[93] * t99));
-        const gic_real t105 = m[103] * (m[104] * t96 + (t102 + m[102] * t103)) + m[102] * (m[104] * t100 + (m[103] * t103 + t104));
-        const gic_real t106 = m[97] * R(0.009160000000000003) + m[96] * R(0.023080000000000007);
-        const gic_real t107 = m[94] * R(0.009160000000000003) + m[93] * R(0.023080000000000007);
-        const gic_real t108 = m[107] + (m[102] * t106 - m[103] * t107);
-        const gic_real t109 = m[100] * R(0.009160000000000003) + m[99] * R(0.023080000000000007);
-        const gic_real t110 = m[106] + (m[104] * t107 - m[102] * t109);
-        const gic_real t111 = m[105] + (m[103] * t109 - m[104] * t106);
-        const gic_real t112 = R(0.0705) * (t108 * t108 + (t110 * t110 + t111 * t111));
-        const gic_real t113 = m[191] * (m[191] * R(5.667e-07)) + (m[190] * (m[190] * R(5.667e-07)) + m[189] * (m[189] * R(5.667e-07)));
-        const gic_real t114 = m[188] * R(5.667e-07);
-        const gic_real t115 = m[187] * R(5.667e-07);
-        const gic_real t116 = m[186] * R(5.667e-07);
-        const gic_real t117 = m[191] * t114 + (m[190] * t115 + m[189] * t116);
-        const gic_real t118 = m[185] * R(5.667e-07);
-        const gic_real t119 = m[184] * R(5.667e-07);
-        const gic_real t120 = m[183] * R(5.667e-07);
-        const gic_real t121 = m[191] * t118 + (m[190] * t119 + m[189] * t120);
-        const gic_real t122 = m[194] * (m[194] * t113 + (m[193] * t117 + m[192] * t121));
-        const gic_real t123 = m[193] * (m[188] * t114 + (m[187] * t115 + m[186] * t116));
-        const gic_real t124 = m[188] * t118 + (m[187] * t119 + m[186] * t120);
-        const gic_real t125 = m[192] * (m[185] * t118 + (m[184] * t119 + m[183] * t120));
-        const gic_real t126 = m[193] * (m[194] * t117 + (t123 + m[192] * t124)) + m[192] * (m[194] * t121 + (m[193] * t124 + t125));
-        const gic_real t127 = m[187] * R(-4.336808689942018e-19) + m[186] * R(0.005790000000000001);
-        const gic_real t128 = m[184] * R(-4.336808689942018e-19) + m[183] * R(0.005790000000000001);
-        const gic_real t129 = m[197] + (m[192] * t127 - m[193] * t128);
-        const gic_real t130 = m[190] * R(-4.336808689942018e-19) + m[189] * R(0.005790000000000001);
-        const gic_real t131 = m[196] + (m[194] * t128 - m[192] * t130);
-        const gic_real t132 = m[195] + (m[193] * t130 - m[194] * t127);
-        const gic_real t133 = R(0.00706) * (t129 * t129 + (t131 * t131 + t132 * t132));
-        const gic_real t134 = t91 + R(0.5) * (t101 + t105 + t112) + R(0.5) * (t122 + t126 + t133);
-        const gic_real t135 = m[161] * (m[161] * R(1.912e-05)) + (m[160] * (m[160] * R(1.912e-05)) + m[159] * (m[159] * R(1.912e-05)));
-        const gic_real t136 = m[158] * R(1.912e-05);
-        const gic_real t137 = m[157] * R(1.912e-05);
-        const gic_real t138 = m[156] * R(1.912e-05);
-        const gic_real t139 = m[161] * t136 + (m[160] * t137 + m[159] * t138);
-        const gic_real t140 = m[155] * R(1.912e-05);
-        const gic_real t141 = m[154] * R(1.912e-05);
-        const gic_real t142 = m[153] * R(1.912e-05);
-        const gic_real t143 = m[161] * t140 + (m[160] * t141 + m[159] * t142);
-        const gic_real t144 = m[164] * (m[164] * t135 + (m[163] * t139 + m[162] * t143));
-        const gic_real t145 = m[163] * (m[158] * t136 + (m[157] * t137 + m[156] * t138));
-        const gic_real t146 = m[158] * t140 + (m[157] * t141 + m[156] * t142);
-        const gic_real t147 = m[162] * (m[155] * t140 + (m[154] * t141 + m[153] * t142));
-        const gic_real t148 = m[163] * (m[164] * t139 + (t145 + m[162] * t146)) + m[162] * (m[164] * t143 + (m[163] * t146 + t147));
-        const gic_real t149 = m[157] * R(-0.01228) + m[156] * R(-0.004489999999999999);
-        const gic_real t150 = m[154] * R(-0.01228) + m[153] * R(-0.004489999999999999);
-        const gic_real t151 = m[167] + (m[162] * t149 - m[163] * t150);
-        const gic_real t152 = m[160] * R(-0.01228) + m[159] * R(-0.004489999999999999);
-        const gic_real t153 = m[166] + (m[164] * t150 - m[162] * t152);
-        const gic_real t154 = m[165] + (m[163] * t152 - m[164] * t149);
-        const gic_real t155 = R(0.05498) * (t151 * t151 + (t153 * t153 + t154 * t154));
-        const gic_real t156 = x[0];
-        const gic_real t157 = xd[0];
-        const gic_real t158 = rate[1];
-        const gic_real t159 = GIC_ATAN2(m[40], m[41]);
-        const gic_real t160 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[39], R(-1.0)), R(1.0)));
-        const gic_real t161 = GIC_ATAN2(m[36], m[33]);
-        const gic_real t162 = GIC_ATAN2(m[70], m[71]);
-        const gic_real t163 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[69], R(-1.0)), R(1.0)));
-        const gic_real t164 = GIC_ATAN2(m[66], m[63]);
-        const gic_real t165 = GIC_ATAN2(m[130], m[131]);
-        const gic_real t166 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[129], R(-1.0)), R(1.0)));
-        const gic_real t167 = GIC_ATAN2(m[126], m[123]);
-        const gic_real t168 = GIC_ATAN2(m[100], m[101]);
-        const gic_real t169 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[99], R(-1.0)), R(1.0)));
-        const gic_real t170 = GIC_ATAN2(m[96], m[93]);
-        const gic_real t171 = GIC_ATAN2(m[190], m[191]);
-        const gic_real t172 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[189], R(-1.0)), R(1.0)));
-        const gic_real t173 = GIC_ATAN2(m[186], m[183]);
-        const gic_real t174 = GIC_ATAN2(m[160], m[161]);
-        const gic_real t175 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[159], R(-1.0)), R(1.0)));
-        const gic_real t176 = GIC_ATAN2(m[156], m[153]);
-        const gic_real t177 = m[42];
-        const gic_real t178 = m[43];
-        const gic_real t179 = m[44];
-        const gic_real t180 = m[72];
-        const gic_real t181 = m[73];
-        const gic_real t182 = m[74];
-        const gic_real t183 = m[132];
-        const gic_real t184 = m[133];
-        const gic_real t185 = m[134];
-        const gic_real t186 = m[102];
-        const gic_real t187 = m[103];
-        const gic_real t188 = m[104];
-        const gic_real t189 = m[192];
-        const gic_real t190 = m[193];
-        const gic_real t191 = m[194];
-        const gic_real t192 = m[162];
-        const gic_real t193 = m[163];
-        const gic_real t194 = m[164];
-        const gic_real t195 = m[60] + m[64] * R(-0.03500000000000001);
-        const gic_real t196 = m[61] + m[67] * R(-0.03500000000000001);
-        const gic_real t197 = m[62] + m[70] * R(-0.03500000000000001);
-        const gic_real t198 = t134 + R(0.5) * (t144 + t148 + t155);
-        const gic_real t199 = t4 * t5 * R(0.5);
-        out[0] = t156;
-        out[1] = t157;
-        out[2] = t158;
-        out[3] = t159;
-        out[4] = t160;
-        out[5] = t161;
-        out[6] = t162;
-        out[7] = t163;
-        out[8] = t164;
-        out[9] = t165;
-        out[10] = t166;
-        out[11] = t167;
-        out[12] = t168;
-        out[13] = t169;
-        out[14] = t170;
-        out[15] = t171;
-        out[16] = t172;
-        out[17] = t173;
-        out[18] = t174;
-        out[19] = t175;
-        out[20] = t176;
-        out[21] = t177;
-        out[22] = t178;
-        out[23] = t179;
-        out[24] = t180;
-        out[25] = t181;
-        out[26] = t182;
-        out[27] = t183;
-        out[28] = t184;
-        out[29] = t185;
-        out[30] = t186;
-        out[31] = t187;
-        out[32] = t188;
-        out[33] = t189;
-        out[34] = t190;
-        out[35] = t191;
-        out[36] = t192;
-        out[37] = t193;
-        out[38] = t194;
-        out[39] = t195;
-        out[40] = t196;
-        out[41] = t197;
-        out[42] = t5;
-        out[43] = t198;
-        out[44] = t199;
+        const gic_real t4 = GIC_SQRT(t1 * t1 + (t2 * t2 + t3 * t3));
+        const gic_real t5 = t4 - R(0.07785);
+        const gic_real t6 = t5 * R(4530.0);
+        const gic_real t7 = m[11] * (m[11] * R(2.194e-06)) + (m[10] * (m[10] * R(2.194e-06)) + m[9] * (m[9] * R(2.194e-06)));
+        const gic_real t8 = m[8] * R(2.194e-06);
+        const gic_real t9 = m[7] * R(2.194e-06);
+        const gic_real t10 = m[6] * R(2.194e-06);
+        const gic_real t11 = m[11] * t8 + (m[10] * t9 + m[9] * t10);
+        const gic_real t12 = m[5] * R(2.194e-06);
+        const gic_real t13 = m[4] * R(2.194e-06);
+        const gic_real t14 = m[3] * R(2.194e-06);
+        const gic_real t15 = m[11] * t12 + (m[10] * t13 + m[9] * t14);
+        const gic_real t16 = m[14] * (m[14] * t7 + (m[13] * t11 + m[12] * t15));
+        const gic_real t17 = m[13] * (m[8] * t8 + (m[7] * t9 + m[6] * t10));
+        const gic_real t18 = m[8] * t12 + (m[7] * t13 + m[6] * t14);
+        const gic_real t19 = m[12] * (m[5] * t12 + (m[4] * t13 + m[3] * t14));
+        const gic_real t20 = m[13] * (m[14] * t11 + (t17 + m[12] * t18)) + m[12] * (m[14] * t15 + (m[13] * t18 + t19));
+        const gic_real t21 = m[7] * R(-6.776263578034403e-21) + m[6] * R(0.00092);
+        const gic_real t22 = m[4] * R(-6.776263578034403e-21) + m[3] * R(0.00092);
+        const gic_real t23 = m[17] + (m[12] * t21 - m[13] * t22);
+        const gic_real t24 = m[10] * R(-6.776263578034403e-21) + m[9] * R(0.00092);
+        const gic_real t25 = m[16] + (m[14] * t22 - m[12] * t24);
+        const gic_real t26 = m[15] + (m[13] * t24 - m[14] * t21);
+        const gic_real t27 = R(0.04325) * (t23 * t23 + (t25 * t25 + t26 * t26));
+        const gic_real t28 = m[41] * (m[41] * R(4.41e-07)) + (m[40] * (m[40] * R(4.41e-07)) + m[39] * (m[39] * R(4.41e-07)));
+        const gic_real t29 = m[38] * R(4.41e-07);
+        const gic_real t30 = m[37] * R(4.41e-07);
+        const gic_real t31 = m[36] * R(4.41e-07);
+        const gic_real t32 = m[41] * t29 + (m[40] * t30 + m[39] * t31);
+        const gic_real t33 = m[35] * R(4.41e-07);
+        const gic_real t34 = m[34] * R(4.41e-07);
+        const gic_real t35 = m[33] * R(4.41e-07);
+        const gic_real t36 = m[41] * t33 + (m[40] * t34 + m[39] * t35);
+        const gic_real t37 = m[44] * (m[44] * t28 + (m[43] * t32 + m[42] * t36));
+        const gic_real t38 = m[43] * (m[38] * t29 + (m[37] * t30 + m[36] * t31));
+        const gic_real t39 = m[38] * t33 + (m[37] * t34 + m[36] * t35);
+        const gic_real t40 = m[42] * (m[35] * t33 + (m[34] * t34 + m[33] * t35));
+        const gic_real t41 = m[43] * (m[44] * t32 + (t38 + m[42] * t39)) + m[42] * (m[44] * t36 + (m[43] * t39 + t40));
+        const gic_real t42 = m[36] * R(-0.0115);
+        const gic_real t43 = m[33] * R(-0.0115);
+        const gic_real t44 = m[47] + (m[42] * t42 - m[43] * t43);
+        const gic_real t45 = m[39] * R(-0.0115);
+        const gic_real t46 = m[46] + (m[44] * t43 - m[42] * t45);
+        const gic_real t47 = m[45] + (m[43] * t45 - m[44] * t42);
+        const gic_real t48 = R(0.00365) * (t44 * t44 + (t46 * t46 + t47 * t47));
+        const gic_real t49 = R(0.5) * (t16 + t20 + t27) + R(0.5) * (t37 + t41 + t48);
+        const gic_real t50 = m[71] * (m[71] * R(5.255e-06)) + (m[70] * (m[70] * R(5.255e-06)) + m[69] * (m[69] * R(5.255e-06)));
+        const gic_real t51 = m[68] * R(5.255e-06);
+        const gic_real t52 = m[67] * R(5.255e-06);
+        const gic_real t53 = m[66] * R(5.255e-06);
+        const gic_real t54 = m[71] * t51 + (m[70] * t52 + m[69] * t53);
+        const gic_real t55 = m[65] * R(5.255e-06);
+        const gic_real t56 = m[64] * R(5.255e-06);
+        const gic_real t57 = m[63] * R(5.255e-06);
+        const gic_real t58 = m[71] * t55 + (m[70] * t56 + m[69] * t57);
+        const gic_real t59 = m[74] * (m[74] * t50 + (m[73] * t54 + m[72] * t58));
+        const gic_real t60 = m[73] * (m[68] * t51 + (m[67] * t52 + m[66] * t53));
+        const gic_real t61 = m[68] * t55 + (m[67] * t56 + m[66] * t57);
+        const gic_real t62 = m[72] * (m[65] * t55 + (m[64] * t56 + m[63] * t57));
+        const gic_real t63 = m[73] * (m[74] * t54 + (t60 + m[72] * t61)) + m[72] * (m[74] * t58 + (m[73] * t61 + t62));
+        const gic_real t64 = m[67] * R(-0.018740000000000003) + m[66] * R(0.010430000000000002);
+        const gic_real t65 = m[64] * R(-0.018740000000000003) + m[63] * R(0.010430000000000002);
+        const gic_real t66 = m[77] + (m[72] * t64 - m[73] * t65);
+        const gic_real t67 = m[70] * R(-0.018740000000000003) + m[69] * R(0.010430000000000002);
+        const gic_real t68 = m[76] + (m[74] * t65 - m[72] * t67);
+        const gic_real t69 = m[75] + (m[73] * t67 - m[74] * t64);
+        const gic_real t70 = R(0.02373) * (t66 * t66 + (t68 * t68 + t69 * t69));
+        const gic_real t71 = m[131] * (m[131] * R(5.667e-07)) + (m[130] * (m[130] * R(5.667e-07)) + m[129] * (m[129] * R(5.667e-07)));
+        const gic_real t72 = m[128] * R(5.667e-07);
+        const gic_real t73 = m[127] * R(5.667e-07);
+        const gic_real t74 = m[126] * R(5.667e-07);
+        const gic_real t75 = m[131] * t72 + (m[130] * t73 + m[129] * t74);
+        const gic_real t76 = m[125] * R(5.667e-07);
+        const gic_real t77 = m[124] * R(5.667e-07);
+        const gic_real t78 = m[123] * R(5.667e-07);
+        const gic_real t79 = m[131] * t76 + (m[130] * t77 + m[129] * t78);
+        const gic_real t80 = m[134] * (m[134] * t71 + (m[133] * t75 + m[132] * t79));
+        const gic_real t81 = m[133] * (m[128] * t72 + (m[127] * t73 + m[126] * t74));
+        const gic_real t82 = m[128] * t76 + (m[127] * t77 + m[126] * t78);
+        const gic_real t83 = m[132] * (m[125] * t76 + (m[124] * t77 + m[123] * t78));
+        const gic_real t84 = m[133] * (m[134] * t75 + (t81 + m[132] * t82)) + m[132] * (m[134] * t79 + (m[133] * t82 + t83));
+        const gic_real t85 = m[127] * R(-0.005789999999999998) + m[126] * R(1.3010426069826053e-18);
+        const gic_real t86 = m[124] * R(-0.005789999999999998) + m[123] * R(1.3010426069826053e-18);
+        const gic_real t87 = m[137] + (m[132] * t85 - m[133] * t86);
+        const gic_real t88 = m[130] * R(-0.005789999999999998) + m[129] * R(1.3010426069826053e-18);
+        const gic_real t89 = m[136] + (m[134] * t86 - m[132] * t88);
+        const gic_real t90 = m[135] + (m[133] * t88 - m[134] * t85);
+        const gic_real t91 = R(0.00706) * (t87 * t87 + (t89 * t89 + t90 * t90));
+        const gic_real t92 = t49 + R(0.5) * (t59 + t63 + t70) + R(0.5) * (t80 + t84 + t91);
+        const gic_real t93 = m[101] * (m[101] * R(1.169e-05)) + (m[100] * (m[100] * R(1.169e-05)) + m[99] * (m[99] * R(1.169e-05)));
+        const gic_real t94 = m[98] * R(1.169e-05);
+        const gic_real t95 = m[97] * R(1.169e-05);
+        const gic_real t96 = m[96] * R(1.169e-05);
+        const gic_real t97 = m[101] * t94 + (m[100] * t95 + m[99] * t96);
+        const gic_real t98 = m[95] * R(1.169e-05);
+        const gic_real t99 = m[94] * R(1.169e-05);
+        const gic_real t100 = m[93] * R(1.169e-05);
+        const gic_real t101 = m[101] * t98 + (m[100] * t99 + m[99] * t100);
+        const gic_real t102 = m[104] * (m[104] * t93 + (m[103] * t97 + m[102] * t101));
+        const gic_real t103 = m[103] * (m[98] * t94 + (m[97] * t95 + m[96] * t96));
+        const gic_real t104 = m[98] * t98 + (m[97] * t99 + m[96] * t100);
+        const gic_real t105 = m[102] * (m[95] * t98 + (m[94] * t99 + m[93] * t100));
+        const gic_real t106 = m[103] * (m[104] * t97 + (t103 + m[102] * t104)) + m[102] * (m[104] * t101 + (m[103] * t104 + t105));
+        const gic_real t107 = m[97] * R(0.009160000000000003) + m[96] * R(0.023080000000000007);
+        const gic_real t108 = m[94] * R(0.009160000000000003) + m[93] * R(0.023080000000000007);
+        const gic_real t109 = m[107] + (m[102] * t107 - m[103] * t108);
+        const gic_real t110 = m[100] * R(0.009160000000000003) + m[99] * R(0.023080000000000007);
+        const gic_real t111 = m[106] + (m[104] * t108 - m[102] * t110);
+        const gic_real t112 = m[105] + (m[103] * t110 - m[104] * t107);
+        const gic_real t113 = R(0.0705) * (t109 * t109 + (t111 * t111 + t112 * t112));
+        const gic_real t114 = m[191] * (m[191] * R(5.667e-07)) + (m[190] * (m[190] * R(5.667e-07)) + m[189] * (m[189] * R(5.667e-07)));
+        const gic_real t115 = m[188] * R(5.667e-07);
+        const gic_real t116 = m[187] * R(5.667e-07);
+        const gic_real t117 = m[186] * R(5.667e-07);
+        const gic_real t118 = m[191] * t115 + (m[190] * t116 + m[189] * t117);
+        const gic_real t119 = m[185] * R(5.667e-07);
+        const gic_real t120 = m[184] * R(5.667e-07);
+        const gic_real t121 = m[183] * R(5.667e-07);
+        const gic_real t122 = m[191] * t119 + (m[190] * t120 + m[189] * t121);
+        const gic_real t123 = m[194] * (m[194] * t114 + (m[193] * t118 + m[192] * t122));
+        const gic_real t124 = m[193] * (m[188] * t115 + (m[187] * t116 + m[186] * t117));
+        const gic_real t125 = m[188] * t119 + (m[187] * t120 + m[186] * t121);
+        const gic_real t126 = m[192] * (m[185] * t119 + (m[184] * t120 + m[183] * t121));
+        const gic_real t127 = m[193] * (m[194] * t118 + (t124 + m[192] * t125)) + m[192] * (m[194] * t122 + (m[193] * t125 + t126));
+        const gic_real t128 = m[187] * R(-4.336808689942018e-19) + m[186] * R(0.005790000000000001);
+        const gic_real t129 = m[184] * R(-4.336808689942018e-19) + m[183] * R(0.005790000000000001);
+        const gic_real t130 = m[197] + (m[192] * t128 - m[193] * t129);
+        const gic_real t131 = m[190] * R(-4.336808689942018e-19) + m[189] * R(0.005790000000000001);
+        const gic_real t132 = m[196] + (m[194] * t129 - m[192] * t131);
+        const gic_real t133 = m[195] + (m[193] * t131 - m[194] * t128);
+        const gic_real t134 = R(0.00706) * (t130 * t130 + (t132 * t132 + t133 * t133));
+        const gic_real t135 = t92 + R(0.5) * (t102 + t106 + t113) + R(0.5) * (t123 + t127 + t134);
+        const gic_real t136 = m[161] * (m[161] * R(1.912e-05)) + (m[160] * (m[160] * R(1.912e-05)) + m[159] * (m[159] * R(1.912e-05)));
+        const gic_real t137 = m[158] * R(1.912e-05);
+        const gic_real t138 = m[157] * R(1.912e-05);
+        const gic_real t139 = m[156] * R(1.912e-05);
+        const gic_real t140 = m[161] * t137 + (m[160] * t138 + m[159] * t139);
+        const gic_real t141 = m[155] * R(1.912e-05);
+        const gic_real t142 = m[154] * R(1.912e-05);
+        const gic_real t143 = m[153] * R(1.912e-05);
+        const gic_real t144 = m[161] * t141 + (m[160] * t142 + m[159] * t143);
+        const gic_real t145 = m[164] * (m[164] * t136 + (m[163] * t140 + m[162] * t144));
+        const gic_real t146 = m[163] * (m[158] * t137 + (m[157] * t138 + m[156] * t139));
+        const gic_real t147 = m[158] * t141 + (m[157] * t142 + m[156] * t143);
+        const gic_real t148 = m[162] * (m[155] * t141 + (m[154] * t142 + m[153] * t143));
+        const gic_real t149 = m[163] * (m[164] * t140 + (t146 + m[162] * t147)) + m[162] * (m[164] * t144 + (m[163] * t147 + t148));
+        const gic_real t150 = m[157] * R(-0.01228) + m[156] * R(-0.004489999999999999);
+        const gic_real t151 = m[154] * R(-0.01228) + m[153] * R(-0.004489999999999999);
+        const gic_real t152 = m[167] + (m[162] * t150 - m[163] * t151);
+        const gic_real t153 = m[160] * R(-0.01228) + m[159] * R(-0.004489999999999999);
+        const gic_real t154 = m[166] + (m[164] * t151 - m[162] * t153);
+        const gic_real t155 = m[165] + (m[163] * t153 - m[164] * t150);
+        const gic_real t156 = R(0.05498) * (t152 * t152 + (t154 * t154 + t155 * t155));
+        const gic_real t157 = x[0];
+        const gic_real t158 = xd[0];
+        const gic_real t159 = rate[1];
+        const gic_real t160 = GIC_ATAN2(m[40], m[41]);
+        const gic_real t161 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[39], R(-1.0)), R(1.0)));
+        const gic_real t162 = GIC_ATAN2(m[36], m[33]);
+        const gic_real t163 = GIC_ATAN2(m[70], m[71]);
+        const gic_real t164 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[69], R(-1.0)), R(1.0)));
+        const gic_real t165 = GIC_ATAN2(m[66], m[63]);
+        const gic_real t166 = GIC_ATAN2(m[130], m[131]);
+        const gic_real t167 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[129], R(-1.0)), R(1.0)));
+        const gic_real t168 = GIC_ATAN2(m[126], m[123]);
+        const gic_real t169 = GIC_ATAN2(m[100], m[101]);
+        const gic_real t170 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[99], R(-1.0)), R(1.0)));
+        const gic_real t171 = GIC_ATAN2(m[96], m[93]);
+        const gic_real t172 = GIC_ATAN2(m[190], m[191]);
+        const gic_real t173 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[189], R(-1.0)), R(1.0)));
+        const gic_real t174 = GIC_ATAN2(m[186], m[183]);
+        const gic_real t175 = GIC_ATAN2(m[160], m[161]);
+        const gic_real t176 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[159], R(-1.0)), R(1.0)));
+        const gic_real t177 = GIC_ATAN2(m[156], m[153]);
+        const gic_real t178 = m[42];
+        const gic_real t179 = m[43];
+        const gic_real t180 = m[44];
+        const gic_real t181 = m[72];
+        const gic_real t182 = m[73];
+        const gic_real t183 = m[74];
+        const gic_real t184 = m[132];
+        const gic_real t185 = m[133];
+        const gic_real t186 = m[134];
+        const gic_real t187 = m[102];
+        const gic_real t188 = m[103];
+        const gic_real t189 = m[104];
+        const gic_real t190 = m[192];
+        const gic_real t191 = m[193];
+        const gic_real t192 = m[194];
+        const gic_real t193 = m[162];
+        const gic_real t194 = m[163];
+        const gic_real t195 = m[164];
+        const gic_real t196 = m[60] + m[64] * R(-0.03500000000000001);
+        const gic_real t197 = m[61] + m[67] * R(-0.03500000000000001);
+        const gic_real t198 = m[62] + m[70] * R(-0.03500000000000001);
+        const gic_real t199 = t135 + R(0.5) * (t145 + t149 + t156);
+        const gic_real t200 = t5 * t6 * R(0.5);
+        out[0] = t157;
+        out[1] = t158;
+        out[2] = t159;
+        out[3] = t160;
+        out[4] = t161;
+        out[5] = t162;
+        out[6] = t163;
+        out[7] = t164;
+        out[8] = t165;
+        out[9] = t166;
+        out[10] = t167;
+        out[11] = t168;
+        out[12] = t169;
+        out[13] = t170;
+        out[14] = t171;
+        out[15] = t172;
+        out[16] = t173;
+        out[17] = t174;
+        out[18] = t175;
+        out[19] = t176;
+        out[20] = t177;
+        out[21] = t178;
+        out[22] = t179;
+        out[23] = t180;
+        out[24] = t181;
+        out[25] = t182;
+        out[26] = t183;
+        out[27] = t184;
+        out[28] = t185;
+        out[29] = t186;
+        out[30] = t187;
+        out[31] = t188;
+        out[32] = t189;
+        out[33] = t190;
+        out[34] = t191;
+        out[35] = t192;
+        out[36] = t193;
+        out[37] = t194;
+        out[38] = t195;
+        out[39] = t196;
+        out[40] = t197;
+        out[41] = t198;
+        out[42] = t6;
+        out[43] = t199;
+        out[44] = t200;
     }
     return GIC_OK;
 }
@@ -3369,15 +3388,16 @@ static int andrews_energy(const andrews *self, gic_real time, const gic_real *y,
         const gic_real t235 = t230 + t234;
         const gic_real t236 = t139 + (t153 + t171) + (t185 + t203) + (t217 + t235);
         const gic_real t237 = xd[0] * R(0.033);
-        const gic_real t238 = GIC_FABS(t42) + GIC_FABS(t24) + (GIC_FABS(t74) + GIC_FABS(t56)) + (GIC_FABS(t106) + GIC_FABS(t88)) + (GIC_FABS(t138) + GIC_FABS(t120));
-        const gic_real t239 = t238 + (GIC_FABS(t171) + GIC_FABS(t153)) + (GIC_FABS(t203) + GIC_FABS(t185)) + (GIC_FABS(t235) + GIC_FABS(t217));
-        const gic_real t240 = t10 + t236;
-        const gic_real t241 = t239 + (GIC_FABS(t237) + GIC_FABS(t10));
-        const gic_real t242 = rate[1];
-        energy[0] = t240;
+        const gic_real t238 = GIC_FABS(t42) + GIC_FABS(t24) + (GIC_FABS(t74) + GIC_FABS(t56));
+        const gic_real t239 = t238 + (GIC_FABS(t106) + GIC_FABS(t88)) + (GIC_FABS(t138) + GIC_FABS(t120));
+        const gic_real t240 = t239 + (GIC_FABS(t171) + GIC_FABS(t153)) + (GIC_FABS(t203) + GIC_FABS(t185));
+        const gic_real t241 = t240 + (GIC_FABS(t235) + GIC_FABS(t217)) + (GIC_FABS(t237) + GIC_FABS(t10));
+        const gic_real t242 = t10 + t236;
+        const gic_real t243 = rate[1];
+        energy[0] = t242;
         energy[1] = t237;
         energy[2] = t241;
-        acc[0] = t242;
+        acc[0] = t243;
     }
     return GIC_OK;
 }

@@ -87,7 +87,8 @@
 #define GIC_COS(x) cosf(x)
 #define GIC_ASIN(x) asinf(x)
 #define GIC_ATAN2(y, x) atan2f(y, x)
-#define GIC_STEP_SQUARE R(1.6e-11) /* a correction of 4e-6 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-7)
 #else
 #define GIC_SQRT(x) sqrt(x)
 #define GIC_FABS(x) fabs(x)
@@ -95,11 +96,14 @@
 #define GIC_COS(x) cos(x)
 #define GIC_ASIN(x) asin(x)
 #define GIC_ATAN2(y, x) atan2(y, x)
-#define GIC_STEP_SQUARE R(1e-26) /* a correction of 1e-13 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-18)
 #endif
 #define GIC_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
+
+/* far: square of a subset's distance from the base relative to its size; 16 epsilon of the distance is rounding. */
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
  * pieces in which a change of the coordinates is followed. */
@@ -138,7 +142,8 @@ static int five_link_solve_rack(five_link *self, const gic_real *GIC_RESTRICT k,
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 13; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(2.072648852345));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -220,7 +225,7 @@ static int five_link_solve_rack(five_link *self, const gic_real *GIC_RESTRICT k,
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -390,7 +395,8 @@ static int five_link_solve_rack(five_link *self, const gic_real *GIC_RESTRICT k,
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -398,6 +404,7 @@ static int five_link_solve_rack(five_link *self, const gic_real *GIC_RESTRICT k,
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -414,9 +421,10 @@ static gic_real five_link_residual_rack(const gic_real *GIC_RESTRICT k, const fi
         const gic_real t2 = q[6] + q[6];
         const gic_real t3 = q[5] + q[5];
         const gic_real t4 = GIC_MAX(GIC_FABS(q[5] * t1 - q[3] * t2), GIC_FABS(-(q[6] * t3 + q[3] * t1)));
-        const gic_real t5 = GIC_MAX(GIC_MAX(t4, GIC_FABS(-(q[4] * t2 + q[3] * t3))), GIC_FABS(q[0] - R(1.438648)));
-        const gic_real t6 = GIC_MAX(GIC_MAX(t5, GIC_FABS(R(0.05422899999999997) - q[2])), GIC_FABS(q[1] - x[0]));
-        worst = t6;
+        const gic_real t5 = GIC_MAX(t4, GIC_FABS(-(q[4] * t2 + q[3] * t3)));
+        const gic_real t6 = GIC_MAX(GIC_MAX(t5, GIC_FABS(q[0] - R(1.438648))), GIC_FABS(R(0.05422899999999997) - q[2]));
+        const gic_real t7 = GIC_MAX(t6, GIC_FABS(q[1] - x[0]));
+        worst = t7;
     }
     return worst;
 }
@@ -444,7 +452,8 @@ static int five_link_solve_lca_fl(five_link *self, const gic_real *GIC_RESTRICT 
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 13; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(43.74775795073613));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -546,7 +555,7 @@ static int five_link_solve_lca_fl(five_link *self, const gic_real *GIC_RESTRICT 
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -800,7 +809,8 @@ static int five_link_solve_lca_fl(five_link *self, const gic_real *GIC_RESTRICT 
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -808,6 +818,7 @@ static int five_link_solve_lca_fl(five_link *self, const gic_real *GIC_RESTRICT 
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -820,7 +831,7 @@ static gic_real five_link_residual_lca_fl(const gic_real *GIC_RESTRICT k, const 
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_MAX(GIC_FABS((q[0] - R(1.688965)) * R(3.852963219305648)), GIC_FABS((q[1] - k[2]) * R(3.852963219305648))), GIC_FABS(q[2] * R(3.852963219305648)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(1.688965)) * R(3.852963219305648)), GIC_FABS((q[1] - k[2]) * R(3.852963219305648)));
         const gic_real t2 = q[4] + q[4];
         const gic_real t3 = q[5] * t2;
         const gic_real t4 = q[6] + q[6];
@@ -830,20 +841,21 @@ static gic_real five_link_residual_lca_fl(const gic_real *GIC_RESTRICT k, const 
         const gic_real t8 = q[5] + q[5];
         const gic_real t9 = q[3] * t8;
         const gic_real t10 = t7 - t9;
-        const gic_real t11 = q[4] * t2;
-        const gic_real t12 = q[5] * t8;
-        const gic_real t13 = q[6] * t8;
-        const gic_real t14 = q[3] * t2;
-        const gic_real t15 = R(0.01121887479261392) * (R(1.0) - (t11 + t12)) + (k[0] * (t13 + t14) + R(0.09720579999999998) * t10);
-        const gic_real t16 = q[2] + t15 - R(0.19748500000000002);
-        const gic_real t17 = q[6] * t4;
-        const gic_real t18 = R(0.01121887479261392) * (t13 - t14) + (k[0] * (R(1.0) - (t11 + t17)) + R(0.09720579999999998) * t6);
-        const gic_real t19 = q[1] + t18 - k[1];
-        const gic_real t20 = k[0] * (t3 - t5) + R(0.09720579999999998) * (R(1.0) - (t12 + t17));
-        const gic_real t21 = q[0] + (R(0.01121887479261392) * (t7 + t9) + t20) - R(1.792978);
-        const gic_real t22 = t16 * t16 + (t19 * t19 + t21 * t21) - x[0] * x[0];
-        const gic_real t23 = GIC_MAX(GIC_MAX(GIC_MAX(t1, GIC_FABS(t6)), GIC_FABS(t10)), GIC_FABS(t22 * R(7.892375927523102)));
-        worst = t23;
+        const gic_real t11 = GIC_MAX(GIC_MAX(GIC_MAX(t1, GIC_FABS(q[2] * R(3.852963219305648))), GIC_FABS(t6)), GIC_FABS(t10));
+        const gic_real t12 = q[4] * t2;
+        const gic_real t13 = q[5] * t8;
+        const gic_real t14 = q[6] * t8;
+        const gic_real t15 = q[3] * t2;
+        const gic_real t16 = R(0.01121887479261392) * (R(1.0) - (t12 + t13)) + (k[0] * (t14 + t15) + R(0.09720579999999998) * t10);
+        const gic_real t17 = q[2] + t16 - R(0.19748500000000002);
+        const gic_real t18 = q[6] * t4;
+        const gic_real t19 = R(0.01121887479261392) * (t14 - t15) + (k[0] * (R(1.0) - (t12 + t18)) + R(0.09720579999999998) * t6);
+        const gic_real t20 = q[1] + t19 - k[1];
+        const gic_real t21 = k[0] * (t3 - t5) + R(0.09720579999999998) * (R(1.0) - (t13 + t18));
+        const gic_real t22 = q[0] + (R(0.01121887479261392) * (t7 + t9) + t21) - R(1.792978);
+        const gic_real t23 = t17 * t17 + (t20 * t20 + t22 * t22) - x[0] * x[0];
+        const gic_real t24 = GIC_MAX(t11, GIC_FABS(t23 * R(7.892375927523102)));
+        worst = t24;
     }
     return worst;
 }
@@ -875,7 +887,8 @@ static int five_link_solve_wheel_rl(five_link *self, const gic_real *GIC_RESTRIC
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 13; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(27.187356821586203));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -1023,7 +1036,7 @@ static int five_link_solve_wheel_rl(five_link *self, const gic_real *GIC_RESTRIC
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -1452,7 +1465,8 @@ static int five_link_solve_wheel_rl(five_link *self, const gic_real *GIC_RESTRIC
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -1460,6 +1474,7 @@ static int five_link_solve_wheel_rl(five_link *self, const gic_real *GIC_RESTRIC
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -1513,27 +1528,28 @@ static gic_real five_link_residual_wheel_rl(const gic_real *GIC_RESTRICT k, cons
         const gic_real t39 = R(-0.06000000000000005) * t38;
         const gic_real t40 = q[0] + (t25 + (t29 + t39)) - R(-1.6118633);
         const gic_real t41 = t34 * t34 + (t37 * t37 + t40 * t40) - R(0.06942663884414002);
-        const gic_real t42 = q[2] + (R(0.10883900000000002) * t8 + (k[3] * t12 + R(0.10472159999999997) * t32));
-        const gic_real t43 = t42 - R(0.058674000000000004);
-        const gic_real t44 = q[1] + (R(0.10883900000000002) * t15 + (k[3] * t19 + R(0.10472159999999997) * t35));
-        const gic_real t45 = t44 - k[4];
-        const gic_real t46 = q[0] + (R(0.10883900000000002) * t24 + (k[3] * t28 + R(0.10472159999999997) * t38));
-        const gic_real t47 = t46 - R(-1.465699);
-        const gic_real t48 = t43 * t43 + (t45 * t45 + t47 * t47) - R(0.1714924505628);
-        const gic_real t49 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(t3 * R(3.0080998013071767)), GIC_FABS(t31 * R(5.086075547236922))), GIC_FABS(t41 * R(5.689680703650635))), GIC_FABS(t48 * R(3.56041159777218)));
+        const gic_real t42 = GIC_MAX(GIC_MAX(GIC_FABS(t3 * R(3.0080998013071767)), GIC_FABS(t31 * R(5.086075547236922))), GIC_FABS(t41 * R(5.689680703650635)));
+        const gic_real t43 = q[2] + (R(0.10883900000000002) * t8 + (k[3] * t12 + R(0.10472159999999997) * t32));
+        const gic_real t44 = t43 - R(0.058674000000000004);
+        const gic_real t45 = q[1] + (R(0.10883900000000002) * t15 + (k[3] * t19 + R(0.10472159999999997) * t35));
+        const gic_real t46 = t45 - k[4];
+        const gic_real t47 = q[0] + (R(0.10883900000000002) * t24 + (k[3] * t28 + R(0.10472159999999997) * t38));
+        const gic_real t48 = t47 - R(-1.465699);
+        const gic_real t49 = t44 * t44 + (t46 * t46 + t48 * t48) - R(0.1714924505628);
         const gic_real t50 = q[2] + t33;
         const gic_real t51 = q[1] + t36 - k[5];
         const gic_real t52 = q[0] + t39 - R(-1.912231);
         const gic_real t53 = t50 * t50 + (t51 * t51 + t52 * t52) - R(0.29615964100099984);
-        const gic_real t54 = q[2] + (R(0.079756) * t8 + (k[6] * t12 + R(-0.16944599999999999) * t32));
-        const gic_real t55 = t54 - R(0.32308800000000004);
-        const gic_real t56 = q[1] + (R(0.079756) * t15 + (k[6] * t19 + R(-0.16944599999999999) * t35));
-        const gic_real t57 = t56 - k[7];
-        const gic_real t58 = q[0] + (R(0.079756) * t24 + (k[6] * t28 + R(-0.16944599999999999) * t38));
-        const gic_real t59 = t58 - R(-1.792851);
-        const gic_real t60 = t55 * t55 + (t57 * t57 + t59 * t59) - x[0] * x[0];
-        const gic_real t61 = GIC_MAX(GIC_MAX(t49, GIC_FABS(t53 * R(3.0080998013071767))), GIC_FABS(t60 * R(3.9900129128371713)));
-        worst = t61;
+        const gic_real t54 = GIC_MAX(GIC_MAX(t42, GIC_FABS(t49 * R(3.56041159777218))), GIC_FABS(t53 * R(3.0080998013071767)));
+        const gic_real t55 = q[2] + (R(0.079756) * t8 + (k[6] * t12 + R(-0.16944599999999999) * t32));
+        const gic_real t56 = t55 - R(0.32308800000000004);
+        const gic_real t57 = q[1] + (R(0.079756) * t15 + (k[6] * t19 + R(-0.16944599999999999) * t35));
+        const gic_real t58 = t57 - k[7];
+        const gic_real t59 = q[0] + (R(0.079756) * t24 + (k[6] * t28 + R(-0.16944599999999999) * t38));
+        const gic_real t60 = t59 - R(-1.792851);
+        const gic_real t61 = t56 * t56 + (t58 * t58 + t60 * t60) - x[0] * x[0];
+        const gic_real t62 = GIC_MAX(t54, GIC_FABS(t61 * R(3.9900129128371713)));
+        worst = t62;
     }
     return worst;
 }
@@ -1564,7 +1580,8 @@ static int five_link_solve_wheel_fl(five_link *self, const gic_real *GIC_RESTRIC
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 19; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(28.861380328376388));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -1687,7 +1704,7 @@ static int five_link_solve_wheel_fl(five_link *self, const gic_real *GIC_RESTRIC
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -2073,7 +2090,8 @@ static int five_link_solve_wheel_fl(five_link *self, const gic_real *GIC_RESTRIC
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -2081,6 +2099,7 @@ static int five_link_solve_wheel_fl(five_link *self, const gic_real *GIC_RESTRIC
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -2096,8 +2115,8 @@ static gic_real five_link_residual_wheel_fl(const gic_real *GIC_RESTRICT k, cons
     {
         const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[5] * m1[4] + R(-0.03556000000000003) * m1[3]));
         const gic_real t2 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[5] * m1[7] + R(-0.03556000000000003) * m1[6]));
-        const gic_real t3 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[5] * m1[10] + R(-0.03556000000000003) * m1[9]));
-        const gic_real t4 = GIC_MAX(GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928075656552032)), GIC_FABS((q[1] - t2) * R(2.928075656552032))), GIC_FABS((q[2] - t3) * R(2.928075656552032)));
+        const gic_real t3 = GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928075656552032)), GIC_FABS((q[1] - t2) * R(2.928075656552032)));
+        const gic_real t4 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[5] * m1[10] + R(-0.03556000000000003) * m1[9]));
         const gic_real t5 = q[4] + q[4];
         const gic_real t6 = q[4] * t5;
         const gic_real t7 = q[5] + q[5];
@@ -2126,16 +2145,17 @@ static gic_real five_link_residual_wheel_fl(const gic_real *GIC_RESTRICT k, cons
         const gic_real t30 = q[0] + (R(0.10177780000000003) * t27 + (k[0] * t28 + R(-0.14025880000000002) * t29));
         const gic_real t31 = t30 - (m0[0] + k[1] * m0[4]);
         const gic_real t32 = t18 * t18 + (t26 * t26 + t31 * t31) - R(0.14941089924212003);
-        const gic_real t33 = q[2] + (R(0.33360360000000006) * t9 + (k[2] * t12 + R(-0.017475200000000024) * t16));
-        const gic_real t34 = t33 - R(0.23411769999999998);
-        const gic_real t35 = q[1] + (R(0.33360360000000006) * t19 + (k[2] * t21 + R(-0.017475200000000024) * t24));
-        const gic_real t36 = t35 - k[3];
-        const gic_real t37 = q[0] + (R(0.33360360000000006) * t27 + (k[2] * t28 + R(-0.017475200000000024) * t29));
-        const gic_real t38 = t37 - R(1.593883);
-        const gic_real t39 = t34 * t34 + (t36 * t36 + t38 * t38) - R(0.07115456010869);
-        const gic_real t40 = R(0.21526024724178433) * t34 + (k[4] * t36 + R(0.9665541626242249) * t38) - R(4.3116545195287515e-08);
-        const gic_real t41 = GIC_MAX(GIC_MAX(GIC_MAX(t4, GIC_FABS(t32 * R(3.9285226675160785))), GIC_FABS(t39 * R(5.571891251504319))), GIC_FABS(t40 * R(3.029396354366955)));
-        worst = t41;
+        const gic_real t33 = GIC_MAX(GIC_MAX(t3, GIC_FABS((q[2] - t4) * R(2.928075656552032))), GIC_FABS(t32 * R(3.9285226675160785)));
+        const gic_real t34 = q[2] + (R(0.33360360000000006) * t9 + (k[2] * t12 + R(-0.017475200000000024) * t16));
+        const gic_real t35 = t34 - R(0.23411769999999998);
+        const gic_real t36 = q[1] + (R(0.33360360000000006) * t19 + (k[2] * t21 + R(-0.017475200000000024) * t24));
+        const gic_real t37 = t36 - k[3];
+        const gic_real t38 = q[0] + (R(0.33360360000000006) * t27 + (k[2] * t28 + R(-0.017475200000000024) * t29));
+        const gic_real t39 = t38 - R(1.593883);
+        const gic_real t40 = t35 * t35 + (t37 * t37 + t39 * t39) - R(0.07115456010869);
+        const gic_real t41 = R(0.21526024724178433) * t35 + (k[4] * t37 + R(0.9665541626242249) * t39) - R(4.3116545195287515e-08);
+        const gic_real t42 = GIC_MAX(GIC_MAX(t33, GIC_FABS(t40 * R(5.571891251504319))), GIC_FABS(t41 * R(3.029396354366955)));
+        worst = t42;
     }
     return worst;
 }
@@ -2501,242 +2521,246 @@ static int five_link_dynamics(const five_link *self, gic_real time, const gic_re
         const gic_real t144 = y[17] * R(0.5);
         const gic_real t145 = y[16] * R(0.5);
         const gic_real t146 = y[15] * R(0.5);
-        const gic_real t147 = e[3] + e[3];
-        const gic_real t148 = e[1] * t147;
-        const gic_real t149 = e[2] + e[2];
-        const gic_real t150 = e[0] * t149;
-        const gic_real t151 = t148 + t150;
-        const gic_real t152 = e[1] + e[1];
-        const gic_real t153 = e[1] * t152;
-        const gic_real t154 = e[2] * t149;
-        const gic_real t155 = R(1.0) - (t153 + t154);
-        const gic_real t156 = e[3] * t149;
-        const gic_real t157 = e[0] * t152;
-        const gic_real t158 = t156 - t157;
-        const gic_real t159 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + m[156] * R(-0.004825999999999997));
-        const gic_real t160 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + m[153] * R(-0.004825999999999997));
-        const gic_real t161 = m[151] + t159;
-        const gic_real t162 = m[150] + t160;
-        const gic_real t163 = m[167] + (m[162] * t159 - m[163] * t160) + (y[15] * t161 - y[16] * t162);
-        const gic_real t164 = e[3] * t147;
-        const gic_real t165 = R(1.0) - (t153 + t164);
-        const gic_real t166 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + m[159] * R(-0.004825999999999997));
-        const gic_real t167 = m[152] + t166;
-        const gic_real t168 = m[166] + (m[164] * t160 - m[162] * t166) + (y[17] * t162 - y[15] * t167);
-        const gic_real t169 = e[2] * t152;
-        const gic_real t170 = e[0] * t147;
-        const gic_real t171 = t169 + t170;
-        const gic_real t172 = m[165] + (m[163] * t166 - m[164] * t159) + (y[16] * t167 - y[17] * t161);
-        const gic_real t173 = y[13] + (t158 * t163 + (t165 * t168 + t171 * t172));
-        const gic_real t174 = t169 - t170;
-        const gic_real t175 = R(1.0) - (t154 + t164);
-        const gic_real t176 = y[0] + (t151 * t167 + (t174 * t161 + t175 * t162));
-        const gic_real t177 = y[1] + (t158 * t167 + (t165 * t161 + t171 * t162));
-        gic_real road178[3];
-        if (!road_height(self, time, t176, t177, road178))
+        const gic_real t147 = -(e[3] * t144 + (e[2] * t145 + e[1] * t146));
+        const gic_real t148 = e[3] + e[3];
+        const gic_real t149 = e[1] * t148;
+        const gic_real t150 = e[2] + e[2];
+        const gic_real t151 = e[0] * t150;
+        const gic_real t152 = t149 + t151;
+        const gic_real t153 = e[1] + e[1];
+        const gic_real t154 = e[1] * t153;
+        const gic_real t155 = e[2] * t150;
+        const gic_real t156 = R(1.0) - (t154 + t155);
+        const gic_real t157 = e[3] * t150;
+        const gic_real t158 = e[0] * t153;
+        const gic_real t159 = t157 - t158;
+        const gic_real t160 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + m[156] * R(-0.004825999999999997));
+        const gic_real t161 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + m[153] * R(-0.004825999999999997));
+        const gic_real t162 = m[151] + t160;
+        const gic_real t163 = m[150] + t161;
+        const gic_real t164 = m[167] + (m[162] * t160 - m[163] * t161) + (y[15] * t162 - y[16] * t163);
+        const gic_real t165 = e[3] * t148;
+        const gic_real t166 = R(1.0) - (t154 + t165);
+        const gic_real t167 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + m[159] * R(-0.004825999999999997));
+        const gic_real t168 = m[152] + t167;
+        const gic_real t169 = m[166] + (m[164] * t161 - m[162] * t167) + (y[17] * t163 - y[15] * t168);
+        const gic_real t170 = e[2] * t153;
+        const gic_real t171 = e[0] * t148;
+        const gic_real t172 = t170 + t171;
+        const gic_real t173 = m[165] + (m[163] * t167 - m[164] * t160) + (y[16] * t168 - y[17] * t162);
+        const gic_real t174 = y[13] + (t159 * t164 + (t166 * t169 + t172 * t173));
+        const gic_real t175 = t170 - t171;
+        const gic_real t176 = R(1.0) - (t155 + t165);
+        const gic_real t177 = y[0] + (t152 * t168 + (t175 * t162 + t176 * t163));
+        const gic_real t178 = y[1] + (t159 * t168 + (t166 * t162 + t172 * t163));
+        gic_real road179[3];
+        if (!road_height(self, time, t177, t178, road179))
             return GIC_ERROR_ROAD;
-        const gic_real t179 = y[12] + (t151 * t163 + (t174 * t168 + t175 * t172));
-        const gic_real t180 = t156 + t157;
-        const gic_real t181 = t148 - t150;
-        const gic_real t182 = y[14] + (t155 * t163 + (t180 * t168 + t181 * t172));
-        const gic_real t183 = y[2] + (t155 * t167 + (t180 * t161 + t181 * t162));
-        const gic_real t184 = road178[0] + R(0.4699) - t183;
-        const gic_real t185 = GIC_MIN(GIC_MAX(t184 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t186 = (t173 * road178[2] + t179 * road178[1] - t182) * ((R(3.0) - (t185 + t185)) * (t185 * t185) * R(500.0));
-        const gic_real t187 = GIC_MAX(t186 + t184 * R(283000.0), R(0.0));
-        const gic_real t188 = t155 * t187;
-        const gic_real t189 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + m[192] * R(-0.004825999999999997));
-        const gic_real t190 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + m[189] * R(-0.004825999999999997));
-        const gic_real t191 = m[187] + t189;
-        const gic_real t192 = m[186] + t190;
-        const gic_real t193 = m[203] + (m[198] * t189 - m[199] * t190) + (y[15] * t191 - y[16] * t192);
-        const gic_real t194 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + m[195] * R(-0.004825999999999997));
-        const gic_real t195 = m[188] + t194;
-        const gic_real t196 = m[202] + (m[200] * t190 - m[198] * t194) + (y[17] * t192 - y[15] * t195);
-        const gic_real t197 = m[201] + (m[199] * t194 - m[200] * t189) + (y[16] * t195 - y[17] * t191);
-        const gic_real t198 = y[13] + (t158 * t193 + (t165 * t196 + t171 * t197));
-        const gic_real t199 = y[0] + (t151 * t195 + (t174 * t191 + t175 * t192));
-        const gic_real t200 = y[1] + (t158 * t195 + (t165 * t191 + t171 * t192));
-        gic_real road201[3];
-        if (!road_height(self, time, t199, t200, road201))
+        const gic_real t180 = y[12] + (t152 * t164 + (t175 * t169 + t176 * t173));
+        const gic_real t181 = t157 + t158;
+        const gic_real t182 = t149 - t151;
+        const gic_real t183 = y[14] + (t156 * t164 + (t181 * t169 + t182 * t173));
+        const gic_real t184 = t174 * road179[2] + t180 * road179[1] - t183;
+        const gic_real t185 = y[2] + (t156 * t168 + (t181 * t162 + t182 * t163));
+        const gic_real t186 = road179[0] + R(0.4699) - t185;
+        const gic_real t187 = GIC_MIN(GIC_MAX(t186 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t188 = t184 * ((R(3.0) - (t187 + t187)) * (t187 * t187) * R(500.0));
+        const gic_real t189 = GIC_MAX(t188 + t186 * R(283000.0), R(0.0));
+        const gic_real t190 = t156 * t189;
+        const gic_real t191 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + m[192] * R(-0.004825999999999997));
+        const gic_real t192 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + m[189] * R(-0.004825999999999997));
+        const gic_real t193 = m[187] + t191;
+        const gic_real t194 = m[186] + t192;
+        const gic_real t195 = m[203] + (m[198] * t191 - m[199] * t192) + (y[15] * t193 - y[16] * t194);
+        const gic_real t196 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + m[195] * R(-0.004825999999999997));
+        const gic_real t197 = m[188] + t196;
+        const gic_real t198 = m[202] + (m[200] * t192 - m[198] * t196) + (y[17] * t194 - y[15] * t197);
+        const gic_real t199 = m[201] + (m[199] * t196 - m[200] * t191) + (y[16] * t197 - y[17] * t193);
+        const gic_real t200 = y[13] + (t159 * t195 + (t166 * t198 + t172 * t199));
+        const gic_real t201 = y[0] + (t152 * t197 + (t175 * t193 + t176 * t194));
+        const gic_real t202 = y[1] + (t159 * t197 + (t166 * t193 + t172 * t194));
+        gic_real road203[3];
+        if (!road_height(self, time, t201, t202, road203))
             return GIC_ERROR_ROAD;
-        const gic_real t202 = y[12] + (t151 * t193 + (t174 * t196 + t175 * t197));
-        const gic_real t203 = y[14] + (t155 * t193 + (t180 * t196 + t181 * t197));
-        const gic_real t204 = y[2] + (t155 * t195 + (t180 * t191 + t181 * t192));
-        const gic_real t205 = R(0.4699) + road201[0] - t204;
-        const gic_real t206 = GIC_MIN(GIC_MAX(R(100.0) * t205, R(0.0)), R(1.0));
-        const gic_real t207 = (t198 * road201[2] + t202 * road201[1] - t203) * (R(500.0) * ((R(3.0) - (t206 + t206)) * (t206 * t206)));
-        const gic_real t208 = GIC_MAX(t207 + R(283000.0) * t205, R(0.0));
-        const gic_real t209 = t155 * t208;
-        const gic_real t210 = m[98] * R(0.09182100000000004) + (m[97] * R(0.12319000000000002) + m[96] * R(-0.030000000000000027));
-        const gic_real t211 = m[95] * R(0.09182100000000004) + (m[94] * R(0.12319000000000002) + m[93] * R(-0.030000000000000027));
-        const gic_real t212 = m[91] + t210;
-        const gic_real t213 = m[90] + t211;
-        const gic_real t214 = m[107] + (m[102] * t210 - m[103] * t211) + (y[15] * t212 - y[16] * t213);
-        const gic_real t215 = m[101] * R(0.09182100000000004) + (m[100] * R(0.12319000000000002) + m[99] * R(-0.030000000000000027));
-        const gic_real t216 = m[92] + t215;
-        const gic_real t217 = m[106] + (m[104] * t211 - m[102] * t215) + (y[17] * t213 - y[15] * t216);
-        const gic_real t218 = m[105] + (m[103] * t215 - m[104] * t210) + (y[16] * t216 - y[17] * t212);
-        const gic_real t219 = y[13] + (t158 * t214 + (t165 * t217 + t171 * t218));
-        const gic_real t220 = y[0] + (t151 * t216 + (t174 * t212 + t175 * t213));
-        const gic_real t221 = y[1] + (t158 * t216 + (t165 * t212 + t171 * t213));
-        gic_real road222[3];
-        if (!road_height(self, time, t220, t221, road222))
+        const gic_real t204 = y[12] + (t152 * t195 + (t175 * t198 + t176 * t199));
+        const gic_real t205 = y[14] + (t156 * t195 + (t181 * t198 + t182 * t199));
+        const gic_real t206 = t200 * road203[2] + t204 * road203[1] - t205;
+        const gic_real t207 = y[2] + (t156 * t197 + (t181 * t193 + t182 * t194));
+        const gic_real t208 = R(0.4699) + road203[0] - t207;
+        const gic_real t209 = GIC_MIN(GIC_MAX(R(100.0) * t208, R(0.0)), R(1.0));
+        const gic_real t210 = t206 * (R(500.0) * ((R(3.0) - (t209 + t209)) * (t209 * t209)));
+        const gic_real t211 = GIC_MAX(t210 + R(283000.0) * t208, R(0.0));
+        const gic_real t212 = t156 * t211;
+        const gic_real t213 = m[98] * R(0.09182100000000004) + (m[97] * R(0.12319000000000002) + m[96] * R(-0.030000000000000027));
+        const gic_real t214 = m[95] * R(0.09182100000000004) + (m[94] * R(0.12319000000000002) + m[93] * R(-0.030000000000000027));
+        const gic_real t215 = m[91] + t213;
+        const gic_real t216 = m[90] + t214;
+        const gic_real t217 = m[107] + (m[102] * t213 - m[103] * t214) + (y[15] * t215 - y[16] * t216);
+        const gic_real t218 = m[101] * R(0.09182100000000004) + (m[100] * R(0.12319000000000002) + m[99] * R(-0.030000000000000027));
+        const gic_real t219 = m[92] + t218;
+        const gic_real t220 = m[106] + (m[104] * t214 - m[102] * t218) + (y[17] * t216 - y[15] * t219);
+        const gic_real t221 = m[105] + (m[103] * t218 - m[104] * t213) + (y[16] * t219 - y[17] * t215);
+        const gic_real t222 = y[13] + (t159 * t217 + (t166 * t220 + t172 * t221));
+        const gic_real t223 = y[0] + (t152 * t219 + (t175 * t215 + t176 * t216));
+        const gic_real t224 = y[1] + (t159 * t219 + (t166 * t215 + t172 * t216));
+        gic_real road225[3];
+        if (!road_height(self, time, t223, t224, road225))
             return GIC_ERROR_ROAD;
-        const gic_real t223 = y[12] + (t151 * t214 + (t174 * t217 + t175 * t218));
-        const gic_real t224 = y[14] + (t155 * t214 + (t180 * t217 + t181 * t218));
-        const gic_real t225 = y[2] + (t155 * t216 + (t180 * t212 + t181 * t213));
-        const gic_real t226 = R(0.4699) + road222[0] - t225;
-        const gic_real t227 = GIC_MIN(GIC_MAX(R(100.0) * t226, R(0.0)), R(1.0));
-        const gic_real t228 = (t219 * road222[2] + t223 * road222[1] - t224) * (R(500.0) * ((R(3.0) - (t227 + t227)) * (t227 * t227)));
-        const gic_real t229 = GIC_MAX(t228 + R(283000.0) * t226, R(0.0));
-        const gic_real t230 = t155 * t229;
-        const gic_real t231 = m[128] * R(0.09182100000000004) + (m[127] * R(-0.12319000000000002) + m[126] * R(-0.030000000000000027));
-        const gic_real t232 = m[125] * R(0.09182100000000004) + (m[124] * R(-0.12319000000000002) + m[123] * R(-0.030000000000000027));
-        const gic_real t233 = m[121] + t231;
-        const gic_real t234 = m[120] + t232;
-        const gic_real t235 = m[137] + (m[132] * t231 - m[133] * t232) + (y[15] * t233 - y[16] * t234);
-        const gic_real t236 = m[131] * R(0.09182100000000004) + (m[130] * R(-0.12319000000000002) + m[129] * R(-0.030000000000000027));
-        const gic_real t237 = m[122] + t236;
-        const gic_real t238 = m[136] + (m[134] * t232 - m[132] * t236) + (y[17] * t234 - y[15] * t237);
-        const gic_real t239 = m[135] + (m[133] * t236 - m[134] * t231) + (y[16] * t237 - y[17] * t233);
-        const gic_real t240 = y[13] + (t158 * t235 + (t165 * t238 + t171 * t239));
-        const gic_real t241 = y[0] + (t151 * t237 + (t174 * t233 + t175 * t234));
-        const gic_real t242 = y[1] + (t158 * t237 + (t165 * t233 + t171 * t234));
-        gic_real road243[3];
-        if (!road_height(self, time, t241, t242, road243))
+        const gic_real t226 = y[12] + (t152 * t217 + (t175 * t220 + t176 * t221));
+        const gic_real t227 = y[14] + (t156 * t217 + (t181 * t220 + t182 * t221));
+        const gic_real t228 = t222 * road225[2] + t226 * road225[1] - t227;
+        const gic_real t229 = y[2] + (t156 * t219 + (t181 * t215 + t182 * t216));
+        const gic_real t230 = R(0.4699) + road225[0] - t229;
+        const gic_real t231 = GIC_MIN(GIC_MAX(R(100.0) * t230, R(0.0)), R(1.0));
+        const gic_real t232 = t228 * (R(500.0) * ((R(3.0) - (t231 + t231)) * (t231 * t231)));
+        const gic_real t233 = GIC_MAX(t232 + R(283000.0) * t230, R(0.0));
+        const gic_real t234 = t156 * t233;
+        const gic_real t235 = m[128] * R(0.09182100000000004) + (m[127] * R(-0.12319000000000002) + m[126] * R(-0.030000000000000027));
+        const gic_real t236 = m[125] * R(0.09182100000000004) + (m[124] * R(-0.12319000000000002) + m[123] * R(-0.030000000000000027));
+        const gic_real t237 = m[121] + t235;
+        const gic_real t238 = m[120] + t236;
+        const gic_real t239 = m[137] + (m[132] * t235 - m[133] * t236) + (y[15] * t237 - y[16] * t238);
+        const gic_real t240 = m[131] * R(0.09182100000000004) + (m[130] * R(-0.12319000000000002) + m[129] * R(-0.030000000000000027));
+        const gic_real t241 = m[122] + t240;
+        const gic_real t242 = m[136] + (m[134] * t236 - m[132] * t240) + (y[17] * t238 - y[15] * t241);
+        const gic_real t243 = m[135] + (m[133] * t240 - m[134] * t235) + (y[16] * t241 - y[17] * t237);
+        const gic_real t244 = y[13] + (t159 * t239 + (t166 * t242 + t172 * t243));
+        const gic_real t245 = y[0] + (t152 * t241 + (t175 * t237 + t176 * t238));
+        const gic_real t246 = y[1] + (t159 * t241 + (t166 * t237 + t172 * t238));
+        gic_real road247[3];
+        if (!road_height(self, time, t245, t246, road247))
             return GIC_ERROR_ROAD;
-        const gic_real t244 = y[12] + (t151 * t235 + (t174 * t238 + t175 * t239));
-        const gic_real t245 = y[14] + (t155 * t235 + (t180 * t238 + t181 * t239));
-        const gic_real t246 = y[2] + (t155 * t237 + (t180 * t233 + t181 * t234));
-        const gic_real t247 = R(0.4699) + road243[0] - t246;
-        const gic_real t248 = GIC_MIN(GIC_MAX(R(100.0) * t247, R(0.0)), R(1.0));
-        const gic_real t249 = (t240 * road243[2] + t244 * road243[1] - t245) * (R(500.0) * ((R(3.0) - (t248 + t248)) * (t248 * t248)));
-        const gic_real t250 = GIC_MAX(t249 + R(283000.0) * t247, R(0.0));
-        const gic_real t251 = t155 * t250;
-        const gic_real t252 = n[11] + n[34] + n[57] + n[80] + n[103] + n[126] + n[158];
-        const gic_real t253 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t254 = y[16] * R(0.21300000000000008);
-        const gic_real t255 = t188 + t209 + t230 + t251 - (t252 + R(2086.52) * (y[15] * t253 - y[16] * t254));
-        const gic_real t256 = t180 * t229;
-        const gic_real t257 = t181 * t229;
-        const gic_real t258 = t256 * (m[118] + (m[116] * t211 - m[114] * t215)) + t257 * (m[117] + (m[115] * t215 - m[116] * t210));
-        const gic_real t259 = t230 * (m[119] + (m[114] * t210 - m[115] * t211)) + t258;
-        const gic_real t260 = t259 - ((x[2] - R(0.4321)) * R(89500.0) + xd[2] * R(6010.0)) - n[90];
-        const gic_real t261 = t180 * t250;
-        const gic_real t262 = t181 * t250;
-        const gic_real t263 = t261 * (m[148] + (m[146] * t232 - m[144] * t236)) + t262 * (m[147] + (m[145] * t236 - m[146] * t231));
-        const gic_real t264 = t251 * (m[149] + (m[144] * t231 - m[145] * t232)) + t263;
-        const gic_real t265 = t264 - (R(89500.0) * (x[3] - R(0.4321)) + xd[3] * R(6010.0)) - n[113];
-        const gic_real t266 = t180 * t187;
-        const gic_real t267 = t181 * t187;
-        const gic_real t268 = t266 * (m[184] + (m[182] * t160 - m[180] * t166)) + t267 * (m[183] + (m[181] * t166 - m[182] * t159));
-        const gic_real t269 = t188 * (m[185] + (m[180] * t159 - m[181] * t160)) + t268;
-        const gic_real t270 = t269 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)) - (n[44] + n[143]);
-        const gic_real t271 = t255 - t260 * t78 - t265 * t79 - t270 * t81;
-        const gic_real t272 = t180 * t208;
-        const gic_real t273 = t161 * t188 - t167 * t266 + (t191 * t209 - t195 * t272);
-        const gic_real t274 = t273 + (t212 * t230 - t216 * t256) + (t233 * t251 - t237 * t261);
-        const gic_real t275 = n[12] + n[35] + n[58] + n[81] + n[104] + n[127] + n[159];
-        const gic_real t276 = y[17] * R(3576.74332672) + y[15] * R(-24.88801056000001);
-        const gic_real t277 = y[16] * R(3056.8666525999997);
-        const gic_real t278 = t274 - (t275 + (y[16] * t276 - y[17] * t277)) - t260 * t5;
-        const gic_real t279 = t278 - t265 * t7 - t270 * t10;
-        const gic_real t280 = t181 * t208;
-        const gic_real t281 = t167 * t267 - t162 * t188 + (t195 * t280 - t192 * t209);
-        const gic_real t282 = t281 + (t216 * t257 - t213 * t230) + (t237 * t262 - t234 * t251);
-        const gic_real t283 = n[13] + n[36] + n[59] + n[82] + n[105] + n[128] + n[160];
-        const gic_real t284 = y[17] * R(-24.88801056000001) + y[15] * R(1173.18332588);
-        const gic_real t285 = t282 - (t283 + (y[17] * t284 - y[15] * t276)) - t260 * t14;
-        const gic_real t286 = t285 - t265 * t15 - t270 * t17 - t22 * t279;
-        const gic_real t287 = t162 * t266 - t161 * t267 + (t192 * t272 - t191 * t280);
-        const gic_real t288 = t287 + (t213 * t256 - t212 * t257) + (t234 * t261 - t233 * t262);
-        const gic_real t289 = n[14] + n[37] + n[60] + n[83] + n[106] + n[129] + n[161];
-        const gic_real t290 = t288 - (t289 + (y[15] * t277 - y[16] * t284)) - t260 * t26;
-        const gic_real t291 = t290 - t265 * t27 - t270 * t29 - t33 * t279;
-        const gic_real t292 = t291 - t38 * t286;
-        const gic_real t293 = t271 - t84 * t279 + t87 * t286 - t90 * t292;
-        const gic_real t294 = n[9] + n[32] + n[55] + n[78] + n[101] + n[124] + n[156];
-        const gic_real t295 = y[16] * R(0.056);
-        const gic_real t296 = t267 + t280 + t257 + t262 - (t294 - R(2086.52) * (y[17] * t253 + y[16] * t295));
-        const gic_real t297 = t296 - t260 * t40 - t265 * t41 - t270 * t43;
-        const gic_real t298 = t297 + t46 * t279 - t51 * t286 - t56 * t292;
-        const gic_real t299 = n[10] + n[33] + n[56] + n[79] + n[102] + n[125] + n[157];
-        const gic_real t300 = t266 + t272 + t256 + t261 - (t299 + R(2086.52) * (y[15] * t295 + y[17] * t254));
-        const gic_real t301 = t300 - t260 * t58 - t265 * t59 - t270 * t61;
-        const gic_real t302 = t301 + t64 * t279 - t66 * t286 - t71 * t292;
-        const gic_real t303 = t302 + t76 * t298;
-        const gic_real t304 = t293 - t94 * t298 - t98 * t303;
-        const gic_real t305 = t272 * (m[220] + (m[218] * t190 - m[216] * t194)) + t280 * (m[219] + (m[217] * t194 - m[218] * t189));
-        const gic_real t306 = t209 * (m[221] + (m[216] * t189 - m[217] * t190)) + t305;
-        const gic_real t307 = t306 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)) - (n[67] + n[175]);
-        const gic_real t308 = t307 - t102 * t279 - t104 * t286 - t106 * t292;
-        const gic_real t309 = t308 - t109 * t298 - t112 * t303 - t116 * t304;
-        const gic_real t310 = t266 * (m[178] + (m[176] * t160 - m[174] * t166)) + t267 * (m[177] + (m[175] * t166 - m[176] * t159));
-        const gic_real t311 = t188 * (m[179] + (m[174] * t159 - m[175] * t160)) + t310;
-        const gic_real t312 = t272 * (m[214] + (m[212] * t190 - m[210] * t194)) + t280 * (m[213] + (m[211] * t194 - m[212] * t189));
-        const gic_real t313 = t209 * (m[215] + (m[210] * t189 - m[211] * t190)) + t312;
-        const gic_real t314 = t311 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t313 - (n[21] + n[136] + n[168]);
-        const gic_real t315 = t314 - t270 * t119 - t121 * t279 - t123 * t286;
-        const gic_real t316 = t315 - t127 * t292 - t130 * t298 - t133 * t303;
-        const gic_real t317 = R(1.0) / t143 * (t316 - t138 * t304 - t142 * t309);
-        const gic_real t318 = t141 * t309 - t142 * t317;
-        const gic_real t319 = t115 * t304 - t116 * t318 - t138 * t317;
-        const gic_real t320 = t97 * t303 - t98 * t319 - t112 * t318 - t133 * t317;
-        const gic_real t321 = t75 * t298 + t76 * t320 - t94 * t319 - t109 * t318;
-        const gic_real t322 = t321 - t130 * t317;
-        const gic_real t323 = t55 * t292 - t56 * t322 - t71 * t320 - t90 * t319;
-        const gic_real t324 = t323 - t106 * t318 - t127 * t317;
-        const gic_real t325 = t37 * t286 - t38 * t324 - t51 * t322 - t66 * t320;
-        const gic_real t326 = t325 + t87 * t319 - t104 * t318 - t123 * t317;
-        const gic_real t327 = t21 * t279 - t22 * t326 - t33 * t324 + t46 * t322;
-        const gic_real t328 = t327 + t64 * t320 - t84 * t319 - t102 * t318;
-        const gic_real t329 = t328 - t121 * t317;
-        const gic_real t330 = R(-9.81) + (t155 * t319 + (t180 * t320 + t181 * t322));
-        const gic_real t331 = t270 * t9 - t10 * t329 - t17 * t326 - t29 * t324;
-        const gic_real t332 = t331 - t43 * t322 - t61 * t320 - t81 * t319;
-        const gic_real t333 = t260 * t4 - t5 * t329 - t14 * t326 - t26 * t324;
-        const gic_real t334 = t333 - t40 * t322 - t58 * t320 - t78 * t319;
-        const gic_real t335 = t265 * t6 - t7 * t329 - t15 * t326 - t27 * t324;
-        const gic_real t336 = t335 - t41 * t322 - t59 * t320 - t79 * t319;
-        const gic_real t337 = y[12];
-        const gic_real t338 = y[13];
-        const gic_real t339 = y[14];
-        const gic_real t340 = -(e[3] * t144 + (e[2] * t145 + e[1] * t146));
-        const gic_real t341 = e[2] * t144 - e[3] * t145 + e[0] * t146;
-        const gic_real t342 = e[3] * t146 - e[1] * t144 + e[0] * t145;
-        const gic_real t343 = e[1] * t145 - e[2] * t146 + e[0] * t144;
-        const gic_real t344 = t151 * t319 + (t174 * t320 + t175 * t322);
-        const gic_real t345 = t158 * t319 + (t165 * t320 + t171 * t322);
-        const gic_real t346 = xd[0];
-        const gic_real t347 = t332 - t119 * t317;
-        const gic_real t348 = xd[1];
-        const gic_real t349 = xd[2];
-        const gic_real t350 = xd[3];
-        const gic_real t351 = xd[4];
-        rate[0] = t337;
-        rate[1] = t338;
-        rate[2] = t339;
-        rate[3] = t340;
-        rate[4] = t341;
-        rate[5] = t342;
-        rate[6] = t343;
-        rate[12] = t344;
-        rate[15] = t329;
-        rate[13] = t345;
-        rate[16] = t326;
-        rate[14] = t330;
-        rate[17] = t324;
-        rate[7] = t346;
-        rate[18] = t347;
-        rate[8] = t348;
-        rate[19] = t318;
-        rate[9] = t349;
-        rate[20] = t334;
-        rate[10] = t350;
-        rate[21] = t336;
-        rate[11] = t351;
-        rate[22] = t317;
+        const gic_real t248 = y[12] + (t152 * t239 + (t175 * t242 + t176 * t243));
+        const gic_real t249 = y[14] + (t156 * t239 + (t181 * t242 + t182 * t243));
+        const gic_real t250 = t244 * road247[2] + t248 * road247[1] - t249;
+        const gic_real t251 = y[2] + (t156 * t241 + (t181 * t237 + t182 * t238));
+        const gic_real t252 = R(0.4699) + road247[0] - t251;
+        const gic_real t253 = GIC_MIN(GIC_MAX(R(100.0) * t252, R(0.0)), R(1.0));
+        const gic_real t254 = t250 * (R(500.0) * ((R(3.0) - (t253 + t253)) * (t253 * t253)));
+        const gic_real t255 = GIC_MAX(t254 + R(283000.0) * t252, R(0.0));
+        const gic_real t256 = t156 * t255;
+        const gic_real t257 = n[11] + n[34] + n[57] + n[80] + n[103] + n[126] + n[158];
+        const gic_real t258 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
+        const gic_real t259 = y[16] * R(0.21300000000000008);
+        const gic_real t260 = t190 + t212 + t234 + t256 - (t257 + R(2086.52) * (y[15] * t258 - y[16] * t259));
+        const gic_real t261 = t181 * t233;
+        const gic_real t262 = t182 * t233;
+        const gic_real t263 = t261 * (m[118] + (m[116] * t214 - m[114] * t218)) + t262 * (m[117] + (m[115] * t218 - m[116] * t213));
+        const gic_real t264 = t234 * (m[119] + (m[114] * t213 - m[115] * t214)) + t263;
+        const gic_real t265 = t264 - ((x[2] - R(0.4321)) * R(89500.0) + xd[2] * R(6010.0)) - n[90];
+        const gic_real t266 = t181 * t255;
+        const gic_real t267 = t182 * t255;
+        const gic_real t268 = t266 * (m[148] + (m[146] * t236 - m[144] * t240)) + t267 * (m[147] + (m[145] * t240 - m[146] * t235));
+        const gic_real t269 = t256 * (m[149] + (m[144] * t235 - m[145] * t236)) + t268;
+        const gic_real t270 = t269 - (R(89500.0) * (x[3] - R(0.4321)) + xd[3] * R(6010.0)) - n[113];
+        const gic_real t271 = t181 * t189;
+        const gic_real t272 = t182 * t189;
+        const gic_real t273 = t271 * (m[184] + (m[182] * t161 - m[180] * t167)) + t272 * (m[183] + (m[181] * t167 - m[182] * t160));
+        const gic_real t274 = t190 * (m[185] + (m[180] * t160 - m[181] * t161)) + t273;
+        const gic_real t275 = t274 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)) - (n[44] + n[143]);
+        const gic_real t276 = t260 - t265 * t78 - t270 * t79 - t275 * t81;
+        const gic_real t277 = t181 * t211;
+        const gic_real t278 = t162 * t190 - t168 * t271 + (t193 * t212 - t197 * t277);
+        const gic_real t279 = t278 + (t215 * t234 - t219 * t261) + (t237 * t256 - t241 * t266);
+        const gic_real t280 = n[12] + n[35] + n[58] + n[81] + n[104] + n[127] + n[159];
+        const gic_real t281 = y[17] * R(3576.74332672) + y[15] * R(-24.88801056000001);
+        const gic_real t282 = y[16] * R(3056.8666525999997);
+        const gic_real t283 = t279 - (t280 + (y[16] * t281 - y[17] * t282)) - t265 * t5;
+        const gic_real t284 = t283 - t270 * t7 - t275 * t10;
+        const gic_real t285 = t182 * t211;
+        const gic_real t286 = t168 * t272 - t163 * t190 + (t197 * t285 - t194 * t212);
+        const gic_real t287 = t286 + (t219 * t262 - t216 * t234) + (t241 * t267 - t238 * t256);
+        const gic_real t288 = n[13] + n[36] + n[59] + n[82] + n[105] + n[128] + n[160];
+        const gic_real t289 = y[17] * R(-24.88801056000001) + y[15] * R(1173.18332588);
+        const gic_real t290 = t287 - (t288 + (y[17] * t289 - y[15] * t281)) - t265 * t14;
+        const gic_real t291 = t290 - t270 * t15 - t275 * t17 - t22 * t284;
+        const gic_real t292 = t163 * t271 - t162 * t272 + (t194 * t277 - t193 * t285);
+        const gic_real t293 = t292 + (t216 * t261 - t215 * t262) + (t238 * t266 - t237 * t267);
+        const gic_real t294 = n[14] + n[37] + n[60] + n[83] + n[106] + n[129] + n[161];
+        const gic_real t295 = t293 - (t294 + (y[15] * t282 - y[16] * t289)) - t265 * t26;
+        const gic_real t296 = t295 - t270 * t27 - t275 * t29 - t33 * t284;
+        const gic_real t297 = t296 - t38 * t291;
+        const gic_real t298 = t276 - t84 * t284 + t87 * t291 - t90 * t297;
+        const gic_real t299 = n[9] + n[32] + n[55] + n[78] + n[101] + n[124] + n[156];
+        const gic_real t300 = y[16] * R(0.056);
+        const gic_real t301 = t272 + t285 + t262 + t267 - (t299 - R(2086.52) * (y[17] * t258 + y[16] * t300));
+        const gic_real t302 = t301 - t265 * t40 - t270 * t41 - t275 * t43;
+        const gic_real t303 = t302 + t46 * t284 - t51 * t291 - t56 * t297;
+        const gic_real t304 = n[10] + n[33] + n[56] + n[79] + n[102] + n[125] + n[157];
+        const gic_real t305 = t271 + t277 + t261 + t266 - (t304 + R(2086.52) * (y[15] * t300 + y[17] * t259));
+        const gic_real t306 = t305 - t265 * t58 - t270 * t59 - t275 * t61;
+        const gic_real t307 = t306 + t64 * t284 - t66 * t291 - t71 * t297;
+        const gic_real t308 = t307 + t76 * t303;
+        const gic_real t309 = t298 - t94 * t303 - t98 * t308;
+        const gic_real t310 = t277 * (m[220] + (m[218] * t192 - m[216] * t196)) + t285 * (m[219] + (m[217] * t196 - m[218] * t191));
+        const gic_real t311 = t212 * (m[221] + (m[216] * t191 - m[217] * t192)) + t310;
+        const gic_real t312 = t311 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)) - (n[67] + n[175]);
+        const gic_real t313 = t312 - t102 * t284 - t104 * t291 - t106 * t297;
+        const gic_real t314 = t313 - t109 * t303 - t112 * t308 - t116 * t309;
+        const gic_real t315 = t271 * (m[178] + (m[176] * t161 - m[174] * t167)) + t272 * (m[177] + (m[175] * t167 - m[176] * t160));
+        const gic_real t316 = t190 * (m[179] + (m[174] * t160 - m[175] * t161)) + t315;
+        const gic_real t317 = t277 * (m[214] + (m[212] * t192 - m[210] * t196)) + t285 * (m[213] + (m[211] * t196 - m[212] * t191));
+        const gic_real t318 = t212 * (m[215] + (m[210] * t191 - m[211] * t192)) + t317;
+        const gic_real t319 = t316 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t318 - (n[21] + n[136] + n[168]);
+        const gic_real t320 = t319 - t275 * t119 - t121 * t284 - t123 * t291;
+        const gic_real t321 = t320 - t127 * t297 - t130 * t303 - t133 * t308;
+        const gic_real t322 = R(1.0) / t143 * (t321 - t138 * t309 - t142 * t314);
+        const gic_real t323 = t141 * t314 - t142 * t322;
+        const gic_real t324 = t115 * t309 - t116 * t323 - t138 * t322;
+        const gic_real t325 = t97 * t308 - t98 * t324 - t112 * t323 - t133 * t322;
+        const gic_real t326 = t75 * t303 + t76 * t325 - t94 * t324 - t109 * t323;
+        const gic_real t327 = t326 - t130 * t322;
+        const gic_real t328 = t55 * t297 - t56 * t327 - t71 * t325 - t90 * t324;
+        const gic_real t329 = t328 - t106 * t323 - t127 * t322;
+        const gic_real t330 = t37 * t291 - t38 * t329 - t51 * t327 - t66 * t325;
+        const gic_real t331 = t330 + t87 * t324 - t104 * t323 - t123 * t322;
+        const gic_real t332 = t21 * t284 - t22 * t331 - t33 * t329 + t46 * t327;
+        const gic_real t333 = t332 + t64 * t325 - t84 * t324 - t102 * t323;
+        const gic_real t334 = t333 - t121 * t322;
+        const gic_real t335 = R(-9.81) + (t156 * t324 + (t181 * t325 + t182 * t327));
+        const gic_real t336 = t275 * t9 - t10 * t334 - t17 * t331 - t29 * t329;
+        const gic_real t337 = t336 - t43 * t327 - t61 * t325 - t81 * t324;
+        const gic_real t338 = t265 * t4 - t5 * t334 - t14 * t331 - t26 * t329;
+        const gic_real t339 = t338 - t40 * t327 - t58 * t325 - t78 * t324;
+        const gic_real t340 = t270 * t6 - t7 * t334 - t15 * t331 - t27 * t329;
+        const gic_real t341 = t340 - t41 * t327 - t59 * t325 - t79 * t324;
+        const gic_real t342 = y[12];
+        const gic_real t343 = y[13];
+        const gic_real t344 = y[14];
+        const gic_real t345 = e[2] * t144 - e[3] * t145 + e[0] * t146;
+        const gic_real t346 = e[3] * t146 - e[1] * t144 + e[0] * t145;
+        const gic_real t347 = e[1] * t145 - e[2] * t146 + e[0] * t144;
+        const gic_real t348 = t152 * t324 + (t175 * t325 + t176 * t327);
+        const gic_real t349 = t159 * t324 + (t166 * t325 + t172 * t327);
+        const gic_real t350 = xd[0];
+        const gic_real t351 = t337 - t119 * t322;
+        const gic_real t352 = xd[1];
+        const gic_real t353 = xd[2];
+        const gic_real t354 = xd[3];
+        const gic_real t355 = xd[4];
+        rate[0] = t342;
+        rate[1] = t343;
+        rate[2] = t344;
+        rate[3] = t147;
+        rate[4] = t345;
+        rate[5] = t346;
+        rate[6] = t347;
+        rate[12] = t348;
+        rate[15] = t334;
+        rate[13] = t349;
+        rate[16] = t331;
+        rate[14] = t335;
+        rate[17] = t329;
+        rate[7] = t350;
+        rate[18] = t351;
+        rate[8] = t352;
+        rate[19] = t323;
+        rate[9] = t353;
+        rate[20] = t339;
+        rate[10] = t354;
+        rate[21] = t341;
+        rate[11] = t355;
+        rate[22] = t322;
     }
     return GIC_OK;
 }
@@ -2834,7 +2858,7 @@ static int five_link_measure(const five_link *self, gic_real time, const gic_rea
         const gic_real t84 = y[1] + (t13 * t74 + (t20 * t78 + t24 * t82));
         const gic_real t85 = y[2] + (t9 * t74 + (t18 * t78 + t23 * t82));
         const gic_real t86 = GIC_ATAN2(m[100] * t9 + (m[97] * t18 + m[94] * t23), m[101] * t9 + (m[98] * t18 + m[95] * t23));
-        const gic_real t87 = GIC_MAX(-(m[99] * t9 + (m[96] * t18 + m[93] * t23)), R(-1.0));
+        const gic_real t87 = -(m[99] * t9 + (m[96] * t18 + m[93] * t23));
         const gic_real t88 = GIC_ATAN2(m[99] * t13 + (m[96] * t20 + m[93] * t24), m[99] * t5 + (m[96] * t17 + m[93] * t22));
         const gic_real t89 = x[0] - R(0.31907);
         const gic_real t90 = t89 * R(167070.9);
@@ -3137,7 +3161,7 @@ static int five_link_measure(const five_link *self, gic_real time, const gic_rea
         const gic_real t379 = y[15];
         const gic_real t380 = y[16];
         const gic_real t381 = y[17];
-        const gic_real t382 = GIC_ASIN(GIC_MIN(t87, R(1.0)));
+        const gic_real t382 = GIC_ASIN(GIC_MIN(GIC_MAX(t87, R(-1.0)), R(1.0)));
         const gic_real t383 = x[0];
         const gic_real t384 = xd[0];
         const gic_real t385 = rate[18];
@@ -4169,204 +4193,208 @@ static int five_link_inverse(const five_link *self, gic_real time, const gic_rea
         const gic_real t368 = t342 + t343;
         const gic_real t369 = t359 - t360;
         const gic_real t370 = y[14] + (t341 * t347 + (t368 * t353 + t369 * t357));
-        const gic_real t371 = y[2] + (t341 * t352 + (t368 * t336 + t369 * t346));
-        const gic_real t372 = road366[0] + R(0.4699) - t371;
-        const gic_real t373 = GIC_MIN(GIC_MAX(t372 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t374 = (t358 * road366[2] + t367 * road366[1] - t370) * ((R(3.0) - (t373 + t373)) * (t373 * t373) * R(500.0));
-        const gic_real t375 = GIC_MAX(t374 + t372 * R(283000.0), R(0.0));
-        const gic_real t376 = t341 * t375;
-        const gic_real t377 = t368 * t375;
-        const gic_real t378 = t201 + (m[193] * R(-0.12319000000000002) + t202);
-        const gic_real t379 = m[187] + t378;
-        const gic_real t380 = t205 + (m[190] * R(-0.12319000000000002) + t206);
-        const gic_real t381 = m[186] + t380;
-        const gic_real t382 = m[203] + (m[198] * t378 - m[199] * t380) + (y[15] * t379 - y[16] * t381);
-        const gic_real t383 = t208 + (m[196] * R(-0.12319000000000002) + t209);
-        const gic_real t384 = m[188] + t383;
-        const gic_real t385 = m[202] + (m[200] * t380 - m[198] * t383) + (y[17] * t381 - y[15] * t384);
-        const gic_real t386 = m[201] + (m[199] * t383 - m[200] * t378) + (y[16] * t384 - y[17] * t379);
-        const gic_real t387 = y[13] + (t344 * t382 + (t350 * t385 + t356 * t386));
-        const gic_real t388 = y[0] + (t361 * t384 + (t362 * t379 + t363 * t381));
-        const gic_real t389 = y[1] + (t344 * t384 + (t350 * t379 + t356 * t381));
-        gic_real road390[3];
-        if (!road_height(self, time, t388, t389, road390))
+        const gic_real t371 = t358 * road366[2] + t367 * road366[1] - t370;
+        const gic_real t372 = y[2] + (t341 * t352 + (t368 * t336 + t369 * t346));
+        const gic_real t373 = road366[0] + R(0.4699) - t372;
+        const gic_real t374 = GIC_MIN(GIC_MAX(t373 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t375 = t371 * ((R(3.0) - (t374 + t374)) * (t374 * t374) * R(500.0));
+        const gic_real t376 = GIC_MAX(t375 + t373 * R(283000.0), R(0.0));
+        const gic_real t377 = t341 * t376;
+        const gic_real t378 = t368 * t376;
+        const gic_real t379 = t201 + (m[193] * R(-0.12319000000000002) + t202);
+        const gic_real t380 = m[187] + t379;
+        const gic_real t381 = t205 + (m[190] * R(-0.12319000000000002) + t206);
+        const gic_real t382 = m[186] + t381;
+        const gic_real t383 = m[203] + (m[198] * t379 - m[199] * t381) + (y[15] * t380 - y[16] * t382);
+        const gic_real t384 = t208 + (m[196] * R(-0.12319000000000002) + t209);
+        const gic_real t385 = m[188] + t384;
+        const gic_real t386 = m[202] + (m[200] * t381 - m[198] * t384) + (y[17] * t382 - y[15] * t385);
+        const gic_real t387 = m[201] + (m[199] * t384 - m[200] * t379) + (y[16] * t385 - y[17] * t380);
+        const gic_real t388 = y[13] + (t344 * t383 + (t350 * t386 + t356 * t387));
+        const gic_real t389 = y[0] + (t361 * t385 + (t362 * t380 + t363 * t382));
+        const gic_real t390 = y[1] + (t344 * t385 + (t350 * t380 + t356 * t382));
+        gic_real road391[3];
+        if (!road_height(self, time, t389, t390, road391))
             return GIC_ERROR_ROAD;
-        const gic_real t391 = y[12] + (t361 * t382 + (t362 * t385 + t363 * t386));
-        const gic_real t392 = y[14] + (t341 * t382 + (t368 * t385 + t369 * t386));
-        const gic_real t393 = y[2] + (t341 * t384 + (t368 * t379 + t369 * t381));
-        const gic_real t394 = R(0.4699) + road390[0] - t393;
-        const gic_real t395 = GIC_MIN(GIC_MAX(R(100.0) * t394, R(0.0)), R(1.0));
-        const gic_real t396 = (t387 * road390[2] + t391 * road390[1] - t392) * (R(500.0) * ((R(3.0) - (t395 + t395)) * (t395 * t395)));
-        const gic_real t397 = GIC_MAX(t396 + R(283000.0) * t394, R(0.0));
-        const gic_real t398 = t341 * t397;
-        const gic_real t399 = t368 * t397;
-        const gic_real t400 = t336 * t376 - t352 * t377 + (t379 * t398 - t384 * t399);
-        const gic_real t401 = t255 + (m[97] * R(0.12319000000000002) + t256);
-        const gic_real t402 = m[91] + t401;
-        const gic_real t403 = t259 + (m[94] * R(0.12319000000000002) + t260);
-        const gic_real t404 = m[90] + t403;
-        const gic_real t405 = m[107] + (m[102] * t401 - m[103] * t403) + (y[15] * t402 - y[16] * t404);
-        const gic_real t406 = t262 + (m[100] * R(0.12319000000000002) + t263);
-        const gic_real t407 = m[92] + t406;
-        const gic_real t408 = m[106] + (m[104] * t403 - m[102] * t406) + (y[17] * t404 - y[15] * t407);
-        const gic_real t409 = m[105] + (m[103] * t406 - m[104] * t401) + (y[16] * t407 - y[17] * t402);
-        const gic_real t410 = y[13] + (t344 * t405 + (t350 * t408 + t356 * t409));
-        const gic_real t411 = y[0] + (t361 * t407 + (t362 * t402 + t363 * t404));
-        const gic_real t412 = y[1] + (t344 * t407 + (t350 * t402 + t356 * t404));
-        gic_real road413[3];
-        if (!road_height(self, time, t411, t412, road413))
+        const gic_real t392 = y[12] + (t361 * t383 + (t362 * t386 + t363 * t387));
+        const gic_real t393 = y[14] + (t341 * t383 + (t368 * t386 + t369 * t387));
+        const gic_real t394 = t388 * road391[2] + t392 * road391[1] - t393;
+        const gic_real t395 = y[2] + (t341 * t385 + (t368 * t380 + t369 * t382));
+        const gic_real t396 = R(0.4699) + road391[0] - t395;
+        const gic_real t397 = GIC_MIN(GIC_MAX(R(100.0) * t396, R(0.0)), R(1.0));
+        const gic_real t398 = t394 * (R(500.0) * ((R(3.0) - (t397 + t397)) * (t397 * t397)));
+        const gic_real t399 = GIC_MAX(t398 + R(283000.0) * t396, R(0.0));
+        const gic_real t400 = t341 * t399;
+        const gic_real t401 = t368 * t399;
+        const gic_real t402 = t336 * t377 - t352 * t378 + (t380 * t400 - t385 * t401);
+        const gic_real t403 = t255 + (m[97] * R(0.12319000000000002) + t256);
+        const gic_real t404 = m[91] + t403;
+        const gic_real t405 = t259 + (m[94] * R(0.12319000000000002) + t260);
+        const gic_real t406 = m[90] + t405;
+        const gic_real t407 = m[107] + (m[102] * t403 - m[103] * t405) + (y[15] * t404 - y[16] * t406);
+        const gic_real t408 = t262 + (m[100] * R(0.12319000000000002) + t263);
+        const gic_real t409 = m[92] + t408;
+        const gic_real t410 = m[106] + (m[104] * t405 - m[102] * t408) + (y[17] * t406 - y[15] * t409);
+        const gic_real t411 = m[105] + (m[103] * t408 - m[104] * t403) + (y[16] * t409 - y[17] * t404);
+        const gic_real t412 = y[13] + (t344 * t407 + (t350 * t410 + t356 * t411));
+        const gic_real t413 = y[0] + (t361 * t409 + (t362 * t404 + t363 * t406));
+        const gic_real t414 = y[1] + (t344 * t409 + (t350 * t404 + t356 * t406));
+        gic_real road415[3];
+        if (!road_height(self, time, t413, t414, road415))
             return GIC_ERROR_ROAD;
-        const gic_real t414 = y[12] + (t361 * t405 + (t362 * t408 + t363 * t409));
-        const gic_real t415 = y[14] + (t341 * t405 + (t368 * t408 + t369 * t409));
-        const gic_real t416 = y[2] + (t341 * t407 + (t368 * t402 + t369 * t404));
-        const gic_real t417 = R(0.4699) + road413[0] - t416;
-        const gic_real t418 = GIC_MIN(GIC_MAX(R(100.0) * t417, R(0.0)), R(1.0));
-        const gic_real t419 = (t410 * road413[2] + t414 * road413[1] - t415) * (R(500.0) * ((R(3.0) - (t418 + t418)) * (t418 * t418)));
-        const gic_real t420 = GIC_MAX(t419 + R(283000.0) * t417, R(0.0));
-        const gic_real t421 = t341 * t420;
-        const gic_real t422 = t368 * t420;
-        const gic_real t423 = t306 + (m[127] * R(-0.12319000000000002) + t307);
-        const gic_real t424 = m[121] + t423;
-        const gic_real t425 = t310 + (m[124] * R(-0.12319000000000002) + t311);
-        const gic_real t426 = m[120] + t425;
-        const gic_real t427 = m[137] + (m[132] * t423 - m[133] * t425) + (y[15] * t424 - y[16] * t426);
-        const gic_real t428 = t313 + (m[130] * R(-0.12319000000000002) + t314);
-        const gic_real t429 = m[122] + t428;
-        const gic_real t430 = m[136] + (m[134] * t425 - m[132] * t428) + (y[17] * t426 - y[15] * t429);
-        const gic_real t431 = m[135] + (m[133] * t428 - m[134] * t423) + (y[16] * t429 - y[17] * t424);
-        const gic_real t432 = y[13] + (t344 * t427 + (t350 * t430 + t356 * t431));
-        const gic_real t433 = y[0] + (t361 * t429 + (t362 * t424 + t363 * t426));
-        const gic_real t434 = y[1] + (t344 * t429 + (t350 * t424 + t356 * t426));
-        gic_real road435[3];
-        if (!road_height(self, time, t433, t434, road435))
+        const gic_real t416 = y[12] + (t361 * t407 + (t362 * t410 + t363 * t411));
+        const gic_real t417 = y[14] + (t341 * t407 + (t368 * t410 + t369 * t411));
+        const gic_real t418 = t412 * road415[2] + t416 * road415[1] - t417;
+        const gic_real t419 = y[2] + (t341 * t409 + (t368 * t404 + t369 * t406));
+        const gic_real t420 = R(0.4699) + road415[0] - t419;
+        const gic_real t421 = GIC_MIN(GIC_MAX(R(100.0) * t420, R(0.0)), R(1.0));
+        const gic_real t422 = t418 * (R(500.0) * ((R(3.0) - (t421 + t421)) * (t421 * t421)));
+        const gic_real t423 = GIC_MAX(t422 + R(283000.0) * t420, R(0.0));
+        const gic_real t424 = t341 * t423;
+        const gic_real t425 = t368 * t423;
+        const gic_real t426 = t306 + (m[127] * R(-0.12319000000000002) + t307);
+        const gic_real t427 = m[121] + t426;
+        const gic_real t428 = t310 + (m[124] * R(-0.12319000000000002) + t311);
+        const gic_real t429 = m[120] + t428;
+        const gic_real t430 = m[137] + (m[132] * t426 - m[133] * t428) + (y[15] * t427 - y[16] * t429);
+        const gic_real t431 = t313 + (m[130] * R(-0.12319000000000002) + t314);
+        const gic_real t432 = m[122] + t431;
+        const gic_real t433 = m[136] + (m[134] * t428 - m[132] * t431) + (y[17] * t429 - y[15] * t432);
+        const gic_real t434 = m[135] + (m[133] * t431 - m[134] * t426) + (y[16] * t432 - y[17] * t427);
+        const gic_real t435 = y[13] + (t344 * t430 + (t350 * t433 + t356 * t434));
+        const gic_real t436 = y[0] + (t361 * t432 + (t362 * t427 + t363 * t429));
+        const gic_real t437 = y[1] + (t344 * t432 + (t350 * t427 + t356 * t429));
+        gic_real road438[3];
+        if (!road_height(self, time, t436, t437, road438))
             return GIC_ERROR_ROAD;
-        const gic_real t436 = y[12] + (t361 * t427 + (t362 * t430 + t363 * t431));
-        const gic_real t437 = y[14] + (t341 * t427 + (t368 * t430 + t369 * t431));
-        const gic_real t438 = y[2] + (t341 * t429 + (t368 * t424 + t369 * t426));
-        const gic_real t439 = R(0.4699) + road435[0] - t438;
-        const gic_real t440 = GIC_MIN(GIC_MAX(R(100.0) * t439, R(0.0)), R(1.0));
-        const gic_real t441 = (t432 * road435[2] + t436 * road435[1] - t437) * (R(500.0) * ((R(3.0) - (t440 + t440)) * (t440 * t440)));
-        const gic_real t442 = GIC_MAX(t441 + R(283000.0) * t439, R(0.0));
-        const gic_real t443 = t341 * t442;
-        const gic_real t444 = t368 * t442;
-        const gic_real t445 = t400 + (t402 * t421 - t407 * t422) + (t424 * t443 - t429 * t444);
-        const gic_real t446 = t284 + (t305 + (t309 * t327 - t321 * t334)) - t445;
-        const gic_real t447 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t448 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[17] * t447 + y[16] * t3));
-        const gic_real t449 = y[16] * t27 - y[17] * t23 + (m[2] * acc[1] - m[1] * acc[2]);
-        const gic_real t450 = (m[21] + (acc[3] + t449) + m[27] * acc[10]) * R(9.072);
-        const gic_real t451 = m[43] * t67 - m[44] * t55 + (m[49] * t54 - m[50] * t51);
-        const gic_real t452 = y[16] * t70 - y[17] * t61 + (acc[1] * t60 - acc[2] * t52);
-        const gic_real t453 = m[57] + (m[55] * t54 - m[56] * t51);
-        const gic_real t454 = (m[51] + t451 + (acc[3] + t452) + acc[6] * t453) * R(23.965);
-        const gic_real t455 = m[73] * t112 - m[74] * t100 + (m[79] * t99 - m[80] * t96);
-        const gic_real t456 = y[16] * t115 - y[17] * t106 + (acc[1] * t105 - acc[2] * t97);
-        const gic_real t457 = m[87] + (m[85] * t99 - m[86] * t96);
-        const gic_real t458 = R(23.965) * (m[81] + t455 + (acc[3] + t456) + acc[7] * t457);
-        const gic_real t459 = m[163] * t167 - m[164] * t153 + (m[169] * t152 - m[170] * t145);
-        const gic_real t460 = y[16] * t170 - y[17] * t159 + (acc[1] * t158 - acc[2] * t146);
-        const gic_real t461 = m[177] + (m[175] * t152 - m[176] * t145);
-        const gic_real t462 = m[183] + (m[181] * t152 - m[182] * t145);
-        const gic_real t463 = m[171] + t459 + (acc[3] + t460) + acc[10] * t461 + acc[6] * t462;
-        const gic_real t464 = t463 * R(90.555);
-        const gic_real t465 = m[199] * t225 - m[200] * t211 + (m[205] * t210 - m[206] * t203);
-        const gic_real t466 = y[16] * t228 - y[17] * t217 + (acc[1] * t216 - acc[2] * t204);
-        const gic_real t467 = m[213] + (m[211] * t210 - m[212] * t203);
-        const gic_real t468 = m[219] + (m[217] * t210 - m[218] * t203);
-        const gic_real t469 = m[207] + t465 + (acc[3] + t466) + acc[10] * t467 + acc[7] * t468;
-        const gic_real t470 = R(90.555) * t469;
-        const gic_real t471 = t448 * R(2086.52) + t450 + t454 + t458 + t464 + t470;
-        const gic_real t472 = m[103] * t277 - m[104] * t265 + (m[109] * t264 - m[110] * t257);
-        const gic_real t473 = y[16] * t280 - y[17] * t271 + (acc[1] * t270 - acc[2] * t258);
-        const gic_real t474 = m[117] + (m[115] * t264 - m[116] * t257);
-        const gic_real t475 = R(90.555) * (m[111] + t472 + (acc[3] + t473) + acc[8] * t474);
-        const gic_real t476 = m[133] * t328 - m[134] * t316 + (m[139] * t315 - m[140] * t308);
-        const gic_real t477 = y[16] * t331 - y[17] * t322 + (acc[1] * t321 - acc[2] * t309);
-        const gic_real t478 = m[147] + (m[145] * t315 - m[146] * t308);
-        const gic_real t479 = R(90.555) * (m[141] + t476 + (acc[3] + t477) + acc[9] * t478);
-        const gic_real t480 = t369 * t375;
-        const gic_real t481 = t369 * t397;
-        const gic_real t482 = t369 * t420;
-        const gic_real t483 = t369 * t442;
-        const gic_real t484 = t471 + t475 + t479 - (t480 + t481 + t482 + t483);
-        const gic_real t485 = y[15] * R(1078.52);
-        const gic_real t486 = acc[5] + (y[15] * t447 - y[16] * t4 - acc[1] * R(0.056));
-        const gic_real t487 = y[17] * t485 - y[15] * t1 + acc[1] * R(2955.66) + (t448 * R(444.4287600000002) - t486 * R(116.84512));
-        const gic_real t488 = t12 * t10 + (t16 * t8 + t20 * t13);
-        const gic_real t489 = t10 * t488 - t13 * t14 + (t11 * t18 + (t15 * t19 + t16 * t21));
-        const gic_real t490 = t40 * t32 + (t44 * t30 + t48 * t41);
-        const gic_real t491 = t32 * t490 - t41 * t42 + (t36 * t46 + (t43 * t47 + t44 * t49));
-        const gic_real t492 = t487 + (t489 + (m[2] * t450 - m[0] * t26)) + (t491 + (t60 * t454 - t59 * t66));
-        const gic_real t493 = t85 * t77 + (t89 * t75 + t93 * t86);
-        const gic_real t494 = t77 * t493 - t86 * t87 + (t81 * t91 + (t88 * t92 + t89 * t94));
-        const gic_real t495 = t129 * t121 + (t133 * t119 + t139 * t130);
-        const gic_real t496 = t121 * t495 - t130 * t131 + (t125 * t136 + (t132 * t138 + t133 * t141));
-        const gic_real t497 = t492 + (t494 + (t105 * t458 - t104 * t111)) + (t496 + (t158 * t464 - t157 * t166));
-        const gic_real t498 = t187 * t179 + (t191 * t177 + t197 * t188);
-        const gic_real t499 = t179 * t498 - t188 * t189 + (t183 * t194 + (t190 * t196 + t191 * t199));
-        const gic_real t500 = t244 * t236 + (t248 * t234 + t252 * t245);
-        const gic_real t501 = t236 * t500 - t245 * t246 + (t240 * t250 + (t247 * t251 + t248 * t253));
-        const gic_real t502 = t497 + (t499 + (t216 * t470 - t215 * t224)) + (t501 + (t270 * t475 - t269 * t276));
-        const gic_real t503 = t295 * t287 + (t299 * t285 + t303 * t296);
-        const gic_real t504 = t287 * t503 - t296 * t297 + (t291 * t301 + (t298 * t302 + t299 * t304));
-        const gic_real t505 = t352 * t480 - t346 * t376 + (t384 * t481 - t381 * t398);
-        const gic_real t506 = t505 + (t407 * t482 - t404 * t421) + (t429 * t483 - t426 * t443);
-        const gic_real t507 = t502 + (t504 + (t321 * t479 - t320 * t327)) - t506;
-        const gic_real t508 = t6 * R(2086.52) + t29 + t73 + t118 + t175 + t233;
-        const gic_real t509 = t508 + t283 + t334 - (t377 + t399 + t422 + t444);
-        const gic_real t510 = y[15] * t2 - y[16] * t485 + acc[2] * R(3570.2) + t6 * R(116.84512);
-        const gic_real t511 = t13 * t17 - t8 * t488 + (t9 * t18 + (t11 * t19 + t12 * t21));
-        const gic_real t512 = t41 * t45 - t30 * t490 + (t31 * t46 + (t36 * t47 + t40 * t49));
-        const gic_real t513 = t510 + (t511 + (m[0] * t29 - m[1] * t450)) + (t512 + (t59 * t73 - t52 * t454));
-        const gic_real t514 = t86 * t90 - t75 * t493 + (t76 * t91 + (t81 * t92 + t85 * t94));
-        const gic_real t515 = t130 * t134 - t119 * t495 + (t120 * t136 + (t125 * t138 + t129 * t141));
-        const gic_real t516 = t513 + (t514 + (t104 * t118 - t97 * t458)) + (t515 + (t157 * t175 - t146 * t464));
-        const gic_real t517 = t188 * t192 - t177 * t498 + (t178 * t194 + (t183 * t196 + t187 * t199));
-        const gic_real t518 = t245 * t249 - t234 * t500 + (t235 * t250 + (t240 * t251 + t244 * t253));
-        const gic_real t519 = t516 + (t517 + (t215 * t233 - t204 * t470)) + (t518 + (t269 * t283 - t258 * t475));
-        const gic_real t520 = t296 * t300 - t285 * t503 + (t286 * t301 + (t291 * t302 + t295 * t304));
-        const gic_real t521 = t346 * t377 - t336 * t480 + (t381 * t399 - t379 * t481);
-        const gic_real t522 = t521 + (t404 * t422 - t402 * t482) + (t426 * t444 - t424 * t483);
-        const gic_real t523 = t519 + (t520 + (t320 * t334 - t309 * t479)) - t522;
-        const gic_real t524 = t486 * R(2086.52) + t26 + t66 + t111 + t166 + t224;
-        const gic_real t525 = t524 + t276 + t327 - (t376 + t398 + t421 + t443);
-        const gic_real t526 = m[56] * t512 + (m[55] * t491 + m[54] * t50) + (t65 * t66 + (t72 * t73 + t453 * t454));
-        const gic_real t527 = m[182] * t515 + (m[181] * t496 + m[180] * t142) + (t164 * t166 + (t173 * t175 + t462 * t464));
-        const gic_real t528 = t377 * (m[184] + (m[182] * t345 - m[180] * t351)) + t480 * (m[183] + (m[181] * t351 - m[182] * t335));
-        const gic_real t529 = t376 * (m[185] + (m[180] * t335 - m[181] * t345)) + t528;
-        const gic_real t530 = t526 + t527 - (t529 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)));
-        const gic_real t531 = m[86] * t514 + (m[85] * t494 + m[84] * t95) + (t110 * t111 + (t117 * t118 + t457 * t458));
-        const gic_real t532 = m[218] * t517 + (m[217] * t499 + m[216] * t200) + (t222 * t224 + (t231 * t233 + t468 * t470));
-        const gic_real t533 = t399 * (m[220] + (m[218] * t380 - m[216] * t383)) + t481 * (m[219] + (m[217] * t383 - m[218] * t378));
-        const gic_real t534 = t398 * (m[221] + (m[216] * t378 - m[217] * t380)) + t533;
-        const gic_real t535 = t531 + t532 - (t534 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)));
-        const gic_real t536 = m[116] * t518 + (m[115] * t501 + m[114] * t254) + (t275 * t276 + (t282 * t283 + t474 * t475));
-        const gic_real t537 = t422 * (m[118] + (m[116] * t403 - m[114] * t406)) + t482 * (m[117] + (m[115] * t406 - m[116] * t401));
-        const gic_real t538 = t421 * (m[119] + (m[114] * t401 - m[115] * t403)) + t537;
-        const gic_real t539 = t536 - (t538 - ((x[2] - R(0.4321)) * R(89500.0) + xd[2] * R(6010.0)));
-        const gic_real t540 = m[146] * t520 + (m[145] * t504 + m[144] * t305) + (t326 * t327 + (t333 * t334 + t478 * t479));
-        const gic_real t541 = t444 * (m[148] + (m[146] * t425 - m[144] * t428)) + t483 * (m[147] + (m[145] * t428 - m[146] * t423));
-        const gic_real t542 = t443 * (m[149] + (m[144] * t423 - m[145] * t425)) + t541;
-        const gic_real t543 = t540 - (t542 - (R(89500.0) * (x[3] - R(0.4321)) + xd[3] * R(6010.0)));
-        const gic_real t544 = m[26] * t511 + (m[25] * t489 + m[24] * t22) + (m[29] * t26 + (m[28] * t29 + m[27] * t450));
-        const gic_real t545 = m[176] * t515 + (m[175] * t496 + m[174] * t142) + (t163 * t166 + (t172 * t175 + t461 * t464));
-        const gic_real t546 = m[212] * t517 + (m[211] * t499 + m[210] * t200) + (t221 * t224 + (t230 * t233 + t467 * t470));
-        const gic_real t547 = t377 * (m[178] + (m[176] * t345 - m[174] * t351)) + t480 * (m[177] + (m[175] * t351 - m[176] * t335));
-        const gic_real t548 = t376 * (m[179] + (m[174] * t335 - m[175] * t345)) + t547;
-        const gic_real t549 = t399 * (m[214] + (m[212] * t380 - m[210] * t383)) + t481 * (m[213] + (m[211] * t383 - m[212] * t378));
-        const gic_real t550 = t398 * (m[215] + (m[210] * t378 - m[211] * t380)) + t549;
-        const gic_real t551 = t544 + t545 + t546 - (t548 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t550);
-        tau[0] = t446;
-        tau[3] = t484;
-        tau[1] = t507;
-        tau[4] = t509;
-        tau[2] = t523;
-        tau[5] = t525;
-        tau[6] = t530;
-        tau[7] = t535;
-        tau[8] = t539;
-        tau[9] = t543;
-        tau[10] = t551;
+        const gic_real t439 = y[12] + (t361 * t430 + (t362 * t433 + t363 * t434));
+        const gic_real t440 = y[14] + (t341 * t430 + (t368 * t433 + t369 * t434));
+        const gic_real t441 = t435 * road438[2] + t439 * road438[1] - t440;
+        const gic_real t442 = y[2] + (t341 * t432 + (t368 * t427 + t369 * t429));
+        const gic_real t443 = R(0.4699) + road438[0] - t442;
+        const gic_real t444 = GIC_MIN(GIC_MAX(R(100.0) * t443, R(0.0)), R(1.0));
+        const gic_real t445 = t441 * (R(500.0) * ((R(3.0) - (t444 + t444)) * (t444 * t444)));
+        const gic_real t446 = GIC_MAX(t445 + R(283000.0) * t443, R(0.0));
+        const gic_real t447 = t341 * t446;
+        const gic_real t448 = t368 * t446;
+        const gic_real t449 = t402 + (t404 * t424 - t409 * t425) + (t427 * t447 - t432 * t448);
+        const gic_real t450 = t284 + (t305 + (t309 * t327 - t321 * t334)) - t449;
+        const gic_real t451 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
+        const gic_real t452 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[17] * t451 + y[16] * t3));
+        const gic_real t453 = y[16] * t27 - y[17] * t23 + (m[2] * acc[1] - m[1] * acc[2]);
+        const gic_real t454 = (m[21] + (acc[3] + t453) + m[27] * acc[10]) * R(9.072);
+        const gic_real t455 = m[43] * t67 - m[44] * t55 + (m[49] * t54 - m[50] * t51);
+        const gic_real t456 = y[16] * t70 - y[17] * t61 + (acc[1] * t60 - acc[2] * t52);
+        const gic_real t457 = m[57] + (m[55] * t54 - m[56] * t51);
+        const gic_real t458 = (m[51] + t455 + (acc[3] + t456) + acc[6] * t457) * R(23.965);
+        const gic_real t459 = m[73] * t112 - m[74] * t100 + (m[79] * t99 - m[80] * t96);
+        const gic_real t460 = y[16] * t115 - y[17] * t106 + (acc[1] * t105 - acc[2] * t97);
+        const gic_real t461 = m[87] + (m[85] * t99 - m[86] * t96);
+        const gic_real t462 = R(23.965) * (m[81] + t459 + (acc[3] + t460) + acc[7] * t461);
+        const gic_real t463 = m[163] * t167 - m[164] * t153 + (m[169] * t152 - m[170] * t145);
+        const gic_real t464 = y[16] * t170 - y[17] * t159 + (acc[1] * t158 - acc[2] * t146);
+        const gic_real t465 = m[177] + (m[175] * t152 - m[176] * t145);
+        const gic_real t466 = m[183] + (m[181] * t152 - m[182] * t145);
+        const gic_real t467 = m[171] + t463 + (acc[3] + t464) + acc[10] * t465 + acc[6] * t466;
+        const gic_real t468 = t467 * R(90.555);
+        const gic_real t469 = m[199] * t225 - m[200] * t211 + (m[205] * t210 - m[206] * t203);
+        const gic_real t470 = y[16] * t228 - y[17] * t217 + (acc[1] * t216 - acc[2] * t204);
+        const gic_real t471 = m[213] + (m[211] * t210 - m[212] * t203);
+        const gic_real t472 = m[219] + (m[217] * t210 - m[218] * t203);
+        const gic_real t473 = m[207] + t469 + (acc[3] + t470) + acc[10] * t471 + acc[7] * t472;
+        const gic_real t474 = R(90.555) * t473;
+        const gic_real t475 = t452 * R(2086.52) + t454 + t458 + t462 + t468 + t474;
+        const gic_real t476 = m[103] * t277 - m[104] * t265 + (m[109] * t264 - m[110] * t257);
+        const gic_real t477 = y[16] * t280 - y[17] * t271 + (acc[1] * t270 - acc[2] * t258);
+        const gic_real t478 = m[117] + (m[115] * t264 - m[116] * t257);
+        const gic_real t479 = R(90.555) * (m[111] + t476 + (acc[3] + t477) + acc[8] * t478);
+        const gic_real t480 = m[133] * t328 - m[134] * t316 + (m[139] * t315 - m[140] * t308);
+        const gic_real t481 = y[16] * t331 - y[17] * t322 + (acc[1] * t321 - acc[2] * t309);
+        const gic_real t482 = m[147] + (m[145] * t315 - m[146] * t308);
+        const gic_real t483 = R(90.555) * (m[141] + t480 + (acc[3] + t481) + acc[9] * t482);
+        const gic_real t484 = t369 * t376;
+        const gic_real t485 = t369 * t399;
+        const gic_real t486 = t369 * t423;
+        const gic_real t487 = t369 * t446;
+        const gic_real t488 = t475 + t479 + t483 - (t484 + t485 + t486 + t487);
+        const gic_real t489 = y[15] * R(1078.52);
+        const gic_real t490 = acc[5] + (y[15] * t451 - y[16] * t4 - acc[1] * R(0.056));
+        const gic_real t491 = y[17] * t489 - y[15] * t1 + acc[1] * R(2955.66) + (t452 * R(444.4287600000002) - t490 * R(116.84512));
+        const gic_real t492 = t12 * t10 + (t16 * t8 + t20 * t13);
+        const gic_real t493 = t10 * t492 - t13 * t14 + (t11 * t18 + (t15 * t19 + t16 * t21));
+        const gic_real t494 = t40 * t32 + (t44 * t30 + t48 * t41);
+        const gic_real t495 = t32 * t494 - t41 * t42 + (t36 * t46 + (t43 * t47 + t44 * t49));
+        const gic_real t496 = t491 + (t493 + (m[2] * t454 - m[0] * t26)) + (t495 + (t60 * t458 - t59 * t66));
+        const gic_real t497 = t85 * t77 + (t89 * t75 + t93 * t86);
+        const gic_real t498 = t77 * t497 - t86 * t87 + (t81 * t91 + (t88 * t92 + t89 * t94));
+        const gic_real t499 = t129 * t121 + (t133 * t119 + t139 * t130);
+        const gic_real t500 = t121 * t499 - t130 * t131 + (t125 * t136 + (t132 * t138 + t133 * t141));
+        const gic_real t501 = t496 + (t498 + (t105 * t462 - t104 * t111)) + (t500 + (t158 * t468 - t157 * t166));
+        const gic_real t502 = t187 * t179 + (t191 * t177 + t197 * t188);
+        const gic_real t503 = t179 * t502 - t188 * t189 + (t183 * t194 + (t190 * t196 + t191 * t199));
+        const gic_real t504 = t244 * t236 + (t248 * t234 + t252 * t245);
+        const gic_real t505 = t236 * t504 - t245 * t246 + (t240 * t250 + (t247 * t251 + t248 * t253));
+        const gic_real t506 = t501 + (t503 + (t216 * t474 - t215 * t224)) + (t505 + (t270 * t479 - t269 * t276));
+        const gic_real t507 = t295 * t287 + (t299 * t285 + t303 * t296);
+        const gic_real t508 = t287 * t507 - t296 * t297 + (t291 * t301 + (t298 * t302 + t299 * t304));
+        const gic_real t509 = t352 * t484 - t346 * t377 + (t385 * t485 - t382 * t400);
+        const gic_real t510 = t509 + (t409 * t486 - t406 * t424) + (t432 * t487 - t429 * t447);
+        const gic_real t511 = t506 + (t508 + (t321 * t483 - t320 * t327)) - t510;
+        const gic_real t512 = t6 * R(2086.52) + t29 + t73 + t118 + t175 + t233;
+        const gic_real t513 = t512 + t283 + t334 - (t378 + t401 + t425 + t448);
+        const gic_real t514 = y[15] * t2 - y[16] * t489 + acc[2] * R(3570.2) + t6 * R(116.84512);
+        const gic_real t515 = t13 * t17 - t8 * t492 + (t9 * t18 + (t11 * t19 + t12 * t21));
+        const gic_real t516 = t41 * t45 - t30 * t494 + (t31 * t46 + (t36 * t47 + t40 * t49));
+        const gic_real t517 = t514 + (t515 + (m[0] * t29 - m[1] * t454)) + (t516 + (t59 * t73 - t52 * t458));
+        const gic_real t518 = t86 * t90 - t75 * t497 + (t76 * t91 + (t81 * t92 + t85 * t94));
+        const gic_real t519 = t130 * t134 - t119 * t499 + (t120 * t136 + (t125 * t138 + t129 * t141));
+        const gic_real t520 = t517 + (t518 + (t104 * t118 - t97 * t462)) + (t519 + (t157 * t175 - t146 * t468));
+        const gic_real t521 = t188 * t192 - t177 * t502 + (t178 * t194 + (t183 * t196 + t187 * t199));
+        const gic_real t522 = t245 * t249 - t234 * t504 + (t235 * t250 + (t240 * t251 + t244 * t253));
+        const gic_real t523 = t520 + (t521 + (t215 * t233 - t204 * t474)) + (t522 + (t269 * t283 - t258 * t479));
+        const gic_real t524 = t296 * t300 - t285 * t507 + (t286 * t301 + (t291 * t302 + t295 * t304));
+        const gic_real t525 = t346 * t378 - t336 * t484 + (t382 * t401 - t380 * t485);
+        const gic_real t526 = t525 + (t406 * t425 - t404 * t486) + (t429 * t448 - t427 * t487);
+        const gic_real t527 = t523 + (t524 + (t320 * t334 - t309 * t483)) - t526;
+        const gic_real t528 = t490 * R(2086.52) + t26 + t66 + t111 + t166 + t224;
+        const gic_real t529 = t528 + t276 + t327 - (t377 + t400 + t424 + t447);
+        const gic_real t530 = m[56] * t516 + (m[55] * t495 + m[54] * t50) + (t65 * t66 + (t72 * t73 + t457 * t458));
+        const gic_real t531 = m[182] * t519 + (m[181] * t500 + m[180] * t142) + (t164 * t166 + (t173 * t175 + t466 * t468));
+        const gic_real t532 = t378 * (m[184] + (m[182] * t345 - m[180] * t351)) + t484 * (m[183] + (m[181] * t351 - m[182] * t335));
+        const gic_real t533 = t377 * (m[185] + (m[180] * t335 - m[181] * t345)) + t532;
+        const gic_real t534 = t530 + t531 - (t533 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)));
+        const gic_real t535 = m[86] * t518 + (m[85] * t498 + m[84] * t95) + (t110 * t111 + (t117 * t118 + t461 * t462));
+        const gic_real t536 = m[218] * t521 + (m[217] * t503 + m[216] * t200) + (t222 * t224 + (t231 * t233 + t472 * t474));
+        const gic_real t537 = t401 * (m[220] + (m[218] * t381 - m[216] * t384)) + t485 * (m[219] + (m[217] * t384 - m[218] * t379));
+        const gic_real t538 = t400 * (m[221] + (m[216] * t379 - m[217] * t381)) + t537;
+        const gic_real t539 = t535 + t536 - (t538 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)));
+        const gic_real t540 = m[116] * t522 + (m[115] * t505 + m[114] * t254) + (t275 * t276 + (t282 * t283 + t478 * t479));
+        const gic_real t541 = t425 * (m[118] + (m[116] * t405 - m[114] * t408)) + t486 * (m[117] + (m[115] * t408 - m[116] * t403));
+        const gic_real t542 = t424 * (m[119] + (m[114] * t403 - m[115] * t405)) + t541;
+        const gic_real t543 = t540 - (t542 - ((x[2] - R(0.4321)) * R(89500.0) + xd[2] * R(6010.0)));
+        const gic_real t544 = m[146] * t524 + (m[145] * t508 + m[144] * t305) + (t326 * t327 + (t333 * t334 + t482 * t483));
+        const gic_real t545 = t448 * (m[148] + (m[146] * t428 - m[144] * t431)) + t487 * (m[147] + (m[145] * t431 - m[146] * t426));
+        const gic_real t546 = t447 * (m[149] + (m[144] * t426 - m[145] * t428)) + t545;
+        const gic_real t547 = t544 - (t546 - (R(89500.0) * (x[3] - R(0.4321)) + xd[3] * R(6010.0)));
+        const gic_real t548 = m[26] * t515 + (m[25] * t493 + m[24] * t22) + (m[29] * t26 + (m[28] * t29 + m[27] * t454));
+        const gic_real t549 = m[176] * t519 + (m[175] * t500 + m[174] * t142) + (t163 * t166 + (t172 * t175 + t465 * t468));
+        const gic_real t550 = m[212] * t521 + (m[211] * t503 + m[210] * t200) + (t221 * t224 + (t230 * t233 + t471 * t474));
+        const gic_real t551 = t378 * (m[178] + (m[176] * t345 - m[174] * t351)) + t484 * (m[177] + (m[175] * t351 - m[176] * t335));
+        const gic_real t552 = t377 * (m[179] + (m[174] * t335 - m[175] * t345)) + t551;
+        const gic_real t553 = t401 * (m[214] + (m[212] * t381 - m[210] * t384)) + t485 * (m[213] + (m[211] * t384 - m[212] * t379));
+        const gic_real t554 = t400 * (m[215] + (m[210] * t379 - m[211] * t381)) + t553;
+        const gic_real t555 = t548 + t549 + t550 - (t552 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t554);
+        tau[0] = t450;
+        tau[3] = t488;
+        tau[1] = t511;
+        tau[4] = t513;
+        tau[2] = t527;
+        tau[5] = t529;
+        tau[6] = t534;
+        tau[7] = t539;
+        tau[8] = t543;
+        tau[9] = t547;
+        tau[10] = t555;
     }
     return GIC_OK;
 }
@@ -4788,103 +4816,109 @@ static int five_link_energy(const five_link *self, gic_real time, const gic_real
         if (!road_height(self, time, t404, t405, road406))
             return GIC_ERROR_ROAD;
         const gic_real t407 = y[12] + (t16 * t397 + (t28 * t400 + t34 * t401));
-        const gic_real t408 = y[2] + (t8 * t399 + (t23 * t395 + t32 * t396));
-        const gic_real t409 = road406[0] + R(0.4699) - t408;
-        const gic_real t410 = GIC_MIN(GIC_MAX(t409 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t411 = (t403 * road406[2] + t407 * road406[1] - t402) * ((R(3.0) - (t410 + t410)) * (t410 * t410) * R(500.0));
-        const gic_real t412 = xd[0] * (xd[0] * R(17490.8)) + xd[1] * (xd[1] * R(17490.8)) + xd[2] * (xd[2] * R(6010.0));
-        const gic_real t413 = t412 + xd[3] * (xd[3] * R(6010.0)) + xd[4] * (xd[4] * R(12000.0));
-        const gic_real t414 = t231 + (m[193] * R(-0.12319000000000002) + t232);
-        const gic_real t415 = t224 + (m[190] * R(-0.12319000000000002) + t225);
-        const gic_real t416 = m[187] + t414;
-        const gic_real t417 = m[186] + t415;
-        const gic_real t418 = m[203] + (m[198] * t414 - m[199] * t415) + (y[15] * t416 - y[16] * t417);
-        const gic_real t419 = t227 + (m[196] * R(-0.12319000000000002) + t228);
-        const gic_real t420 = m[188] + t419;
-        const gic_real t421 = m[202] + (m[200] * t415 - m[198] * t419) + (y[17] * t417 - y[15] * t420);
-        const gic_real t422 = m[201] + (m[199] * t419 - m[200] * t414) + (y[16] * t420 - y[17] * t416);
-        const gic_real t423 = y[14] + (t8 * t418 + (t23 * t421 + t32 * t422));
-        const gic_real t424 = y[13] + (t12 * t418 + (t25 * t421 + t33 * t422));
-        const gic_real t425 = y[0] + (t16 * t420 + (t28 * t416 + t34 * t417));
-        const gic_real t426 = y[1] + (t12 * t420 + (t25 * t416 + t33 * t417));
-        gic_real road427[3];
-        if (!road_height(self, time, t425, t426, road427))
+        const gic_real t408 = t403 * road406[2] + t407 * road406[1] - t402;
+        const gic_real t409 = y[2] + (t8 * t399 + (t23 * t395 + t32 * t396));
+        const gic_real t410 = road406[0] + R(0.4699) - t409;
+        const gic_real t411 = GIC_MIN(GIC_MAX(t410 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t412 = t408 * ((R(3.0) - (t411 + t411)) * (t411 * t411) * R(500.0));
+        const gic_real t413 = xd[0] * (xd[0] * R(17490.8)) + xd[1] * (xd[1] * R(17490.8)) + xd[2] * (xd[2] * R(6010.0));
+        const gic_real t414 = t413 + xd[3] * (xd[3] * R(6010.0)) + xd[4] * (xd[4] * R(12000.0));
+        const gic_real t415 = t231 + (m[193] * R(-0.12319000000000002) + t232);
+        const gic_real t416 = t224 + (m[190] * R(-0.12319000000000002) + t225);
+        const gic_real t417 = m[187] + t415;
+        const gic_real t418 = m[186] + t416;
+        const gic_real t419 = m[203] + (m[198] * t415 - m[199] * t416) + (y[15] * t417 - y[16] * t418);
+        const gic_real t420 = t227 + (m[196] * R(-0.12319000000000002) + t228);
+        const gic_real t421 = m[188] + t420;
+        const gic_real t422 = m[202] + (m[200] * t416 - m[198] * t420) + (y[17] * t418 - y[15] * t421);
+        const gic_real t423 = m[201] + (m[199] * t420 - m[200] * t415) + (y[16] * t421 - y[17] * t417);
+        const gic_real t424 = y[14] + (t8 * t419 + (t23 * t422 + t32 * t423));
+        const gic_real t425 = y[13] + (t12 * t419 + (t25 * t422 + t33 * t423));
+        const gic_real t426 = y[0] + (t16 * t421 + (t28 * t417 + t34 * t418));
+        const gic_real t427 = y[1] + (t12 * t421 + (t25 * t417 + t33 * t418));
+        gic_real road428[3];
+        if (!road_height(self, time, t426, t427, road428))
             return GIC_ERROR_ROAD;
-        const gic_real t428 = y[12] + (t16 * t418 + (t28 * t421 + t34 * t422));
-        const gic_real t429 = y[2] + (t8 * t420 + (t23 * t416 + t32 * t417));
-        const gic_real t430 = R(0.4699) + road427[0] - t429;
-        const gic_real t431 = GIC_MIN(GIC_MAX(R(100.0) * t430, R(0.0)), R(1.0));
-        const gic_real t432 = (t424 * road427[2] + t428 * road427[1] - t423) * (R(500.0) * ((R(3.0) - (t431 + t431)) * (t431 * t431)));
-        const gic_real t433 = t402 * GIC_MAX(t411 + t409 * R(283000.0), R(0.0)) - t413 + t423 * GIC_MAX(t432 + R(283000.0) * t430, R(0.0));
-        const gic_real t434 = t291 + (m[97] * R(0.12319000000000002) + t292);
-        const gic_real t435 = t284 + (m[94] * R(0.12319000000000002) + t285);
-        const gic_real t436 = m[91] + t434;
-        const gic_real t437 = m[90] + t435;
-        const gic_real t438 = m[107] + (m[102] * t434 - m[103] * t435) + (y[15] * t436 - y[16] * t437);
-        const gic_real t439 = t287 + (m[100] * R(0.12319000000000002) + t288);
-        const gic_real t440 = m[92] + t439;
-        const gic_real t441 = m[106] + (m[104] * t435 - m[102] * t439) + (y[17] * t437 - y[15] * t440);
-        const gic_real t442 = m[105] + (m[103] * t439 - m[104] * t434) + (y[16] * t440 - y[17] * t436);
-        const gic_real t443 = y[14] + (t8 * t438 + (t23 * t441 + t32 * t442));
-        const gic_real t444 = y[13] + (t12 * t438 + (t25 * t441 + t33 * t442));
-        const gic_real t445 = y[0] + (t16 * t440 + (t28 * t436 + t34 * t437));
-        const gic_real t446 = y[1] + (t12 * t440 + (t25 * t436 + t33 * t437));
-        gic_real road447[3];
-        if (!road_height(self, time, t445, t446, road447))
+        const gic_real t429 = y[12] + (t16 * t419 + (t28 * t422 + t34 * t423));
+        const gic_real t430 = t425 * road428[2] + t429 * road428[1] - t424;
+        const gic_real t431 = y[2] + (t8 * t421 + (t23 * t417 + t32 * t418));
+        const gic_real t432 = R(0.4699) + road428[0] - t431;
+        const gic_real t433 = GIC_MIN(GIC_MAX(R(100.0) * t432, R(0.0)), R(1.0));
+        const gic_real t434 = t430 * (R(500.0) * ((R(3.0) - (t433 + t433)) * (t433 * t433)));
+        const gic_real t435 = t402 * GIC_MAX(t412 + t410 * R(283000.0), R(0.0)) - t414 + t424 * GIC_MAX(t434 + R(283000.0) * t432, R(0.0));
+        const gic_real t436 = t291 + (m[97] * R(0.12319000000000002) + t292);
+        const gic_real t437 = t284 + (m[94] * R(0.12319000000000002) + t285);
+        const gic_real t438 = m[91] + t436;
+        const gic_real t439 = m[90] + t437;
+        const gic_real t440 = m[107] + (m[102] * t436 - m[103] * t437) + (y[15] * t438 - y[16] * t439);
+        const gic_real t441 = t287 + (m[100] * R(0.12319000000000002) + t288);
+        const gic_real t442 = m[92] + t441;
+        const gic_real t443 = m[106] + (m[104] * t437 - m[102] * t441) + (y[17] * t439 - y[15] * t442);
+        const gic_real t444 = m[105] + (m[103] * t441 - m[104] * t436) + (y[16] * t442 - y[17] * t438);
+        const gic_real t445 = y[14] + (t8 * t440 + (t23 * t443 + t32 * t444));
+        const gic_real t446 = y[13] + (t12 * t440 + (t25 * t443 + t33 * t444));
+        const gic_real t447 = y[0] + (t16 * t442 + (t28 * t438 + t34 * t439));
+        const gic_real t448 = y[1] + (t12 * t442 + (t25 * t438 + t33 * t439));
+        gic_real road449[3];
+        if (!road_height(self, time, t447, t448, road449))
             return GIC_ERROR_ROAD;
-        const gic_real t448 = y[12] + (t16 * t438 + (t28 * t441 + t34 * t442));
-        const gic_real t449 = y[2] + (t8 * t440 + (t23 * t436 + t32 * t437));
-        const gic_real t450 = R(0.4699) + road447[0] - t449;
-        const gic_real t451 = GIC_MIN(GIC_MAX(R(100.0) * t450, R(0.0)), R(1.0));
-        const gic_real t452 = (t444 * road447[2] + t448 * road447[1] - t443) * (R(500.0) * ((R(3.0) - (t451 + t451)) * (t451 * t451)));
-        const gic_real t453 = t346 + (m[127] * R(-0.12319000000000002) + t347);
-        const gic_real t454 = t339 + (m[124] * R(-0.12319000000000002) + t340);
-        const gic_real t455 = m[121] + t453;
-        const gic_real t456 = m[120] + t454;
-        const gic_real t457 = m[137] + (m[132] * t453 - m[133] * t454) + (y[15] * t455 - y[16] * t456);
-        const gic_real t458 = t342 + (m[130] * R(-0.12319000000000002) + t343);
-        const gic_real t459 = m[122] + t458;
-        const gic_real t460 = m[136] + (m[134] * t454 - m[132] * t458) + (y[17] * t456 - y[15] * t459);
-        const gic_real t461 = m[135] + (m[133] * t458 - m[134] * t453) + (y[16] * t459 - y[17] * t455);
-        const gic_real t462 = y[14] + (t8 * t457 + (t23 * t460 + t32 * t461));
-        const gic_real t463 = y[13] + (t12 * t457 + (t25 * t460 + t33 * t461));
-        const gic_real t464 = y[0] + (t16 * t459 + (t28 * t455 + t34 * t456));
-        const gic_real t465 = y[1] + (t12 * t459 + (t25 * t455 + t33 * t456));
-        gic_real road466[3];
-        if (!road_height(self, time, t464, t465, road466))
+        const gic_real t450 = y[12] + (t16 * t440 + (t28 * t443 + t34 * t444));
+        const gic_real t451 = t446 * road449[2] + t450 * road449[1] - t445;
+        const gic_real t452 = y[2] + (t8 * t442 + (t23 * t438 + t32 * t439));
+        const gic_real t453 = R(0.4699) + road449[0] - t452;
+        const gic_real t454 = GIC_MIN(GIC_MAX(R(100.0) * t453, R(0.0)), R(1.0));
+        const gic_real t455 = t451 * (R(500.0) * ((R(3.0) - (t454 + t454)) * (t454 * t454)));
+        const gic_real t456 = t346 + (m[127] * R(-0.12319000000000002) + t347);
+        const gic_real t457 = t339 + (m[124] * R(-0.12319000000000002) + t340);
+        const gic_real t458 = m[121] + t456;
+        const gic_real t459 = m[120] + t457;
+        const gic_real t460 = m[137] + (m[132] * t456 - m[133] * t457) + (y[15] * t458 - y[16] * t459);
+        const gic_real t461 = t342 + (m[130] * R(-0.12319000000000002) + t343);
+        const gic_real t462 = m[122] + t461;
+        const gic_real t463 = m[136] + (m[134] * t457 - m[132] * t461) + (y[17] * t459 - y[15] * t462);
+        const gic_real t464 = m[135] + (m[133] * t461 - m[134] * t456) + (y[16] * t462 - y[17] * t458);
+        const gic_real t465 = y[14] + (t8 * t460 + (t23 * t463 + t32 * t464));
+        const gic_real t466 = y[13] + (t12 * t460 + (t25 * t463 + t33 * t464));
+        const gic_real t467 = y[0] + (t16 * t462 + (t28 * t458 + t34 * t459));
+        const gic_real t468 = y[1] + (t12 * t462 + (t25 * t458 + t33 * t459));
+        gic_real road469[3];
+        if (!road_height(self, time, t467, t468, road469))
             return GIC_ERROR_ROAD;
-        const gic_real t467 = y[12] + (t16 * t457 + (t28 * t460 + t34 * t461));
-        const gic_real t468 = y[2] + (t8 * t459 + (t23 * t455 + t32 * t456));
-        const gic_real t469 = R(0.4699) + road466[0] - t468;
-        const gic_real t470 = GIC_MIN(GIC_MAX(R(100.0) * t469, R(0.0)), R(1.0));
-        const gic_real t471 = (t463 * road466[2] + t467 * road466[1] - t462) * (R(500.0) * ((R(3.0) - (t470 + t470)) * (t470 * t470)));
-        const gic_real t472 = t433 + t443 * GIC_MAX(t452 + R(283000.0) * t450, R(0.0)) + t462 * GIC_MAX(t471 + R(283000.0) * t469, R(0.0));
-        const gic_real t473 = GIC_FABS(t40) + GIC_FABS(t39) + (GIC_FABS(t66) + GIC_FABS(t53)) + (GIC_FABS(t114) + GIC_FABS(t95)) + (GIC_FABS(t162) + GIC_FABS(t143));
-        const gic_real t474 = t473 + (GIC_FABS(t223) + GIC_FABS(t201)) + (GIC_FABS(t283) + GIC_FABS(t261)) + (GIC_FABS(t337) + GIC_FABS(t318));
-        const gic_real t475 = t3 + (t338 + (t373 + t392));
-        const gic_real t476 = t474 + (GIC_FABS(t392) + GIC_FABS(t373)) + (GIC_FABS(t472) + GIC_FABS(t3));
-        const gic_real t477 = rate[15];
-        const gic_real t478 = rate[16];
-        const gic_real t479 = rate[17];
-        const gic_real t480 = rate[18];
-        const gic_real t481 = rate[19];
-        const gic_real t482 = rate[20];
-        const gic_real t483 = rate[21];
-        const gic_real t484 = rate[22];
-        energy[0] = t475;
-        energy[1] = t472;
-        energy[2] = t476;
-        acc[0] = t477;
+        const gic_real t470 = y[12] + (t16 * t460 + (t28 * t463 + t34 * t464));
+        const gic_real t471 = t466 * road469[2] + t470 * road469[1] - t465;
+        const gic_real t472 = y[2] + (t8 * t462 + (t23 * t458 + t32 * t459));
+        const gic_real t473 = R(0.4699) + road469[0] - t472;
+        const gic_real t474 = GIC_MIN(GIC_MAX(R(100.0) * t473, R(0.0)), R(1.0));
+        const gic_real t475 = t471 * (R(500.0) * ((R(3.0) - (t474 + t474)) * (t474 * t474)));
+        const gic_real t476 = t435 + t445 * GIC_MAX(t455 + R(283000.0) * t453, R(0.0)) + t465 * GIC_MAX(t475 + R(283000.0) * t473, R(0.0));
+        const gic_real t477 = GIC_FABS(t40) + GIC_FABS(t39) + (GIC_FABS(t66) + GIC_FABS(t53));
+        const gic_real t478 = t477 + (GIC_FABS(t114) + GIC_FABS(t95)) + (GIC_FABS(t162) + GIC_FABS(t143));
+        const gic_real t479 = t478 + (GIC_FABS(t223) + GIC_FABS(t201)) + (GIC_FABS(t283) + GIC_FABS(t261));
+        const gic_real t480 = t479 + (GIC_FABS(t337) + GIC_FABS(t318)) + (GIC_FABS(t392) + GIC_FABS(t373));
+        const gic_real t481 = t3 + (t338 + (t373 + t392));
+        const gic_real t482 = t480 + (GIC_FABS(t476) + GIC_FABS(t3));
+        const gic_real t483 = rate[15];
+        const gic_real t484 = rate[16];
+        const gic_real t485 = rate[17];
+        const gic_real t486 = rate[18];
+        const gic_real t487 = rate[19];
+        const gic_real t488 = rate[20];
+        const gic_real t489 = rate[21];
+        const gic_real t490 = rate[22];
+        energy[0] = t481;
+        energy[1] = t476;
+        energy[2] = t482;
+        acc[0] = t483;
         acc[3] = t35;
-        acc[1] = t478;
+        acc[1] = t484;
         acc[4] = t29;
-        acc[2] = t479;
+        acc[2] = t485;
         acc[5] = t17;
-        acc[6] = t480;
-        acc[7] = t481;
-        acc[8] = t482;
-        acc[9] = t483;
-        acc[10] = t484;
+        acc[6] = t486;
+        acc[7] = t487;
+        acc[8] = t488;
+        acc[9] = t489;
+        acc[10] = t490;
     }
     return GIC_OK;
 }

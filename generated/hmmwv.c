@@ -93,7 +93,8 @@
 #define GIC_COS(x) cosf(x)
 #define GIC_ASIN(x) asinf(x)
 #define GIC_ATAN2(y, x) atan2f(y, x)
-#define GIC_STEP_SQUARE R(1.6e-11) /* a correction of 4e-6 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-7)
 #else
 #define GIC_SQRT(x) sqrt(x)
 #define GIC_FABS(x) fabs(x)
@@ -101,11 +102,14 @@
 #define GIC_COS(x) cos(x)
 #define GIC_ASIN(x) asin(x)
 #define GIC_ATAN2(y, x) atan2(y, x)
-#define GIC_STEP_SQUARE R(1e-26) /* a correction of 1e-13 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-18)
 #endif
 #define GIC_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
+
+/* far: square of a subset's distance from the base relative to its size; 16 epsilon of the distance is rounding. */
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
  * pieces in which a change of the coordinates is followed. */
@@ -144,7 +148,8 @@ static int hmmwv_solve_rack(hmmwv *self, const gic_real *GIC_RESTRICT k, const h
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 13; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(2.072648852345));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -226,7 +231,7 @@ static int hmmwv_solve_rack(hmmwv *self, const gic_real *GIC_RESTRICT k, const h
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -396,7 +401,8 @@ static int hmmwv_solve_rack(hmmwv *self, const gic_real *GIC_RESTRICT k, const h
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -404,6 +410,7 @@ static int hmmwv_solve_rack(hmmwv *self, const gic_real *GIC_RESTRICT k, const h
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -420,9 +427,10 @@ static gic_real hmmwv_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_
         const gic_real t2 = q[6] + q[6];
         const gic_real t3 = q[5] + q[5];
         const gic_real t4 = GIC_MAX(GIC_FABS(q[5] * t1 - q[3] * t2), GIC_FABS(-(q[6] * t3 + q[3] * t1)));
-        const gic_real t5 = GIC_MAX(GIC_MAX(t4, GIC_FABS(-(q[4] * t2 + q[3] * t3))), GIC_FABS(q[0] - R(1.438648)));
-        const gic_real t6 = GIC_MAX(GIC_MAX(t5, GIC_FABS(R(0.05422899999999997) - q[2])), GIC_FABS(q[1] - x[0]));
-        worst = t6;
+        const gic_real t5 = GIC_MAX(t4, GIC_FABS(-(q[4] * t2 + q[3] * t3)));
+        const gic_real t6 = GIC_MAX(GIC_MAX(t5, GIC_FABS(q[0] - R(1.438648))), GIC_FABS(R(0.05422899999999997) - q[2]));
+        const gic_real t7 = GIC_MAX(t6, GIC_FABS(q[1] - x[0]));
+        worst = t7;
     }
     return worst;
 }
@@ -464,7 +472,8 @@ static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, cons
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 13; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(43.74775795073611));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -566,7 +575,7 @@ static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, cons
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -820,7 +829,8 @@ static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, cons
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -828,6 +838,7 @@ static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, cons
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -840,7 +851,7 @@ static gic_real hmmwv_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmm
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_MAX(GIC_FABS((q[0] - k[6]) * R(3.852963219305647)), GIC_FABS((q[1] - k[7]) * R(3.852963219305647))), GIC_FABS(q[2] * R(3.852963219305647)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - k[6]) * R(3.852963219305647)), GIC_FABS((q[1] - k[7]) * R(3.852963219305647)));
         const gic_real t2 = q[4] + q[4];
         const gic_real t3 = q[5] * t2;
         const gic_real t4 = q[6] + q[6];
@@ -850,20 +861,21 @@ static gic_real hmmwv_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmm
         const gic_real t8 = q[5] + q[5];
         const gic_real t9 = q[3] * t8;
         const gic_real t10 = t7 - t9;
-        const gic_real t11 = q[4] * t2;
-        const gic_real t12 = q[5] * t8;
-        const gic_real t13 = q[6] * t8;
-        const gic_real t14 = q[3] * t2;
-        const gic_real t15 = k[0] * (R(1.0) - (t11 + t12)) + (k[1] * (t13 + t14) + k[2] * t10);
-        const gic_real t16 = q[2] + t15 - k[3];
-        const gic_real t17 = q[6] * t4;
-        const gic_real t18 = k[0] * (t13 - t14) + (k[1] * (R(1.0) - (t11 + t17)) + k[2] * t6);
-        const gic_real t19 = q[1] + t18 - k[4];
-        const gic_real t20 = k[1] * (t3 - t5) + k[2] * (R(1.0) - (t12 + t17));
-        const gic_real t21 = q[0] + (k[0] * (t7 + t9) + t20) - k[5];
-        const gic_real t22 = t16 * t16 + (t19 * t19 + t21 * t21) - x[0] * x[0];
-        const gic_real t23 = GIC_MAX(GIC_MAX(GIC_MAX(t1, GIC_FABS(t6)), GIC_FABS(t10)), GIC_FABS(t22 * k[10]));
-        worst = t23;
+        const gic_real t11 = GIC_MAX(GIC_MAX(GIC_MAX(t1, GIC_FABS(q[2] * R(3.852963219305647))), GIC_FABS(t6)), GIC_FABS(t10));
+        const gic_real t12 = q[4] * t2;
+        const gic_real t13 = q[5] * t8;
+        const gic_real t14 = q[6] * t8;
+        const gic_real t15 = q[3] * t2;
+        const gic_real t16 = k[0] * (R(1.0) - (t12 + t13)) + (k[1] * (t14 + t15) + k[2] * t10);
+        const gic_real t17 = q[2] + t16 - k[3];
+        const gic_real t18 = q[6] * t4;
+        const gic_real t19 = k[0] * (t14 - t15) + (k[1] * (R(1.0) - (t12 + t18)) + k[2] * t6);
+        const gic_real t20 = q[1] + t19 - k[4];
+        const gic_real t21 = k[1] * (t3 - t5) + k[2] * (R(1.0) - (t13 + t18));
+        const gic_real t22 = q[0] + (k[0] * (t7 + t9) + t21) - k[5];
+        const gic_real t23 = t17 * t17 + (t20 * t20 + t22 * t22) - x[0] * x[0];
+        const gic_real t24 = GIC_MAX(t11, GIC_FABS(t23 * k[10]));
+        worst = t24;
     }
     return worst;
 }
@@ -894,7 +906,8 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 19; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(28.861380328376388));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -1017,7 +1030,7 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -1403,7 +1416,8 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -1411,6 +1425,7 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -1426,8 +1441,8 @@ static gic_real hmmwv_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const h
     {
         const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[5] * m1[4] + R(-0.03556000000000003) * m1[3]));
         const gic_real t2 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[5] * m1[7] + R(-0.03556000000000003) * m1[6]));
-        const gic_real t3 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[5] * m1[10] + R(-0.03556000000000003) * m1[9]));
-        const gic_real t4 = GIC_MAX(GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928075656552032)), GIC_FABS((q[1] - t2) * R(2.928075656552032))), GIC_FABS((q[2] - t3) * R(2.928075656552032)));
+        const gic_real t3 = GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928075656552032)), GIC_FABS((q[1] - t2) * R(2.928075656552032)));
+        const gic_real t4 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[5] * m1[10] + R(-0.03556000000000003) * m1[9]));
         const gic_real t5 = q[4] + q[4];
         const gic_real t6 = q[4] * t5;
         const gic_real t7 = q[5] + q[5];
@@ -1456,16 +1471,17 @@ static gic_real hmmwv_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const h
         const gic_real t30 = q[0] + (R(0.10177780000000003) * t27 + (k[0] * t28 + R(-0.14025880000000002) * t29));
         const gic_real t31 = t30 - (m0[0] + k[1] * m0[4]);
         const gic_real t32 = t18 * t18 + (t26 * t26 + t31 * t31) - R(0.14941089924212003);
-        const gic_real t33 = q[2] + (R(0.33360360000000006) * t9 + (k[2] * t12 + R(-0.017475200000000024) * t16));
-        const gic_real t34 = t33 - R(0.23411769999999998);
-        const gic_real t35 = q[1] + (R(0.33360360000000006) * t19 + (k[2] * t21 + R(-0.017475200000000024) * t24));
-        const gic_real t36 = t35 - k[3];
-        const gic_real t37 = q[0] + (R(0.33360360000000006) * t27 + (k[2] * t28 + R(-0.017475200000000024) * t29));
-        const gic_real t38 = t37 - R(1.593883);
-        const gic_real t39 = t34 * t34 + (t36 * t36 + t38 * t38) - R(0.07115456010869);
-        const gic_real t40 = R(0.21526024724178433) * t34 + (k[4] * t36 + R(0.9665541626242249) * t38) - R(4.3116545195287515e-08);
-        const gic_real t41 = GIC_MAX(GIC_MAX(GIC_MAX(t4, GIC_FABS(t32 * R(3.9285226675160785))), GIC_FABS(t39 * R(5.571891251504319))), GIC_FABS(t40 * R(3.029396354366955)));
-        worst = t41;
+        const gic_real t33 = GIC_MAX(GIC_MAX(t3, GIC_FABS((q[2] - t4) * R(2.928075656552032))), GIC_FABS(t32 * R(3.9285226675160785)));
+        const gic_real t34 = q[2] + (R(0.33360360000000006) * t9 + (k[2] * t12 + R(-0.017475200000000024) * t16));
+        const gic_real t35 = t34 - R(0.23411769999999998);
+        const gic_real t36 = q[1] + (R(0.33360360000000006) * t19 + (k[2] * t21 + R(-0.017475200000000024) * t24));
+        const gic_real t37 = t36 - k[3];
+        const gic_real t38 = q[0] + (R(0.33360360000000006) * t27 + (k[2] * t28 + R(-0.017475200000000024) * t29));
+        const gic_real t39 = t38 - R(1.593883);
+        const gic_real t40 = t35 * t35 + (t37 * t37 + t39 * t39) - R(0.07115456010869);
+        const gic_real t41 = R(0.21526024724178433) * t35 + (k[4] * t37 + R(0.9665541626242249) * t39) - R(4.3116545195287515e-08);
+        const gic_real t42 = GIC_MAX(GIC_MAX(t33, GIC_FABS(t40 * R(5.571891251504319))), GIC_FABS(t41 * R(3.029396354366955)));
+        worst = t42;
     }
     return worst;
 }
@@ -1495,7 +1511,8 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 13; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(28.869811926497114));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -1605,7 +1622,7 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -1940,7 +1957,8 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -1948,6 +1966,7 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -1962,8 +1981,8 @@ static gic_real hmmwv_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const h
     {
         const gic_real t1 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[4] * m0[4] + R(0.03556000000000003) * m0[3]));
         const gic_real t2 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[4] * m0[7] + R(0.03556000000000003) * m0[6]));
-        const gic_real t3 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[4] * m0[10] + R(0.03556000000000003) * m0[9]));
-        const gic_real t4 = GIC_MAX(GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928503331078754)), GIC_FABS((q[1] - t2) * R(2.928503331078754))), GIC_FABS((q[2] - t3) * R(2.928503331078754)));
+        const gic_real t3 = GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928503331078754)), GIC_FABS((q[1] - t2) * R(2.928503331078754)));
+        const gic_real t4 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[4] * m0[10] + R(0.03556000000000003) * m0[9]));
         const gic_real t5 = q[6] + q[6];
         const gic_real t6 = q[4] * t5;
         const gic_real t7 = q[5] + q[5];
@@ -1978,20 +1997,21 @@ static gic_real hmmwv_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const h
         const gic_real t16 = R(1.0) - (t14 + t15);
         const gic_real t17 = t13 * (k[0] * m0[8] + R(0.9709689408513393) * m0[7]) + t16 * (k[0] * m0[5] + R(0.9709689408513393) * m0[4]);
         const gic_real t18 = (t9 * (k[0] * m0[11] + R(0.9709689408513393) * m0[10]) + t17) * R(1.0000000000000002);
-        const gic_real t19 = t13 * (R(0.9709689408513391) * m0[8] + k[1] * m0[7]) + t16 * (R(0.9709689408513391) * m0[5] + k[1] * m0[4]);
-        const gic_real t20 = (t9 * (R(0.9709689408513391) * m0[11] + k[1] * m0[10]) + t19) * R(1.0000000000000004);
-        const gic_real t21 = q[4] * t10;
-        const gic_real t22 = q[6] * t7;
-        const gic_real t23 = q[3] * t10;
-        const gic_real t24 = R(0.33401) * (R(1.0) - (t21 + t14)) + k[2] * (t22 + t23);
-        const gic_real t25 = q[2] + t24 - R(0.22567900000000007);
-        const gic_real t26 = R(0.33401) * (t22 - t23) + k[2] * (R(1.0) - (t21 + t15));
-        const gic_real t27 = q[1] + t26 - k[3];
-        const gic_real t28 = q[0] + (R(0.33401) * (t6 + t8) + k[2] * (t11 - t12));
-        const gic_real t29 = t28 - R(-1.475859);
-        const gic_real t30 = t25 * t25 + (t27 * t27 + t29 * t29) - R(0.095812034182);
-        const gic_real t31 = GIC_MAX(GIC_MAX(GIC_MAX(t4, GIC_FABS(t18)), GIC_FABS(t20)), GIC_FABS(t30 * R(5.7792183827260155)));
-        worst = t31;
+        const gic_real t19 = GIC_MAX(GIC_MAX(t3, GIC_FABS((q[2] - t4) * R(2.928503331078754))), GIC_FABS(t18));
+        const gic_real t20 = t13 * (R(0.9709689408513391) * m0[8] + k[1] * m0[7]) + t16 * (R(0.9709689408513391) * m0[5] + k[1] * m0[4]);
+        const gic_real t21 = (t9 * (R(0.9709689408513391) * m0[11] + k[1] * m0[10]) + t20) * R(1.0000000000000004);
+        const gic_real t22 = q[4] * t10;
+        const gic_real t23 = q[6] * t7;
+        const gic_real t24 = q[3] * t10;
+        const gic_real t25 = R(0.33401) * (R(1.0) - (t22 + t14)) + k[2] * (t23 + t24);
+        const gic_real t26 = q[2] + t25 - R(0.22567900000000007);
+        const gic_real t27 = R(0.33401) * (t23 - t24) + k[2] * (R(1.0) - (t22 + t15));
+        const gic_real t28 = q[1] + t27 - k[3];
+        const gic_real t29 = q[0] + (R(0.33401) * (t6 + t8) + k[2] * (t11 - t12));
+        const gic_real t30 = t29 - R(-1.475859);
+        const gic_real t31 = t26 * t26 + (t28 * t28 + t30 * t30) - R(0.095812034182);
+        const gic_real t32 = GIC_MAX(GIC_MAX(t19, GIC_FABS(t21)), GIC_FABS(t31 * R(5.7792183827260155)));
+        worst = t32;
     }
     return worst;
 }
@@ -2394,245 +2414,249 @@ static int hmmwv_dynamics(const hmmwv *self, gic_real time, const gic_real *y, c
         const gic_real t161 = y[17] * R(0.5);
         const gic_real t162 = y[16] * R(0.5);
         const gic_real t163 = y[15] * R(0.5);
-        const gic_real t164 = e[3] + e[3];
-        const gic_real t165 = e[1] * t164;
-        const gic_real t166 = e[2] + e[2];
-        const gic_real t167 = e[0] * t166;
-        const gic_real t168 = t165 + t167;
-        const gic_real t169 = e[1] + e[1];
-        const gic_real t170 = e[1] * t169;
-        const gic_real t171 = e[2] * t166;
-        const gic_real t172 = R(1.0) - (t170 + t171);
-        const gic_real t173 = e[3] * t166;
-        const gic_real t174 = e[0] * t169;
-        const gic_real t175 = t173 - t174;
-        const gic_real t176 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + m[156] * R(-0.004825999999999997));
-        const gic_real t177 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + m[153] * R(-0.004825999999999997));
-        const gic_real t178 = m[151] + t176;
-        const gic_real t179 = m[150] + t177;
-        const gic_real t180 = m[167] + (m[162] * t176 - m[163] * t177) + (y[15] * t178 - y[16] * t179);
-        const gic_real t181 = e[3] * t164;
-        const gic_real t182 = R(1.0) - (t170 + t181);
-        const gic_real t183 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + m[159] * R(-0.004825999999999997));
-        const gic_real t184 = m[152] + t183;
-        const gic_real t185 = m[166] + (m[164] * t177 - m[162] * t183) + (y[17] * t179 - y[15] * t184);
-        const gic_real t186 = e[2] * t169;
-        const gic_real t187 = e[0] * t164;
-        const gic_real t188 = t186 + t187;
-        const gic_real t189 = m[165] + (m[163] * t183 - m[164] * t176) + (y[16] * t184 - y[17] * t178);
-        const gic_real t190 = y[13] + (t175 * t180 + (t182 * t185 + t188 * t189));
-        const gic_real t191 = t186 - t187;
-        const gic_real t192 = R(1.0) - (t171 + t181);
-        const gic_real t193 = y[0] + (t168 * t184 + (t191 * t178 + t192 * t179));
-        const gic_real t194 = y[1] + (t175 * t184 + (t182 * t178 + t188 * t179));
-        gic_real road195[3];
-        if (!road_height(self, time, t193, t194, road195))
+        const gic_real t164 = -(e[3] * t161 + (e[2] * t162 + e[1] * t163));
+        const gic_real t165 = e[3] + e[3];
+        const gic_real t166 = e[1] * t165;
+        const gic_real t167 = e[2] + e[2];
+        const gic_real t168 = e[0] * t167;
+        const gic_real t169 = t166 + t168;
+        const gic_real t170 = e[1] + e[1];
+        const gic_real t171 = e[1] * t170;
+        const gic_real t172 = e[2] * t167;
+        const gic_real t173 = R(1.0) - (t171 + t172);
+        const gic_real t174 = e[3] * t167;
+        const gic_real t175 = e[0] * t170;
+        const gic_real t176 = t174 - t175;
+        const gic_real t177 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + m[156] * R(-0.004825999999999997));
+        const gic_real t178 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + m[153] * R(-0.004825999999999997));
+        const gic_real t179 = m[151] + t177;
+        const gic_real t180 = m[150] + t178;
+        const gic_real t181 = m[167] + (m[162] * t177 - m[163] * t178) + (y[15] * t179 - y[16] * t180);
+        const gic_real t182 = e[3] * t165;
+        const gic_real t183 = R(1.0) - (t171 + t182);
+        const gic_real t184 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + m[159] * R(-0.004825999999999997));
+        const gic_real t185 = m[152] + t184;
+        const gic_real t186 = m[166] + (m[164] * t178 - m[162] * t184) + (y[17] * t180 - y[15] * t185);
+        const gic_real t187 = e[2] * t170;
+        const gic_real t188 = e[0] * t165;
+        const gic_real t189 = t187 + t188;
+        const gic_real t190 = m[165] + (m[163] * t184 - m[164] * t177) + (y[16] * t185 - y[17] * t179);
+        const gic_real t191 = y[13] + (t176 * t181 + (t183 * t186 + t189 * t190));
+        const gic_real t192 = t187 - t188;
+        const gic_real t193 = R(1.0) - (t172 + t182);
+        const gic_real t194 = y[0] + (t169 * t185 + (t192 * t179 + t193 * t180));
+        const gic_real t195 = y[1] + (t176 * t185 + (t183 * t179 + t189 * t180));
+        gic_real road196[3];
+        if (!road_height(self, time, t194, t195, road196))
             return GIC_ERROR_ROAD;
-        const gic_real t196 = y[12] + (t168 * t180 + (t191 * t185 + t192 * t189));
-        const gic_real t197 = t173 + t174;
-        const gic_real t198 = t165 - t167;
-        const gic_real t199 = y[14] + (t172 * t180 + (t197 * t185 + t198 * t189));
-        const gic_real t200 = y[2] + (t172 * t184 + (t197 * t178 + t198 * t179));
-        const gic_real t201 = road195[0] + R(0.4699) - t200;
-        const gic_real t202 = GIC_MIN(GIC_MAX(t201 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t203 = (t190 * road195[2] + t196 * road195[1] - t199) * ((R(3.0) - (t202 + t202)) * (t202 * t202) * R(500.0));
-        const gic_real t204 = GIC_MAX(t203 + t201 * R(283000.0), R(0.0));
-        const gic_real t205 = t172 * t204;
-        const gic_real t206 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + m[192] * R(-0.004825999999999997));
-        const gic_real t207 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + m[189] * R(-0.004825999999999997));
-        const gic_real t208 = m[187] + t206;
-        const gic_real t209 = m[186] + t207;
-        const gic_real t210 = m[203] + (m[198] * t206 - m[199] * t207) + (y[15] * t208 - y[16] * t209);
-        const gic_real t211 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + m[195] * R(-0.004825999999999997));
-        const gic_real t212 = m[188] + t211;
-        const gic_real t213 = m[202] + (m[200] * t207 - m[198] * t211) + (y[17] * t209 - y[15] * t212);
-        const gic_real t214 = m[201] + (m[199] * t211 - m[200] * t206) + (y[16] * t212 - y[17] * t208);
-        const gic_real t215 = y[13] + (t175 * t210 + (t182 * t213 + t188 * t214));
-        const gic_real t216 = y[0] + (t168 * t212 + (t191 * t208 + t192 * t209));
-        const gic_real t217 = y[1] + (t175 * t212 + (t182 * t208 + t188 * t209));
-        gic_real road218[3];
-        if (!road_height(self, time, t216, t217, road218))
+        const gic_real t197 = y[12] + (t169 * t181 + (t192 * t186 + t193 * t190));
+        const gic_real t198 = t174 + t175;
+        const gic_real t199 = t166 - t168;
+        const gic_real t200 = y[14] + (t173 * t181 + (t198 * t186 + t199 * t190));
+        const gic_real t201 = t191 * road196[2] + t197 * road196[1] - t200;
+        const gic_real t202 = y[2] + (t173 * t185 + (t198 * t179 + t199 * t180));
+        const gic_real t203 = road196[0] + R(0.4699) - t202;
+        const gic_real t204 = GIC_MIN(GIC_MAX(t203 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t205 = t201 * ((R(3.0) - (t204 + t204)) * (t204 * t204) * R(500.0));
+        const gic_real t206 = GIC_MAX(t205 + t203 * R(283000.0), R(0.0));
+        const gic_real t207 = t173 * t206;
+        const gic_real t208 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + m[192] * R(-0.004825999999999997));
+        const gic_real t209 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + m[189] * R(-0.004825999999999997));
+        const gic_real t210 = m[187] + t208;
+        const gic_real t211 = m[186] + t209;
+        const gic_real t212 = m[203] + (m[198] * t208 - m[199] * t209) + (y[15] * t210 - y[16] * t211);
+        const gic_real t213 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + m[195] * R(-0.004825999999999997));
+        const gic_real t214 = m[188] + t213;
+        const gic_real t215 = m[202] + (m[200] * t209 - m[198] * t213) + (y[17] * t211 - y[15] * t214);
+        const gic_real t216 = m[201] + (m[199] * t213 - m[200] * t208) + (y[16] * t214 - y[17] * t210);
+        const gic_real t217 = y[13] + (t176 * t212 + (t183 * t215 + t189 * t216));
+        const gic_real t218 = y[0] + (t169 * t214 + (t192 * t210 + t193 * t211));
+        const gic_real t219 = y[1] + (t176 * t214 + (t183 * t210 + t189 * t211));
+        gic_real road220[3];
+        if (!road_height(self, time, t218, t219, road220))
             return GIC_ERROR_ROAD;
-        const gic_real t219 = y[12] + (t168 * t210 + (t191 * t213 + t192 * t214));
-        const gic_real t220 = y[14] + (t172 * t210 + (t197 * t213 + t198 * t214));
-        const gic_real t221 = y[2] + (t172 * t212 + (t197 * t208 + t198 * t209));
-        const gic_real t222 = R(0.4699) + road218[0] - t221;
-        const gic_real t223 = GIC_MIN(GIC_MAX(R(100.0) * t222, R(0.0)), R(1.0));
-        const gic_real t224 = (t215 * road218[2] + t219 * road218[1] - t220) * (R(500.0) * ((R(3.0) - (t223 + t223)) * (t223 * t223)));
-        const gic_real t225 = GIC_MAX(t224 + R(283000.0) * t222, R(0.0));
-        const gic_real t226 = t172 * t225;
-        const gic_real t227 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
-        const gic_real t228 = m[227] * R(0.09182100000000004) + m[226] * R(0.12319000000000002);
-        const gic_real t229 = m[223] + t227;
-        const gic_real t230 = m[222] + t228;
-        const gic_real t231 = m[239] + (m[234] * t227 - m[235] * t228) + (y[15] * t229 - y[16] * t230);
-        const gic_real t232 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
-        const gic_real t233 = m[224] + t232;
-        const gic_real t234 = m[238] + (m[236] * t228 - m[234] * t232) + (y[17] * t230 - y[15] * t233);
-        const gic_real t235 = m[237] + (m[235] * t232 - m[236] * t227) + (y[16] * t233 - y[17] * t229);
-        const gic_real t236 = y[13] + (t175 * t231 + (t182 * t234 + t188 * t235));
-        const gic_real t237 = y[0] + (t168 * t233 + (t191 * t229 + t192 * t230));
-        const gic_real t238 = y[1] + (t175 * t233 + (t182 * t229 + t188 * t230));
-        gic_real road239[3];
-        if (!road_height(self, time, t237, t238, road239))
+        const gic_real t221 = y[12] + (t169 * t212 + (t192 * t215 + t193 * t216));
+        const gic_real t222 = y[14] + (t173 * t212 + (t198 * t215 + t199 * t216));
+        const gic_real t223 = t217 * road220[2] + t221 * road220[1] - t222;
+        const gic_real t224 = y[2] + (t173 * t214 + (t198 * t210 + t199 * t211));
+        const gic_real t225 = R(0.4699) + road220[0] - t224;
+        const gic_real t226 = GIC_MIN(GIC_MAX(R(100.0) * t225, R(0.0)), R(1.0));
+        const gic_real t227 = t223 * (R(500.0) * ((R(3.0) - (t226 + t226)) * (t226 * t226)));
+        const gic_real t228 = GIC_MAX(t227 + R(283000.0) * t225, R(0.0));
+        const gic_real t229 = t173 * t228;
+        const gic_real t230 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
+        const gic_real t231 = m[227] * R(0.09182100000000004) + m[226] * R(0.12319000000000002);
+        const gic_real t232 = m[223] + t230;
+        const gic_real t233 = m[222] + t231;
+        const gic_real t234 = m[239] + (m[234] * t230 - m[235] * t231) + (y[15] * t232 - y[16] * t233);
+        const gic_real t235 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
+        const gic_real t236 = m[224] + t235;
+        const gic_real t237 = m[238] + (m[236] * t231 - m[234] * t235) + (y[17] * t233 - y[15] * t236);
+        const gic_real t238 = m[237] + (m[235] * t235 - m[236] * t230) + (y[16] * t236 - y[17] * t232);
+        const gic_real t239 = y[13] + (t176 * t234 + (t183 * t237 + t189 * t238));
+        const gic_real t240 = y[0] + (t169 * t236 + (t192 * t232 + t193 * t233));
+        const gic_real t241 = y[1] + (t176 * t236 + (t183 * t232 + t189 * t233));
+        gic_real road242[3];
+        if (!road_height(self, time, t240, t241, road242))
             return GIC_ERROR_ROAD;
-        const gic_real t240 = y[12] + (t168 * t231 + (t191 * t234 + t192 * t235));
-        const gic_real t241 = y[14] + (t172 * t231 + (t197 * t234 + t198 * t235));
-        const gic_real t242 = y[2] + (t172 * t233 + (t197 * t229 + t198 * t230));
-        const gic_real t243 = R(0.4699) + road239[0] - t242;
-        const gic_real t244 = GIC_MIN(GIC_MAX(R(100.0) * t243, R(0.0)), R(1.0));
-        const gic_real t245 = (t236 * road239[2] + t240 * road239[1] - t241) * (R(500.0) * ((R(3.0) - (t244 + t244)) * (t244 * t244)));
-        const gic_real t246 = GIC_MAX(t245 + R(283000.0) * t243, R(0.0));
-        const gic_real t247 = t172 * t246;
-        const gic_real t248 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
-        const gic_real t249 = m[257] * R(0.09182100000000004) + m[256] * R(-0.12319000000000002);
-        const gic_real t250 = m[253] + t248;
-        const gic_real t251 = m[252] + t249;
-        const gic_real t252 = m[269] + (m[264] * t248 - m[265] * t249) + (y[15] * t250 - y[16] * t251);
-        const gic_real t253 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
-        const gic_real t254 = m[254] + t253;
-        const gic_real t255 = m[268] + (m[266] * t249 - m[264] * t253) + (y[17] * t251 - y[15] * t254);
-        const gic_real t256 = m[267] + (m[265] * t253 - m[266] * t248) + (y[16] * t254 - y[17] * t250);
-        const gic_real t257 = y[13] + (t175 * t252 + (t182 * t255 + t188 * t256));
-        const gic_real t258 = y[0] + (t168 * t254 + (t191 * t250 + t192 * t251));
-        const gic_real t259 = y[1] + (t175 * t254 + (t182 * t250 + t188 * t251));
-        gic_real road260[3];
-        if (!road_height(self, time, t258, t259, road260))
+        const gic_real t243 = y[12] + (t169 * t234 + (t192 * t237 + t193 * t238));
+        const gic_real t244 = y[14] + (t173 * t234 + (t198 * t237 + t199 * t238));
+        const gic_real t245 = t239 * road242[2] + t243 * road242[1] - t244;
+        const gic_real t246 = y[2] + (t173 * t236 + (t198 * t232 + t199 * t233));
+        const gic_real t247 = R(0.4699) + road242[0] - t246;
+        const gic_real t248 = GIC_MIN(GIC_MAX(R(100.0) * t247, R(0.0)), R(1.0));
+        const gic_real t249 = t245 * (R(500.0) * ((R(3.0) - (t248 + t248)) * (t248 * t248)));
+        const gic_real t250 = GIC_MAX(t249 + R(283000.0) * t247, R(0.0));
+        const gic_real t251 = t173 * t250;
+        const gic_real t252 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
+        const gic_real t253 = m[257] * R(0.09182100000000004) + m[256] * R(-0.12319000000000002);
+        const gic_real t254 = m[253] + t252;
+        const gic_real t255 = m[252] + t253;
+        const gic_real t256 = m[269] + (m[264] * t252 - m[265] * t253) + (y[15] * t254 - y[16] * t255);
+        const gic_real t257 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
+        const gic_real t258 = m[254] + t257;
+        const gic_real t259 = m[268] + (m[266] * t253 - m[264] * t257) + (y[17] * t255 - y[15] * t258);
+        const gic_real t260 = m[267] + (m[265] * t257 - m[266] * t252) + (y[16] * t258 - y[17] * t254);
+        const gic_real t261 = y[13] + (t176 * t256 + (t183 * t259 + t189 * t260));
+        const gic_real t262 = y[0] + (t169 * t258 + (t192 * t254 + t193 * t255));
+        const gic_real t263 = y[1] + (t176 * t258 + (t183 * t254 + t189 * t255));
+        gic_real road264[3];
+        if (!road_height(self, time, t262, t263, road264))
             return GIC_ERROR_ROAD;
-        const gic_real t261 = y[12] + (t168 * t252 + (t191 * t255 + t192 * t256));
-        const gic_real t262 = y[14] + (t172 * t252 + (t197 * t255 + t198 * t256));
-        const gic_real t263 = y[2] + (t172 * t254 + (t197 * t250 + t198 * t251));
-        const gic_real t264 = R(0.4699) + road260[0] - t263;
-        const gic_real t265 = GIC_MIN(GIC_MAX(R(100.0) * t264, R(0.0)), R(1.0));
-        const gic_real t266 = (t257 * road260[2] + t261 * road260[1] - t262) * (R(500.0) * ((R(3.0) - (t265 + t265)) * (t265 * t265)));
-        const gic_real t267 = GIC_MAX(t266 + R(283000.0) * t264, R(0.0));
-        const gic_real t268 = t172 * t267;
-        const gic_real t269 = n[11] + n[34] + n[57] + n[80] + n[103] + n[126] + n[158];
-        const gic_real t270 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t271 = y[16] * R(0.21300000000000008);
-        const gic_real t272 = t269 + n[190] + n[213] + R(2086.52) * (y[15] * t270 - y[16] * t271);
-        const gic_real t273 = t197 * t246;
-        const gic_real t274 = t198 * t246;
-        const gic_real t275 = t273 * (m[250] + (m[248] * t228 - m[246] * t232)) + t274 * (m[249] + (m[247] * t232 - m[248] * t227));
-        const gic_real t276 = t247 * (m[251] + (m[246] * t227 - m[247] * t228)) + t275;
-        const gic_real t277 = t276 - ((x[2] - R(0.33727)) * R(369167.2) + xd[2] * R(24780.4)) - (n[90] + n[200]);
-        const gic_real t278 = t205 + t226 + t247 + t268 - t272 - t277 * t94;
-        const gic_real t279 = t197 * t267;
-        const gic_real t280 = t198 * t267;
-        const gic_real t281 = t279 * (m[280] + (m[278] * t249 - m[276] * t253)) + t280 * (m[279] + (m[277] * t253 - m[278] * t248));
-        const gic_real t282 = t268 * (m[281] + (m[276] * t248 - m[277] * t249)) + t281;
-        const gic_real t283 = t282 - (R(369167.2) * (x[3] - R(0.33727)) + xd[3] * R(24780.4)) - (n[113] + n[223]);
-        const gic_real t284 = t197 * t204;
-        const gic_real t285 = t198 * t204;
-        const gic_real t286 = t284 * (m[184] + (m[182] * t177 - m[180] * t183)) + t285 * (m[183] + (m[181] * t183 - m[182] * t176));
-        const gic_real t287 = t205 * (m[185] + (m[180] * t176 - m[181] * t177)) + t286;
-        const gic_real t288 = t287 - ((x[0] - R(0.31903)) * R(167070.9) + xd[0] * R(17490.8)) - (n[44] + n[143]);
-        const gic_real t289 = t197 * t225;
-        const gic_real t290 = t178 * t205 - t184 * t284 + (t208 * t226 - t212 * t289);
-        const gic_real t291 = t290 + (t229 * t247 - t233 * t273) + (t250 * t268 - t254 * t279);
-        const gic_real t292 = n[12] + n[35] + n[58] + n[81] + n[104] + n[127] + n[159];
-        const gic_real t293 = y[17] * R(3576.74332672) + y[15] * R(-24.88801056000001);
-        const gic_real t294 = y[16] * R(3056.8666525999997);
-        const gic_real t295 = t292 + n[191] + n[214] + (y[16] * t293 - y[17] * t294);
-        const gic_real t296 = t291 - t295 - t277 * t8 - t283 * t11 - t288 * t14;
-        const gic_real t297 = t278 - t283 * t96 - t288 * t98 - t101 * t296;
-        const gic_real t298 = t198 * t225;
-        const gic_real t299 = t184 * t285 - t179 * t205 + (t212 * t298 - t209 * t226);
-        const gic_real t300 = t299 + (t233 * t274 - t230 * t247) + (t254 * t280 - t251 * t268);
-        const gic_real t301 = n[13] + n[36] + n[59] + n[82] + n[105] + n[128] + n[160];
-        const gic_real t302 = y[17] * R(-24.88801056000001) + y[15] * R(1173.18332588);
-        const gic_real t303 = t301 + n[192] + n[215] + (y[17] * t302 - y[15] * t293);
-        const gic_real t304 = t300 - t303 - t277 * t19 - t283 * t21 - t288 * t23;
-        const gic_real t305 = t304 - t29 * t296;
-        const gic_real t306 = t179 * t284 - t178 * t285 + (t209 * t289 - t208 * t298);
-        const gic_real t307 = t306 + (t230 * t273 - t229 * t274) + (t251 * t279 - t250 * t280);
-        const gic_real t308 = n[14] + n[37] + n[60] + n[83] + n[106] + n[129] + n[161];
-        const gic_real t309 = t308 + n[193] + n[216] + (y[15] * t294 - y[16] * t302);
-        const gic_real t310 = t307 - t309 - t277 * t34 - t283 * t36 - t288 * t38;
-        const gic_real t311 = t310 - t43 * t296 - t48 * t305;
-        const gic_real t312 = n[9] + n[32] + n[55] + n[78] + n[101] + n[124] + n[156];
-        const gic_real t313 = y[16] * R(0.056);
-        const gic_real t314 = t312 + n[188] + n[211] - R(2086.52) * (y[17] * t270 + y[16] * t313);
-        const gic_real t315 = t285 + t298 + t274 + t280 - t314 - t277 * t51;
-        const gic_real t316 = t315 - t283 * t53 - t288 * t55 + t58 * t296;
-        const gic_real t317 = t316 - t63 * t305 - t69 * t311;
-        const gic_real t318 = t297 + t104 * t305 - t107 * t311 - t111 * t317;
-        const gic_real t319 = n[10] + n[33] + n[56] + n[79] + n[102] + n[125] + n[157];
-        const gic_real t320 = t319 + n[189] + n[212] + R(2086.52) * (y[15] * t313 + y[17] * t271);
-        const gic_real t321 = t284 + t289 + t273 + t279 - t320 - t277 * t72;
-        const gic_real t322 = t321 - t283 * t74 - t288 * t76 + t79 * t296;
-        const gic_real t323 = t322 - t81 * t305 - t86 * t311 + t91 * t317;
-        const gic_real t324 = t318 - t115 * t323;
-        const gic_real t325 = t289 * (m[220] + (m[218] * t207 - m[216] * t211)) + t298 * (m[219] + (m[217] * t211 - m[218] * t206));
-        const gic_real t326 = t226 * (m[221] + (m[216] * t206 - m[217] * t207)) + t325;
-        const gic_real t327 = t326 - (R(167070.9) * (x[1] - R(0.31903)) + xd[1] * R(17490.8)) - (n[67] + n[175]);
-        const gic_real t328 = t327 - t119 * t296 - t121 * t305 - t123 * t311;
-        const gic_real t329 = t328 - t126 * t317 - t129 * t323 - t133 * t324;
-        const gic_real t330 = t284 * (m[178] + (m[176] * t177 - m[174] * t183)) + t285 * (m[177] + (m[175] * t183 - m[176] * t176));
-        const gic_real t331 = t205 * (m[179] + (m[174] * t176 - m[175] * t177)) + t330;
-        const gic_real t332 = t289 * (m[214] + (m[212] * t207 - m[210] * t211)) + t298 * (m[213] + (m[211] * t211 - m[212] * t206));
-        const gic_real t333 = t226 * (m[215] + (m[210] * t206 - m[211] * t207)) + t332;
-        const gic_real t334 = t331 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t333 - (n[21] + n[136] + n[168]);
-        const gic_real t335 = t334 - t288 * t136 - t138 * t296 - t140 * t305;
-        const gic_real t336 = t335 - t144 * t311 - t147 * t317 - t150 * t323;
-        const gic_real t337 = R(1.0) / t160 * (t336 - t155 * t324 - t159 * t329);
-        const gic_real t338 = t158 * t329 - t159 * t337;
-        const gic_real t339 = t132 * t324 - t133 * t338 - t155 * t337;
-        const gic_real t340 = t114 * t323 - t115 * t339 - t129 * t338 - t150 * t337;
-        const gic_real t341 = t90 * t317 + t91 * t340 - t111 * t339 - t126 * t338;
-        const gic_real t342 = t341 - t147 * t337;
-        const gic_real t343 = t68 * t311 - t69 * t342 - t86 * t340 - t107 * t339;
-        const gic_real t344 = t343 - t123 * t338 - t144 * t337;
-        const gic_real t345 = t47 * t305 - t48 * t344 - t63 * t342 - t81 * t340;
-        const gic_real t346 = t345 + t104 * t339 - t121 * t338 - t140 * t337;
-        const gic_real t347 = t28 * t296 - t29 * t346 - t43 * t344 + t58 * t342;
-        const gic_real t348 = t347 + t79 * t340 - t101 * t339 - t119 * t338;
-        const gic_real t349 = t348 - t138 * t337;
-        const gic_real t350 = R(-9.81) + (t172 * t339 + (t197 * t340 + t198 * t342));
-        const gic_real t351 = t288 * t13 - t14 * t349 - t23 * t346 - t38 * t344;
-        const gic_real t352 = t351 - t55 * t342 - t76 * t340 - t98 * t339;
-        const gic_real t353 = t277 * t7 - t8 * t349 - t19 * t346 - t34 * t344;
-        const gic_real t354 = t353 - t51 * t342 - t72 * t340 - t94 * t339;
-        const gic_real t355 = t283 * t10 - t11 * t349 - t21 * t346 - t36 * t344;
-        const gic_real t356 = t355 - t53 * t342 - t74 * t340 - t96 * t339;
-        const gic_real t357 = y[12];
-        const gic_real t358 = y[13];
-        const gic_real t359 = y[14];
-        const gic_real t360 = -(e[3] * t161 + (e[2] * t162 + e[1] * t163));
-        const gic_real t361 = e[2] * t161 - e[3] * t162 + e[0] * t163;
-        const gic_real t362 = e[3] * t163 - e[1] * t161 + e[0] * t162;
-        const gic_real t363 = e[1] * t162 - e[2] * t163 + e[0] * t161;
-        const gic_real t364 = t168 * t339 + (t191 * t340 + t192 * t342);
-        const gic_real t365 = t175 * t339 + (t182 * t340 + t188 * t342);
-        const gic_real t366 = xd[0];
-        const gic_real t367 = t352 - t136 * t337;
-        const gic_real t368 = xd[1];
-        const gic_real t369 = xd[2];
-        const gic_real t370 = xd[3];
-        const gic_real t371 = xd[4];
-        rate[0] = t357;
-        rate[1] = t358;
-        rate[2] = t359;
-        rate[3] = t360;
-        rate[4] = t361;
-        rate[5] = t362;
-        rate[6] = t363;
-        rate[12] = t364;
-        rate[15] = t349;
-        rate[13] = t365;
-        rate[16] = t346;
-        rate[14] = t350;
-        rate[17] = t344;
-        rate[7] = t366;
-        rate[18] = t367;
-        rate[8] = t368;
-        rate[19] = t338;
-        rate[9] = t369;
-        rate[20] = t354;
-        rate[10] = t370;
-        rate[21] = t356;
-        rate[11] = t371;
-        rate[22] = t337;
+        const gic_real t265 = y[12] + (t169 * t256 + (t192 * t259 + t193 * t260));
+        const gic_real t266 = y[14] + (t173 * t256 + (t198 * t259 + t199 * t260));
+        const gic_real t267 = t261 * road264[2] + t265 * road264[1] - t266;
+        const gic_real t268 = y[2] + (t173 * t258 + (t198 * t254 + t199 * t255));
+        const gic_real t269 = R(0.4699) + road264[0] - t268;
+        const gic_real t270 = GIC_MIN(GIC_MAX(R(100.0) * t269, R(0.0)), R(1.0));
+        const gic_real t271 = t267 * (R(500.0) * ((R(3.0) - (t270 + t270)) * (t270 * t270)));
+        const gic_real t272 = GIC_MAX(t271 + R(283000.0) * t269, R(0.0));
+        const gic_real t273 = t173 * t272;
+        const gic_real t274 = n[11] + n[34] + n[57] + n[80] + n[103] + n[126] + n[158];
+        const gic_real t275 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
+        const gic_real t276 = y[16] * R(0.21300000000000008);
+        const gic_real t277 = t274 + n[190] + n[213] + R(2086.52) * (y[15] * t275 - y[16] * t276);
+        const gic_real t278 = t198 * t250;
+        const gic_real t279 = t199 * t250;
+        const gic_real t280 = t278 * (m[250] + (m[248] * t231 - m[246] * t235)) + t279 * (m[249] + (m[247] * t235 - m[248] * t230));
+        const gic_real t281 = t251 * (m[251] + (m[246] * t230 - m[247] * t231)) + t280;
+        const gic_real t282 = t281 - ((x[2] - R(0.33727)) * R(369167.2) + xd[2] * R(24780.4)) - (n[90] + n[200]);
+        const gic_real t283 = t207 + t229 + t251 + t273 - t277 - t282 * t94;
+        const gic_real t284 = t198 * t272;
+        const gic_real t285 = t199 * t272;
+        const gic_real t286 = t284 * (m[280] + (m[278] * t253 - m[276] * t257)) + t285 * (m[279] + (m[277] * t257 - m[278] * t252));
+        const gic_real t287 = t273 * (m[281] + (m[276] * t252 - m[277] * t253)) + t286;
+        const gic_real t288 = t287 - (R(369167.2) * (x[3] - R(0.33727)) + xd[3] * R(24780.4)) - (n[113] + n[223]);
+        const gic_real t289 = t198 * t206;
+        const gic_real t290 = t199 * t206;
+        const gic_real t291 = t289 * (m[184] + (m[182] * t178 - m[180] * t184)) + t290 * (m[183] + (m[181] * t184 - m[182] * t177));
+        const gic_real t292 = t207 * (m[185] + (m[180] * t177 - m[181] * t178)) + t291;
+        const gic_real t293 = t292 - ((x[0] - R(0.31903)) * R(167070.9) + xd[0] * R(17490.8)) - (n[44] + n[143]);
+        const gic_real t294 = t198 * t228;
+        const gic_real t295 = t179 * t207 - t185 * t289 + (t210 * t229 - t214 * t294);
+        const gic_real t296 = t295 + (t232 * t251 - t236 * t278) + (t254 * t273 - t258 * t284);
+        const gic_real t297 = n[12] + n[35] + n[58] + n[81] + n[104] + n[127] + n[159];
+        const gic_real t298 = y[17] * R(3576.74332672) + y[15] * R(-24.88801056000001);
+        const gic_real t299 = y[16] * R(3056.8666525999997);
+        const gic_real t300 = t297 + n[191] + n[214] + (y[16] * t298 - y[17] * t299);
+        const gic_real t301 = t296 - t300 - t282 * t8 - t288 * t11 - t293 * t14;
+        const gic_real t302 = t283 - t288 * t96 - t293 * t98 - t101 * t301;
+        const gic_real t303 = t199 * t228;
+        const gic_real t304 = t185 * t290 - t180 * t207 + (t214 * t303 - t211 * t229);
+        const gic_real t305 = t304 + (t236 * t279 - t233 * t251) + (t258 * t285 - t255 * t273);
+        const gic_real t306 = n[13] + n[36] + n[59] + n[82] + n[105] + n[128] + n[160];
+        const gic_real t307 = y[17] * R(-24.88801056000001) + y[15] * R(1173.18332588);
+        const gic_real t308 = t306 + n[192] + n[215] + (y[17] * t307 - y[15] * t298);
+        const gic_real t309 = t305 - t308 - t282 * t19 - t288 * t21 - t293 * t23;
+        const gic_real t310 = t309 - t29 * t301;
+        const gic_real t311 = t180 * t289 - t179 * t290 + (t211 * t294 - t210 * t303);
+        const gic_real t312 = t311 + (t233 * t278 - t232 * t279) + (t255 * t284 - t254 * t285);
+        const gic_real t313 = n[14] + n[37] + n[60] + n[83] + n[106] + n[129] + n[161];
+        const gic_real t314 = t313 + n[193] + n[216] + (y[15] * t299 - y[16] * t307);
+        const gic_real t315 = t312 - t314 - t282 * t34 - t288 * t36 - t293 * t38;
+        const gic_real t316 = t315 - t43 * t301 - t48 * t310;
+        const gic_real t317 = n[9] + n[32] + n[55] + n[78] + n[101] + n[124] + n[156];
+        const gic_real t318 = y[16] * R(0.056);
+        const gic_real t319 = t317 + n[188] + n[211] - R(2086.52) * (y[17] * t275 + y[16] * t318);
+        const gic_real t320 = t290 + t303 + t279 + t285 - t319 - t282 * t51;
+        const gic_real t321 = t320 - t288 * t53 - t293 * t55 + t58 * t301;
+        const gic_real t322 = t321 - t63 * t310 - t69 * t316;
+        const gic_real t323 = t302 + t104 * t310 - t107 * t316 - t111 * t322;
+        const gic_real t324 = n[10] + n[33] + n[56] + n[79] + n[102] + n[125] + n[157];
+        const gic_real t325 = t324 + n[189] + n[212] + R(2086.52) * (y[15] * t318 + y[17] * t276);
+        const gic_real t326 = t289 + t294 + t278 + t284 - t325 - t282 * t72;
+        const gic_real t327 = t326 - t288 * t74 - t293 * t76 + t79 * t301;
+        const gic_real t328 = t327 - t81 * t310 - t86 * t316 + t91 * t322;
+        const gic_real t329 = t323 - t115 * t328;
+        const gic_real t330 = t294 * (m[220] + (m[218] * t209 - m[216] * t213)) + t303 * (m[219] + (m[217] * t213 - m[218] * t208));
+        const gic_real t331 = t229 * (m[221] + (m[216] * t208 - m[217] * t209)) + t330;
+        const gic_real t332 = t331 - (R(167070.9) * (x[1] - R(0.31903)) + xd[1] * R(17490.8)) - (n[67] + n[175]);
+        const gic_real t333 = t332 - t119 * t301 - t121 * t310 - t123 * t316;
+        const gic_real t334 = t333 - t126 * t322 - t129 * t328 - t133 * t329;
+        const gic_real t335 = t289 * (m[178] + (m[176] * t178 - m[174] * t184)) + t290 * (m[177] + (m[175] * t184 - m[176] * t177));
+        const gic_real t336 = t207 * (m[179] + (m[174] * t177 - m[175] * t178)) + t335;
+        const gic_real t337 = t294 * (m[214] + (m[212] * t209 - m[210] * t213)) + t303 * (m[213] + (m[211] * t213 - m[212] * t208));
+        const gic_real t338 = t229 * (m[215] + (m[210] * t208 - m[211] * t209)) + t337;
+        const gic_real t339 = t336 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t338 - (n[21] + n[136] + n[168]);
+        const gic_real t340 = t339 - t293 * t136 - t138 * t301 - t140 * t310;
+        const gic_real t341 = t340 - t144 * t316 - t147 * t322 - t150 * t328;
+        const gic_real t342 = R(1.0) / t160 * (t341 - t155 * t329 - t159 * t334);
+        const gic_real t343 = t158 * t334 - t159 * t342;
+        const gic_real t344 = t132 * t329 - t133 * t343 - t155 * t342;
+        const gic_real t345 = t114 * t328 - t115 * t344 - t129 * t343 - t150 * t342;
+        const gic_real t346 = t90 * t322 + t91 * t345 - t111 * t344 - t126 * t343;
+        const gic_real t347 = t346 - t147 * t342;
+        const gic_real t348 = t68 * t316 - t69 * t347 - t86 * t345 - t107 * t344;
+        const gic_real t349 = t348 - t123 * t343 - t144 * t342;
+        const gic_real t350 = t47 * t310 - t48 * t349 - t63 * t347 - t81 * t345;
+        const gic_real t351 = t350 + t104 * t344 - t121 * t343 - t140 * t342;
+        const gic_real t352 = t28 * t301 - t29 * t351 - t43 * t349 + t58 * t347;
+        const gic_real t353 = t352 + t79 * t345 - t101 * t344 - t119 * t343;
+        const gic_real t354 = t353 - t138 * t342;
+        const gic_real t355 = R(-9.81) + (t173 * t344 + (t198 * t345 + t199 * t347));
+        const gic_real t356 = t293 * t13 - t14 * t354 - t23 * t351 - t38 * t349;
+        const gic_real t357 = t356 - t55 * t347 - t76 * t345 - t98 * t344;
+        const gic_real t358 = t282 * t7 - t8 * t354 - t19 * t351 - t34 * t349;
+        const gic_real t359 = t358 - t51 * t347 - t72 * t345 - t94 * t344;
+        const gic_real t360 = t288 * t10 - t11 * t354 - t21 * t351 - t36 * t349;
+        const gic_real t361 = t360 - t53 * t347 - t74 * t345 - t96 * t344;
+        const gic_real t362 = y[12];
+        const gic_real t363 = y[13];
+        const gic_real t364 = y[14];
+        const gic_real t365 = e[2] * t161 - e[3] * t162 + e[0] * t163;
+        const gic_real t366 = e[3] * t163 - e[1] * t161 + e[0] * t162;
+        const gic_real t367 = e[1] * t162 - e[2] * t163 + e[0] * t161;
+        const gic_real t368 = t169 * t344 + (t192 * t345 + t193 * t347);
+        const gic_real t369 = t176 * t344 + (t183 * t345 + t189 * t347);
+        const gic_real t370 = xd[0];
+        const gic_real t371 = t357 - t136 * t342;
+        const gic_real t372 = xd[1];
+        const gic_real t373 = xd[2];
+        const gic_real t374 = xd[3];
+        const gic_real t375 = xd[4];
+        rate[0] = t362;
+        rate[1] = t363;
+        rate[2] = t364;
+        rate[3] = t164;
+        rate[4] = t365;
+        rate[5] = t366;
+        rate[6] = t367;
+        rate[12] = t368;
+        rate[15] = t354;
+        rate[13] = t369;
+        rate[16] = t351;
+        rate[14] = t355;
+        rate[17] = t349;
+        rate[7] = t370;
+        rate[18] = t371;
+        rate[8] = t372;
+        rate[19] = t343;
+        rate[9] = t373;
+        rate[20] = t359;
+        rate[10] = t374;
+        rate[21] = t361;
+        rate[11] = t375;
+        rate[22] = t342;
     }
     return GIC_OK;
 }
@@ -4247,222 +4271,226 @@ static int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t451 = t425 + t426;
         const gic_real t452 = t442 - t443;
         const gic_real t453 = y[14] + (t424 * t430 + (t451 * t436 + t452 * t440));
-        const gic_real t454 = y[2] + (t424 * t435 + (t451 * t419 + t452 * t429));
-        const gic_real t455 = road449[0] + R(0.4699) - t454;
-        const gic_real t456 = GIC_MIN(GIC_MAX(t455 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t457 = (t441 * road449[2] + t450 * road449[1] - t453) * ((R(3.0) - (t456 + t456)) * (t456 * t456) * R(500.0));
-        const gic_real t458 = GIC_MAX(t457 + t455 * R(283000.0), R(0.0));
-        const gic_real t459 = t424 * t458;
-        const gic_real t460 = t451 * t458;
-        const gic_real t461 = t290 + (m[193] * R(-0.12319000000000002) + t291);
-        const gic_real t462 = m[187] + t461;
-        const gic_real t463 = t294 + (m[190] * R(-0.12319000000000002) + t295);
-        const gic_real t464 = m[186] + t463;
-        const gic_real t465 = m[203] + (m[198] * t461 - m[199] * t463) + (y[15] * t462 - y[16] * t464);
-        const gic_real t466 = t297 + (m[196] * R(-0.12319000000000002) + t298);
-        const gic_real t467 = m[188] + t466;
-        const gic_real t468 = m[202] + (m[200] * t463 - m[198] * t466) + (y[17] * t464 - y[15] * t467);
-        const gic_real t469 = m[201] + (m[199] * t466 - m[200] * t461) + (y[16] * t467 - y[17] * t462);
-        const gic_real t470 = y[13] + (t427 * t465 + (t433 * t468 + t439 * t469));
-        const gic_real t471 = y[0] + (t444 * t467 + (t445 * t462 + t446 * t464));
-        const gic_real t472 = y[1] + (t427 * t467 + (t433 * t462 + t439 * t464));
-        gic_real road473[3];
-        if (!road_height(self, time, t471, t472, road473))
+        const gic_real t454 = t441 * road449[2] + t450 * road449[1] - t453;
+        const gic_real t455 = y[2] + (t424 * t435 + (t451 * t419 + t452 * t429));
+        const gic_real t456 = road449[0] + R(0.4699) - t455;
+        const gic_real t457 = GIC_MIN(GIC_MAX(t456 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t458 = t454 * ((R(3.0) - (t457 + t457)) * (t457 * t457) * R(500.0));
+        const gic_real t459 = GIC_MAX(t458 + t456 * R(283000.0), R(0.0));
+        const gic_real t460 = t424 * t459;
+        const gic_real t461 = t451 * t459;
+        const gic_real t462 = t290 + (m[193] * R(-0.12319000000000002) + t291);
+        const gic_real t463 = m[187] + t462;
+        const gic_real t464 = t294 + (m[190] * R(-0.12319000000000002) + t295);
+        const gic_real t465 = m[186] + t464;
+        const gic_real t466 = m[203] + (m[198] * t462 - m[199] * t464) + (y[15] * t463 - y[16] * t465);
+        const gic_real t467 = t297 + (m[196] * R(-0.12319000000000002) + t298);
+        const gic_real t468 = m[188] + t467;
+        const gic_real t469 = m[202] + (m[200] * t464 - m[198] * t467) + (y[17] * t465 - y[15] * t468);
+        const gic_real t470 = m[201] + (m[199] * t467 - m[200] * t462) + (y[16] * t468 - y[17] * t463);
+        const gic_real t471 = y[13] + (t427 * t466 + (t433 * t469 + t439 * t470));
+        const gic_real t472 = y[0] + (t444 * t468 + (t445 * t463 + t446 * t465));
+        const gic_real t473 = y[1] + (t427 * t468 + (t433 * t463 + t439 * t465));
+        gic_real road474[3];
+        if (!road_height(self, time, t472, t473, road474))
             return GIC_ERROR_ROAD;
-        const gic_real t474 = y[12] + (t444 * t465 + (t445 * t468 + t446 * t469));
-        const gic_real t475 = y[14] + (t424 * t465 + (t451 * t468 + t452 * t469));
-        const gic_real t476 = y[2] + (t424 * t467 + (t451 * t462 + t452 * t464));
-        const gic_real t477 = R(0.4699) + road473[0] - t476;
-        const gic_real t478 = GIC_MIN(GIC_MAX(R(100.0) * t477, R(0.0)), R(1.0));
-        const gic_real t479 = (t470 * road473[2] + t474 * road473[1] - t475) * (R(500.0) * ((R(3.0) - (t478 + t478)) * (t478 * t478)));
-        const gic_real t480 = GIC_MAX(t479 + R(283000.0) * t477, R(0.0));
-        const gic_real t481 = t424 * t480;
-        const gic_real t482 = t451 * t480;
-        const gic_real t483 = t419 * t459 - t435 * t460 + (t462 * t481 - t467 * t482);
-        const gic_real t484 = t344 + m[229] * R(0.12319000000000002);
-        const gic_real t485 = m[223] + t484;
-        const gic_real t486 = t347 + m[226] * R(0.12319000000000002);
-        const gic_real t487 = m[222] + t486;
-        const gic_real t488 = m[239] + (m[234] * t484 - m[235] * t486) + (y[15] * t485 - y[16] * t487);
-        const gic_real t489 = t349 + m[232] * R(0.12319000000000002);
-        const gic_real t490 = m[224] + t489;
-        const gic_real t491 = m[238] + (m[236] * t486 - m[234] * t489) + (y[17] * t487 - y[15] * t490);
-        const gic_real t492 = m[237] + (m[235] * t489 - m[236] * t484) + (y[16] * t490 - y[17] * t485);
-        const gic_real t493 = y[13] + (t427 * t488 + (t433 * t491 + t439 * t492));
-        const gic_real t494 = y[0] + (t444 * t490 + (t445 * t485 + t446 * t487));
-        const gic_real t495 = y[1] + (t427 * t490 + (t433 * t485 + t439 * t487));
-        gic_real road496[3];
-        if (!road_height(self, time, t494, t495, road496))
+        const gic_real t475 = y[12] + (t444 * t466 + (t445 * t469 + t446 * t470));
+        const gic_real t476 = y[14] + (t424 * t466 + (t451 * t469 + t452 * t470));
+        const gic_real t477 = t471 * road474[2] + t475 * road474[1] - t476;
+        const gic_real t478 = y[2] + (t424 * t468 + (t451 * t463 + t452 * t465));
+        const gic_real t479 = R(0.4699) + road474[0] - t478;
+        const gic_real t480 = GIC_MIN(GIC_MAX(R(100.0) * t479, R(0.0)), R(1.0));
+        const gic_real t481 = t477 * (R(500.0) * ((R(3.0) - (t480 + t480)) * (t480 * t480)));
+        const gic_real t482 = GIC_MAX(t481 + R(283000.0) * t479, R(0.0));
+        const gic_real t483 = t424 * t482;
+        const gic_real t484 = t451 * t482;
+        const gic_real t485 = t419 * t460 - t435 * t461 + (t463 * t483 - t468 * t484);
+        const gic_real t486 = t344 + m[229] * R(0.12319000000000002);
+        const gic_real t487 = m[223] + t486;
+        const gic_real t488 = t347 + m[226] * R(0.12319000000000002);
+        const gic_real t489 = m[222] + t488;
+        const gic_real t490 = m[239] + (m[234] * t486 - m[235] * t488) + (y[15] * t487 - y[16] * t489);
+        const gic_real t491 = t349 + m[232] * R(0.12319000000000002);
+        const gic_real t492 = m[224] + t491;
+        const gic_real t493 = m[238] + (m[236] * t488 - m[234] * t491) + (y[17] * t489 - y[15] * t492);
+        const gic_real t494 = m[237] + (m[235] * t491 - m[236] * t486) + (y[16] * t492 - y[17] * t487);
+        const gic_real t495 = y[13] + (t427 * t490 + (t433 * t493 + t439 * t494));
+        const gic_real t496 = y[0] + (t444 * t492 + (t445 * t487 + t446 * t489));
+        const gic_real t497 = y[1] + (t427 * t492 + (t433 * t487 + t439 * t489));
+        gic_real road498[3];
+        if (!road_height(self, time, t496, t497, road498))
             return GIC_ERROR_ROAD;
-        const gic_real t497 = y[12] + (t444 * t488 + (t445 * t491 + t446 * t492));
-        const gic_real t498 = y[14] + (t424 * t488 + (t451 * t491 + t452 * t492));
-        const gic_real t499 = y[2] + (t424 * t490 + (t451 * t485 + t452 * t487));
-        const gic_real t500 = R(0.4699) + road496[0] - t499;
-        const gic_real t501 = GIC_MIN(GIC_MAX(R(100.0) * t500, R(0.0)), R(1.0));
-        const gic_real t502 = (t493 * road496[2] + t497 * road496[1] - t498) * (R(500.0) * ((R(3.0) - (t501 + t501)) * (t501 * t501)));
-        const gic_real t503 = GIC_MAX(t502 + R(283000.0) * t500, R(0.0));
-        const gic_real t504 = t424 * t503;
-        const gic_real t505 = t451 * t503;
-        const gic_real t506 = t392 + m[259] * R(-0.12319000000000002);
-        const gic_real t507 = m[253] + t506;
-        const gic_real t508 = t395 + m[256] * R(-0.12319000000000002);
-        const gic_real t509 = m[252] + t508;
-        const gic_real t510 = m[269] + (m[264] * t506 - m[265] * t508) + (y[15] * t507 - y[16] * t509);
-        const gic_real t511 = t397 + m[262] * R(-0.12319000000000002);
-        const gic_real t512 = m[254] + t511;
-        const gic_real t513 = m[268] + (m[266] * t508 - m[264] * t511) + (y[17] * t509 - y[15] * t512);
-        const gic_real t514 = m[267] + (m[265] * t511 - m[266] * t506) + (y[16] * t512 - y[17] * t507);
-        const gic_real t515 = y[13] + (t427 * t510 + (t433 * t513 + t439 * t514));
-        const gic_real t516 = y[0] + (t444 * t512 + (t445 * t507 + t446 * t509));
-        const gic_real t517 = y[1] + (t427 * t512 + (t433 * t507 + t439 * t509));
-        gic_real road518[3];
-        if (!road_height(self, time, t516, t517, road518))
+        const gic_real t499 = y[12] + (t444 * t490 + (t445 * t493 + t446 * t494));
+        const gic_real t500 = y[14] + (t424 * t490 + (t451 * t493 + t452 * t494));
+        const gic_real t501 = t495 * road498[2] + t499 * road498[1] - t500;
+        const gic_real t502 = y[2] + (t424 * t492 + (t451 * t487 + t452 * t489));
+        const gic_real t503 = R(0.4699) + road498[0] - t502;
+        const gic_real t504 = GIC_MIN(GIC_MAX(R(100.0) * t503, R(0.0)), R(1.0));
+        const gic_real t505 = t501 * (R(500.0) * ((R(3.0) - (t504 + t504)) * (t504 * t504)));
+        const gic_real t506 = GIC_MAX(t505 + R(283000.0) * t503, R(0.0));
+        const gic_real t507 = t424 * t506;
+        const gic_real t508 = t451 * t506;
+        const gic_real t509 = t392 + m[259] * R(-0.12319000000000002);
+        const gic_real t510 = m[253] + t509;
+        const gic_real t511 = t395 + m[256] * R(-0.12319000000000002);
+        const gic_real t512 = m[252] + t511;
+        const gic_real t513 = m[269] + (m[264] * t509 - m[265] * t511) + (y[15] * t510 - y[16] * t512);
+        const gic_real t514 = t397 + m[262] * R(-0.12319000000000002);
+        const gic_real t515 = m[254] + t514;
+        const gic_real t516 = m[268] + (m[266] * t511 - m[264] * t514) + (y[17] * t512 - y[15] * t515);
+        const gic_real t517 = m[267] + (m[265] * t514 - m[266] * t509) + (y[16] * t515 - y[17] * t510);
+        const gic_real t518 = y[13] + (t427 * t513 + (t433 * t516 + t439 * t517));
+        const gic_real t519 = y[0] + (t444 * t515 + (t445 * t510 + t446 * t512));
+        const gic_real t520 = y[1] + (t427 * t515 + (t433 * t510 + t439 * t512));
+        gic_real road521[3];
+        if (!road_height(self, time, t519, t520, road521))
             return GIC_ERROR_ROAD;
-        const gic_real t519 = y[12] + (t444 * t510 + (t445 * t513 + t446 * t514));
-        const gic_real t520 = y[14] + (t424 * t510 + (t451 * t513 + t452 * t514));
-        const gic_real t521 = y[2] + (t424 * t512 + (t451 * t507 + t452 * t509));
-        const gic_real t522 = R(0.4699) + road518[0] - t521;
-        const gic_real t523 = GIC_MIN(GIC_MAX(R(100.0) * t522, R(0.0)), R(1.0));
-        const gic_real t524 = (t515 * road518[2] + t519 * road518[1] - t520) * (R(500.0) * ((R(3.0) - (t523 + t523)) * (t523 * t523)));
-        const gic_real t525 = GIC_MAX(t524 + R(283000.0) * t522, R(0.0));
-        const gic_real t526 = t424 * t525;
-        const gic_real t527 = t451 * t525;
-        const gic_real t528 = t483 + (t485 * t504 - t490 * t505) + (t507 * t526 - t512 * t527);
-        const gic_real t529 = t370 + (t391 + (t394 * t410 - t404 * t417)) - t528;
-        const gic_real t530 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t531 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[17] * t530 + y[16] * t3));
-        const gic_real t532 = y[16] * t27 - y[17] * t23 + (m[2] * acc[1] - m[1] * acc[2]);
-        const gic_real t533 = (m[21] + (acc[3] + t532) + m[27] * acc[10]) * R(9.072);
-        const gic_real t534 = m[43] * t67 - m[44] * t55 + (m[49] * t54 - m[50] * t51);
-        const gic_real t535 = y[16] * t70 - y[17] * t61 + (acc[1] * t60 - acc[2] * t52);
-        const gic_real t536 = m[57] + (m[55] * t54 - m[56] * t51);
-        const gic_real t537 = (m[51] + t534 + (acc[3] + t535) + acc[6] * t536) * R(23.965);
-        const gic_real t538 = m[73] * t112 - m[74] * t100 + (m[79] * t99 - m[80] * t96);
-        const gic_real t539 = y[16] * t115 - y[17] * t106 + (acc[1] * t105 - acc[2] * t97);
-        const gic_real t540 = m[87] + (m[85] * t99 - m[86] * t96);
-        const gic_real t541 = R(23.965) * (m[81] + t538 + (acc[3] + t539) + acc[7] * t540);
-        const gic_real t542 = m[103] * t156 - m[104] * t144 + (m[109] * t143 - m[110] * t140);
-        const gic_real t543 = y[16] * t159 - y[17] * t150 + (acc[1] * t149 - acc[2] * t141);
-        const gic_real t544 = m[117] + (m[115] * t143 - m[116] * t140);
-        const gic_real t545 = R(23.965) * (m[111] + t542 + (acc[3] + t543) + acc[8] * t544);
-        const gic_real t546 = m[133] * t201 - m[134] * t189 + (m[139] * t188 - m[140] * t185);
-        const gic_real t547 = y[16] * t204 - y[17] * t195 + (acc[1] * t194 - acc[2] * t186);
-        const gic_real t548 = m[147] + (m[145] * t188 - m[146] * t185);
-        const gic_real t549 = R(23.965) * (m[141] + t546 + (acc[3] + t547) + acc[9] * t548);
-        const gic_real t550 = t531 * R(2086.52) + t533 + t537 + t541 + t545 + t549;
-        const gic_real t551 = m[163] * t256 - m[164] * t242 + (m[169] * t241 - m[170] * t234);
-        const gic_real t552 = y[16] * t259 - y[17] * t248 + (acc[1] * t247 - acc[2] * t235);
-        const gic_real t553 = m[177] + (m[175] * t241 - m[176] * t234);
-        const gic_real t554 = m[183] + (m[181] * t241 - m[182] * t234);
-        const gic_real t555 = m[171] + t551 + (acc[3] + t552) + acc[10] * t553 + acc[6] * t554;
-        const gic_real t556 = t555 * R(90.555);
-        const gic_real t557 = m[199] * t314 - m[200] * t300 + (m[205] * t299 - m[206] * t292);
-        const gic_real t558 = y[16] * t317 - y[17] * t306 + (acc[1] * t305 - acc[2] * t293);
-        const gic_real t559 = m[213] + (m[211] * t299 - m[212] * t292);
-        const gic_real t560 = m[219] + (m[217] * t299 - m[218] * t292);
-        const gic_real t561 = m[207] + t557 + (acc[3] + t558) + acc[10] * t559 + acc[7] * t560;
-        const gic_real t562 = R(90.555) * t561;
-        const gic_real t563 = m[235] * t363 - m[236] * t351 + (m[241] * t350 - m[242] * t345);
-        const gic_real t564 = y[16] * t366 - y[17] * t357 + (acc[1] * t356 - acc[2] * t346);
-        const gic_real t565 = m[249] + (m[247] * t350 - m[248] * t345);
-        const gic_real t566 = R(90.555) * (m[243] + t563 + (acc[3] + t564) + acc[8] * t565);
-        const gic_real t567 = m[265] * t411 - m[266] * t399 + (m[271] * t398 - m[272] * t393);
-        const gic_real t568 = y[16] * t414 - y[17] * t405 + (acc[1] * t404 - acc[2] * t394);
-        const gic_real t569 = m[279] + (m[277] * t398 - m[278] * t393);
-        const gic_real t570 = R(90.555) * (m[273] + t567 + (acc[3] + t568) + acc[9] * t569);
-        const gic_real t571 = t452 * t458;
-        const gic_real t572 = t452 * t480;
-        const gic_real t573 = t452 * t503;
-        const gic_real t574 = t452 * t525;
-        const gic_real t575 = t550 + t556 + t562 + t566 + t570 - (t571 + t572 + t573 + t574);
-        const gic_real t576 = y[15] * R(1078.52);
-        const gic_real t577 = acc[5] + (y[15] * t530 - y[16] * t4 - acc[1] * R(0.056));
-        const gic_real t578 = y[17] * t576 - y[15] * t1 + acc[1] * R(2955.66) + (t531 * R(444.4287600000002) - t577 * R(116.84512));
-        const gic_real t579 = t12 * t10 + (t16 * t8 + t20 * t13);
-        const gic_real t580 = t10 * t579 - t13 * t14 + (t11 * t18 + (t15 * t19 + t16 * t21));
-        const gic_real t581 = t40 * t32 + (t44 * t30 + t48 * t41);
-        const gic_real t582 = t32 * t581 - t41 * t42 + (t36 * t46 + (t43 * t47 + t44 * t49));
-        const gic_real t583 = t578 + (t580 + (m[2] * t533 - m[0] * t26)) + (t582 + (t60 * t537 - t59 * t66));
-        const gic_real t584 = t85 * t77 + (t89 * t75 + t93 * t86);
-        const gic_real t585 = t77 * t584 - t86 * t87 + (t81 * t91 + (t88 * t92 + t89 * t94));
-        const gic_real t586 = t129 * t121 + (t133 * t119 + t137 * t130);
-        const gic_real t587 = t121 * t586 - t130 * t131 + (t125 * t135 + (t132 * t136 + t133 * t138));
-        const gic_real t588 = t583 + (t585 + (t105 * t541 - t104 * t111)) + (t587 + (t149 * t545 - t148 * t155));
-        const gic_real t589 = t174 * t166 + (t178 * t164 + t182 * t175);
-        const gic_real t590 = t166 * t589 - t175 * t176 + (t170 * t180 + (t177 * t181 + t178 * t183));
-        const gic_real t591 = t218 * t210 + (t222 * t208 + t228 * t219);
-        const gic_real t592 = t210 * t591 - t219 * t220 + (t214 * t225 + (t221 * t227 + t222 * t230));
-        const gic_real t593 = t588 + (t590 + (t194 * t549 - t193 * t200)) + (t592 + (t247 * t556 - t246 * t255));
-        const gic_real t594 = t276 * t268 + (t280 * t266 + t286 * t277);
-        const gic_real t595 = t268 * t594 - t277 * t278 + (t272 * t283 + (t279 * t285 + t280 * t288));
-        const gic_real t596 = t333 * t325 + (t337 * t323 + t341 * t334);
-        const gic_real t597 = t325 * t596 - t334 * t335 + (t329 * t339 + (t336 * t340 + t337 * t342));
-        const gic_real t598 = t593 + (t595 + (t305 * t562 - t304 * t313)) + (t597 + (t356 * t566 - t355 * t362));
-        const gic_real t599 = t381 * t373 + (t385 * t371 + t389 * t382);
-        const gic_real t600 = t373 * t599 - t382 * t383 + (t377 * t387 + (t384 * t388 + t385 * t390));
-        const gic_real t601 = t435 * t571 - t429 * t459 + (t467 * t572 - t464 * t481);
-        const gic_real t602 = t601 + (t490 * t573 - t487 * t504) + (t512 * t574 - t509 * t526);
-        const gic_real t603 = t598 + (t600 + (t404 * t570 - t403 * t410)) - t602;
-        const gic_real t604 = t6 * R(2086.52) + t29 + t73 + t118 + t162 + t207;
-        const gic_real t605 = t604 + t264 + t322 + t369 + t417 - (t460 + t482 + t505 + t527);
-        const gic_real t606 = y[15] * t2 - y[16] * t576 + acc[2] * R(3570.2) + t6 * R(116.84512);
-        const gic_real t607 = t13 * t17 - t8 * t579 + (t9 * t18 + (t11 * t19 + t12 * t21));
-        const gic_real t608 = t41 * t45 - t30 * t581 + (t31 * t46 + (t36 * t47 + t40 * t49));
-        const gic_real t609 = t606 + (t607 + (m[0] * t29 - m[1] * t533)) + (t608 + (t59 * t73 - t52 * t537));
-        const gic_real t610 = t86 * t90 - t75 * t584 + (t76 * t91 + (t81 * t92 + t85 * t94));
-        const gic_real t611 = t130 * t134 - t119 * t586 + (t120 * t135 + (t125 * t136 + t129 * t138));
-        const gic_real t612 = t609 + (t610 + (t104 * t118 - t97 * t541)) + (t611 + (t148 * t162 - t141 * t545));
-        const gic_real t613 = t175 * t179 - t164 * t589 + (t165 * t180 + (t170 * t181 + t174 * t183));
-        const gic_real t614 = t219 * t223 - t208 * t591 + (t209 * t225 + (t214 * t227 + t218 * t230));
-        const gic_real t615 = t612 + (t613 + (t193 * t207 - t186 * t549)) + (t614 + (t246 * t264 - t235 * t556));
-        const gic_real t616 = t277 * t281 - t266 * t594 + (t267 * t283 + (t272 * t285 + t276 * t288));
-        const gic_real t617 = t334 * t338 - t323 * t596 + (t324 * t339 + (t329 * t340 + t333 * t342));
-        const gic_real t618 = t615 + (t616 + (t304 * t322 - t293 * t562)) + (t617 + (t355 * t369 - t346 * t566));
-        const gic_real t619 = t382 * t386 - t371 * t599 + (t372 * t387 + (t377 * t388 + t381 * t390));
-        const gic_real t620 = t429 * t460 - t419 * t571 + (t464 * t482 - t462 * t572);
-        const gic_real t621 = t620 + (t487 * t505 - t485 * t573) + (t509 * t527 - t507 * t574);
-        const gic_real t622 = t618 + (t619 + (t403 * t417 - t394 * t570)) - t621;
-        const gic_real t623 = t577 * R(2086.52) + t26 + t66 + t111 + t155 + t200;
-        const gic_real t624 = t623 + t255 + t313 + t362 + t410 - (t459 + t481 + t504 + t526);
-        const gic_real t625 = m[56] * t608 + (m[55] * t582 + m[54] * t50) + (t65 * t66 + (t72 * t73 + t536 * t537));
-        const gic_real t626 = m[182] * t614 + (m[181] * t592 + m[180] * t231) + (t253 * t255 + (t262 * t264 + t554 * t556));
-        const gic_real t627 = t460 * (m[184] + (m[182] * t428 - m[180] * t434)) + t571 * (m[183] + (m[181] * t434 - m[182] * t418));
-        const gic_real t628 = t459 * (m[185] + (m[180] * t418 - m[181] * t428)) + t627;
-        const gic_real t629 = t625 + t626 - (t628 - ((x[0] - R(0.31903)) * R(167070.9) + xd[0] * R(17490.8)));
-        const gic_real t630 = m[86] * t610 + (m[85] * t585 + m[84] * t95) + (t110 * t111 + (t117 * t118 + t540 * t541));
-        const gic_real t631 = m[218] * t616 + (m[217] * t595 + m[216] * t289) + (t311 * t313 + (t320 * t322 + t560 * t562));
-        const gic_real t632 = t482 * (m[220] + (m[218] * t463 - m[216] * t466)) + t572 * (m[219] + (m[217] * t466 - m[218] * t461));
-        const gic_real t633 = t481 * (m[221] + (m[216] * t461 - m[217] * t463)) + t632;
-        const gic_real t634 = t630 + t631 - (t633 - (R(167070.9) * (x[1] - R(0.31903)) + xd[1] * R(17490.8)));
-        const gic_real t635 = m[116] * t611 + (m[115] * t587 + m[114] * t139) + (t154 * t155 + (t161 * t162 + t544 * t545));
-        const gic_real t636 = m[248] * t617 + (m[247] * t597 + m[246] * t343) + (t361 * t362 + (t368 * t369 + t565 * t566));
-        const gic_real t637 = t505 * (m[250] + (m[248] * t486 - m[246] * t489)) + t573 * (m[249] + (m[247] * t489 - m[248] * t484));
-        const gic_real t638 = t504 * (m[251] + (m[246] * t484 - m[247] * t486)) + t637;
-        const gic_real t639 = t635 + t636 - (t638 - ((x[2] - R(0.33727)) * R(369167.2) + xd[2] * R(24780.4)));
-        const gic_real t640 = m[146] * t613 + (m[145] * t590 + m[144] * t184) + (t199 * t200 + (t206 * t207 + t548 * t549));
-        const gic_real t641 = m[278] * t619 + (m[277] * t600 + m[276] * t391) + (t409 * t410 + (t416 * t417 + t569 * t570));
-        const gic_real t642 = t527 * (m[280] + (m[278] * t508 - m[276] * t511)) + t574 * (m[279] + (m[277] * t511 - m[278] * t506));
-        const gic_real t643 = t526 * (m[281] + (m[276] * t506 - m[277] * t508)) + t642;
-        const gic_real t644 = t640 + t641 - (t643 - (R(369167.2) * (x[3] - R(0.33727)) + xd[3] * R(24780.4)));
-        const gic_real t645 = m[26] * t607 + (m[25] * t580 + m[24] * t22) + (m[29] * t26 + (m[28] * t29 + m[27] * t533));
-        const gic_real t646 = m[176] * t614 + (m[175] * t592 + m[174] * t231) + (t252 * t255 + (t261 * t264 + t553 * t556));
-        const gic_real t647 = m[212] * t616 + (m[211] * t595 + m[210] * t289) + (t310 * t313 + (t319 * t322 + t559 * t562));
-        const gic_real t648 = t460 * (m[178] + (m[176] * t428 - m[174] * t434)) + t571 * (m[177] + (m[175] * t434 - m[176] * t418));
-        const gic_real t649 = t459 * (m[179] + (m[174] * t418 - m[175] * t428)) + t648;
-        const gic_real t650 = t482 * (m[214] + (m[212] * t463 - m[210] * t466)) + t572 * (m[213] + (m[211] * t466 - m[212] * t461));
-        const gic_real t651 = t481 * (m[215] + (m[210] * t461 - m[211] * t463)) + t650;
-        const gic_real t652 = t645 + t646 + t647 - (t649 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t651);
-        tau[0] = t529;
-        tau[3] = t575;
-        tau[1] = t603;
-        tau[4] = t605;
-        tau[2] = t622;
-        tau[5] = t624;
-        tau[6] = t629;
-        tau[7] = t634;
-        tau[8] = t639;
-        tau[9] = t644;
-        tau[10] = t652;
+        const gic_real t522 = y[12] + (t444 * t513 + (t445 * t516 + t446 * t517));
+        const gic_real t523 = y[14] + (t424 * t513 + (t451 * t516 + t452 * t517));
+        const gic_real t524 = t518 * road521[2] + t522 * road521[1] - t523;
+        const gic_real t525 = y[2] + (t424 * t515 + (t451 * t510 + t452 * t512));
+        const gic_real t526 = R(0.4699) + road521[0] - t525;
+        const gic_real t527 = GIC_MIN(GIC_MAX(R(100.0) * t526, R(0.0)), R(1.0));
+        const gic_real t528 = t524 * (R(500.0) * ((R(3.0) - (t527 + t527)) * (t527 * t527)));
+        const gic_real t529 = GIC_MAX(t528 + R(283000.0) * t526, R(0.0));
+        const gic_real t530 = t424 * t529;
+        const gic_real t531 = t451 * t529;
+        const gic_real t532 = t485 + (t487 * t507 - t492 * t508) + (t510 * t530 - t515 * t531);
+        const gic_real t533 = t370 + (t391 + (t394 * t410 - t404 * t417)) - t532;
+        const gic_real t534 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
+        const gic_real t535 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[17] * t534 + y[16] * t3));
+        const gic_real t536 = y[16] * t27 - y[17] * t23 + (m[2] * acc[1] - m[1] * acc[2]);
+        const gic_real t537 = (m[21] + (acc[3] + t536) + m[27] * acc[10]) * R(9.072);
+        const gic_real t538 = m[43] * t67 - m[44] * t55 + (m[49] * t54 - m[50] * t51);
+        const gic_real t539 = y[16] * t70 - y[17] * t61 + (acc[1] * t60 - acc[2] * t52);
+        const gic_real t540 = m[57] + (m[55] * t54 - m[56] * t51);
+        const gic_real t541 = (m[51] + t538 + (acc[3] + t539) + acc[6] * t540) * R(23.965);
+        const gic_real t542 = m[73] * t112 - m[74] * t100 + (m[79] * t99 - m[80] * t96);
+        const gic_real t543 = y[16] * t115 - y[17] * t106 + (acc[1] * t105 - acc[2] * t97);
+        const gic_real t544 = m[87] + (m[85] * t99 - m[86] * t96);
+        const gic_real t545 = R(23.965) * (m[81] + t542 + (acc[3] + t543) + acc[7] * t544);
+        const gic_real t546 = m[103] * t156 - m[104] * t144 + (m[109] * t143 - m[110] * t140);
+        const gic_real t547 = y[16] * t159 - y[17] * t150 + (acc[1] * t149 - acc[2] * t141);
+        const gic_real t548 = m[117] + (m[115] * t143 - m[116] * t140);
+        const gic_real t549 = R(23.965) * (m[111] + t546 + (acc[3] + t547) + acc[8] * t548);
+        const gic_real t550 = m[133] * t201 - m[134] * t189 + (m[139] * t188 - m[140] * t185);
+        const gic_real t551 = y[16] * t204 - y[17] * t195 + (acc[1] * t194 - acc[2] * t186);
+        const gic_real t552 = m[147] + (m[145] * t188 - m[146] * t185);
+        const gic_real t553 = R(23.965) * (m[141] + t550 + (acc[3] + t551) + acc[9] * t552);
+        const gic_real t554 = t535 * R(2086.52) + t537 + t541 + t545 + t549 + t553;
+        const gic_real t555 = m[163] * t256 - m[164] * t242 + (m[169] * t241 - m[170] * t234);
+        const gic_real t556 = y[16] * t259 - y[17] * t248 + (acc[1] * t247 - acc[2] * t235);
+        const gic_real t557 = m[177] + (m[175] * t241 - m[176] * t234);
+        const gic_real t558 = m[183] + (m[181] * t241 - m[182] * t234);
+        const gic_real t559 = m[171] + t555 + (acc[3] + t556) + acc[10] * t557 + acc[6] * t558;
+        const gic_real t560 = t559 * R(90.555);
+        const gic_real t561 = m[199] * t314 - m[200] * t300 + (m[205] * t299 - m[206] * t292);
+        const gic_real t562 = y[16] * t317 - y[17] * t306 + (acc[1] * t305 - acc[2] * t293);
+        const gic_real t563 = m[213] + (m[211] * t299 - m[212] * t292);
+        const gic_real t564 = m[219] + (m[217] * t299 - m[218] * t292);
+        const gic_real t565 = m[207] + t561 + (acc[3] + t562) + acc[10] * t563 + acc[7] * t564;
+        const gic_real t566 = R(90.555) * t565;
+        const gic_real t567 = m[235] * t363 - m[236] * t351 + (m[241] * t350 - m[242] * t345);
+        const gic_real t568 = y[16] * t366 - y[17] * t357 + (acc[1] * t356 - acc[2] * t346);
+        const gic_real t569 = m[249] + (m[247] * t350 - m[248] * t345);
+        const gic_real t570 = R(90.555) * (m[243] + t567 + (acc[3] + t568) + acc[8] * t569);
+        const gic_real t571 = m[265] * t411 - m[266] * t399 + (m[271] * t398 - m[272] * t393);
+        const gic_real t572 = y[16] * t414 - y[17] * t405 + (acc[1] * t404 - acc[2] * t394);
+        const gic_real t573 = m[279] + (m[277] * t398 - m[278] * t393);
+        const gic_real t574 = R(90.555) * (m[273] + t571 + (acc[3] + t572) + acc[9] * t573);
+        const gic_real t575 = t452 * t459;
+        const gic_real t576 = t452 * t482;
+        const gic_real t577 = t452 * t506;
+        const gic_real t578 = t452 * t529;
+        const gic_real t579 = t554 + t560 + t566 + t570 + t574 - (t575 + t576 + t577 + t578);
+        const gic_real t580 = y[15] * R(1078.52);
+        const gic_real t581 = acc[5] + (y[15] * t534 - y[16] * t4 - acc[1] * R(0.056));
+        const gic_real t582 = y[17] * t580 - y[15] * t1 + acc[1] * R(2955.66) + (t535 * R(444.4287600000002) - t581 * R(116.84512));
+        const gic_real t583 = t12 * t10 + (t16 * t8 + t20 * t13);
+        const gic_real t584 = t10 * t583 - t13 * t14 + (t11 * t18 + (t15 * t19 + t16 * t21));
+        const gic_real t585 = t40 * t32 + (t44 * t30 + t48 * t41);
+        const gic_real t586 = t32 * t585 - t41 * t42 + (t36 * t46 + (t43 * t47 + t44 * t49));
+        const gic_real t587 = t582 + (t584 + (m[2] * t537 - m[0] * t26)) + (t586 + (t60 * t541 - t59 * t66));
+        const gic_real t588 = t85 * t77 + (t89 * t75 + t93 * t86);
+        const gic_real t589 = t77 * t588 - t86 * t87 + (t81 * t91 + (t88 * t92 + t89 * t94));
+        const gic_real t590 = t129 * t121 + (t133 * t119 + t137 * t130);
+        const gic_real t591 = t121 * t590 - t130 * t131 + (t125 * t135 + (t132 * t136 + t133 * t138));
+        const gic_real t592 = t587 + (t589 + (t105 * t545 - t104 * t111)) + (t591 + (t149 * t549 - t148 * t155));
+        const gic_real t593 = t174 * t166 + (t178 * t164 + t182 * t175);
+        const gic_real t594 = t166 * t593 - t175 * t176 + (t170 * t180 + (t177 * t181 + t178 * t183));
+        const gic_real t595 = t218 * t210 + (t222 * t208 + t228 * t219);
+        const gic_real t596 = t210 * t595 - t219 * t220 + (t214 * t225 + (t221 * t227 + t222 * t230));
+        const gic_real t597 = t592 + (t594 + (t194 * t553 - t193 * t200)) + (t596 + (t247 * t560 - t246 * t255));
+        const gic_real t598 = t276 * t268 + (t280 * t266 + t286 * t277);
+        const gic_real t599 = t268 * t598 - t277 * t278 + (t272 * t283 + (t279 * t285 + t280 * t288));
+        const gic_real t600 = t333 * t325 + (t337 * t323 + t341 * t334);
+        const gic_real t601 = t325 * t600 - t334 * t335 + (t329 * t339 + (t336 * t340 + t337 * t342));
+        const gic_real t602 = t597 + (t599 + (t305 * t566 - t304 * t313)) + (t601 + (t356 * t570 - t355 * t362));
+        const gic_real t603 = t381 * t373 + (t385 * t371 + t389 * t382);
+        const gic_real t604 = t373 * t603 - t382 * t383 + (t377 * t387 + (t384 * t388 + t385 * t390));
+        const gic_real t605 = t435 * t575 - t429 * t460 + (t468 * t576 - t465 * t483);
+        const gic_real t606 = t605 + (t492 * t577 - t489 * t507) + (t515 * t578 - t512 * t530);
+        const gic_real t607 = t602 + (t604 + (t404 * t574 - t403 * t410)) - t606;
+        const gic_real t608 = t6 * R(2086.52) + t29 + t73 + t118 + t162 + t207;
+        const gic_real t609 = t608 + t264 + t322 + t369 + t417 - (t461 + t484 + t508 + t531);
+        const gic_real t610 = y[15] * t2 - y[16] * t580 + acc[2] * R(3570.2) + t6 * R(116.84512);
+        const gic_real t611 = t13 * t17 - t8 * t583 + (t9 * t18 + (t11 * t19 + t12 * t21));
+        const gic_real t612 = t41 * t45 - t30 * t585 + (t31 * t46 + (t36 * t47 + t40 * t49));
+        const gic_real t613 = t610 + (t611 + (m[0] * t29 - m[1] * t537)) + (t612 + (t59 * t73 - t52 * t541));
+        const gic_real t614 = t86 * t90 - t75 * t588 + (t76 * t91 + (t81 * t92 + t85 * t94));
+        const gic_real t615 = t130 * t134 - t119 * t590 + (t120 * t135 + (t125 * t136 + t129 * t138));
+        const gic_real t616 = t613 + (t614 + (t104 * t118 - t97 * t545)) + (t615 + (t148 * t162 - t141 * t549));
+        const gic_real t617 = t175 * t179 - t164 * t593 + (t165 * t180 + (t170 * t181 + t174 * t183));
+        const gic_real t618 = t219 * t223 - t208 * t595 + (t209 * t225 + (t214 * t227 + t218 * t230));
+        const gic_real t619 = t616 + (t617 + (t193 * t207 - t186 * t553)) + (t618 + (t246 * t264 - t235 * t560));
+        const gic_real t620 = t277 * t281 - t266 * t598 + (t267 * t283 + (t272 * t285 + t276 * t288));
+        const gic_real t621 = t334 * t338 - t323 * t600 + (t324 * t339 + (t329 * t340 + t333 * t342));
+        const gic_real t622 = t619 + (t620 + (t304 * t322 - t293 * t566)) + (t621 + (t355 * t369 - t346 * t570));
+        const gic_real t623 = t382 * t386 - t371 * t603 + (t372 * t387 + (t377 * t388 + t381 * t390));
+        const gic_real t624 = t429 * t461 - t419 * t575 + (t465 * t484 - t463 * t576);
+        const gic_real t625 = t624 + (t489 * t508 - t487 * t577) + (t512 * t531 - t510 * t578);
+        const gic_real t626 = t622 + (t623 + (t403 * t417 - t394 * t574)) - t625;
+        const gic_real t627 = t581 * R(2086.52) + t26 + t66 + t111 + t155 + t200;
+        const gic_real t628 = t627 + t255 + t313 + t362 + t410 - (t460 + t483 + t507 + t530);
+        const gic_real t629 = m[56] * t612 + (m[55] * t586 + m[54] * t50) + (t65 * t66 + (t72 * t73 + t540 * t541));
+        const gic_real t630 = m[182] * t618 + (m[181] * t596 + m[180] * t231) + (t253 * t255 + (t262 * t264 + t558 * t560));
+        const gic_real t631 = t461 * (m[184] + (m[182] * t428 - m[180] * t434)) + t575 * (m[183] + (m[181] * t434 - m[182] * t418));
+        const gic_real t632 = t460 * (m[185] + (m[180] * t418 - m[181] * t428)) + t631;
+        const gic_real t633 = t629 + t630 - (t632 - ((x[0] - R(0.31903)) * R(167070.9) + xd[0] * R(17490.8)));
+        const gic_real t634 = m[86] * t614 + (m[85] * t589 + m[84] * t95) + (t110 * t111 + (t117 * t118 + t544 * t545));
+        const gic_real t635 = m[218] * t620 + (m[217] * t599 + m[216] * t289) + (t311 * t313 + (t320 * t322 + t564 * t566));
+        const gic_real t636 = t484 * (m[220] + (m[218] * t464 - m[216] * t467)) + t576 * (m[219] + (m[217] * t467 - m[218] * t462));
+        const gic_real t637 = t483 * (m[221] + (m[216] * t462 - m[217] * t464)) + t636;
+        const gic_real t638 = t634 + t635 - (t637 - (R(167070.9) * (x[1] - R(0.31903)) + xd[1] * R(17490.8)));
+        const gic_real t639 = m[116] * t615 + (m[115] * t591 + m[114] * t139) + (t154 * t155 + (t161 * t162 + t548 * t549));
+        const gic_real t640 = m[248] * t621 + (m[247] * t601 + m[246] * t343) + (t361 * t362 + (t368 * t369 + t569 * t570));
+        const gic_real t641 = t508 * (m[250] + (m[248] * t488 - m[246] * t491)) + t577 * (m[249] + (m[247] * t491 - m[248] * t486));
+        const gic_real t642 = t507 * (m[251] + (m[246] * t486 - m[247] * t488)) + t641;
+        const gic_real t643 = t639 + t640 - (t642 - ((x[2] - R(0.33727)) * R(369167.2) + xd[2] * R(24780.4)));
+        const gic_real t644 = m[146] * t617 + (m[145] * t594 + m[144] * t184) + (t199 * t200 + (t206 * t207 + t552 * t553));
+        const gic_real t645 = m[278] * t623 + (m[277] * t604 + m[276] * t391) + (t409 * t410 + (t416 * t417 + t573 * t574));
+        const gic_real t646 = t531 * (m[280] + (m[278] * t511 - m[276] * t514)) + t578 * (m[279] + (m[277] * t514 - m[278] * t509));
+        const gic_real t647 = t530 * (m[281] + (m[276] * t509 - m[277] * t511)) + t646;
+        const gic_real t648 = t644 + t645 - (t647 - (R(369167.2) * (x[3] - R(0.33727)) + xd[3] * R(24780.4)));
+        const gic_real t649 = m[26] * t611 + (m[25] * t584 + m[24] * t22) + (m[29] * t26 + (m[28] * t29 + m[27] * t537));
+        const gic_real t650 = m[176] * t618 + (m[175] * t596 + m[174] * t231) + (t252 * t255 + (t261 * t264 + t557 * t560));
+        const gic_real t651 = m[212] * t620 + (m[211] * t599 + m[210] * t289) + (t310 * t313 + (t319 * t322 + t563 * t566));
+        const gic_real t652 = t461 * (m[178] + (m[176] * t428 - m[174] * t434)) + t575 * (m[177] + (m[175] * t434 - m[176] * t418));
+        const gic_real t653 = t460 * (m[179] + (m[174] * t418 - m[175] * t428)) + t652;
+        const gic_real t654 = t484 * (m[214] + (m[212] * t464 - m[210] * t467)) + t576 * (m[213] + (m[211] * t467 - m[212] * t462));
+        const gic_real t655 = t483 * (m[215] + (m[210] * t462 - m[211] * t464)) + t654;
+        const gic_real t656 = t649 + t650 + t651 - (t653 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t655);
+        tau[0] = t533;
+        tau[3] = t579;
+        tau[1] = t607;
+        tau[4] = t609;
+        tau[2] = t626;
+        tau[5] = t628;
+        tau[6] = t633;
+        tau[7] = t638;
+        tau[8] = t643;
+        tau[9] = t648;
+        tau[10] = t656;
     }
     return GIC_OK;
 }
@@ -4975,104 +5003,110 @@ static int hmmwv_energy(const hmmwv *self, gic_real time, const gic_real *y, con
         if (!road_height(self, time, t495, t496, road497))
             return GIC_ERROR_ROAD;
         const gic_real t498 = y[12] + (t16 * t488 + (t28 * t491 + t34 * t492));
-        const gic_real t499 = y[2] + (t8 * t490 + (t23 * t486 + t32 * t487));
-        const gic_real t500 = road497[0] + R(0.4699) - t499;
-        const gic_real t501 = GIC_MIN(GIC_MAX(t500 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t502 = (t494 * road497[2] + t498 * road497[1] - t493) * ((R(3.0) - (t501 + t501)) * (t501 * t501) * R(500.0));
-        const gic_real t503 = xd[0] * (xd[0] * R(17490.8)) + xd[1] * (xd[1] * R(17490.8)) + xd[2] * (xd[2] * R(24780.4));
-        const gic_real t504 = t503 + xd[3] * (xd[3] * R(24780.4)) + xd[4] * (xd[4] * R(12000.0));
-        const gic_real t505 = t328 + (m[193] * R(-0.12319000000000002) + t329);
-        const gic_real t506 = t321 + (m[190] * R(-0.12319000000000002) + t322);
-        const gic_real t507 = m[187] + t505;
-        const gic_real t508 = m[186] + t506;
-        const gic_real t509 = m[203] + (m[198] * t505 - m[199] * t506) + (y[15] * t507 - y[16] * t508);
-        const gic_real t510 = t324 + (m[196] * R(-0.12319000000000002) + t325);
-        const gic_real t511 = m[188] + t510;
-        const gic_real t512 = m[202] + (m[200] * t506 - m[198] * t510) + (y[17] * t508 - y[15] * t511);
-        const gic_real t513 = m[201] + (m[199] * t510 - m[200] * t505) + (y[16] * t511 - y[17] * t507);
-        const gic_real t514 = y[14] + (t8 * t509 + (t23 * t512 + t32 * t513));
-        const gic_real t515 = y[13] + (t12 * t509 + (t25 * t512 + t33 * t513));
-        const gic_real t516 = y[0] + (t16 * t511 + (t28 * t507 + t34 * t508));
-        const gic_real t517 = y[1] + (t12 * t511 + (t25 * t507 + t33 * t508));
-        gic_real road518[3];
-        if (!road_height(self, time, t516, t517, road518))
+        const gic_real t499 = t494 * road497[2] + t498 * road497[1] - t493;
+        const gic_real t500 = y[2] + (t8 * t490 + (t23 * t486 + t32 * t487));
+        const gic_real t501 = road497[0] + R(0.4699) - t500;
+        const gic_real t502 = GIC_MIN(GIC_MAX(t501 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t503 = t499 * ((R(3.0) - (t502 + t502)) * (t502 * t502) * R(500.0));
+        const gic_real t504 = xd[0] * (xd[0] * R(17490.8)) + xd[1] * (xd[1] * R(17490.8)) + xd[2] * (xd[2] * R(24780.4));
+        const gic_real t505 = t504 + xd[3] * (xd[3] * R(24780.4)) + xd[4] * (xd[4] * R(12000.0));
+        const gic_real t506 = t328 + (m[193] * R(-0.12319000000000002) + t329);
+        const gic_real t507 = t321 + (m[190] * R(-0.12319000000000002) + t322);
+        const gic_real t508 = m[187] + t506;
+        const gic_real t509 = m[186] + t507;
+        const gic_real t510 = m[203] + (m[198] * t506 - m[199] * t507) + (y[15] * t508 - y[16] * t509);
+        const gic_real t511 = t324 + (m[196] * R(-0.12319000000000002) + t325);
+        const gic_real t512 = m[188] + t511;
+        const gic_real t513 = m[202] + (m[200] * t507 - m[198] * t511) + (y[17] * t509 - y[15] * t512);
+        const gic_real t514 = m[201] + (m[199] * t511 - m[200] * t506) + (y[16] * t512 - y[17] * t508);
+        const gic_real t515 = y[14] + (t8 * t510 + (t23 * t513 + t32 * t514));
+        const gic_real t516 = y[13] + (t12 * t510 + (t25 * t513 + t33 * t514));
+        const gic_real t517 = y[0] + (t16 * t512 + (t28 * t508 + t34 * t509));
+        const gic_real t518 = y[1] + (t12 * t512 + (t25 * t508 + t33 * t509));
+        gic_real road519[3];
+        if (!road_height(self, time, t517, t518, road519))
             return GIC_ERROR_ROAD;
-        const gic_real t519 = y[12] + (t16 * t509 + (t28 * t512 + t34 * t513));
-        const gic_real t520 = y[2] + (t8 * t511 + (t23 * t507 + t32 * t508));
-        const gic_real t521 = R(0.4699) + road518[0] - t520;
-        const gic_real t522 = GIC_MIN(GIC_MAX(R(100.0) * t521, R(0.0)), R(1.0));
-        const gic_real t523 = (t515 * road518[2] + t519 * road518[1] - t514) * (R(500.0) * ((R(3.0) - (t522 + t522)) * (t522 * t522)));
-        const gic_real t524 = t493 * GIC_MAX(t502 + t500 * R(283000.0), R(0.0)) - t504 + t514 * GIC_MAX(t523 + R(283000.0) * t521, R(0.0));
-        const gic_real t525 = t386 + m[229] * R(0.12319000000000002);
-        const gic_real t526 = t381 + m[226] * R(0.12319000000000002);
-        const gic_real t527 = m[223] + t525;
-        const gic_real t528 = m[222] + t526;
-        const gic_real t529 = m[239] + (m[234] * t525 - m[235] * t526) + (y[15] * t527 - y[16] * t528);
-        const gic_real t530 = t383 + m[232] * R(0.12319000000000002);
-        const gic_real t531 = m[224] + t530;
-        const gic_real t532 = m[238] + (m[236] * t526 - m[234] * t530) + (y[17] * t528 - y[15] * t531);
-        const gic_real t533 = m[237] + (m[235] * t530 - m[236] * t525) + (y[16] * t531 - y[17] * t527);
-        const gic_real t534 = y[14] + (t8 * t529 + (t23 * t532 + t32 * t533));
-        const gic_real t535 = y[13] + (t12 * t529 + (t25 * t532 + t33 * t533));
-        const gic_real t536 = y[0] + (t16 * t531 + (t28 * t527 + t34 * t528));
-        const gic_real t537 = y[1] + (t12 * t531 + (t25 * t527 + t33 * t528));
-        gic_real road538[3];
-        if (!road_height(self, time, t536, t537, road538))
+        const gic_real t520 = y[12] + (t16 * t510 + (t28 * t513 + t34 * t514));
+        const gic_real t521 = t516 * road519[2] + t520 * road519[1] - t515;
+        const gic_real t522 = y[2] + (t8 * t512 + (t23 * t508 + t32 * t509));
+        const gic_real t523 = R(0.4699) + road519[0] - t522;
+        const gic_real t524 = GIC_MIN(GIC_MAX(R(100.0) * t523, R(0.0)), R(1.0));
+        const gic_real t525 = t521 * (R(500.0) * ((R(3.0) - (t524 + t524)) * (t524 * t524)));
+        const gic_real t526 = t493 * GIC_MAX(t503 + t501 * R(283000.0), R(0.0)) - t505 + t515 * GIC_MAX(t525 + R(283000.0) * t523, R(0.0));
+        const gic_real t527 = t386 + m[229] * R(0.12319000000000002);
+        const gic_real t528 = t381 + m[226] * R(0.12319000000000002);
+        const gic_real t529 = m[223] + t527;
+        const gic_real t530 = m[222] + t528;
+        const gic_real t531 = m[239] + (m[234] * t527 - m[235] * t528) + (y[15] * t529 - y[16] * t530);
+        const gic_real t532 = t383 + m[232] * R(0.12319000000000002);
+        const gic_real t533 = m[224] + t532;
+        const gic_real t534 = m[238] + (m[236] * t528 - m[234] * t532) + (y[17] * t530 - y[15] * t533);
+        const gic_real t535 = m[237] + (m[235] * t532 - m[236] * t527) + (y[16] * t533 - y[17] * t529);
+        const gic_real t536 = y[14] + (t8 * t531 + (t23 * t534 + t32 * t535));
+        const gic_real t537 = y[13] + (t12 * t531 + (t25 * t534 + t33 * t535));
+        const gic_real t538 = y[0] + (t16 * t533 + (t28 * t529 + t34 * t530));
+        const gic_real t539 = y[1] + (t12 * t533 + (t25 * t529 + t33 * t530));
+        gic_real road540[3];
+        if (!road_height(self, time, t538, t539, road540))
             return GIC_ERROR_ROAD;
-        const gic_real t539 = y[12] + (t16 * t529 + (t28 * t532 + t34 * t533));
-        const gic_real t540 = y[2] + (t8 * t531 + (t23 * t527 + t32 * t528));
-        const gic_real t541 = R(0.4699) + road538[0] - t540;
-        const gic_real t542 = GIC_MIN(GIC_MAX(R(100.0) * t541, R(0.0)), R(1.0));
-        const gic_real t543 = (t535 * road538[2] + t539 * road538[1] - t534) * (R(500.0) * ((R(3.0) - (t542 + t542)) * (t542 * t542)));
-        const gic_real t544 = t437 + m[259] * R(-0.12319000000000002);
-        const gic_real t545 = t432 + m[256] * R(-0.12319000000000002);
-        const gic_real t546 = m[253] + t544;
-        const gic_real t547 = m[252] + t545;
-        const gic_real t548 = m[269] + (m[264] * t544 - m[265] * t545) + (y[15] * t546 - y[16] * t547);
-        const gic_real t549 = t434 + m[262] * R(-0.12319000000000002);
-        const gic_real t550 = m[254] + t549;
-        const gic_real t551 = m[268] + (m[266] * t545 - m[264] * t549) + (y[17] * t547 - y[15] * t550);
-        const gic_real t552 = m[267] + (m[265] * t549 - m[266] * t544) + (y[16] * t550 - y[17] * t546);
-        const gic_real t553 = y[14] + (t8 * t548 + (t23 * t551 + t32 * t552));
-        const gic_real t554 = y[13] + (t12 * t548 + (t25 * t551 + t33 * t552));
-        const gic_real t555 = y[0] + (t16 * t550 + (t28 * t546 + t34 * t547));
-        const gic_real t556 = y[1] + (t12 * t550 + (t25 * t546 + t33 * t547));
-        gic_real road557[3];
-        if (!road_height(self, time, t555, t556, road557))
+        const gic_real t541 = y[12] + (t16 * t531 + (t28 * t534 + t34 * t535));
+        const gic_real t542 = t537 * road540[2] + t541 * road540[1] - t536;
+        const gic_real t543 = y[2] + (t8 * t533 + (t23 * t529 + t32 * t530));
+        const gic_real t544 = R(0.4699) + road540[0] - t543;
+        const gic_real t545 = GIC_MIN(GIC_MAX(R(100.0) * t544, R(0.0)), R(1.0));
+        const gic_real t546 = t542 * (R(500.0) * ((R(3.0) - (t545 + t545)) * (t545 * t545)));
+        const gic_real t547 = t437 + m[259] * R(-0.12319000000000002);
+        const gic_real t548 = t432 + m[256] * R(-0.12319000000000002);
+        const gic_real t549 = m[253] + t547;
+        const gic_real t550 = m[252] + t548;
+        const gic_real t551 = m[269] + (m[264] * t547 - m[265] * t548) + (y[15] * t549 - y[16] * t550);
+        const gic_real t552 = t434 + m[262] * R(-0.12319000000000002);
+        const gic_real t553 = m[254] + t552;
+        const gic_real t554 = m[268] + (m[266] * t548 - m[264] * t552) + (y[17] * t550 - y[15] * t553);
+        const gic_real t555 = m[267] + (m[265] * t552 - m[266] * t547) + (y[16] * t553 - y[17] * t549);
+        const gic_real t556 = y[14] + (t8 * t551 + (t23 * t554 + t32 * t555));
+        const gic_real t557 = y[13] + (t12 * t551 + (t25 * t554 + t33 * t555));
+        const gic_real t558 = y[0] + (t16 * t553 + (t28 * t549 + t34 * t550));
+        const gic_real t559 = y[1] + (t12 * t553 + (t25 * t549 + t33 * t550));
+        gic_real road560[3];
+        if (!road_height(self, time, t558, t559, road560))
             return GIC_ERROR_ROAD;
-        const gic_real t558 = y[12] + (t16 * t548 + (t28 * t551 + t34 * t552));
-        const gic_real t559 = y[2] + (t8 * t550 + (t23 * t546 + t32 * t547));
-        const gic_real t560 = R(0.4699) + road557[0] - t559;
-        const gic_real t561 = GIC_MIN(GIC_MAX(R(100.0) * t560, R(0.0)), R(1.0));
-        const gic_real t562 = (t554 * road557[2] + t558 * road557[1] - t553) * (R(500.0) * ((R(3.0) - (t561 + t561)) * (t561 * t561)));
-        const gic_real t563 = t524 + t534 * GIC_MAX(t543 + R(283000.0) * t541, R(0.0)) + t553 * GIC_MAX(t562 + R(283000.0) * t560, R(0.0));
-        const gic_real t564 = GIC_FABS(t40) + GIC_FABS(t39) + (GIC_FABS(t66) + GIC_FABS(t53)) + (GIC_FABS(t114) + GIC_FABS(t95)) + (GIC_FABS(t162) + GIC_FABS(t143));
-        const gic_real t565 = t564 + (GIC_FABS(t211) + GIC_FABS(t192)) + (GIC_FABS(t259) + GIC_FABS(t240)) + (GIC_FABS(t319) + GIC_FABS(t297));
-        const gic_real t566 = t565 + (GIC_FABS(t380) + GIC_FABS(t358)) + (GIC_FABS(t431) + GIC_FABS(t412)) + (GIC_FABS(t482) + GIC_FABS(t463));
-        const gic_real t567 = t3 + t483;
-        const gic_real t568 = t566 + (GIC_FABS(t563) + GIC_FABS(t3));
-        const gic_real t569 = rate[15];
-        const gic_real t570 = rate[16];
-        const gic_real t571 = rate[17];
-        const gic_real t572 = rate[18];
-        const gic_real t573 = rate[19];
-        const gic_real t574 = rate[20];
-        const gic_real t575 = rate[21];
-        const gic_real t576 = rate[22];
-        energy[0] = t567;
-        energy[1] = t563;
-        energy[2] = t568;
-        acc[0] = t569;
+        const gic_real t561 = y[12] + (t16 * t551 + (t28 * t554 + t34 * t555));
+        const gic_real t562 = t557 * road560[2] + t561 * road560[1] - t556;
+        const gic_real t563 = y[2] + (t8 * t553 + (t23 * t549 + t32 * t550));
+        const gic_real t564 = R(0.4699) + road560[0] - t563;
+        const gic_real t565 = GIC_MIN(GIC_MAX(R(100.0) * t564, R(0.0)), R(1.0));
+        const gic_real t566 = t562 * (R(500.0) * ((R(3.0) - (t565 + t565)) * (t565 * t565)));
+        const gic_real t567 = t526 + t536 * GIC_MAX(t546 + R(283000.0) * t544, R(0.0)) + t556 * GIC_MAX(t566 + R(283000.0) * t564, R(0.0));
+        const gic_real t568 = GIC_FABS(t40) + GIC_FABS(t39) + (GIC_FABS(t66) + GIC_FABS(t53));
+        const gic_real t569 = t568 + (GIC_FABS(t114) + GIC_FABS(t95)) + (GIC_FABS(t162) + GIC_FABS(t143));
+        const gic_real t570 = t569 + (GIC_FABS(t211) + GIC_FABS(t192)) + (GIC_FABS(t259) + GIC_FABS(t240));
+        const gic_real t571 = t570 + (GIC_FABS(t319) + GIC_FABS(t297)) + (GIC_FABS(t380) + GIC_FABS(t358));
+        const gic_real t572 = t571 + (GIC_FABS(t431) + GIC_FABS(t412)) + (GIC_FABS(t482) + GIC_FABS(t463));
+        const gic_real t573 = t3 + t483;
+        const gic_real t574 = t572 + (GIC_FABS(t567) + GIC_FABS(t3));
+        const gic_real t575 = rate[15];
+        const gic_real t576 = rate[16];
+        const gic_real t577 = rate[17];
+        const gic_real t578 = rate[18];
+        const gic_real t579 = rate[19];
+        const gic_real t580 = rate[20];
+        const gic_real t581 = rate[21];
+        const gic_real t582 = rate[22];
+        energy[0] = t573;
+        energy[1] = t567;
+        energy[2] = t574;
+        acc[0] = t575;
         acc[3] = t35;
-        acc[1] = t570;
+        acc[1] = t576;
         acc[4] = t29;
-        acc[2] = t571;
+        acc[2] = t577;
         acc[5] = t17;
-        acc[6] = t572;
-        acc[7] = t573;
-        acc[8] = t574;
-        acc[9] = t575;
-        acc[10] = t576;
+        acc[6] = t578;
+        acc[7] = t579;
+        acc[8] = t580;
+        acc[9] = t581;
+        acc[10] = t582;
     }
     return GIC_OK;
 }

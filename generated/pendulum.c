@@ -44,7 +44,8 @@
 #define GIC_COS(x) cosf(x)
 #define GIC_ASIN(x) asinf(x)
 #define GIC_ATAN2(y, x) atan2f(y, x)
-#define GIC_STEP_SQUARE R(1.6e-11) /* a correction of 4e-6 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-7)
 #else
 #define GIC_SQRT(x) sqrt(x)
 #define GIC_FABS(x) fabs(x)
@@ -52,11 +53,14 @@
 #define GIC_COS(x) cos(x)
 #define GIC_ASIN(x) asin(x)
 #define GIC_ATAN2(y, x) atan2(y, x)
-#define GIC_STEP_SQUARE R(1e-26) /* a correction of 1e-13 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-18)
 #endif
 #define GIC_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
+
+/* far: square of a subset's distance from the base relative to its size; 16 epsilon of the distance is rounding. */
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
  * pieces in which a change of the coordinates is followed. */
@@ -94,7 +98,8 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 13; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(0.0));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -141,38 +146,39 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t2 = q[6] + q[6];
                 const gic_real t3 = q[5] * t1 - q[3] * t2;
                 const gic_real t4 = q[5] + q[5];
-                const gic_real t5 = (R(1.0) - (q[5] * t4 + q[6] * t2)) * GIC_SIN(x[0]) - (q[4] * t2 - q[3] * t4) * GIC_COS(x[0]);
-                const gic_real t6 = q[6] * t4 + q[3] * t1;
-                const gic_real t7 = f[6] * (t5 - t3 * f[4] - t6 * f[5]);
-                const gic_real t8 = f[0] * (t3 + f[1] * t7);
-                const gic_real t9 = R(0.5) * t8;
-                const gic_real t10 = R(0.5) * t7;
-                const gic_real t11 = f[2] * (t6 - f[3] * t7);
-                const gic_real t12 = R(0.5) * t11;
-                const gic_real t13 = q[3] - (q[6] * t9 + (q[5] * t10 + q[4] * t12));
-                const gic_real t14 = q[6] + (q[5] * t12 - q[4] * t10 + q[3] * t9);
-                const gic_real t15 = q[5] + (q[4] * t9 - q[6] * t12 + q[3] * t10);
-                const gic_real t16 = q[4] + (q[6] * t10 - q[5] * t9 + q[3] * t12);
-                const gic_real t17 = t14 * t14 + (t15 * t15 + t16 * t16) + t13 * t13;
-                const gic_real t18 = R(1.5) - R(0.5) * t17;
-                const gic_real t19 = t8 * t8 + (t7 * t7 + t11 * t11) + (q[2] * q[2] + (q[1] * q[1] + q[0] * q[0]));
-                const gic_real t20 = t13 * t18;
-                const gic_real t21 = t16 * t18;
-                const gic_real t22 = t15 * t18;
-                const gic_real t23 = t14 * t18;
+                const gic_real t5 = (R(1.0) - (q[5] * t4 + q[6] * t2)) * GIC_SIN(x[0]);
+                const gic_real t6 = t5 - (q[4] * t2 - q[3] * t4) * GIC_COS(x[0]);
+                const gic_real t7 = q[6] * t4 + q[3] * t1;
+                const gic_real t8 = f[6] * (t6 - t3 * f[4] - t7 * f[5]);
+                const gic_real t9 = f[0] * (t3 + f[1] * t8);
+                const gic_real t10 = R(0.5) * t9;
+                const gic_real t11 = R(0.5) * t8;
+                const gic_real t12 = f[2] * (t7 - f[3] * t8);
+                const gic_real t13 = R(0.5) * t12;
+                const gic_real t14 = q[3] - (q[6] * t10 + (q[5] * t11 + q[4] * t13));
+                const gic_real t15 = q[6] + (q[5] * t13 - q[4] * t11 + q[3] * t10);
+                const gic_real t16 = q[5] + (q[4] * t10 - q[6] * t13 + q[3] * t11);
+                const gic_real t17 = q[4] + (q[6] * t11 - q[5] * t10 + q[3] * t13);
+                const gic_real t18 = t15 * t15 + (t16 * t16 + t17 * t17) + t14 * t14;
+                const gic_real t19 = R(1.5) - R(0.5) * t18;
+                const gic_real t20 = t9 * t9 + (t8 * t8 + t12 * t12) + (q[2] * q[2] + (q[1] * q[1] + q[0] * q[0]));
+                const gic_real t21 = t14 * t19;
+                const gic_real t22 = t17 * t19;
+                const gic_real t23 = t16 * t19;
+                const gic_real t24 = t15 * t19;
                 q[0] = R(0.0);
                 q[1] = R(0.0);
                 q[2] = R(0.0);
-                q[3] = t20;
-                q[4] = t21;
-                q[5] = t22;
-                q[6] = t23;
-                step = t19;
+                q[3] = t21;
+                q[4] = t22;
+                q[5] = t23;
+                q[6] = t24;
+                step = t20;
             }
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -362,7 +368,8 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -370,6 +377,7 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -386,9 +394,11 @@ static gic_real pendulum_residual_rod(const gic_real *GIC_RESTRICT k, const pend
         const gic_real t2 = q[4] + q[4];
         const gic_real t3 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(q[0]), GIC_FABS(q[1])), GIC_FABS(q[2])), GIC_FABS(q[3] * t1 - q[5] * t2));
         const gic_real t4 = q[5] + q[5];
-        const gic_real t5 = (q[4] * t1 - q[3] * t4) * GIC_COS(x[0]) - (R(1.0) - (q[5] * t4 + q[6] * t1)) * GIC_SIN(x[0]);
-        const gic_real t6 = GIC_MAX(GIC_MAX(t3, GIC_FABS(-(q[6] * t4 + q[3] * t2))), GIC_FABS(t5));
-        worst = t6;
+        const gic_real t5 = GIC_MAX(t3, GIC_FABS(-(q[6] * t4 + q[3] * t2)));
+        const gic_real t6 = (R(1.0) - (q[5] * t4 + q[6] * t1)) * GIC_SIN(x[0]);
+        const gic_real t7 = (q[4] * t1 - q[3] * t4) * GIC_COS(x[0]) - t6;
+        const gic_real t8 = GIC_MAX(t5, GIC_FABS(t7));
+        worst = t8;
     }
     return worst;
 }

@@ -63,7 +63,8 @@
 #define GIC_COS(x) cosf(x)
 #define GIC_ASIN(x) asinf(x)
 #define GIC_ATAN2(y, x) atan2f(y, x)
-#define GIC_STEP_SQUARE R(1.6e-11) /* a correction of 4e-6 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-7)
 #else
 #define GIC_SQRT(x) sqrt(x)
 #define GIC_FABS(x) fabs(x)
@@ -71,11 +72,14 @@
 #define GIC_COS(x) cos(x)
 #define GIC_ASIN(x) asin(x)
 #define GIC_ATAN2(y, x) atan2(y, x)
-#define GIC_STEP_SQUARE R(1e-26) /* a correction of 1e-13 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-18)
 #endif
 #define GIC_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
+
+/* far: square of a subset's distance from the base relative to its size; 16 epsilon of the distance is rounding. */
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
  * pieces in which a change of the coordinates is followed. */
@@ -113,7 +117,8 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 13; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(0.4719690000000001));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -191,7 +196,7 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -323,7 +328,8 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -331,6 +337,7 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -347,8 +354,8 @@ static gic_real quarter_car_residual_carriage(const gic_real *GIC_RESTRICT k, co
         const gic_real t2 = q[5] + q[5];
         const gic_real t3 = q[4] + q[4];
         const gic_real t4 = GIC_MAX(GIC_FABS(q[4] * t1 + q[3] * t2), GIC_FABS(q[6] * t2 - q[3] * t3));
-        const gic_real t5 = GIC_MAX(GIC_MAX(GIC_MAX(t4, GIC_FABS(q[5] * t3 - q[3] * t1)), GIC_FABS(q[0])), GIC_FABS(q[1]));
-        const gic_real t6 = GIC_MAX(t5, GIC_FABS(q[2] - R(0.687) - x[0]));
+        const gic_real t5 = GIC_MAX(GIC_MAX(t4, GIC_FABS(q[5] * t3 - q[3] * t1)), GIC_FABS(q[0]));
+        const gic_real t6 = GIC_MAX(GIC_MAX(t5, GIC_FABS(q[1])), GIC_FABS(q[2] - R(0.687) - x[0]));
         worst = t6;
     }
     return worst;
@@ -374,7 +381,8 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 19; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(4.735329459563454));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -485,7 +493,7 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -834,7 +842,8 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -842,6 +851,7 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -874,22 +884,23 @@ static gic_real quarter_car_residual_arm(const gic_real *GIC_RESTRICT k, const q
         const gic_real t17 = R(1.0) - (t15 + t16);
         const gic_real t18 = R(0.9999999999999998) * t17;
         const gic_real t19 = (m0[10] * t9 + (m0[7] * t14 + m0[4] * t18)) * R(1.0000000000000002);
-        const gic_real t20 = (m0[11] * t9 + (m0[8] * t14 + m0[5] * t18)) * R(1.0000000000000002);
-        const gic_real t21 = q[4] * t10;
-        const gic_real t22 = q[6] * t6;
-        const gic_real t23 = q[3] * t10;
-        const gic_real t24 = R(0.01121887479261392) * (R(1.0) - (t21 + t15)) + (R(0.2403881036540444) * (t22 + t23) + R(0.09720579999999997) * t8);
-        const gic_real t25 = m0[2] + (R(-0.015515000000000057) * m0[11] + (R(0.509778) * m0[10] + R(0.104013) * m0[9]));
-        const gic_real t26 = q[2] + t24 - t25;
-        const gic_real t27 = R(0.01121887479261392) * (t22 - t23) + (R(0.2403881036540444) * (R(1.0) - (t21 + t16)) + R(0.09720579999999997) * t13);
-        const gic_real t28 = m0[1] + (R(-0.015515000000000057) * m0[8] + (R(0.509778) * m0[7] + R(0.104013) * m0[6]));
-        const gic_real t29 = q[1] + t27 - t28;
-        const gic_real t30 = R(0.01121887479261392) * (t5 + t7) + (R(0.2403881036540444) * (t11 - t12) + R(0.09720579999999997) * t17);
-        const gic_real t31 = m0[0] + (R(-0.015515000000000057) * m0[5] + (R(0.509778) * m0[4] + R(0.104013) * m0[3]));
-        const gic_real t32 = q[0] + t30 - t31;
-        const gic_real t33 = t26 * t26 + (t29 * t29 + t32 * t32) - x[0] * x[0];
-        const gic_real t34 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(t1), GIC_FABS(t2)), GIC_FABS(t3)), GIC_FABS(t19)), GIC_FABS(t20)), GIC_FABS(t33 * R(7.892375927523104)));
-        worst = t34;
+        const gic_real t20 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(t1), GIC_FABS(t2)), GIC_FABS(t3)), GIC_FABS(t19));
+        const gic_real t21 = (m0[11] * t9 + (m0[8] * t14 + m0[5] * t18)) * R(1.0000000000000002);
+        const gic_real t22 = q[4] * t10;
+        const gic_real t23 = q[6] * t6;
+        const gic_real t24 = q[3] * t10;
+        const gic_real t25 = R(0.01121887479261392) * (R(1.0) - (t22 + t15)) + (R(0.2403881036540444) * (t23 + t24) + R(0.09720579999999997) * t8);
+        const gic_real t26 = m0[2] + (R(-0.015515000000000057) * m0[11] + (R(0.509778) * m0[10] + R(0.104013) * m0[9]));
+        const gic_real t27 = q[2] + t25 - t26;
+        const gic_real t28 = R(0.01121887479261392) * (t23 - t24) + (R(0.2403881036540444) * (R(1.0) - (t22 + t16)) + R(0.09720579999999997) * t13);
+        const gic_real t29 = m0[1] + (R(-0.015515000000000057) * m0[8] + (R(0.509778) * m0[7] + R(0.104013) * m0[6]));
+        const gic_real t30 = q[1] + t28 - t29;
+        const gic_real t31 = R(0.01121887479261392) * (t5 + t7) + (R(0.2403881036540444) * (t11 - t12) + R(0.09720579999999997) * t17);
+        const gic_real t32 = m0[0] + (R(-0.015515000000000057) * m0[5] + (R(0.509778) * m0[4] + R(0.104013) * m0[3]));
+        const gic_real t33 = q[0] + t31 - t32;
+        const gic_real t34 = t27 * t27 + (t30 * t30 + t33 * t33) - x[0] * x[0];
+        const gic_real t35 = GIC_MAX(GIC_MAX(t20, GIC_FABS(t21)), GIC_FABS(t34 * R(7.892375927523104)));
+        worst = t35;
     }
     return worst;
 }
@@ -914,7 +925,8 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 19; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(6.400399145209049));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -1046,7 +1058,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -1432,7 +1444,8 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -1440,6 +1453,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -1455,8 +1469,8 @@ static gic_real quarter_car_residual_wheel(const gic_real *GIC_RESTRICT k, const
     {
         const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (R(0.49375935710120966) * m1[4] + R(-0.035559999999999994) * m1[3]));
         const gic_real t2 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (R(0.49375935710120966) * m1[7] + R(-0.035559999999999994) * m1[6]));
-        const gic_real t3 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (R(0.49375935710120966) * m1[10] + R(-0.035559999999999994) * m1[9]));
-        const gic_real t4 = GIC_MAX(GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928075656552032)), GIC_FABS((q[1] - t2) * R(2.928075656552032))), GIC_FABS((q[2] - t3) * R(2.928075656552032)));
+        const gic_real t3 = GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928075656552032)), GIC_FABS((q[1] - t2) * R(2.928075656552032)));
+        const gic_real t4 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (R(0.49375935710120966) * m1[10] + R(-0.035559999999999994) * m1[9]));
         const gic_real t5 = q[4] + q[4];
         const gic_real t6 = q[4] * t5;
         const gic_real t7 = q[5] + q[5];
@@ -1488,21 +1502,22 @@ static gic_real quarter_car_residual_wheel(const gic_real *GIC_RESTRICT k, const
         const gic_real t33 = m0[0] + (R(-0.1587710000000001) * m0[5] + (R(0.448437) * m0[4] + R(-0.250317) * m0[3]));
         const gic_real t34 = t32 - t33;
         const gic_real t35 = t19 * t19 + (t28 * t28 + t34 * t34) - R(0.14941089924212003);
-        const gic_real t36 = q[2] + (R(0.33360360000000006) * t9 + (R(-0.07099299999999997) * t12 + R(-0.017475199999999996) * t16));
-        const gic_real t37 = m0[2] + (R(0.021117699999999906) * m0[11] + (R(0.4527638) * m0[10] + R(-0.095082) * m0[9]));
-        const gic_real t38 = t36 - t37;
-        const gic_real t39 = q[1] + (R(0.33360360000000006) * t20 + (R(-0.07099299999999997) * t22 + R(-0.017475199999999996) * t25));
-        const gic_real t40 = m0[1] + (R(0.021117699999999906) * m0[8] + (R(0.4527638) * m0[7] + R(-0.095082) * m0[6]));
-        const gic_real t41 = t39 - t40;
-        const gic_real t42 = q[0] + (R(0.33360360000000006) * t29 + (R(-0.07099299999999997) * t30 + R(-0.017475199999999996) * t31));
-        const gic_real t43 = m0[0] + (R(0.021117699999999906) * m0[5] + (R(0.4527638) * m0[4] + R(-0.095082) * m0[3]));
-        const gic_real t44 = t42 - t43;
-        const gic_real t45 = t38 * t38 + (t41 * t41 + t44 * t44) - R(0.07115456010869);
-        const gic_real t46 = t38 * (R(0.21526024724178433) * m0[11] + (R(-0.1394133303209898) * m0[10] + R(0.9665541626242249) * m0[9]));
-        const gic_real t47 = t41 * (R(0.21526024724178433) * m0[8] + (R(-0.1394133303209898) * m0[7] + R(0.9665541626242249) * m0[6]));
-        const gic_real t48 = t44 * (R(0.21526024724178433) * m0[5] + (R(-0.1394133303209898) * m0[4] + R(0.9665541626242249) * m0[3]));
-        const gic_real t49 = GIC_MAX(GIC_MAX(GIC_MAX(t4, GIC_FABS(t35 * R(3.9285226675160785))), GIC_FABS(t45 * R(5.571891251504319))), GIC_FABS((t46 + (t47 + t48) - R(4.311654514671526e-08)) * R(3.029396354366955)));
-        worst = t49;
+        const gic_real t36 = GIC_MAX(GIC_MAX(t3, GIC_FABS((q[2] - t4) * R(2.928075656552032))), GIC_FABS(t35 * R(3.9285226675160785)));
+        const gic_real t37 = q[2] + (R(0.33360360000000006) * t9 + (R(-0.07099299999999997) * t12 + R(-0.017475199999999996) * t16));
+        const gic_real t38 = m0[2] + (R(0.021117699999999906) * m0[11] + (R(0.4527638) * m0[10] + R(-0.095082) * m0[9]));
+        const gic_real t39 = t37 - t38;
+        const gic_real t40 = q[1] + (R(0.33360360000000006) * t20 + (R(-0.07099299999999997) * t22 + R(-0.017475199999999996) * t25));
+        const gic_real t41 = m0[1] + (R(0.021117699999999906) * m0[8] + (R(0.4527638) * m0[7] + R(-0.095082) * m0[6]));
+        const gic_real t42 = t40 - t41;
+        const gic_real t43 = q[0] + (R(0.33360360000000006) * t29 + (R(-0.07099299999999997) * t30 + R(-0.017475199999999996) * t31));
+        const gic_real t44 = m0[0] + (R(0.021117699999999906) * m0[5] + (R(0.4527638) * m0[4] + R(-0.095082) * m0[3]));
+        const gic_real t45 = t43 - t44;
+        const gic_real t46 = t39 * t39 + (t42 * t42 + t45 * t45) - R(0.07115456010869);
+        const gic_real t47 = t39 * (R(0.21526024724178433) * m0[11] + (R(-0.1394133303209898) * m0[10] + R(0.9665541626242249) * m0[9]));
+        const gic_real t48 = t42 * (R(0.21526024724178433) * m0[8] + (R(-0.1394133303209898) * m0[7] + R(0.9665541626242249) * m0[6]));
+        const gic_real t49 = t45 * (R(0.21526024724178433) * m0[5] + (R(-0.1394133303209898) * m0[4] + R(0.9665541626242249) * m0[3]));
+        const gic_real t50 = GIC_MAX(GIC_MAX(t36, GIC_FABS(t46 * R(5.571891251504319))), GIC_FABS((t47 + (t48 + t49) - R(4.311654514671526e-08)) * R(3.029396354366955)));
+        worst = t50;
     }
     return worst;
 }
@@ -1665,23 +1680,25 @@ static int quarter_car_dynamics(const quarter_car *self, gic_real time, const gi
         gic_real road10[3];
         if (!road_height(self, time, m[66] + t7, m[67] + t9, road10))
             return GIC_ERROR_ROAD;
-        const gic_real t11 = (m[82] + (m[80] * t7 - m[78] * t8)) * road10[2] + (m[81] + (m[79] * t8 - m[80] * t9)) * road10[1];
-        const gic_real t12 = road10[0] + R(0.4699) - (m[68] + t8);
-        const gic_real t13 = GIC_MIN(GIC_MAX(t12 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t14 = (t11 - (m[83] + (m[78] * t9 - m[79] * t7))) * ((R(3.0) - (t13 + t13)) * (t13 * t13) * R(500.0));
-        const gic_real t15 = GIC_MAX(t14 + t12 * R(283000.0), R(0.0));
-        const gic_real t16 = t15 * (m[95] + (m[90] * t9 - m[91] * t7)) - (n[21] + n[51] + n[76]);
-        const gic_real t17 = t16 - (n[17] + n[47] + n[72]) * R(9.81);
-        const gic_real t18 = t15 * (m[101] + (m[96] * t9 - m[97] * t7)) - ((x[1] - R(0.31658)) * R(167070.9) + xd[1] * R(17490.8));
-        const gic_real t19 = t18 - (n[44] + n[83]) - (n[40] + n[79]) * R(9.81) - t17 * t5;
-        const gic_real t20 = R(1.0) / t6 * t19;
-        const gic_real t21 = xd[0];
-        const gic_real t22 = t17 * t4 - t5 * t20;
-        const gic_real t23 = xd[1];
-        rate[0] = t21;
-        rate[2] = t22;
-        rate[1] = t23;
-        rate[3] = t20;
+        const gic_real t11 = (m[82] + (m[80] * t7 - m[78] * t8)) * road10[2];
+        const gic_real t12 = (m[81] + (m[79] * t8 - m[80] * t9)) * road10[1];
+        const gic_real t13 = t11 + t12 - (m[83] + (m[78] * t9 - m[79] * t7));
+        const gic_real t14 = road10[0] + R(0.4699) - (m[68] + t8);
+        const gic_real t15 = GIC_MIN(GIC_MAX(t14 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t16 = t13 * ((R(3.0) - (t15 + t15)) * (t15 * t15) * R(500.0));
+        const gic_real t17 = GIC_MAX(t16 + t14 * R(283000.0), R(0.0));
+        const gic_real t18 = t17 * (m[95] + (m[90] * t9 - m[91] * t7)) - (n[21] + n[51] + n[76]);
+        const gic_real t19 = t18 - (n[17] + n[47] + n[72]) * R(9.81);
+        const gic_real t20 = t17 * (m[101] + (m[96] * t9 - m[97] * t7)) - ((x[1] - R(0.31658)) * R(167070.9) + xd[1] * R(17490.8));
+        const gic_real t21 = t20 - (n[44] + n[83]) - (n[40] + n[79]) * R(9.81) - t19 * t5;
+        const gic_real t22 = R(1.0) / t6 * t21;
+        const gic_real t23 = xd[0];
+        const gic_real t24 = t19 * t4 - t5 * t22;
+        const gic_real t25 = xd[1];
+        rate[0] = t23;
+        rate[2] = t24;
+        rate[1] = t25;
+        rate[3] = t22;
     }
     return GIC_OK;
 }
@@ -1710,109 +1727,110 @@ static int quarter_car_measure(const quarter_car *self, gic_real time, const gic
         gic_real road15[3];
         if (!road_height(self, time, t4, t8, road15))
             return GIC_ERROR_ROAD;
-        const gic_real t16 = (m[82] + (m[80] * t3 - m[78] * t11)) * road15[2] + (m[81] + (m[79] * t11 - m[80] * t7)) * road15[1];
-        const gic_real t17 = t16 - (m[83] + (m[78] * t7 - m[79] * t3));
-        const gic_real t18 = road15[0] + R(0.4699) - t12;
-        const gic_real t19 = GIC_MIN(GIC_MAX(t18 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t20 = t17 * ((R(3.0) - (t19 + t19)) * (t19 * t19) * R(500.0));
-        const gic_real t21 = m[11] * (m[11] * R(100.0)) + (m[10] * (m[10] * R(100.0)) + m[9] * (m[9] * R(100.0)));
-        const gic_real t22 = m[8] * R(100.0);
-        const gic_real t23 = m[7] * R(100.0);
-        const gic_real t24 = m[6] * R(100.0);
-        const gic_real t25 = m[11] * t22 + (m[10] * t23 + m[9] * t24);
-        const gic_real t26 = m[5] * R(100.0);
-        const gic_real t27 = m[4] * R(100.0);
-        const gic_real t28 = m[3] * R(100.0);
-        const gic_real t29 = m[11] * t26 + (m[10] * t27 + m[9] * t28);
-        const gic_real t30 = m[14] * (m[14] * t21 + (m[13] * t25 + m[12] * t29));
-        const gic_real t31 = m[13] * (m[8] * t22 + (m[7] * t23 + m[6] * t24));
-        const gic_real t32 = m[8] * t26 + (m[7] * t27 + m[6] * t28);
-        const gic_real t33 = m[12] * (m[5] * t26 + (m[4] * t27 + m[3] * t28));
-        const gic_real t34 = m[13] * (m[14] * t25 + (t31 + m[12] * t32)) + m[12] * (m[14] * t29 + (m[13] * t32 + t33));
-        const gic_real t35 = R(525.59) * (m[17] * m[17] + (m[16] * m[16] + m[15] * m[15]));
-        const gic_real t36 = m[41] * (m[41] * R(0.8938)) + (m[40] * (m[40] * R(0.4469)) + m[39] * (m[39] * R(0.4469)));
-        const gic_real t37 = m[38] * R(0.8938);
-        const gic_real t38 = m[37] * R(0.4469);
-        const gic_real t39 = m[36] * R(0.4469);
-        const gic_real t40 = m[41] * t37 + (m[40] * t38 + m[39] * t39);
-        const gic_real t41 = m[35] * R(0.8938);
-        const gic_real t42 = m[34] * R(0.4469);
-        const gic_real t43 = m[33] * R(0.4469);
-        const gic_real t44 = m[41] * t41 + (m[40] * t42 + m[39] * t43);
-        const gic_real t45 = m[44] * (m[44] * t36 + (m[43] * t40 + m[42] * t44));
-        const gic_real t46 = m[43] * (m[38] * t37 + (m[37] * t38 + m[36] * t39));
-        const gic_real t47 = m[38] * t41 + (m[37] * t42 + m[36] * t43);
-        const gic_real t48 = m[42] * (m[35] * t41 + (m[34] * t42 + m[33] * t43));
-        const gic_real t49 = m[43] * (m[44] * t40 + (t46 + m[42] * t47)) + m[42] * (m[44] * t44 + (m[43] * t47 + t48));
-        const gic_real t50 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t51 = m[35] * R(3.0379110359107786e-06) + m[34] * R(0.24689200985615367);
-        const gic_real t52 = m[47] + (m[42] * t50 - m[43] * t51);
-        const gic_real t53 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t54 = m[46] + (m[44] * t51 - m[42] * t53);
-        const gic_real t55 = m[45] + (m[43] * t53 - m[44] * t50);
-        const gic_real t56 = R(23.965) * (t52 * t52 + (t54 * t54 + t55 * t55));
-        const gic_real t57 = R(0.5) * (t30 + t34 + t35) + R(0.5) * (t45 + t49 + t56);
-        const gic_real t58 = m[77] * (m[77] * R(4.7728205)) + (m[76] * (m[76] * R(7.58122)) + m[75] * (m[75] * R(4.8947505)));
-        const gic_real t59 = m[74] * R(4.7728205);
-        const gic_real t60 = m[73] * R(7.58122);
-        const gic_real t61 = m[72] * R(4.8947505);
-        const gic_real t62 = m[77] * t59 + (m[76] * t60 + m[75] * t61);
-        const gic_real t63 = m[71] * R(4.7728205);
-        const gic_real t64 = m[70] * R(7.58122);
-        const gic_real t65 = m[69] * R(4.8947505);
-        const gic_real t66 = m[77] * t63 + (m[76] * t64 + m[75] * t65);
-        const gic_real t67 = m[80] * (m[80] * t58 + (m[79] * t62 + m[78] * t66));
-        const gic_real t68 = m[79] * (m[74] * t59 + (m[73] * t60 + m[72] * t61));
-        const gic_real t69 = m[74] * t63 + (m[73] * t64 + m[72] * t65);
-        const gic_real t70 = m[78] * (m[71] * t63 + (m[70] * t64 + m[69] * t65));
-        const gic_real t71 = m[79] * (m[80] * t62 + (t68 + m[78] * t69)) + m[78] * (m[80] * t66 + (m[79] * t69 + t70));
-        const gic_real t72 = t5 + (t6 + m[73] * R(0.08910630000000008));
-        const gic_real t73 = t1 + (t2 + m[70] * R(0.08910630000000008));
-        const gic_real t74 = m[83] + (m[78] * t72 - m[79] * t73);
-        const gic_real t75 = t9 + (t10 + m[76] * R(0.08910630000000008));
-        const gic_real t76 = m[82] + (m[80] * t73 - m[78] * t75);
-        const gic_real t77 = m[81] + (m[79] * t75 - m[80] * t72);
-        const gic_real t78 = R(90.555) * (t74 * t74 + (t76 * t76 + t77 * t77));
-        const gic_real t79 = t13 * t14 * R(0.5) - m[2] * R(-5156.0379) - (m[32] + t53) * R(-235.09665);
-        const gic_real t80 = m[0];
-        const gic_real t81 = m[1];
-        const gic_real t82 = m[2];
-        const gic_real t83 = m[21] + m[27] * rate[2];
-        const gic_real t84 = m[22] + m[28] * rate[2];
-        const gic_real t85 = R(-9.81) + (m[23] + R(9.81) + m[29] * rate[2]);
-        const gic_real t86 = x[0];
-        const gic_real t87 = xd[0];
-        const gic_real t88 = rate[2];
-        const gic_real t89 = x[1];
-        const gic_real t90 = xd[1];
-        const gic_real t91 = rate[3];
-        const gic_real t92 = -(t14 + t90 * R(17490.8));
-        const gic_real t93 = GIC_MAX(t20 + t18 * R(283000.0), R(0.0));
-        const gic_real t94 = road15[0];
-        const gic_real t95 = t57 + R(0.5) * (t67 + t71 + t78);
-        const gic_real t96 = t79 - (m[68] + t75) * R(-888.3445500000001);
-        out[0] = t80;
-        out[1] = t81;
-        out[2] = t82;
-        out[3] = t83;
-        out[4] = t84;
-        out[5] = t85;
+        const gic_real t16 = (m[82] + (m[80] * t3 - m[78] * t11)) * road15[2];
+        const gic_real t17 = (m[81] + (m[79] * t11 - m[80] * t7)) * road15[1];
+        const gic_real t18 = t16 + t17 - (m[83] + (m[78] * t7 - m[79] * t3));
+        const gic_real t19 = road15[0] + R(0.4699) - t12;
+        const gic_real t20 = GIC_MIN(GIC_MAX(t19 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t21 = t18 * ((R(3.0) - (t20 + t20)) * (t20 * t20) * R(500.0));
+        const gic_real t22 = m[11] * (m[11] * R(100.0)) + (m[10] * (m[10] * R(100.0)) + m[9] * (m[9] * R(100.0)));
+        const gic_real t23 = m[8] * R(100.0);
+        const gic_real t24 = m[7] * R(100.0);
+        const gic_real t25 = m[6] * R(100.0);
+        const gic_real t26 = m[11] * t23 + (m[10] * t24 + m[9] * t25);
+        const gic_real t27 = m[5] * R(100.0);
+        const gic_real t28 = m[4] * R(100.0);
+        const gic_real t29 = m[3] * R(100.0);
+        const gic_real t30 = m[11] * t27 + (m[10] * t28 + m[9] * t29);
+        const gic_real t31 = m[14] * (m[14] * t22 + (m[13] * t26 + m[12] * t30));
+        const gic_real t32 = m[13] * (m[8] * t23 + (m[7] * t24 + m[6] * t25));
+        const gic_real t33 = m[8] * t27 + (m[7] * t28 + m[6] * t29);
+        const gic_real t34 = m[12] * (m[5] * t27 + (m[4] * t28 + m[3] * t29));
+        const gic_real t35 = m[13] * (m[14] * t26 + (t32 + m[12] * t33)) + m[12] * (m[14] * t30 + (m[13] * t33 + t34));
+        const gic_real t36 = R(525.59) * (m[17] * m[17] + (m[16] * m[16] + m[15] * m[15]));
+        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + (m[40] * (m[40] * R(0.4469)) + m[39] * (m[39] * R(0.4469)));
+        const gic_real t38 = m[38] * R(0.8938);
+        const gic_real t39 = m[37] * R(0.4469);
+        const gic_real t40 = m[36] * R(0.4469);
+        const gic_real t41 = m[41] * t38 + (m[40] * t39 + m[39] * t40);
+        const gic_real t42 = m[35] * R(0.8938);
+        const gic_real t43 = m[34] * R(0.4469);
+        const gic_real t44 = m[33] * R(0.4469);
+        const gic_real t45 = m[41] * t42 + (m[40] * t43 + m[39] * t44);
+        const gic_real t46 = m[44] * (m[44] * t37 + (m[43] * t41 + m[42] * t45));
+        const gic_real t47 = m[43] * (m[38] * t38 + (m[37] * t39 + m[36] * t40));
+        const gic_real t48 = m[38] * t42 + (m[37] * t43 + m[36] * t44);
+        const gic_real t49 = m[42] * (m[35] * t42 + (m[34] * t43 + m[33] * t44));
+        const gic_real t50 = m[43] * (m[44] * t41 + (t47 + m[42] * t48)) + m[42] * (m[44] * t45 + (m[43] * t48 + t49));
+        const gic_real t51 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t52 = m[35] * R(3.0379110359107786e-06) + m[34] * R(0.24689200985615367);
+        const gic_real t53 = m[47] + (m[42] * t51 - m[43] * t52);
+        const gic_real t54 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
+        const gic_real t55 = m[46] + (m[44] * t52 - m[42] * t54);
+        const gic_real t56 = m[45] + (m[43] * t54 - m[44] * t51);
+        const gic_real t57 = R(23.965) * (t53 * t53 + (t55 * t55 + t56 * t56));
+        const gic_real t58 = R(0.5) * (t31 + t35 + t36) + R(0.5) * (t46 + t50 + t57);
+        const gic_real t59 = m[77] * (m[77] * R(4.7728205)) + (m[76] * (m[76] * R(7.58122)) + m[75] * (m[75] * R(4.8947505)));
+        const gic_real t60 = m[74] * R(4.7728205);
+        const gic_real t61 = m[73] * R(7.58122);
+        const gic_real t62 = m[72] * R(4.8947505);
+        const gic_real t63 = m[77] * t60 + (m[76] * t61 + m[75] * t62);
+        const gic_real t64 = m[71] * R(4.7728205);
+        const gic_real t65 = m[70] * R(7.58122);
+        const gic_real t66 = m[69] * R(4.8947505);
+        const gic_real t67 = m[77] * t64 + (m[76] * t65 + m[75] * t66);
+        const gic_real t68 = m[80] * (m[80] * t59 + (m[79] * t63 + m[78] * t67));
+        const gic_real t69 = m[79] * (m[74] * t60 + (m[73] * t61 + m[72] * t62));
+        const gic_real t70 = m[74] * t64 + (m[73] * t65 + m[72] * t66);
+        const gic_real t71 = m[78] * (m[71] * t64 + (m[70] * t65 + m[69] * t66));
+        const gic_real t72 = m[79] * (m[80] * t63 + (t69 + m[78] * t70)) + m[78] * (m[80] * t67 + (m[79] * t70 + t71));
+        const gic_real t73 = t5 + (t6 + m[73] * R(0.08910630000000008));
+        const gic_real t74 = t1 + (t2 + m[70] * R(0.08910630000000008));
+        const gic_real t75 = m[83] + (m[78] * t73 - m[79] * t74);
+        const gic_real t76 = t9 + (t10 + m[76] * R(0.08910630000000008));
+        const gic_real t77 = m[82] + (m[80] * t74 - m[78] * t76);
+        const gic_real t78 = m[81] + (m[79] * t76 - m[80] * t73);
+        const gic_real t79 = R(90.555) * (t75 * t75 + (t77 * t77 + t78 * t78));
+        const gic_real t80 = t13 * t14 * R(0.5) - m[2] * R(-5156.0379) - (m[32] + t54) * R(-235.09665);
+        const gic_real t81 = m[0];
+        const gic_real t82 = m[1];
+        const gic_real t83 = m[2];
+        const gic_real t84 = m[21] + m[27] * rate[2];
+        const gic_real t85 = m[22] + m[28] * rate[2];
+        const gic_real t86 = R(-9.81) + (m[23] + R(9.81) + m[29] * rate[2]);
+        const gic_real t87 = x[0];
+        const gic_real t88 = xd[0];
+        const gic_real t89 = rate[2];
+        const gic_real t90 = x[1];
+        const gic_real t91 = xd[1];
+        const gic_real t92 = rate[3];
+        const gic_real t93 = -(t14 + t91 * R(17490.8));
+        const gic_real t94 = GIC_MAX(t21 + t19 * R(283000.0), R(0.0));
+        const gic_real t95 = road15[0];
+        const gic_real t96 = t58 + R(0.5) * (t68 + t72 + t79);
+        const gic_real t97 = t80 - (m[68] + t76) * R(-888.3445500000001);
+        out[0] = t81;
+        out[1] = t82;
+        out[2] = t83;
+        out[3] = t84;
+        out[4] = t85;
+        out[5] = t86;
         out[6] = t4;
         out[7] = t8;
         out[8] = t12;
-        out[9] = t86;
-        out[10] = t87;
-        out[11] = t88;
-        out[12] = t89;
-        out[13] = t90;
-        out[14] = t91;
-        out[15] = t92;
-        out[16] = t93;
-        out[17] = t18;
-        out[18] = t17;
-        out[19] = t94;
-        out[20] = t95;
-        out[21] = t96;
+        out[9] = t87;
+        out[10] = t88;
+        out[11] = t89;
+        out[12] = t90;
+        out[13] = t91;
+        out[14] = t92;
+        out[15] = t93;
+        out[16] = t94;
+        out[17] = t19;
+        out[18] = t18;
+        out[19] = t95;
+        out[20] = t96;
+        out[21] = t97;
     }
     return GIC_OK;
 }
@@ -2225,18 +2243,20 @@ static int quarter_car_inverse(const quarter_car *self, gic_real time, const gic
         gic_real road116[3];
         if (!road_height(self, time, m[66] + t113, m[67] + t115, road116))
             return GIC_ERROR_ROAD;
-        const gic_real t117 = (m[82] + (m[80] * t113 - m[78] * t114)) * road116[2] + (m[81] + (m[79] * t114 - m[80] * t115)) * road116[1];
-        const gic_real t118 = road116[0] + R(0.4699) - (m[68] + t114);
-        const gic_real t119 = GIC_MIN(GIC_MAX(t118 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t120 = (t117 - (m[83] + (m[78] * t115 - m[79] * t113))) * ((R(3.0) - (t119 + t119)) * (t119 * t119) * R(500.0));
-        const gic_real t121 = GIC_MAX(t120 + t118 * R(283000.0), R(0.0));
-        const gic_real t122 = t24 + t65 + t112 - t121 * (m[95] + (m[90] * t115 - m[91] * t113));
-        const gic_real t123 = m[56] * t42 + (m[55] * t44 + m[54] * t45) + (t53 * t55 + (t59 * t60 + t63 * t64));
-        const gic_real t124 = m[98] * t83 + (m[97] * t85 + m[96] * t86) + (t100 * t102 + (t106 * t107 + t110 * t111));
-        const gic_real t125 = t121 * (m[101] + (m[96] * t115 - m[97] * t113)) - ((x[1] - R(0.31658)) * R(167070.9) + xd[1] * R(17490.8));
-        const gic_real t126 = t123 + t124 - t125;
-        tau[0] = t122;
-        tau[1] = t126;
+        const gic_real t117 = (m[82] + (m[80] * t113 - m[78] * t114)) * road116[2];
+        const gic_real t118 = (m[81] + (m[79] * t114 - m[80] * t115)) * road116[1];
+        const gic_real t119 = t117 + t118 - (m[83] + (m[78] * t115 - m[79] * t113));
+        const gic_real t120 = road116[0] + R(0.4699) - (m[68] + t114);
+        const gic_real t121 = GIC_MIN(GIC_MAX(t120 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t122 = t119 * ((R(3.0) - (t121 + t121)) * (t121 * t121) * R(500.0));
+        const gic_real t123 = GIC_MAX(t122 + t120 * R(283000.0), R(0.0));
+        const gic_real t124 = t24 + t65 + t112 - t123 * (m[95] + (m[90] * t115 - m[91] * t113));
+        const gic_real t125 = m[56] * t42 + (m[55] * t44 + m[54] * t45) + (t53 * t55 + (t59 * t60 + t63 * t64));
+        const gic_real t126 = m[98] * t83 + (m[97] * t85 + m[96] * t86) + (t100 * t102 + (t106 * t107 + t110 * t111));
+        const gic_real t127 = t123 * (m[101] + (m[96] * t115 - m[97] * t113)) - ((x[1] - R(0.31658)) * R(167070.9) + xd[1] * R(17490.8));
+        const gic_real t128 = t125 + t126 - t127;
+        tau[0] = t124;
+        tau[1] = t128;
     }
     return GIC_OK;
 }
@@ -2354,19 +2374,21 @@ static int quarter_car_energy(const quarter_car *self, gic_real time, const gic_
         gic_real road103[3];
         if (!road_height(self, time, m[66] + t100, m[67] + t99, road103))
             return GIC_ERROR_ROAD;
-        const gic_real t104 = (m[82] + (m[80] * t100 - m[78] * t102)) * road103[2] + (m[81] + (m[79] * t102 - m[80] * t99)) * road103[1];
-        const gic_real t105 = road103[0] + R(0.4699) - (m[68] + t102);
-        const gic_real t106 = GIC_MIN(GIC_MAX(t105 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t107 = (t104 - t101) * ((R(3.0) - (t106 + t106)) * (t106 * t106) * R(500.0));
-        const gic_real t108 = t101 * GIC_MAX(t107 + t105 * R(283000.0), R(0.0)) - xd[1] * (xd[1] * R(17490.8));
-        const gic_real t109 = GIC_FABS(t21) + GIC_FABS(t3) + (GIC_FABS(t56) + GIC_FABS(t38)) + (GIC_FABS(t97) + GIC_FABS(t79)) + (GIC_FABS(t108) + GIC_FABS(t1));
-        const gic_real t110 = rate[2];
-        const gic_real t111 = rate[3];
+        const gic_real t104 = (m[82] + (m[80] * t100 - m[78] * t102)) * road103[2];
+        const gic_real t105 = (m[81] + (m[79] * t102 - m[80] * t99)) * road103[1];
+        const gic_real t106 = road103[0] + R(0.4699) - (m[68] + t102);
+        const gic_real t107 = GIC_MIN(GIC_MAX(t106 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t108 = (t104 + t105 - t101) * ((R(3.0) - (t107 + t107)) * (t107 * t107) * R(500.0));
+        const gic_real t109 = t101 * GIC_MAX(t108 + t106 * R(283000.0), R(0.0)) - xd[1] * (xd[1] * R(17490.8));
+        const gic_real t110 = GIC_FABS(t21) + GIC_FABS(t3) + (GIC_FABS(t56) + GIC_FABS(t38));
+        const gic_real t111 = t110 + (GIC_FABS(t97) + GIC_FABS(t79)) + (GIC_FABS(t109) + GIC_FABS(t1));
+        const gic_real t112 = rate[2];
+        const gic_real t113 = rate[3];
         energy[0] = t98;
-        energy[1] = t108;
-        energy[2] = t109;
-        acc[0] = t110;
-        acc[1] = t111;
+        energy[1] = t109;
+        energy[2] = t111;
+        acc[0] = t112;
+        acc[1] = t113;
     }
     return GIC_OK;
 }

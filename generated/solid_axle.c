@@ -82,7 +82,8 @@
 #define GIC_COS(x) cosf(x)
 #define GIC_ASIN(x) asinf(x)
 #define GIC_ATAN2(y, x) atan2f(y, x)
-#define GIC_STEP_SQUARE R(1.6e-11) /* a correction of 4e-6 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-7)
 #else
 #define GIC_SQRT(x) sqrt(x)
 #define GIC_FABS(x) fabs(x)
@@ -90,11 +91,14 @@
 #define GIC_COS(x) cos(x)
 #define GIC_ASIN(x) asin(x)
 #define GIC_ATAN2(y, x) atan2(y, x)
-#define GIC_STEP_SQUARE R(1e-26) /* a correction of 1e-13 of the subset's size is rounding */
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far)) /* squares of corrections relative to a subset's size */
+#define GIC_ROUNDING_SQUARE R(1e-18)
 #endif
 #define GIC_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
+
+/* far: square of a subset's distance from the base relative to its size; 16 epsilon of the distance is rounding. */
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
  * pieces in which a change of the coordinates is followed. */
@@ -133,7 +137,8 @@ static int solid_axle_solve_rack(solid_axle *self, const gic_real *GIC_RESTRICT 
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 13; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(2.072648852345));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -215,7 +220,7 @@ static int solid_axle_solve_rack(solid_axle *self, const gic_real *GIC_RESTRICT 
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -385,7 +390,8 @@ static int solid_axle_solve_rack(solid_axle *self, const gic_real *GIC_RESTRICT 
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -393,6 +399,7 @@ static int solid_axle_solve_rack(solid_axle *self, const gic_real *GIC_RESTRICT 
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -409,9 +416,10 @@ static gic_real solid_axle_residual_rack(const gic_real *GIC_RESTRICT k, const s
         const gic_real t2 = q[6] + q[6];
         const gic_real t3 = q[5] + q[5];
         const gic_real t4 = GIC_MAX(GIC_FABS(q[5] * t1 - q[3] * t2), GIC_FABS(-(q[6] * t3 + q[3] * t1)));
-        const gic_real t5 = GIC_MAX(GIC_MAX(t4, GIC_FABS(-(q[4] * t2 + q[3] * t3))), GIC_FABS(q[0] - R(1.438648)));
-        const gic_real t6 = GIC_MAX(GIC_MAX(t5, GIC_FABS(R(0.05422899999999997) - q[2])), GIC_FABS(q[1] - x[0]));
-        worst = t6;
+        const gic_real t5 = GIC_MAX(t4, GIC_FABS(-(q[4] * t2 + q[3] * t3)));
+        const gic_real t6 = GIC_MAX(GIC_MAX(t5, GIC_FABS(q[0] - R(1.438648))), GIC_FABS(R(0.05422899999999997) - q[2]));
+        const gic_real t7 = GIC_MAX(t6, GIC_FABS(q[1] - x[0]));
+        worst = t7;
     }
     return worst;
 }
@@ -439,7 +447,8 @@ static int solid_axle_solve_lca_fl(solid_axle *self, const gic_real *GIC_RESTRIC
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 13; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(43.74775795073613));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -541,7 +550,7 @@ static int solid_axle_solve_lca_fl(solid_axle *self, const gic_real *GIC_RESTRIC
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -795,7 +804,8 @@ static int solid_axle_solve_lca_fl(solid_axle *self, const gic_real *GIC_RESTRIC
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -803,6 +813,7 @@ static int solid_axle_solve_lca_fl(solid_axle *self, const gic_real *GIC_RESTRIC
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -815,7 +826,7 @@ static gic_real solid_axle_residual_lca_fl(const gic_real *GIC_RESTRICT k, const
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_MAX(GIC_FABS((q[0] - R(1.688965)) * R(3.852963219305648)), GIC_FABS((q[1] - k[2]) * R(3.852963219305648))), GIC_FABS(q[2] * R(3.852963219305648)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(1.688965)) * R(3.852963219305648)), GIC_FABS((q[1] - k[2]) * R(3.852963219305648)));
         const gic_real t2 = q[4] + q[4];
         const gic_real t3 = q[5] * t2;
         const gic_real t4 = q[6] + q[6];
@@ -825,20 +836,21 @@ static gic_real solid_axle_residual_lca_fl(const gic_real *GIC_RESTRICT k, const
         const gic_real t8 = q[5] + q[5];
         const gic_real t9 = q[3] * t8;
         const gic_real t10 = t7 - t9;
-        const gic_real t11 = q[4] * t2;
-        const gic_real t12 = q[5] * t8;
-        const gic_real t13 = q[6] * t8;
-        const gic_real t14 = q[3] * t2;
-        const gic_real t15 = R(0.01121887479261392) * (R(1.0) - (t11 + t12)) + (k[0] * (t13 + t14) + R(0.09720579999999998) * t10);
-        const gic_real t16 = q[2] + t15 - R(0.19748500000000002);
-        const gic_real t17 = q[6] * t4;
-        const gic_real t18 = R(0.01121887479261392) * (t13 - t14) + (k[0] * (R(1.0) - (t11 + t17)) + R(0.09720579999999998) * t6);
-        const gic_real t19 = q[1] + t18 - k[1];
-        const gic_real t20 = k[0] * (t3 - t5) + R(0.09720579999999998) * (R(1.0) - (t12 + t17));
-        const gic_real t21 = q[0] + (R(0.01121887479261392) * (t7 + t9) + t20) - R(1.792978);
-        const gic_real t22 = t16 * t16 + (t19 * t19 + t21 * t21) - x[0] * x[0];
-        const gic_real t23 = GIC_MAX(GIC_MAX(GIC_MAX(t1, GIC_FABS(t6)), GIC_FABS(t10)), GIC_FABS(t22 * R(7.892375927523102)));
-        worst = t23;
+        const gic_real t11 = GIC_MAX(GIC_MAX(GIC_MAX(t1, GIC_FABS(q[2] * R(3.852963219305648))), GIC_FABS(t6)), GIC_FABS(t10));
+        const gic_real t12 = q[4] * t2;
+        const gic_real t13 = q[5] * t8;
+        const gic_real t14 = q[6] * t8;
+        const gic_real t15 = q[3] * t2;
+        const gic_real t16 = R(0.01121887479261392) * (R(1.0) - (t12 + t13)) + (k[0] * (t14 + t15) + R(0.09720579999999998) * t10);
+        const gic_real t17 = q[2] + t16 - R(0.19748500000000002);
+        const gic_real t18 = q[6] * t4;
+        const gic_real t19 = R(0.01121887479261392) * (t14 - t15) + (k[0] * (R(1.0) - (t12 + t18)) + R(0.09720579999999998) * t6);
+        const gic_real t20 = q[1] + t19 - k[1];
+        const gic_real t21 = k[0] * (t3 - t5) + R(0.09720579999999998) * (R(1.0) - (t13 + t18));
+        const gic_real t22 = q[0] + (R(0.01121887479261392) * (t7 + t9) + t21) - R(1.792978);
+        const gic_real t23 = t17 * t17 + (t20 * t20 + t22 * t22) - x[0] * x[0];
+        const gic_real t24 = GIC_MAX(t11, GIC_FABS(t23 * R(7.892375927523102)));
+        worst = t24;
     }
     return worst;
 }
@@ -863,7 +875,8 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 19; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(5.811920471924843));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -1015,7 +1028,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -1500,7 +1513,8 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -1508,6 +1522,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -1562,14 +1577,14 @@ static gic_real solid_axle_residual_axle(const gic_real *GIC_RESTRICT k, const s
         const gic_real t40 = R(0.020000000000000018) * t39;
         const gic_real t41 = q[0] + (t37 + (t38 + t40)) - R(-0.9);
         const gic_real t42 = t29 * t29 + (t35 * t35 + t41 * t41) - R(0.4974000000000001);
-        const gic_real t43 = R(-0.38) * t9;
-        const gic_real t44 = q[2] + (t23 + (t28 + t43)) - R(-0.05399999999999999);
-        const gic_real t45 = R(-0.38) * t14;
-        const gic_real t46 = q[1] + (t31 + (t34 + t45)) - R(-0.45);
-        const gic_real t47 = R(-0.38) * t18;
-        const gic_real t48 = q[0] + (t37 + (t40 + t47)) - R(-0.9);
-        const gic_real t49 = t44 * t44 + (t46 * t46 + t48 * t48) - R(0.4974000000000001);
-        const gic_real t50 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(t4 * R(1.2965960447226863)), GIC_FABS(t20 * R(1.2965960447226863))), GIC_FABS(t42 * R(1.0557996364170446))), GIC_FABS(t49 * R(1.0557996364170446)));
+        const gic_real t43 = GIC_MAX(GIC_MAX(GIC_FABS(t4 * R(1.2965960447226863)), GIC_FABS(t20 * R(1.2965960447226863))), GIC_FABS(t42 * R(1.0557996364170446)));
+        const gic_real t44 = R(-0.38) * t9;
+        const gic_real t45 = q[2] + (t23 + (t28 + t44)) - R(-0.05399999999999999);
+        const gic_real t46 = R(-0.38) * t14;
+        const gic_real t47 = q[1] + (t31 + (t34 + t46)) - R(-0.45);
+        const gic_real t48 = R(-0.38) * t18;
+        const gic_real t49 = q[0] + (t37 + (t40 + t48)) - R(-0.9);
+        const gic_real t50 = t45 * t45 + (t47 * t47 + t49 * t49) - R(0.4974000000000001);
         const gic_real t51 = R(-0.16999999999999998) * t22;
         const gic_real t52 = R(-0.09999999999999987) * t27;
         const gic_real t53 = q[2] + (t51 + (t24 + t52)) - R(0.30600000000000005);
@@ -1580,12 +1595,13 @@ static gic_real solid_axle_residual_axle(const gic_real *GIC_RESTRICT k, const s
         const gic_real t58 = R(-0.09999999999999987) * t39;
         const gic_real t59 = q[0] + (t57 + (t38 + t58)) - R(-1.75);
         const gic_real t60 = t53 * t53 + (t56 * t56 + t59 * t59) - x[0] * x[0];
-        const gic_real t61 = q[2] + (t51 + (t43 + t52)) - R(0.30600000000000005);
-        const gic_real t62 = q[1] + (t54 + (t45 + t55)) - R(-0.45);
-        const gic_real t63 = q[0] + (t57 + (t47 + t58)) - R(-1.75);
-        const gic_real t64 = t61 * t61 + (t62 * t62 + t63 * t63) - x[1] * x[1];
-        const gic_real t65 = GIC_MAX(GIC_MAX(t50, GIC_FABS(t60 * R(2.2395749863391856))), GIC_FABS(t64 * R(2.2395749863391856)));
-        worst = t65;
+        const gic_real t61 = GIC_MAX(GIC_MAX(t43, GIC_FABS(t50 * R(1.0557996364170446))), GIC_FABS(t60 * R(2.2395749863391856)));
+        const gic_real t62 = q[2] + (t51 + (t44 + t52)) - R(0.30600000000000005);
+        const gic_real t63 = q[1] + (t54 + (t46 + t55)) - R(-0.45);
+        const gic_real t64 = q[0] + (t57 + (t48 + t58)) - R(-1.75);
+        const gic_real t65 = t62 * t62 + (t63 * t63 + t64 * t64) - x[1] * x[1];
+        const gic_real t66 = GIC_MAX(t61, GIC_FABS(t65 * R(2.2395749863391856)));
+        worst = t66;
     }
     return worst;
 }
@@ -1616,7 +1632,8 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
     const gic_real *const s = old + 7; /* unit velocities at the start */
     const gic_real *const f = old + 19; /* factors at the start */
     gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0);
+    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
+    const gic_real enough = GIC_ENOUGH(R(28.861380328376388));
     int i;
     (void)k;
     for (i = 0; i < 7; ++i)
@@ -1739,7 +1756,7 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= GIC_STEP_SQUARE)
+            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
         }
     }
@@ -2125,7 +2142,8 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
-        if (step <= GIC_STEP_SQUARE) {
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -2133,6 +2151,7 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
                 start[i] = q[i];
             return GIC_OK;
         }
+        before = step;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -2148,8 +2167,8 @@ static gic_real solid_axle_residual_wheel_fl(const gic_real *GIC_RESTRICT k, con
     {
         const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[5] * m1[4] + R(-0.03556000000000003) * m1[3]));
         const gic_real t2 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[5] * m1[7] + R(-0.03556000000000003) * m1[6]));
-        const gic_real t3 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[5] * m1[10] + R(-0.03556000000000003) * m1[9]));
-        const gic_real t4 = GIC_MAX(GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928075656552032)), GIC_FABS((q[1] - t2) * R(2.928075656552032))), GIC_FABS((q[2] - t3) * R(2.928075656552032)));
+        const gic_real t3 = GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928075656552032)), GIC_FABS((q[1] - t2) * R(2.928075656552032)));
+        const gic_real t4 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[5] * m1[10] + R(-0.03556000000000003) * m1[9]));
         const gic_real t5 = q[4] + q[4];
         const gic_real t6 = q[4] * t5;
         const gic_real t7 = q[5] + q[5];
@@ -2178,16 +2197,17 @@ static gic_real solid_axle_residual_wheel_fl(const gic_real *GIC_RESTRICT k, con
         const gic_real t30 = q[0] + (R(0.10177780000000003) * t27 + (k[0] * t28 + R(-0.14025880000000002) * t29));
         const gic_real t31 = t30 - (m0[0] + k[1] * m0[4]);
         const gic_real t32 = t18 * t18 + (t26 * t26 + t31 * t31) - R(0.14941089924212003);
-        const gic_real t33 = q[2] + (R(0.33360360000000006) * t9 + (k[2] * t12 + R(-0.017475200000000024) * t16));
-        const gic_real t34 = t33 - R(0.23411769999999998);
-        const gic_real t35 = q[1] + (R(0.33360360000000006) * t19 + (k[2] * t21 + R(-0.017475200000000024) * t24));
-        const gic_real t36 = t35 - k[3];
-        const gic_real t37 = q[0] + (R(0.33360360000000006) * t27 + (k[2] * t28 + R(-0.017475200000000024) * t29));
-        const gic_real t38 = t37 - R(1.593883);
-        const gic_real t39 = t34 * t34 + (t36 * t36 + t38 * t38) - R(0.07115456010869);
-        const gic_real t40 = R(0.21526024724178433) * t34 + (k[4] * t36 + R(0.9665541626242249) * t38) - R(4.3116545195287515e-08);
-        const gic_real t41 = GIC_MAX(GIC_MAX(GIC_MAX(t4, GIC_FABS(t32 * R(3.9285226675160785))), GIC_FABS(t39 * R(5.571891251504319))), GIC_FABS(t40 * R(3.029396354366955)));
-        worst = t41;
+        const gic_real t33 = GIC_MAX(GIC_MAX(t3, GIC_FABS((q[2] - t4) * R(2.928075656552032))), GIC_FABS(t32 * R(3.9285226675160785)));
+        const gic_real t34 = q[2] + (R(0.33360360000000006) * t9 + (k[2] * t12 + R(-0.017475200000000024) * t16));
+        const gic_real t35 = t34 - R(0.23411769999999998);
+        const gic_real t36 = q[1] + (R(0.33360360000000006) * t19 + (k[2] * t21 + R(-0.017475200000000024) * t24));
+        const gic_real t37 = t36 - k[3];
+        const gic_real t38 = q[0] + (R(0.33360360000000006) * t27 + (k[2] * t28 + R(-0.017475200000000024) * t29));
+        const gic_real t39 = t38 - R(1.593883);
+        const gic_real t40 = t35 * t35 + (t37 * t37 + t39 * t39) - R(0.07115456010869);
+        const gic_real t41 = R(0.21526024724178433) * t35 + (k[4] * t37 + R(0.9665541626242249) * t39) - R(4.3116545195287515e-08);
+        const gic_real t42 = GIC_MAX(GIC_MAX(t33, GIC_FABS(t40 * R(5.571891251504319))), GIC_FABS(t41 * R(3.029396354366955)));
+        worst = t42;
     }
     return worst;
 }
@@ -2541,253 +2561,257 @@ static int solid_axle_dynamics(const solid_axle *self, gic_real time, const gic_
         const gic_real t142 = y[17] * R(0.5);
         const gic_real t143 = y[16] * R(0.5);
         const gic_real t144 = y[15] * R(0.5);
-        const gic_real t145 = e[3] + e[3];
-        const gic_real t146 = e[1] * t145;
-        const gic_real t147 = e[2] + e[2];
-        const gic_real t148 = e[0] * t147;
-        const gic_real t149 = t146 + t148;
-        const gic_real t150 = e[1] + e[1];
-        const gic_real t151 = e[1] * t150;
-        const gic_real t152 = e[2] * t147;
-        const gic_real t153 = R(1.0) - (t151 + t152);
-        const gic_real t154 = e[3] * t147;
-        const gic_real t155 = e[0] * t150;
-        const gic_real t156 = t154 - t155;
-        const gic_real t157 = m[134] * R(0.09182100000000004) + (m[133] * R(0.12319000000000002) + m[132] * R(-0.004825999999999997));
-        const gic_real t158 = m[131] * R(0.09182100000000004) + (m[130] * R(0.12319000000000002) + m[129] * R(-0.004825999999999997));
-        const gic_real t159 = m[127] + t157;
-        const gic_real t160 = m[126] + t158;
-        const gic_real t161 = m[143] + (m[138] * t157 - m[139] * t158) + (y[15] * t159 - y[16] * t160);
-        const gic_real t162 = e[3] * t145;
-        const gic_real t163 = R(1.0) - (t151 + t162);
-        const gic_real t164 = m[137] * R(0.09182100000000004) + (m[136] * R(0.12319000000000002) + m[135] * R(-0.004825999999999997));
-        const gic_real t165 = m[128] + t164;
-        const gic_real t166 = m[142] + (m[140] * t158 - m[138] * t164) + (y[17] * t160 - y[15] * t165);
-        const gic_real t167 = e[2] * t150;
-        const gic_real t168 = e[0] * t145;
-        const gic_real t169 = t167 + t168;
-        const gic_real t170 = m[141] + (m[139] * t164 - m[140] * t157) + (y[16] * t165 - y[17] * t159);
-        const gic_real t171 = y[13] + (t156 * t161 + (t163 * t166 + t169 * t170));
-        const gic_real t172 = t167 - t168;
-        const gic_real t173 = R(1.0) - (t152 + t162);
-        const gic_real t174 = y[0] + (t149 * t165 + (t172 * t159 + t173 * t160));
-        const gic_real t175 = y[1] + (t156 * t165 + (t163 * t159 + t169 * t160));
-        gic_real road176[3];
-        if (!road_height(self, time, t174, t175, road176))
+        const gic_real t145 = -(e[3] * t142 + (e[2] * t143 + e[1] * t144));
+        const gic_real t146 = e[3] + e[3];
+        const gic_real t147 = e[1] * t146;
+        const gic_real t148 = e[2] + e[2];
+        const gic_real t149 = e[0] * t148;
+        const gic_real t150 = t147 + t149;
+        const gic_real t151 = e[1] + e[1];
+        const gic_real t152 = e[1] * t151;
+        const gic_real t153 = e[2] * t148;
+        const gic_real t154 = R(1.0) - (t152 + t153);
+        const gic_real t155 = e[3] * t148;
+        const gic_real t156 = e[0] * t151;
+        const gic_real t157 = t155 - t156;
+        const gic_real t158 = m[134] * R(0.09182100000000004) + (m[133] * R(0.12319000000000002) + m[132] * R(-0.004825999999999997));
+        const gic_real t159 = m[131] * R(0.09182100000000004) + (m[130] * R(0.12319000000000002) + m[129] * R(-0.004825999999999997));
+        const gic_real t160 = m[127] + t158;
+        const gic_real t161 = m[126] + t159;
+        const gic_real t162 = m[143] + (m[138] * t158 - m[139] * t159) + (y[15] * t160 - y[16] * t161);
+        const gic_real t163 = e[3] * t146;
+        const gic_real t164 = R(1.0) - (t152 + t163);
+        const gic_real t165 = m[137] * R(0.09182100000000004) + (m[136] * R(0.12319000000000002) + m[135] * R(-0.004825999999999997));
+        const gic_real t166 = m[128] + t165;
+        const gic_real t167 = m[142] + (m[140] * t159 - m[138] * t165) + (y[17] * t161 - y[15] * t166);
+        const gic_real t168 = e[2] * t151;
+        const gic_real t169 = e[0] * t146;
+        const gic_real t170 = t168 + t169;
+        const gic_real t171 = m[141] + (m[139] * t165 - m[140] * t158) + (y[16] * t166 - y[17] * t160);
+        const gic_real t172 = y[13] + (t157 * t162 + (t164 * t167 + t170 * t171));
+        const gic_real t173 = t168 - t169;
+        const gic_real t174 = R(1.0) - (t153 + t163);
+        const gic_real t175 = y[0] + (t150 * t166 + (t173 * t160 + t174 * t161));
+        const gic_real t176 = y[1] + (t157 * t166 + (t164 * t160 + t170 * t161));
+        gic_real road177[3];
+        if (!road_height(self, time, t175, t176, road177))
             return GIC_ERROR_ROAD;
-        const gic_real t177 = y[12] + (t149 * t161 + (t172 * t166 + t173 * t170));
-        const gic_real t178 = t154 + t155;
-        const gic_real t179 = t146 - t148;
-        const gic_real t180 = y[14] + (t153 * t161 + (t178 * t166 + t179 * t170));
-        const gic_real t181 = y[2] + (t153 * t165 + (t178 * t159 + t179 * t160));
-        const gic_real t182 = road176[0] + R(0.4699) - t181;
-        const gic_real t183 = GIC_MIN(GIC_MAX(t182 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t184 = (t171 * road176[2] + t177 * road176[1] - t180) * ((R(3.0) - (t183 + t183)) * (t183 * t183) * R(500.0));
-        const gic_real t185 = GIC_MAX(t184 + t182 * R(283000.0), R(0.0));
-        const gic_real t186 = t153 * t185;
-        const gic_real t187 = m[170] * R(0.09182100000000004) + (m[169] * R(-0.12319000000000002) + m[168] * R(-0.004825999999999997));
-        const gic_real t188 = m[167] * R(0.09182100000000004) + (m[166] * R(-0.12319000000000002) + m[165] * R(-0.004825999999999997));
-        const gic_real t189 = m[163] + t187;
-        const gic_real t190 = m[162] + t188;
-        const gic_real t191 = m[179] + (m[174] * t187 - m[175] * t188) + (y[15] * t189 - y[16] * t190);
-        const gic_real t192 = m[173] * R(0.09182100000000004) + (m[172] * R(-0.12319000000000002) + m[171] * R(-0.004825999999999997));
-        const gic_real t193 = m[164] + t192;
-        const gic_real t194 = m[178] + (m[176] * t188 - m[174] * t192) + (y[17] * t190 - y[15] * t193);
-        const gic_real t195 = m[177] + (m[175] * t192 - m[176] * t187) + (y[16] * t193 - y[17] * t189);
-        const gic_real t196 = y[13] + (t156 * t191 + (t163 * t194 + t169 * t195));
-        const gic_real t197 = y[0] + (t149 * t193 + (t172 * t189 + t173 * t190));
-        const gic_real t198 = y[1] + (t156 * t193 + (t163 * t189 + t169 * t190));
-        gic_real road199[3];
-        if (!road_height(self, time, t197, t198, road199))
+        const gic_real t178 = y[12] + (t150 * t162 + (t173 * t167 + t174 * t171));
+        const gic_real t179 = t155 + t156;
+        const gic_real t180 = t147 - t149;
+        const gic_real t181 = y[14] + (t154 * t162 + (t179 * t167 + t180 * t171));
+        const gic_real t182 = t172 * road177[2] + t178 * road177[1] - t181;
+        const gic_real t183 = y[2] + (t154 * t166 + (t179 * t160 + t180 * t161));
+        const gic_real t184 = road177[0] + R(0.4699) - t183;
+        const gic_real t185 = GIC_MIN(GIC_MAX(t184 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t186 = t182 * ((R(3.0) - (t185 + t185)) * (t185 * t185) * R(500.0));
+        const gic_real t187 = GIC_MAX(t186 + t184 * R(283000.0), R(0.0));
+        const gic_real t188 = t154 * t187;
+        const gic_real t189 = m[170] * R(0.09182100000000004) + (m[169] * R(-0.12319000000000002) + m[168] * R(-0.004825999999999997));
+        const gic_real t190 = m[167] * R(0.09182100000000004) + (m[166] * R(-0.12319000000000002) + m[165] * R(-0.004825999999999997));
+        const gic_real t191 = m[163] + t189;
+        const gic_real t192 = m[162] + t190;
+        const gic_real t193 = m[179] + (m[174] * t189 - m[175] * t190) + (y[15] * t191 - y[16] * t192);
+        const gic_real t194 = m[173] * R(0.09182100000000004) + (m[172] * R(-0.12319000000000002) + m[171] * R(-0.004825999999999997));
+        const gic_real t195 = m[164] + t194;
+        const gic_real t196 = m[178] + (m[176] * t190 - m[174] * t194) + (y[17] * t192 - y[15] * t195);
+        const gic_real t197 = m[177] + (m[175] * t194 - m[176] * t189) + (y[16] * t195 - y[17] * t191);
+        const gic_real t198 = y[13] + (t157 * t193 + (t164 * t196 + t170 * t197));
+        const gic_real t199 = y[0] + (t150 * t195 + (t173 * t191 + t174 * t192));
+        const gic_real t200 = y[1] + (t157 * t195 + (t164 * t191 + t170 * t192));
+        gic_real road201[3];
+        if (!road_height(self, time, t199, t200, road201))
             return GIC_ERROR_ROAD;
-        const gic_real t200 = y[12] + (t149 * t191 + (t172 * t194 + t173 * t195));
-        const gic_real t201 = y[14] + (t153 * t191 + (t178 * t194 + t179 * t195));
-        const gic_real t202 = y[2] + (t153 * t193 + (t178 * t189 + t179 * t190));
-        const gic_real t203 = R(0.4699) + road199[0] - t202;
-        const gic_real t204 = GIC_MIN(GIC_MAX(R(100.0) * t203, R(0.0)), R(1.0));
-        const gic_real t205 = (t196 * road199[2] + t200 * road199[1] - t201) * (R(500.0) * ((R(3.0) - (t204 + t204)) * (t204 * t204)));
-        const gic_real t206 = GIC_MAX(t205 + R(283000.0) * t203, R(0.0));
-        const gic_real t207 = t153 * t206;
-        const gic_real t208 = m[98] * R(-0.17228899999999997);
-        const gic_real t209 = m[96] * R(-0.03340499999999991);
-        const gic_real t210 = t208 + (m[97] * R(1.029701) + t209);
-        const gic_real t211 = m[95] * R(-0.17228899999999997);
-        const gic_real t212 = m[93] * R(-0.03340499999999991);
-        const gic_real t213 = t211 + (m[94] * R(1.029701) + t212);
-        const gic_real t214 = m[91] + t210;
-        const gic_real t215 = m[90] + t213;
-        const gic_real t216 = m[107] + (m[102] * t210 - m[103] * t213) + (y[15] * t214 - y[16] * t215);
-        const gic_real t217 = m[101] * R(-0.17228899999999997);
-        const gic_real t218 = m[99] * R(-0.03340499999999991);
-        const gic_real t219 = t217 + (m[100] * R(1.029701) + t218);
-        const gic_real t220 = m[92] + t219;
-        const gic_real t221 = m[106] + (m[104] * t213 - m[102] * t219) + (y[17] * t215 - y[15] * t220);
-        const gic_real t222 = m[105] + (m[103] * t219 - m[104] * t210) + (y[16] * t220 - y[17] * t214);
-        const gic_real t223 = y[13] + (t156 * t216 + (t163 * t221 + t169 * t222));
-        const gic_real t224 = y[0] + (t149 * t220 + (t172 * t214 + t173 * t215));
-        const gic_real t225 = y[1] + (t156 * t220 + (t163 * t214 + t169 * t215));
-        gic_real road226[3];
-        if (!road_height(self, time, t224, t225, road226))
+        const gic_real t202 = y[12] + (t150 * t193 + (t173 * t196 + t174 * t197));
+        const gic_real t203 = y[14] + (t154 * t193 + (t179 * t196 + t180 * t197));
+        const gic_real t204 = t198 * road201[2] + t202 * road201[1] - t203;
+        const gic_real t205 = y[2] + (t154 * t195 + (t179 * t191 + t180 * t192));
+        const gic_real t206 = R(0.4699) + road201[0] - t205;
+        const gic_real t207 = GIC_MIN(GIC_MAX(R(100.0) * t206, R(0.0)), R(1.0));
+        const gic_real t208 = t204 * (R(500.0) * ((R(3.0) - (t207 + t207)) * (t207 * t207)));
+        const gic_real t209 = GIC_MAX(t208 + R(283000.0) * t206, R(0.0));
+        const gic_real t210 = t154 * t209;
+        const gic_real t211 = m[98] * R(-0.17228899999999997);
+        const gic_real t212 = m[96] * R(-0.03340499999999991);
+        const gic_real t213 = t211 + (m[97] * R(1.029701) + t212);
+        const gic_real t214 = m[95] * R(-0.17228899999999997);
+        const gic_real t215 = m[93] * R(-0.03340499999999991);
+        const gic_real t216 = t214 + (m[94] * R(1.029701) + t215);
+        const gic_real t217 = m[91] + t213;
+        const gic_real t218 = m[90] + t216;
+        const gic_real t219 = m[107] + (m[102] * t213 - m[103] * t216) + (y[15] * t217 - y[16] * t218);
+        const gic_real t220 = m[101] * R(-0.17228899999999997);
+        const gic_real t221 = m[99] * R(-0.03340499999999991);
+        const gic_real t222 = t220 + (m[100] * R(1.029701) + t221);
+        const gic_real t223 = m[92] + t222;
+        const gic_real t224 = m[106] + (m[104] * t216 - m[102] * t222) + (y[17] * t218 - y[15] * t223);
+        const gic_real t225 = m[105] + (m[103] * t222 - m[104] * t213) + (y[16] * t223 - y[17] * t217);
+        const gic_real t226 = y[13] + (t157 * t219 + (t164 * t224 + t170 * t225));
+        const gic_real t227 = y[0] + (t150 * t223 + (t173 * t217 + t174 * t218));
+        const gic_real t228 = y[1] + (t157 * t223 + (t164 * t217 + t170 * t218));
+        gic_real road229[3];
+        if (!road_height(self, time, t227, t228, road229))
             return GIC_ERROR_ROAD;
-        const gic_real t227 = y[12] + (t149 * t216 + (t172 * t221 + t173 * t222));
-        const gic_real t228 = y[14] + (t153 * t216 + (t178 * t221 + t179 * t222));
-        const gic_real t229 = y[2] + (t153 * t220 + (t178 * t214 + t179 * t215));
-        const gic_real t230 = R(0.4699) + road226[0] - t229;
-        const gic_real t231 = GIC_MIN(GIC_MAX(R(100.0) * t230, R(0.0)), R(1.0));
-        const gic_real t232 = (t223 * road226[2] + t227 * road226[1] - t228) * (R(500.0) * ((R(3.0) - (t231 + t231)) * (t231 * t231)));
-        const gic_real t233 = GIC_MAX(t232 + R(283000.0) * t230, R(0.0));
-        const gic_real t234 = t153 * t233;
-        const gic_real t235 = t208 + (t209 + m[97] * R(-0.789701));
-        const gic_real t236 = t211 + (t212 + m[94] * R(-0.789701));
-        const gic_real t237 = m[91] + t235;
-        const gic_real t238 = m[90] + t236;
-        const gic_real t239 = m[107] + (m[102] * t235 - m[103] * t236) + (y[15] * t237 - y[16] * t238);
-        const gic_real t240 = t217 + (t218 + m[100] * R(-0.789701));
-        const gic_real t241 = m[92] + t240;
-        const gic_real t242 = m[106] + (m[104] * t236 - m[102] * t240) + (y[17] * t238 - y[15] * t241);
-        const gic_real t243 = m[105] + (m[103] * t240 - m[104] * t235) + (y[16] * t241 - y[17] * t237);
-        const gic_real t244 = y[13] + (t156 * t239 + (t163 * t242 + t169 * t243));
-        const gic_real t245 = y[0] + (t149 * t241 + (t172 * t237 + t173 * t238));
-        const gic_real t246 = y[1] + (t156 * t241 + (t163 * t237 + t169 * t238));
-        gic_real road247[3];
-        if (!road_height(self, time, t245, t246, road247))
+        const gic_real t230 = y[12] + (t150 * t219 + (t173 * t224 + t174 * t225));
+        const gic_real t231 = y[14] + (t154 * t219 + (t179 * t224 + t180 * t225));
+        const gic_real t232 = t226 * road229[2] + t230 * road229[1] - t231;
+        const gic_real t233 = y[2] + (t154 * t223 + (t179 * t217 + t180 * t218));
+        const gic_real t234 = R(0.4699) + road229[0] - t233;
+        const gic_real t235 = GIC_MIN(GIC_MAX(R(100.0) * t234, R(0.0)), R(1.0));
+        const gic_real t236 = t232 * (R(500.0) * ((R(3.0) - (t235 + t235)) * (t235 * t235)));
+        const gic_real t237 = GIC_MAX(t236 + R(283000.0) * t234, R(0.0));
+        const gic_real t238 = t154 * t237;
+        const gic_real t239 = t211 + (t212 + m[97] * R(-0.789701));
+        const gic_real t240 = t214 + (t215 + m[94] * R(-0.789701));
+        const gic_real t241 = m[91] + t239;
+        const gic_real t242 = m[90] + t240;
+        const gic_real t243 = m[107] + (m[102] * t239 - m[103] * t240) + (y[15] * t241 - y[16] * t242);
+        const gic_real t244 = t220 + (t221 + m[100] * R(-0.789701));
+        const gic_real t245 = m[92] + t244;
+        const gic_real t246 = m[106] + (m[104] * t240 - m[102] * t244) + (y[17] * t242 - y[15] * t245);
+        const gic_real t247 = m[105] + (m[103] * t244 - m[104] * t239) + (y[16] * t245 - y[17] * t241);
+        const gic_real t248 = y[13] + (t157 * t243 + (t164 * t246 + t170 * t247));
+        const gic_real t249 = y[0] + (t150 * t245 + (t173 * t241 + t174 * t242));
+        const gic_real t250 = y[1] + (t157 * t245 + (t164 * t241 + t170 * t242));
+        gic_real road251[3];
+        if (!road_height(self, time, t249, t250, road251))
             return GIC_ERROR_ROAD;
-        const gic_real t248 = y[12] + (t149 * t239 + (t172 * t242 + t173 * t243));
-        const gic_real t249 = y[14] + (t153 * t239 + (t178 * t242 + t179 * t243));
-        const gic_real t250 = y[2] + (t153 * t241 + (t178 * t237 + t179 * t238));
-        const gic_real t251 = R(0.4699) + road247[0] - t250;
-        const gic_real t252 = GIC_MIN(GIC_MAX(R(100.0) * t251, R(0.0)), R(1.0));
-        const gic_real t253 = (t244 * road247[2] + t248 * road247[1] - t249) * (R(500.0) * ((R(3.0) - (t252 + t252)) * (t252 * t252)));
-        const gic_real t254 = GIC_MAX(t253 + R(283000.0) * t251, R(0.0));
-        const gic_real t255 = t153 * t254;
-        const gic_real t256 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t257 = y[16] * R(0.21300000000000008);
-        const gic_real t258 = n[11] + n[34] + n[57] + n[80] + n[112] + n[144] + R(2086.52) * (y[15] * t256 - y[16] * t257);
-        const gic_real t259 = t178 * t185;
-        const gic_real t260 = t178 * t206;
-        const gic_real t261 = t159 * t186 - t165 * t259 + (t189 * t207 - t193 * t260);
-        const gic_real t262 = t178 * t233;
-        const gic_real t263 = t178 * t254;
-        const gic_real t264 = t261 + (t214 * t234 - t220 * t262) + (t237 * t255 - t241 * t263);
-        const gic_real t265 = y[17] * R(3576.74332672) + y[15] * R(-24.88801056000001);
-        const gic_real t266 = y[16] * R(3056.8666525999997);
-        const gic_real t267 = n[12] + n[35] + n[58] + n[81] + n[113] + n[145] + (y[16] * t265 - y[17] * t266);
-        const gic_real t268 = y[16] * R(0.056);
-        const gic_real t269 = n[10] + n[33] + n[56] + n[79] + n[111] + n[143] + R(2086.52) * (y[15] * t268 + y[17] * t257);
-        const gic_real t270 = t259 + t260 + t262 + t263 - t269;
-        const gic_real t271 = t179 * t185;
-        const gic_real t272 = t179 * t206;
-        const gic_real t273 = t160 * t259 - t159 * t271 + (t190 * t260 - t189 * t272);
-        const gic_real t274 = t179 * t233;
-        const gic_real t275 = t179 * t254;
-        const gic_real t276 = t273 + (t215 * t262 - t214 * t274) + (t238 * t263 - t237 * t275);
-        const gic_real t277 = y[17] * R(-24.88801056000001) + y[15] * R(1173.18332588);
-        const gic_real t278 = n[14] + n[37] + n[60] + n[83] + n[115] + n[147] + (y[15] * t266 - y[16] * t277);
-        const gic_real t279 = n[9] + n[32] + n[55] + n[78] + n[110] + n[142] - R(2086.52) * (y[17] * t256 + y[16] * t268);
-        const gic_real t280 = t271 + t272 + t274 + t275 - t279;
-        const gic_real t281 = t276 - t278 + t280 * t3 - t270 * t5;
-        const gic_real t282 = t264 - t267 + t270 * t9 - t14 * t281;
-        const gic_real t283 = t186 + t207 + t234 + t255 - t258 - t23 * t282;
-        const gic_real t284 = t165 * t271 - t160 * t186 + (t193 * t272 - t190 * t207);
-        const gic_real t285 = t284 + (t220 * t274 - t215 * t234) + (t241 * t275 - t238 * t255);
-        const gic_real t286 = n[13] + n[36] + n[59] + n[82] + n[114] + n[146] + (y[17] * t277 - y[15] * t265);
-        const gic_real t287 = t285 - t286 - t280 * t9 - t18 * t281 - t21 * t282;
-        const gic_real t288 = t283 + t26 * t287;
-        const gic_real t289 = t259 * (m[160] + (m[158] * t158 - m[156] * t164)) + t271 * (m[159] + (m[157] * t164 - m[158] * t157));
-        const gic_real t290 = t186 * (m[161] + (m[156] * t157 - m[157] * t158)) + t289;
-        const gic_real t291 = t290 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)) - (n[44] + n[129]);
-        const gic_real t292 = t291 - t280 * t30 - t270 * t32 - t34 * t281;
-        const gic_real t293 = t292 - t37 * t282 - t39 * t287 - t42 * t288;
-        const gic_real t294 = t260 * (m[196] + (m[194] * t188 - m[192] * t192)) + t272 * (m[195] + (m[193] * t192 - m[194] * t187));
-        const gic_real t295 = t207 * (m[197] + (m[192] * t187 - m[193] * t188)) + t294;
-        const gic_real t296 = t295 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)) - (n[67] + n[161]);
-        const gic_real t297 = t296 - t280 * t46 - t270 * t48 - t50 * t281;
-        const gic_real t298 = t297 - t53 * t282 - t55 * t287 - t57 * t288;
-        const gic_real t299 = t298 + t62 * t293;
-        const gic_real t300 = t262 * (m[118] + (m[116] * t213 - m[114] * t219)) + t274 * (m[117] + (m[115] * t219 - m[116] * t210));
-        const gic_real t301 = t234 * (m[119] + (m[114] * t210 - m[115] * t213)) + t300;
-        const gic_real t302 = t263 * (m[118] + (m[116] * t236 - m[114] * t240)) + t275 * (m[117] + (m[115] * t240 - m[116] * t235));
-        const gic_real t303 = t255 * (m[119] + (m[114] * t235 - m[115] * t236)) + t302;
-        const gic_real t304 = t301 - ((x[2] - R(0.41347)) * R(63000.0) + xd[2] * R(4100.0)) + t303;
-        const gic_real t305 = t304 - n[90] - t280 * t64 - t270 * t65 - t67 * t281;
-        const gic_real t306 = t305 - t70 * t282 - t72 * t287 - t74 * t288;
-        const gic_real t307 = t306 + t78 * t293 + t82 * t299;
-        const gic_real t308 = t262 * (m[124] + (m[122] * t213 - m[120] * t219)) + t274 * (m[123] + (m[121] * t219 - m[122] * t210));
-        const gic_real t309 = t234 * (m[125] + (m[120] * t210 - m[121] * t213)) + t308;
-        const gic_real t310 = t263 * (m[124] + (m[122] * t236 - m[120] * t240)) + t275 * (m[123] + (m[121] * t240 - m[122] * t235));
-        const gic_real t311 = t255 * (m[125] + (m[120] * t235 - m[121] * t236)) + t310;
-        const gic_real t312 = t309 - (R(63000.0) * (x[3] - R(0.41347)) + xd[3] * R(4100.0)) + t311;
-        const gic_real t313 = t312 - n[97] - t280 * t84 - t270 * t85 - t87 * t281;
-        const gic_real t314 = t313 - t90 * t282 - t92 * t287 - t94 * t288;
-        const gic_real t315 = t314 + t98 * t293 + t101 * t299 - t106 * t307;
-        const gic_real t316 = t259 * (m[154] + (m[152] * t158 - m[150] * t164)) + t271 * (m[153] + (m[151] * t164 - m[152] * t157));
-        const gic_real t317 = t186 * (m[155] + (m[150] * t157 - m[151] * t158)) + t316;
-        const gic_real t318 = t260 * (m[190] + (m[188] * t188 - m[186] * t192)) + t272 * (m[189] + (m[187] * t192 - m[188] * t187));
-        const gic_real t319 = t207 * (m[191] + (m[186] * t187 - m[187] * t188)) + t318;
-        const gic_real t320 = t317 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t319 - (n[21] + n[122] + n[154]);
-        const gic_real t321 = t320 - t280 * t110 - t270 * t112 - t114 * t281;
-        const gic_real t322 = t321 - t117 * t282 - t120 * t287 - t122 * t288;
-        const gic_real t323 = t322 - t126 * t293 - t130 * t299 - t134 * t307;
-        const gic_real t324 = R(1.0) / t141 * (t323 - t140 * t315);
-        const gic_real t325 = t139 * t315 - t140 * t324;
-        const gic_real t326 = t105 * t307 - t106 * t325 - t134 * t324;
-        const gic_real t327 = t81 * t299 + t82 * t326 + t101 * t325 - t130 * t324;
-        const gic_real t328 = t61 * t293 + t62 * t327 + t78 * t326 + t98 * t325;
-        const gic_real t329 = t328 - t126 * t324;
-        const gic_real t330 = t41 * t288 - t42 * t329 - t57 * t327 - t74 * t326;
-        const gic_real t331 = t330 - t94 * t325 - t122 * t324;
-        const gic_real t332 = t25 * t287 + t26 * t331 - t39 * t329 - t55 * t327;
-        const gic_real t333 = t332 - t72 * t326 - t92 * t325 - t120 * t324;
-        const gic_real t334 = t20 * t282 - t21 * t333 - t23 * t331 - t37 * t329;
-        const gic_real t335 = t334 - t53 * t327 - t70 * t326 - t90 * t325;
-        const gic_real t336 = t335 - t117 * t324;
-        const gic_real t337 = t13 * t281 - t14 * t336 - t18 * t333 - t34 * t329;
-        const gic_real t338 = t337 - t50 * t327 - t67 * t326 - t87 * t325;
-        const gic_real t339 = t338 - t114 * t324;
-        const gic_real t340 = t270 * R(0.00038524629951667) - t5 * t339 + t9 * t336 - t32 * t329;
-        const gic_real t341 = t340 - t48 * t327 - t65 * t326 - t85 * t325;
-        const gic_real t342 = t341 - t112 * t324;
-        const gic_real t343 = t280 * R(0.00038524629951667) + t3 * t339 - t9 * t333 - t30 * t329;
-        const gic_real t344 = t343 - t46 * t327 - t64 * t326 - t84 * t325;
-        const gic_real t345 = t344 - t110 * t324;
-        const gic_real t346 = R(-9.81) + (t153 * t331 + (t178 * t342 + t179 * t345));
-        const gic_real t347 = y[12];
-        const gic_real t348 = y[13];
-        const gic_real t349 = y[14];
-        const gic_real t350 = -(e[3] * t142 + (e[2] * t143 + e[1] * t144));
-        const gic_real t351 = e[2] * t142 - e[3] * t143 + e[0] * t144;
-        const gic_real t352 = e[3] * t144 - e[1] * t142 + e[0] * t143;
-        const gic_real t353 = e[1] * t143 - e[2] * t144 + e[0] * t142;
-        const gic_real t354 = t149 * t331 + (t172 * t342 + t173 * t345);
-        const gic_real t355 = t156 * t331 + (t163 * t342 + t169 * t345);
-        const gic_real t356 = xd[0];
-        const gic_real t357 = xd[1];
-        const gic_real t358 = xd[2];
-        const gic_real t359 = xd[3];
-        const gic_real t360 = xd[4];
-        rate[0] = t347;
-        rate[1] = t348;
-        rate[2] = t349;
-        rate[3] = t350;
-        rate[4] = t351;
-        rate[5] = t352;
-        rate[6] = t353;
-        rate[12] = t354;
-        rate[15] = t336;
-        rate[13] = t355;
-        rate[16] = t333;
-        rate[14] = t346;
-        rate[17] = t339;
-        rate[7] = t356;
-        rate[18] = t329;
-        rate[8] = t357;
-        rate[19] = t327;
-        rate[9] = t358;
-        rate[20] = t326;
-        rate[10] = t359;
-        rate[21] = t325;
-        rate[11] = t360;
-        rate[22] = t324;
+        const gic_real t252 = y[12] + (t150 * t243 + (t173 * t246 + t174 * t247));
+        const gic_real t253 = y[14] + (t154 * t243 + (t179 * t246 + t180 * t247));
+        const gic_real t254 = t248 * road251[2] + t252 * road251[1] - t253;
+        const gic_real t255 = y[2] + (t154 * t245 + (t179 * t241 + t180 * t242));
+        const gic_real t256 = R(0.4699) + road251[0] - t255;
+        const gic_real t257 = GIC_MIN(GIC_MAX(R(100.0) * t256, R(0.0)), R(1.0));
+        const gic_real t258 = t254 * (R(500.0) * ((R(3.0) - (t257 + t257)) * (t257 * t257)));
+        const gic_real t259 = GIC_MAX(t258 + R(283000.0) * t256, R(0.0));
+        const gic_real t260 = t154 * t259;
+        const gic_real t261 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
+        const gic_real t262 = y[16] * R(0.21300000000000008);
+        const gic_real t263 = n[11] + n[34] + n[57] + n[80] + n[112] + n[144] + R(2086.52) * (y[15] * t261 - y[16] * t262);
+        const gic_real t264 = t179 * t187;
+        const gic_real t265 = t179 * t209;
+        const gic_real t266 = t160 * t188 - t166 * t264 + (t191 * t210 - t195 * t265);
+        const gic_real t267 = t179 * t237;
+        const gic_real t268 = t179 * t259;
+        const gic_real t269 = t266 + (t217 * t238 - t223 * t267) + (t241 * t260 - t245 * t268);
+        const gic_real t270 = y[17] * R(3576.74332672) + y[15] * R(-24.88801056000001);
+        const gic_real t271 = y[16] * R(3056.8666525999997);
+        const gic_real t272 = n[12] + n[35] + n[58] + n[81] + n[113] + n[145] + (y[16] * t270 - y[17] * t271);
+        const gic_real t273 = y[16] * R(0.056);
+        const gic_real t274 = n[10] + n[33] + n[56] + n[79] + n[111] + n[143] + R(2086.52) * (y[15] * t273 + y[17] * t262);
+        const gic_real t275 = t264 + t265 + t267 + t268 - t274;
+        const gic_real t276 = t180 * t187;
+        const gic_real t277 = t180 * t209;
+        const gic_real t278 = t161 * t264 - t160 * t276 + (t192 * t265 - t191 * t277);
+        const gic_real t279 = t180 * t237;
+        const gic_real t280 = t180 * t259;
+        const gic_real t281 = t278 + (t218 * t267 - t217 * t279) + (t242 * t268 - t241 * t280);
+        const gic_real t282 = y[17] * R(-24.88801056000001) + y[15] * R(1173.18332588);
+        const gic_real t283 = n[14] + n[37] + n[60] + n[83] + n[115] + n[147] + (y[15] * t271 - y[16] * t282);
+        const gic_real t284 = n[9] + n[32] + n[55] + n[78] + n[110] + n[142] - R(2086.52) * (y[17] * t261 + y[16] * t273);
+        const gic_real t285 = t276 + t277 + t279 + t280 - t284;
+        const gic_real t286 = t281 - t283 + t285 * t3 - t275 * t5;
+        const gic_real t287 = t269 - t272 + t275 * t9 - t14 * t286;
+        const gic_real t288 = t188 + t210 + t238 + t260 - t263 - t23 * t287;
+        const gic_real t289 = t166 * t276 - t161 * t188 + (t195 * t277 - t192 * t210);
+        const gic_real t290 = t289 + (t223 * t279 - t218 * t238) + (t245 * t280 - t242 * t260);
+        const gic_real t291 = n[13] + n[36] + n[59] + n[82] + n[114] + n[146] + (y[17] * t282 - y[15] * t270);
+        const gic_real t292 = t290 - t291 - t285 * t9 - t18 * t286 - t21 * t287;
+        const gic_real t293 = t288 + t26 * t292;
+        const gic_real t294 = t264 * (m[160] + (m[158] * t159 - m[156] * t165)) + t276 * (m[159] + (m[157] * t165 - m[158] * t158));
+        const gic_real t295 = t188 * (m[161] + (m[156] * t158 - m[157] * t159)) + t294;
+        const gic_real t296 = t295 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)) - (n[44] + n[129]);
+        const gic_real t297 = t296 - t285 * t30 - t275 * t32 - t34 * t286;
+        const gic_real t298 = t297 - t37 * t287 - t39 * t292 - t42 * t293;
+        const gic_real t299 = t265 * (m[196] + (m[194] * t190 - m[192] * t194)) + t277 * (m[195] + (m[193] * t194 - m[194] * t189));
+        const gic_real t300 = t210 * (m[197] + (m[192] * t189 - m[193] * t190)) + t299;
+        const gic_real t301 = t300 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)) - (n[67] + n[161]);
+        const gic_real t302 = t301 - t285 * t46 - t275 * t48 - t50 * t286;
+        const gic_real t303 = t302 - t53 * t287 - t55 * t292 - t57 * t293;
+        const gic_real t304 = t303 + t62 * t298;
+        const gic_real t305 = t267 * (m[118] + (m[116] * t216 - m[114] * t222)) + t279 * (m[117] + (m[115] * t222 - m[116] * t213));
+        const gic_real t306 = t238 * (m[119] + (m[114] * t213 - m[115] * t216)) + t305;
+        const gic_real t307 = t268 * (m[118] + (m[116] * t240 - m[114] * t244)) + t280 * (m[117] + (m[115] * t244 - m[116] * t239));
+        const gic_real t308 = t260 * (m[119] + (m[114] * t239 - m[115] * t240)) + t307;
+        const gic_real t309 = t306 - ((x[2] - R(0.41347)) * R(63000.0) + xd[2] * R(4100.0)) + t308;
+        const gic_real t310 = t309 - n[90] - t285 * t64 - t275 * t65 - t67 * t286;
+        const gic_real t311 = t310 - t70 * t287 - t72 * t292 - t74 * t293;
+        const gic_real t312 = t311 + t78 * t298 + t82 * t304;
+        const gic_real t313 = t267 * (m[124] + (m[122] * t216 - m[120] * t222)) + t279 * (m[123] + (m[121] * t222 - m[122] * t213));
+        const gic_real t314 = t238 * (m[125] + (m[120] * t213 - m[121] * t216)) + t313;
+        const gic_real t315 = t268 * (m[124] + (m[122] * t240 - m[120] * t244)) + t280 * (m[123] + (m[121] * t244 - m[122] * t239));
+        const gic_real t316 = t260 * (m[125] + (m[120] * t239 - m[121] * t240)) + t315;
+        const gic_real t317 = t314 - (R(63000.0) * (x[3] - R(0.41347)) + xd[3] * R(4100.0)) + t316;
+        const gic_real t318 = t317 - n[97] - t285 * t84 - t275 * t85 - t87 * t286;
+        const gic_real t319 = t318 - t90 * t287 - t92 * t292 - t94 * t293;
+        const gic_real t320 = t319 + t98 * t298 + t101 * t304 - t106 * t312;
+        const gic_real t321 = t264 * (m[154] + (m[152] * t159 - m[150] * t165)) + t276 * (m[153] + (m[151] * t165 - m[152] * t158));
+        const gic_real t322 = t188 * (m[155] + (m[150] * t158 - m[151] * t159)) + t321;
+        const gic_real t323 = t265 * (m[190] + (m[188] * t190 - m[186] * t194)) + t277 * (m[189] + (m[187] * t194 - m[188] * t189));
+        const gic_real t324 = t210 * (m[191] + (m[186] * t189 - m[187] * t190)) + t323;
+        const gic_real t325 = t322 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t324 - (n[21] + n[122] + n[154]);
+        const gic_real t326 = t325 - t285 * t110 - t275 * t112 - t114 * t286;
+        const gic_real t327 = t326 - t117 * t287 - t120 * t292 - t122 * t293;
+        const gic_real t328 = t327 - t126 * t298 - t130 * t304 - t134 * t312;
+        const gic_real t329 = R(1.0) / t141 * (t328 - t140 * t320);
+        const gic_real t330 = t139 * t320 - t140 * t329;
+        const gic_real t331 = t105 * t312 - t106 * t330 - t134 * t329;
+        const gic_real t332 = t81 * t304 + t82 * t331 + t101 * t330 - t130 * t329;
+        const gic_real t333 = t61 * t298 + t62 * t332 + t78 * t331 + t98 * t330;
+        const gic_real t334 = t333 - t126 * t329;
+        const gic_real t335 = t41 * t293 - t42 * t334 - t57 * t332 - t74 * t331;
+        const gic_real t336 = t335 - t94 * t330 - t122 * t329;
+        const gic_real t337 = t25 * t292 + t26 * t336 - t39 * t334 - t55 * t332;
+        const gic_real t338 = t337 - t72 * t331 - t92 * t330 - t120 * t329;
+        const gic_real t339 = t20 * t287 - t21 * t338 - t23 * t336 - t37 * t334;
+        const gic_real t340 = t339 - t53 * t332 - t70 * t331 - t90 * t330;
+        const gic_real t341 = t340 - t117 * t329;
+        const gic_real t342 = t13 * t286 - t14 * t341 - t18 * t338 - t34 * t334;
+        const gic_real t343 = t342 - t50 * t332 - t67 * t331 - t87 * t330;
+        const gic_real t344 = t343 - t114 * t329;
+        const gic_real t345 = t275 * R(0.00038524629951667) - t5 * t344 + t9 * t341 - t32 * t334;
+        const gic_real t346 = t345 - t48 * t332 - t65 * t331 - t85 * t330;
+        const gic_real t347 = t346 - t112 * t329;
+        const gic_real t348 = t285 * R(0.00038524629951667) + t3 * t344 - t9 * t338 - t30 * t334;
+        const gic_real t349 = t348 - t46 * t332 - t64 * t331 - t84 * t330;
+        const gic_real t350 = t349 - t110 * t329;
+        const gic_real t351 = R(-9.81) + (t154 * t336 + (t179 * t347 + t180 * t350));
+        const gic_real t352 = y[12];
+        const gic_real t353 = y[13];
+        const gic_real t354 = y[14];
+        const gic_real t355 = e[2] * t142 - e[3] * t143 + e[0] * t144;
+        const gic_real t356 = e[3] * t144 - e[1] * t142 + e[0] * t143;
+        const gic_real t357 = e[1] * t143 - e[2] * t144 + e[0] * t142;
+        const gic_real t358 = t150 * t336 + (t173 * t347 + t174 * t350);
+        const gic_real t359 = t157 * t336 + (t164 * t347 + t170 * t350);
+        const gic_real t360 = xd[0];
+        const gic_real t361 = xd[1];
+        const gic_real t362 = xd[2];
+        const gic_real t363 = xd[3];
+        const gic_real t364 = xd[4];
+        rate[0] = t352;
+        rate[1] = t353;
+        rate[2] = t354;
+        rate[3] = t145;
+        rate[4] = t355;
+        rate[5] = t356;
+        rate[6] = t357;
+        rate[12] = t358;
+        rate[15] = t341;
+        rate[13] = t359;
+        rate[16] = t338;
+        rate[14] = t351;
+        rate[17] = t344;
+        rate[7] = t360;
+        rate[18] = t334;
+        rate[8] = t361;
+        rate[19] = t332;
+        rate[9] = t362;
+        rate[20] = t331;
+        rate[10] = t363;
+        rate[21] = t330;
+        rate[11] = t364;
+        rate[22] = t329;
     }
     return GIC_OK;
 }
@@ -2879,7 +2903,7 @@ static int solid_axle_measure(const solid_axle *self, gic_real time, const gic_r
         const gic_real t78 = y[1] + (t13 * t72 + (t20 * t74 + t24 * t76));
         const gic_real t79 = y[2] + (t9 * t72 + (t18 * t74 + t23 * t76));
         const gic_real t80 = GIC_ATAN2(m[100] * t9 + (m[97] * t18 + m[94] * t23), m[101] * t9 + (m[98] * t18 + m[95] * t23));
-        const gic_real t81 = GIC_MAX(-(m[99] * t9 + (m[96] * t18 + m[93] * t23)), R(-1.0));
+        const gic_real t81 = -(m[99] * t9 + (m[96] * t18 + m[93] * t23));
         const gic_real t82 = GIC_ATAN2(m[99] * t13 + (m[96] * t20 + m[93] * t24), m[99] * t5 + (m[96] * t17 + m[93] * t22));
         const gic_real t83 = x[0] - R(0.31907);
         const gic_real t84 = t83 * R(167070.9);
@@ -3151,7 +3175,7 @@ static int solid_axle_measure(const solid_axle *self, gic_real time, const gic_r
         const gic_real t342 = y[15];
         const gic_real t343 = y[16];
         const gic_real t344 = y[17];
-        const gic_real t345 = GIC_ASIN(GIC_MIN(t81, R(1.0)));
+        const gic_real t345 = GIC_ASIN(GIC_MIN(GIC_MAX(t81, R(-1.0)), R(1.0)));
         const gic_real t346 = x[0];
         const gic_real t347 = xd[0];
         const gic_real t348 = rate[18];
@@ -4112,205 +4136,209 @@ static int solid_axle_inverse(const solid_axle *self, gic_real time, const gic_r
         const gic_real t325 = t299 + t300;
         const gic_real t326 = t316 - t317;
         const gic_real t327 = y[14] + (t298 * t304 + (t325 * t310 + t326 * t314));
-        const gic_real t328 = y[2] + (t298 * t309 + (t325 * t293 + t326 * t303));
-        const gic_real t329 = road323[0] + R(0.4699) - t328;
-        const gic_real t330 = GIC_MIN(GIC_MAX(t329 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t331 = (t315 * road323[2] + t324 * road323[1] - t327) * ((R(3.0) - (t330 + t330)) * (t330 * t330) * R(500.0));
-        const gic_real t332 = GIC_MAX(t331 + t329 * R(283000.0), R(0.0));
-        const gic_real t333 = t298 * t332;
-        const gic_real t334 = t325 * t332;
-        const gic_real t335 = t201 + (m[169] * R(-0.12319000000000002) + t202);
-        const gic_real t336 = m[163] + t335;
-        const gic_real t337 = t205 + (m[166] * R(-0.12319000000000002) + t206);
-        const gic_real t338 = m[162] + t337;
-        const gic_real t339 = m[179] + (m[174] * t335 - m[175] * t337) + (y[15] * t336 - y[16] * t338);
-        const gic_real t340 = t208 + (m[172] * R(-0.12319000000000002) + t209);
-        const gic_real t341 = m[164] + t340;
-        const gic_real t342 = m[178] + (m[176] * t337 - m[174] * t340) + (y[17] * t338 - y[15] * t341);
-        const gic_real t343 = m[177] + (m[175] * t340 - m[176] * t335) + (y[16] * t341 - y[17] * t336);
-        const gic_real t344 = y[13] + (t301 * t339 + (t307 * t342 + t313 * t343));
-        const gic_real t345 = y[0] + (t318 * t341 + (t319 * t336 + t320 * t338));
-        const gic_real t346 = y[1] + (t301 * t341 + (t307 * t336 + t313 * t338));
-        gic_real road347[3];
-        if (!road_height(self, time, t345, t346, road347))
+        const gic_real t328 = t315 * road323[2] + t324 * road323[1] - t327;
+        const gic_real t329 = y[2] + (t298 * t309 + (t325 * t293 + t326 * t303));
+        const gic_real t330 = road323[0] + R(0.4699) - t329;
+        const gic_real t331 = GIC_MIN(GIC_MAX(t330 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t332 = t328 * ((R(3.0) - (t331 + t331)) * (t331 * t331) * R(500.0));
+        const gic_real t333 = GIC_MAX(t332 + t330 * R(283000.0), R(0.0));
+        const gic_real t334 = t298 * t333;
+        const gic_real t335 = t325 * t333;
+        const gic_real t336 = t201 + (m[169] * R(-0.12319000000000002) + t202);
+        const gic_real t337 = m[163] + t336;
+        const gic_real t338 = t205 + (m[166] * R(-0.12319000000000002) + t206);
+        const gic_real t339 = m[162] + t338;
+        const gic_real t340 = m[179] + (m[174] * t336 - m[175] * t338) + (y[15] * t337 - y[16] * t339);
+        const gic_real t341 = t208 + (m[172] * R(-0.12319000000000002) + t209);
+        const gic_real t342 = m[164] + t341;
+        const gic_real t343 = m[178] + (m[176] * t338 - m[174] * t341) + (y[17] * t339 - y[15] * t342);
+        const gic_real t344 = m[177] + (m[175] * t341 - m[176] * t336) + (y[16] * t342 - y[17] * t337);
+        const gic_real t345 = y[13] + (t301 * t340 + (t307 * t343 + t313 * t344));
+        const gic_real t346 = y[0] + (t318 * t342 + (t319 * t337 + t320 * t339));
+        const gic_real t347 = y[1] + (t301 * t342 + (t307 * t337 + t313 * t339));
+        gic_real road348[3];
+        if (!road_height(self, time, t346, t347, road348))
             return GIC_ERROR_ROAD;
-        const gic_real t348 = y[12] + (t318 * t339 + (t319 * t342 + t320 * t343));
-        const gic_real t349 = y[14] + (t298 * t339 + (t325 * t342 + t326 * t343));
-        const gic_real t350 = y[2] + (t298 * t341 + (t325 * t336 + t326 * t338));
-        const gic_real t351 = R(0.4699) + road347[0] - t350;
-        const gic_real t352 = GIC_MIN(GIC_MAX(R(100.0) * t351, R(0.0)), R(1.0));
-        const gic_real t353 = (t344 * road347[2] + t348 * road347[1] - t349) * (R(500.0) * ((R(3.0) - (t352 + t352)) * (t352 * t352)));
-        const gic_real t354 = GIC_MAX(t353 + R(283000.0) * t351, R(0.0));
-        const gic_real t355 = t298 * t354;
-        const gic_real t356 = t325 * t354;
-        const gic_real t357 = t293 * t333 - t309 * t334 + (t336 * t355 - t341 * t356);
-        const gic_real t358 = t258 + (m[97] * R(1.029701) + t259);
-        const gic_real t359 = m[91] + t358;
-        const gic_real t360 = t262 + (m[94] * R(1.029701) + t263);
-        const gic_real t361 = m[90] + t360;
-        const gic_real t362 = m[107] + (m[102] * t358 - m[103] * t360) + (y[15] * t359 - y[16] * t361);
-        const gic_real t363 = t265 + (m[100] * R(1.029701) + t266);
-        const gic_real t364 = m[92] + t363;
-        const gic_real t365 = m[106] + (m[104] * t360 - m[102] * t363) + (y[17] * t361 - y[15] * t364);
-        const gic_real t366 = m[105] + (m[103] * t363 - m[104] * t358) + (y[16] * t364 - y[17] * t359);
-        const gic_real t367 = y[13] + (t301 * t362 + (t307 * t365 + t313 * t366));
-        const gic_real t368 = y[0] + (t318 * t364 + (t319 * t359 + t320 * t361));
-        const gic_real t369 = y[1] + (t301 * t364 + (t307 * t359 + t313 * t361));
-        gic_real road370[3];
-        if (!road_height(self, time, t368, t369, road370))
+        const gic_real t349 = y[12] + (t318 * t340 + (t319 * t343 + t320 * t344));
+        const gic_real t350 = y[14] + (t298 * t340 + (t325 * t343 + t326 * t344));
+        const gic_real t351 = t345 * road348[2] + t349 * road348[1] - t350;
+        const gic_real t352 = y[2] + (t298 * t342 + (t325 * t337 + t326 * t339));
+        const gic_real t353 = R(0.4699) + road348[0] - t352;
+        const gic_real t354 = GIC_MIN(GIC_MAX(R(100.0) * t353, R(0.0)), R(1.0));
+        const gic_real t355 = t351 * (R(500.0) * ((R(3.0) - (t354 + t354)) * (t354 * t354)));
+        const gic_real t356 = GIC_MAX(t355 + R(283000.0) * t353, R(0.0));
+        const gic_real t357 = t298 * t356;
+        const gic_real t358 = t325 * t356;
+        const gic_real t359 = t293 * t334 - t309 * t335 + (t337 * t357 - t342 * t358);
+        const gic_real t360 = t258 + (m[97] * R(1.029701) + t259);
+        const gic_real t361 = m[91] + t360;
+        const gic_real t362 = t262 + (m[94] * R(1.029701) + t263);
+        const gic_real t363 = m[90] + t362;
+        const gic_real t364 = m[107] + (m[102] * t360 - m[103] * t362) + (y[15] * t361 - y[16] * t363);
+        const gic_real t365 = t265 + (m[100] * R(1.029701) + t266);
+        const gic_real t366 = m[92] + t365;
+        const gic_real t367 = m[106] + (m[104] * t362 - m[102] * t365) + (y[17] * t363 - y[15] * t366);
+        const gic_real t368 = m[105] + (m[103] * t365 - m[104] * t360) + (y[16] * t366 - y[17] * t361);
+        const gic_real t369 = y[13] + (t301 * t364 + (t307 * t367 + t313 * t368));
+        const gic_real t370 = y[0] + (t318 * t366 + (t319 * t361 + t320 * t363));
+        const gic_real t371 = y[1] + (t301 * t366 + (t307 * t361 + t313 * t363));
+        gic_real road372[3];
+        if (!road_height(self, time, t370, t371, road372))
             return GIC_ERROR_ROAD;
-        const gic_real t371 = y[12] + (t318 * t362 + (t319 * t365 + t320 * t366));
-        const gic_real t372 = y[14] + (t298 * t362 + (t325 * t365 + t326 * t366));
-        const gic_real t373 = y[2] + (t298 * t364 + (t325 * t359 + t326 * t361));
-        const gic_real t374 = R(0.4699) + road370[0] - t373;
-        const gic_real t375 = GIC_MIN(GIC_MAX(R(100.0) * t374, R(0.0)), R(1.0));
-        const gic_real t376 = (t367 * road370[2] + t371 * road370[1] - t372) * (R(500.0) * ((R(3.0) - (t375 + t375)) * (t375 * t375)));
-        const gic_real t377 = GIC_MAX(t376 + R(283000.0) * t374, R(0.0));
-        const gic_real t378 = t298 * t377;
-        const gic_real t379 = t325 * t377;
-        const gic_real t380 = t258 + (t259 + m[97] * R(-0.789701));
-        const gic_real t381 = m[91] + t380;
-        const gic_real t382 = t262 + (t263 + m[94] * R(-0.789701));
-        const gic_real t383 = m[90] + t382;
-        const gic_real t384 = m[107] + (m[102] * t380 - m[103] * t382) + (y[15] * t381 - y[16] * t383);
-        const gic_real t385 = t265 + (t266 + m[100] * R(-0.789701));
-        const gic_real t386 = m[92] + t385;
-        const gic_real t387 = m[106] + (m[104] * t382 - m[102] * t385) + (y[17] * t383 - y[15] * t386);
-        const gic_real t388 = m[105] + (m[103] * t385 - m[104] * t380) + (y[16] * t386 - y[17] * t381);
-        const gic_real t389 = y[13] + (t301 * t384 + (t307 * t387 + t313 * t388));
-        const gic_real t390 = y[0] + (t318 * t386 + (t319 * t381 + t320 * t383));
-        const gic_real t391 = y[1] + (t301 * t386 + (t307 * t381 + t313 * t383));
-        gic_real road392[3];
-        if (!road_height(self, time, t390, t391, road392))
+        const gic_real t373 = y[12] + (t318 * t364 + (t319 * t367 + t320 * t368));
+        const gic_real t374 = y[14] + (t298 * t364 + (t325 * t367 + t326 * t368));
+        const gic_real t375 = t369 * road372[2] + t373 * road372[1] - t374;
+        const gic_real t376 = y[2] + (t298 * t366 + (t325 * t361 + t326 * t363));
+        const gic_real t377 = R(0.4699) + road372[0] - t376;
+        const gic_real t378 = GIC_MIN(GIC_MAX(R(100.0) * t377, R(0.0)), R(1.0));
+        const gic_real t379 = t375 * (R(500.0) * ((R(3.0) - (t378 + t378)) * (t378 * t378)));
+        const gic_real t380 = GIC_MAX(t379 + R(283000.0) * t377, R(0.0));
+        const gic_real t381 = t298 * t380;
+        const gic_real t382 = t325 * t380;
+        const gic_real t383 = t258 + (t259 + m[97] * R(-0.789701));
+        const gic_real t384 = m[91] + t383;
+        const gic_real t385 = t262 + (t263 + m[94] * R(-0.789701));
+        const gic_real t386 = m[90] + t385;
+        const gic_real t387 = m[107] + (m[102] * t383 - m[103] * t385) + (y[15] * t384 - y[16] * t386);
+        const gic_real t388 = t265 + (t266 + m[100] * R(-0.789701));
+        const gic_real t389 = m[92] + t388;
+        const gic_real t390 = m[106] + (m[104] * t385 - m[102] * t388) + (y[17] * t386 - y[15] * t389);
+        const gic_real t391 = m[105] + (m[103] * t388 - m[104] * t383) + (y[16] * t389 - y[17] * t384);
+        const gic_real t392 = y[13] + (t301 * t387 + (t307 * t390 + t313 * t391));
+        const gic_real t393 = y[0] + (t318 * t389 + (t319 * t384 + t320 * t386));
+        const gic_real t394 = y[1] + (t301 * t389 + (t307 * t384 + t313 * t386));
+        gic_real road395[3];
+        if (!road_height(self, time, t393, t394, road395))
             return GIC_ERROR_ROAD;
-        const gic_real t393 = y[12] + (t318 * t384 + (t319 * t387 + t320 * t388));
-        const gic_real t394 = y[14] + (t298 * t384 + (t325 * t387 + t326 * t388));
-        const gic_real t395 = y[2] + (t298 * t386 + (t325 * t381 + t326 * t383));
-        const gic_real t396 = R(0.4699) + road392[0] - t395;
-        const gic_real t397 = GIC_MIN(GIC_MAX(R(100.0) * t396, R(0.0)), R(1.0));
-        const gic_real t398 = (t389 * road392[2] + t393 * road392[1] - t394) * (R(500.0) * ((R(3.0) - (t397 + t397)) * (t397 * t397)));
-        const gic_real t399 = GIC_MAX(t398 + R(283000.0) * t396, R(0.0));
-        const gic_real t400 = t298 * t399;
-        const gic_real t401 = t325 * t399;
-        const gic_real t402 = t357 + (t359 * t378 - t364 * t379) + (t381 * t400 - t386 * t401);
-        const gic_real t403 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t404 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[17] * t403 + y[16] * t3));
-        const gic_real t405 = y[16] * t27 - y[17] * t23 + (m[2] * acc[1] - m[1] * acc[2]);
-        const gic_real t406 = (m[21] + (acc[3] + t405) + m[27] * acc[10]) * R(9.072);
-        const gic_real t407 = m[43] * t67 - m[44] * t55 + (m[49] * t54 - m[50] * t51);
-        const gic_real t408 = y[16] * t70 - y[17] * t61 + (acc[1] * t60 - acc[2] * t52);
-        const gic_real t409 = m[57] + (m[55] * t54 - m[56] * t51);
-        const gic_real t410 = (m[51] + t407 + (acc[3] + t408) + acc[6] * t409) * R(23.965);
-        const gic_real t411 = m[73] * t112 - m[74] * t100 + (m[79] * t99 - m[80] * t96);
-        const gic_real t412 = y[16] * t115 - y[17] * t106 + (acc[1] * t105 - acc[2] * t97);
-        const gic_real t413 = m[87] + (m[85] * t99 - m[86] * t96);
-        const gic_real t414 = R(23.965) * (m[81] + t411 + (acc[3] + t412) + acc[7] * t413);
-        const gic_real t415 = m[139] * t167 - m[140] * t153 + (m[145] * t152 - m[146] * t145);
-        const gic_real t416 = y[16] * t170 - y[17] * t159 + (acc[1] * t158 - acc[2] * t146);
-        const gic_real t417 = m[153] + (m[151] * t152 - m[152] * t145);
-        const gic_real t418 = m[159] + (m[157] * t152 - m[158] * t145);
-        const gic_real t419 = m[147] + t415 + (acc[3] + t416) + acc[10] * t417 + acc[6] * t418;
-        const gic_real t420 = t419 * R(90.555);
-        const gic_real t421 = m[175] * t225 - m[176] * t211 + (m[181] * t210 - m[182] * t203);
-        const gic_real t422 = y[16] * t228 - y[17] * t217 + (acc[1] * t216 - acc[2] * t204);
-        const gic_real t423 = m[189] + (m[187] * t210 - m[188] * t203);
-        const gic_real t424 = m[195] + (m[193] * t210 - m[194] * t203);
-        const gic_real t425 = m[183] + t421 + (acc[3] + t422) + acc[10] * t423 + acc[7] * t424;
-        const gic_real t426 = R(90.555) * t425;
-        const gic_real t427 = t404 * R(2086.52) + t406 + t410 + t414 + t420 + t426;
-        const gic_real t428 = m[103] * t282 - m[104] * t268 + (m[109] * t267 - m[110] * t260);
-        const gic_real t429 = y[16] * t285 - y[17] * t274 + (acc[1] * t273 - acc[2] * t261);
-        const gic_real t430 = m[117] + (m[115] * t267 - m[116] * t260);
-        const gic_real t431 = m[123] + (m[121] * t267 - m[122] * t260);
-        const gic_real t432 = m[111] + t428 + (acc[3] + t429) + acc[8] * t430 + acc[9] * t431;
-        const gic_real t433 = t432 * R(271.11);
-        const gic_real t434 = t326 * t332;
-        const gic_real t435 = t326 * t354;
-        const gic_real t436 = t326 * t377;
-        const gic_real t437 = t326 * t399;
-        const gic_real t438 = y[15] * R(1078.52);
-        const gic_real t439 = acc[5] + (y[15] * t403 - y[16] * t4 - acc[1] * R(0.056));
-        const gic_real t440 = y[17] * t438 - y[15] * t1 + acc[1] * R(2955.66) + (t404 * R(444.4287600000002) - t439 * R(116.84512));
-        const gic_real t441 = t12 * t10 + (t16 * t8 + t20 * t13);
-        const gic_real t442 = t10 * t441 - t13 * t14 + (t11 * t18 + (t15 * t19 + t16 * t21));
-        const gic_real t443 = t40 * t32 + (t44 * t30 + t48 * t41);
-        const gic_real t444 = t32 * t443 - t41 * t42 + (t36 * t46 + (t43 * t47 + t44 * t49));
-        const gic_real t445 = t440 + (t442 + (m[2] * t406 - m[0] * t26)) + (t444 + (t60 * t410 - t59 * t66));
-        const gic_real t446 = t85 * t77 + (t89 * t75 + t93 * t86);
-        const gic_real t447 = t77 * t446 - t86 * t87 + (t81 * t91 + (t88 * t92 + t89 * t94));
-        const gic_real t448 = t129 * t121 + (t133 * t119 + t139 * t130);
-        const gic_real t449 = t121 * t448 - t130 * t131 + (t125 * t136 + (t132 * t138 + t133 * t141));
-        const gic_real t450 = t445 + (t447 + (t105 * t414 - t104 * t111)) + (t449 + (t158 * t420 - t157 * t166));
-        const gic_real t451 = t187 * t179 + (t191 * t177 + t197 * t188);
-        const gic_real t452 = t179 * t451 - t188 * t189 + (t183 * t194 + (t190 * t196 + t191 * t199));
-        const gic_real t453 = t244 * t236 + (t248 * t234 + t254 * t245);
-        const gic_real t454 = t236 * t453 - t245 * t246 + (t240 * t251 + (t247 * t253 + t248 * t256));
-        const gic_real t455 = t450 + (t452 + (t216 * t426 - t215 * t224)) + (t454 + (t273 * t433 - t272 * t281));
-        const gic_real t456 = t309 * t434 - t303 * t333 + (t341 * t435 - t338 * t355);
-        const gic_real t457 = t456 + (t364 * t436 - t361 * t378) + (t386 * t437 - t383 * t400);
-        const gic_real t458 = t6 * R(2086.52) + t29 + t73 + t118 + t175 + t233;
-        const gic_real t459 = y[15] * t2 - y[16] * t438 + acc[2] * R(3570.2) + t6 * R(116.84512);
-        const gic_real t460 = t13 * t17 - t8 * t441 + (t9 * t18 + (t11 * t19 + t12 * t21));
-        const gic_real t461 = t41 * t45 - t30 * t443 + (t31 * t46 + (t36 * t47 + t40 * t49));
-        const gic_real t462 = t459 + (t460 + (m[0] * t29 - m[1] * t406)) + (t461 + (t59 * t73 - t52 * t410));
-        const gic_real t463 = t86 * t90 - t75 * t446 + (t76 * t91 + (t81 * t92 + t85 * t94));
-        const gic_real t464 = t130 * t134 - t119 * t448 + (t120 * t136 + (t125 * t138 + t129 * t141));
-        const gic_real t465 = t462 + (t463 + (t104 * t118 - t97 * t414)) + (t464 + (t157 * t175 - t146 * t420));
-        const gic_real t466 = t188 * t192 - t177 * t451 + (t178 * t194 + (t183 * t196 + t187 * t199));
-        const gic_real t467 = t245 * t249 - t234 * t453 + (t235 * t251 + (t240 * t253 + t244 * t256));
-        const gic_real t468 = t465 + (t466 + (t215 * t233 - t204 * t426)) + (t467 + (t272 * t290 - t261 * t433));
-        const gic_real t469 = t303 * t334 - t293 * t434 + (t338 * t356 - t336 * t435);
-        const gic_real t470 = t469 + (t361 * t379 - t359 * t436) + (t383 * t401 - t381 * t437);
-        const gic_real t471 = t439 * R(2086.52) + t26 + t66 + t111 + t166 + t224;
-        const gic_real t472 = m[56] * t461 + (m[55] * t444 + m[54] * t50) + (t65 * t66 + (t72 * t73 + t409 * t410));
-        const gic_real t473 = m[158] * t464 + (m[157] * t449 + m[156] * t142) + (t164 * t166 + (t173 * t175 + t418 * t420));
-        const gic_real t474 = t334 * (m[160] + (m[158] * t302 - m[156] * t308)) + t434 * (m[159] + (m[157] * t308 - m[158] * t292));
-        const gic_real t475 = t333 * (m[161] + (m[156] * t292 - m[157] * t302)) + t474;
-        const gic_real t476 = t472 + t473 - (t475 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)));
-        const gic_real t477 = m[86] * t463 + (m[85] * t447 + m[84] * t95) + (t110 * t111 + (t117 * t118 + t413 * t414));
-        const gic_real t478 = m[194] * t466 + (m[193] * t452 + m[192] * t200) + (t222 * t224 + (t231 * t233 + t424 * t426));
-        const gic_real t479 = t356 * (m[196] + (m[194] * t337 - m[192] * t340)) + t435 * (m[195] + (m[193] * t340 - m[194] * t335));
-        const gic_real t480 = t355 * (m[197] + (m[192] * t335 - m[193] * t337)) + t479;
-        const gic_real t481 = t477 + t478 - (t480 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)));
-        const gic_real t482 = m[116] * t467 + (m[115] * t454 + m[114] * t257) + (t278 * t281 + (t287 * t290 + t430 * t433));
-        const gic_real t483 = t379 * (m[118] + (m[116] * t360 - m[114] * t363)) + t436 * (m[117] + (m[115] * t363 - m[116] * t358));
-        const gic_real t484 = t378 * (m[119] + (m[114] * t358 - m[115] * t360)) + t483;
-        const gic_real t485 = t401 * (m[118] + (m[116] * t382 - m[114] * t385)) + t437 * (m[117] + (m[115] * t385 - m[116] * t380));
-        const gic_real t486 = t400 * (m[119] + (m[114] * t380 - m[115] * t382)) + t485;
-        const gic_real t487 = t484 - ((x[2] - R(0.41347)) * R(63000.0) + xd[2] * R(4100.0)) + t486;
-        const gic_real t488 = m[122] * t467 + (m[121] * t454 + m[120] * t257) + (t279 * t281 + (t288 * t290 + t431 * t433));
-        const gic_real t489 = t379 * (m[124] + (m[122] * t360 - m[120] * t363)) + t436 * (m[123] + (m[121] * t363 - m[122] * t358));
-        const gic_real t490 = t378 * (m[125] + (m[120] * t358 - m[121] * t360)) + t489;
-        const gic_real t491 = t401 * (m[124] + (m[122] * t382 - m[120] * t385)) + t437 * (m[123] + (m[121] * t385 - m[122] * t380));
-        const gic_real t492 = t400 * (m[125] + (m[120] * t380 - m[121] * t382)) + t491;
-        const gic_real t493 = t490 - (R(63000.0) * (x[3] - R(0.41347)) + xd[3] * R(4100.0)) + t492;
-        const gic_real t494 = m[26] * t460 + (m[25] * t442 + m[24] * t22) + (m[29] * t26 + (m[28] * t29 + m[27] * t406));
-        const gic_real t495 = m[152] * t464 + (m[151] * t449 + m[150] * t142) + (t163 * t166 + (t172 * t175 + t417 * t420));
-        const gic_real t496 = m[188] * t466 + (m[187] * t452 + m[186] * t200) + (t221 * t224 + (t230 * t233 + t423 * t426));
-        const gic_real t497 = t334 * (m[154] + (m[152] * t302 - m[150] * t308)) + t434 * (m[153] + (m[151] * t308 - m[152] * t292));
-        const gic_real t498 = t333 * (m[155] + (m[150] * t292 - m[151] * t302)) + t497;
-        const gic_real t499 = t356 * (m[190] + (m[188] * t337 - m[186] * t340)) + t435 * (m[189] + (m[187] * t340 - m[188] * t335));
-        const gic_real t500 = t355 * (m[191] + (m[186] * t335 - m[187] * t337)) + t499;
-        const gic_real t501 = t494 + t495 + t496 - (t498 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t500);
-        const gic_real t502 = t291 - t402;
-        const gic_real t503 = t427 + t433 - (t434 + t435 + t436 + t437);
-        const gic_real t504 = t455 - t457;
-        const gic_real t505 = t458 + t290 - (t334 + t356 + t379 + t401);
-        const gic_real t506 = t468 - t470;
-        const gic_real t507 = t471 + t281 - (t333 + t355 + t378 + t400);
-        const gic_real t508 = t482 - t487;
-        const gic_real t509 = t488 - t493;
-        tau[0] = t502;
-        tau[3] = t503;
-        tau[1] = t504;
-        tau[4] = t505;
-        tau[2] = t506;
-        tau[5] = t507;
-        tau[6] = t476;
-        tau[7] = t481;
-        tau[8] = t508;
-        tau[9] = t509;
-        tau[10] = t501;
+        const gic_real t396 = y[12] + (t318 * t387 + (t319 * t390 + t320 * t391));
+        const gic_real t397 = y[14] + (t298 * t387 + (t325 * t390 + t326 * t391));
+        const gic_real t398 = t392 * road395[2] + t396 * road395[1] - t397;
+        const gic_real t399 = y[2] + (t298 * t389 + (t325 * t384 + t326 * t386));
+        const gic_real t400 = R(0.4699) + road395[0] - t399;
+        const gic_real t401 = GIC_MIN(GIC_MAX(R(100.0) * t400, R(0.0)), R(1.0));
+        const gic_real t402 = t398 * (R(500.0) * ((R(3.0) - (t401 + t401)) * (t401 * t401)));
+        const gic_real t403 = GIC_MAX(t402 + R(283000.0) * t400, R(0.0));
+        const gic_real t404 = t298 * t403;
+        const gic_real t405 = t325 * t403;
+        const gic_real t406 = t359 + (t361 * t381 - t366 * t382) + (t384 * t404 - t389 * t405);
+        const gic_real t407 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
+        const gic_real t408 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[17] * t407 + y[16] * t3));
+        const gic_real t409 = y[16] * t27 - y[17] * t23 + (m[2] * acc[1] - m[1] * acc[2]);
+        const gic_real t410 = (m[21] + (acc[3] + t409) + m[27] * acc[10]) * R(9.072);
+        const gic_real t411 = m[43] * t67 - m[44] * t55 + (m[49] * t54 - m[50] * t51);
+        const gic_real t412 = y[16] * t70 - y[17] * t61 + (acc[1] * t60 - acc[2] * t52);
+        const gic_real t413 = m[57] + (m[55] * t54 - m[56] * t51);
+        const gic_real t414 = (m[51] + t411 + (acc[3] + t412) + acc[6] * t413) * R(23.965);
+        const gic_real t415 = m[73] * t112 - m[74] * t100 + (m[79] * t99 - m[80] * t96);
+        const gic_real t416 = y[16] * t115 - y[17] * t106 + (acc[1] * t105 - acc[2] * t97);
+        const gic_real t417 = m[87] + (m[85] * t99 - m[86] * t96);
+        const gic_real t418 = R(23.965) * (m[81] + t415 + (acc[3] + t416) + acc[7] * t417);
+        const gic_real t419 = m[139] * t167 - m[140] * t153 + (m[145] * t152 - m[146] * t145);
+        const gic_real t420 = y[16] * t170 - y[17] * t159 + (acc[1] * t158 - acc[2] * t146);
+        const gic_real t421 = m[153] + (m[151] * t152 - m[152] * t145);
+        const gic_real t422 = m[159] + (m[157] * t152 - m[158] * t145);
+        const gic_real t423 = m[147] + t419 + (acc[3] + t420) + acc[10] * t421 + acc[6] * t422;
+        const gic_real t424 = t423 * R(90.555);
+        const gic_real t425 = m[175] * t225 - m[176] * t211 + (m[181] * t210 - m[182] * t203);
+        const gic_real t426 = y[16] * t228 - y[17] * t217 + (acc[1] * t216 - acc[2] * t204);
+        const gic_real t427 = m[189] + (m[187] * t210 - m[188] * t203);
+        const gic_real t428 = m[195] + (m[193] * t210 - m[194] * t203);
+        const gic_real t429 = m[183] + t425 + (acc[3] + t426) + acc[10] * t427 + acc[7] * t428;
+        const gic_real t430 = R(90.555) * t429;
+        const gic_real t431 = t408 * R(2086.52) + t410 + t414 + t418 + t424 + t430;
+        const gic_real t432 = m[103] * t282 - m[104] * t268 + (m[109] * t267 - m[110] * t260);
+        const gic_real t433 = y[16] * t285 - y[17] * t274 + (acc[1] * t273 - acc[2] * t261);
+        const gic_real t434 = m[117] + (m[115] * t267 - m[116] * t260);
+        const gic_real t435 = m[123] + (m[121] * t267 - m[122] * t260);
+        const gic_real t436 = m[111] + t432 + (acc[3] + t433) + acc[8] * t434 + acc[9] * t435;
+        const gic_real t437 = t436 * R(271.11);
+        const gic_real t438 = t326 * t333;
+        const gic_real t439 = t326 * t356;
+        const gic_real t440 = t326 * t380;
+        const gic_real t441 = t326 * t403;
+        const gic_real t442 = y[15] * R(1078.52);
+        const gic_real t443 = acc[5] + (y[15] * t407 - y[16] * t4 - acc[1] * R(0.056));
+        const gic_real t444 = y[17] * t442 - y[15] * t1 + acc[1] * R(2955.66) + (t408 * R(444.4287600000002) - t443 * R(116.84512));
+        const gic_real t445 = t12 * t10 + (t16 * t8 + t20 * t13);
+        const gic_real t446 = t10 * t445 - t13 * t14 + (t11 * t18 + (t15 * t19 + t16 * t21));
+        const gic_real t447 = t40 * t32 + (t44 * t30 + t48 * t41);
+        const gic_real t448 = t32 * t447 - t41 * t42 + (t36 * t46 + (t43 * t47 + t44 * t49));
+        const gic_real t449 = t444 + (t446 + (m[2] * t410 - m[0] * t26)) + (t448 + (t60 * t414 - t59 * t66));
+        const gic_real t450 = t85 * t77 + (t89 * t75 + t93 * t86);
+        const gic_real t451 = t77 * t450 - t86 * t87 + (t81 * t91 + (t88 * t92 + t89 * t94));
+        const gic_real t452 = t129 * t121 + (t133 * t119 + t139 * t130);
+        const gic_real t453 = t121 * t452 - t130 * t131 + (t125 * t136 + (t132 * t138 + t133 * t141));
+        const gic_real t454 = t449 + (t451 + (t105 * t418 - t104 * t111)) + (t453 + (t158 * t424 - t157 * t166));
+        const gic_real t455 = t187 * t179 + (t191 * t177 + t197 * t188);
+        const gic_real t456 = t179 * t455 - t188 * t189 + (t183 * t194 + (t190 * t196 + t191 * t199));
+        const gic_real t457 = t244 * t236 + (t248 * t234 + t254 * t245);
+        const gic_real t458 = t236 * t457 - t245 * t246 + (t240 * t251 + (t247 * t253 + t248 * t256));
+        const gic_real t459 = t454 + (t456 + (t216 * t430 - t215 * t224)) + (t458 + (t273 * t437 - t272 * t281));
+        const gic_real t460 = t309 * t438 - t303 * t334 + (t342 * t439 - t339 * t357);
+        const gic_real t461 = t460 + (t366 * t440 - t363 * t381) + (t389 * t441 - t386 * t404);
+        const gic_real t462 = t6 * R(2086.52) + t29 + t73 + t118 + t175 + t233;
+        const gic_real t463 = y[15] * t2 - y[16] * t442 + acc[2] * R(3570.2) + t6 * R(116.84512);
+        const gic_real t464 = t13 * t17 - t8 * t445 + (t9 * t18 + (t11 * t19 + t12 * t21));
+        const gic_real t465 = t41 * t45 - t30 * t447 + (t31 * t46 + (t36 * t47 + t40 * t49));
+        const gic_real t466 = t463 + (t464 + (m[0] * t29 - m[1] * t410)) + (t465 + (t59 * t73 - t52 * t414));
+        const gic_real t467 = t86 * t90 - t75 * t450 + (t76 * t91 + (t81 * t92 + t85 * t94));
+        const gic_real t468 = t130 * t134 - t119 * t452 + (t120 * t136 + (t125 * t138 + t129 * t141));
+        const gic_real t469 = t466 + (t467 + (t104 * t118 - t97 * t418)) + (t468 + (t157 * t175 - t146 * t424));
+        const gic_real t470 = t188 * t192 - t177 * t455 + (t178 * t194 + (t183 * t196 + t187 * t199));
+        const gic_real t471 = t245 * t249 - t234 * t457 + (t235 * t251 + (t240 * t253 + t244 * t256));
+        const gic_real t472 = t469 + (t470 + (t215 * t233 - t204 * t430)) + (t471 + (t272 * t290 - t261 * t437));
+        const gic_real t473 = t303 * t335 - t293 * t438 + (t339 * t358 - t337 * t439);
+        const gic_real t474 = t473 + (t363 * t382 - t361 * t440) + (t386 * t405 - t384 * t441);
+        const gic_real t475 = t443 * R(2086.52) + t26 + t66 + t111 + t166 + t224;
+        const gic_real t476 = m[56] * t465 + (m[55] * t448 + m[54] * t50) + (t65 * t66 + (t72 * t73 + t413 * t414));
+        const gic_real t477 = m[158] * t468 + (m[157] * t453 + m[156] * t142) + (t164 * t166 + (t173 * t175 + t422 * t424));
+        const gic_real t478 = t335 * (m[160] + (m[158] * t302 - m[156] * t308)) + t438 * (m[159] + (m[157] * t308 - m[158] * t292));
+        const gic_real t479 = t334 * (m[161] + (m[156] * t292 - m[157] * t302)) + t478;
+        const gic_real t480 = t476 + t477 - (t479 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)));
+        const gic_real t481 = m[86] * t467 + (m[85] * t451 + m[84] * t95) + (t110 * t111 + (t117 * t118 + t417 * t418));
+        const gic_real t482 = m[194] * t470 + (m[193] * t456 + m[192] * t200) + (t222 * t224 + (t231 * t233 + t428 * t430));
+        const gic_real t483 = t358 * (m[196] + (m[194] * t338 - m[192] * t341)) + t439 * (m[195] + (m[193] * t341 - m[194] * t336));
+        const gic_real t484 = t357 * (m[197] + (m[192] * t336 - m[193] * t338)) + t483;
+        const gic_real t485 = t481 + t482 - (t484 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)));
+        const gic_real t486 = m[116] * t471 + (m[115] * t458 + m[114] * t257) + (t278 * t281 + (t287 * t290 + t434 * t437));
+        const gic_real t487 = t382 * (m[118] + (m[116] * t362 - m[114] * t365)) + t440 * (m[117] + (m[115] * t365 - m[116] * t360));
+        const gic_real t488 = t381 * (m[119] + (m[114] * t360 - m[115] * t362)) + t487;
+        const gic_real t489 = t405 * (m[118] + (m[116] * t385 - m[114] * t388)) + t441 * (m[117] + (m[115] * t388 - m[116] * t383));
+        const gic_real t490 = t404 * (m[119] + (m[114] * t383 - m[115] * t385)) + t489;
+        const gic_real t491 = t488 - ((x[2] - R(0.41347)) * R(63000.0) + xd[2] * R(4100.0)) + t490;
+        const gic_real t492 = m[122] * t471 + (m[121] * t458 + m[120] * t257) + (t279 * t281 + (t288 * t290 + t435 * t437));
+        const gic_real t493 = t382 * (m[124] + (m[122] * t362 - m[120] * t365)) + t440 * (m[123] + (m[121] * t365 - m[122] * t360));
+        const gic_real t494 = t381 * (m[125] + (m[120] * t360 - m[121] * t362)) + t493;
+        const gic_real t495 = t405 * (m[124] + (m[122] * t385 - m[120] * t388)) + t441 * (m[123] + (m[121] * t388 - m[122] * t383));
+        const gic_real t496 = t404 * (m[125] + (m[120] * t383 - m[121] * t385)) + t495;
+        const gic_real t497 = t494 - (R(63000.0) * (x[3] - R(0.41347)) + xd[3] * R(4100.0)) + t496;
+        const gic_real t498 = m[26] * t464 + (m[25] * t446 + m[24] * t22) + (m[29] * t26 + (m[28] * t29 + m[27] * t410));
+        const gic_real t499 = m[152] * t468 + (m[151] * t453 + m[150] * t142) + (t163 * t166 + (t172 * t175 + t421 * t424));
+        const gic_real t500 = m[188] * t470 + (m[187] * t456 + m[186] * t200) + (t221 * t224 + (t230 * t233 + t427 * t430));
+        const gic_real t501 = t335 * (m[154] + (m[152] * t302 - m[150] * t308)) + t438 * (m[153] + (m[151] * t308 - m[152] * t292));
+        const gic_real t502 = t334 * (m[155] + (m[150] * t292 - m[151] * t302)) + t501;
+        const gic_real t503 = t358 * (m[190] + (m[188] * t338 - m[186] * t341)) + t439 * (m[189] + (m[187] * t341 - m[188] * t336));
+        const gic_real t504 = t357 * (m[191] + (m[186] * t336 - m[187] * t338)) + t503;
+        const gic_real t505 = t498 + t499 + t500 - (t502 - (x[4] * R(100000.0) + xd[4] * R(12000.0)) + t504);
+        const gic_real t506 = t291 - t406;
+        const gic_real t507 = t431 + t437 - (t438 + t439 + t440 + t441);
+        const gic_real t508 = t459 - t461;
+        const gic_real t509 = t462 + t290 - (t335 + t358 + t382 + t405);
+        const gic_real t510 = t472 - t474;
+        const gic_real t511 = t475 + t281 - (t334 + t357 + t381 + t404);
+        const gic_real t512 = t486 - t491;
+        const gic_real t513 = t492 - t497;
+        tau[0] = t506;
+        tau[3] = t507;
+        tau[1] = t508;
+        tau[4] = t509;
+        tau[2] = t510;
+        tau[5] = t511;
+        tau[6] = t480;
+        tau[7] = t485;
+        tau[8] = t512;
+        tau[9] = t513;
+        tau[10] = t505;
     }
     return GIC_OK;
 }
@@ -4684,103 +4712,108 @@ static int solid_axle_energy(const solid_axle *self, gic_real time, const gic_re
         if (!road_height(self, time, t356, t357, road358))
             return GIC_ERROR_ROAD;
         const gic_real t359 = y[12] + (t16 * t349 + (t28 * t352 + t34 * t353));
-        const gic_real t360 = y[2] + (t8 * t351 + (t23 * t347 + t32 * t348));
-        const gic_real t361 = road358[0] + R(0.4699) - t360;
-        const gic_real t362 = GIC_MIN(GIC_MAX(t361 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t363 = (t355 * road358[2] + t359 * road358[1] - t354) * ((R(3.0) - (t362 + t362)) * (t362 * t362) * R(500.0));
-        const gic_real t364 = xd[0] * (xd[0] * R(17490.8)) + xd[1] * (xd[1] * R(17490.8)) + xd[2] * (xd[2] * R(4100.0));
-        const gic_real t365 = t364 + xd[3] * (xd[3] * R(4100.0)) + xd[4] * (xd[4] * R(12000.0));
-        const gic_real t366 = t231 + (m[169] * R(-0.12319000000000002) + t232);
-        const gic_real t367 = t224 + (m[166] * R(-0.12319000000000002) + t225);
-        const gic_real t368 = m[163] + t366;
-        const gic_real t369 = m[162] + t367;
-        const gic_real t370 = m[179] + (m[174] * t366 - m[175] * t367) + (y[15] * t368 - y[16] * t369);
-        const gic_real t371 = t227 + (m[172] * R(-0.12319000000000002) + t228);
-        const gic_real t372 = m[164] + t371;
-        const gic_real t373 = m[178] + (m[176] * t367 - m[174] * t371) + (y[17] * t369 - y[15] * t372);
-        const gic_real t374 = m[177] + (m[175] * t371 - m[176] * t366) + (y[16] * t372 - y[17] * t368);
-        const gic_real t375 = y[14] + (t8 * t370 + (t23 * t373 + t32 * t374));
-        const gic_real t376 = y[13] + (t12 * t370 + (t25 * t373 + t33 * t374));
-        const gic_real t377 = y[0] + (t16 * t372 + (t28 * t368 + t34 * t369));
-        const gic_real t378 = y[1] + (t12 * t372 + (t25 * t368 + t33 * t369));
-        gic_real road379[3];
-        if (!road_height(self, time, t377, t378, road379))
+        const gic_real t360 = t355 * road358[2] + t359 * road358[1] - t354;
+        const gic_real t361 = y[2] + (t8 * t351 + (t23 * t347 + t32 * t348));
+        const gic_real t362 = road358[0] + R(0.4699) - t361;
+        const gic_real t363 = GIC_MIN(GIC_MAX(t362 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t364 = t360 * ((R(3.0) - (t363 + t363)) * (t363 * t363) * R(500.0));
+        const gic_real t365 = xd[0] * (xd[0] * R(17490.8)) + xd[1] * (xd[1] * R(17490.8)) + xd[2] * (xd[2] * R(4100.0));
+        const gic_real t366 = t365 + xd[3] * (xd[3] * R(4100.0)) + xd[4] * (xd[4] * R(12000.0));
+        const gic_real t367 = t231 + (m[169] * R(-0.12319000000000002) + t232);
+        const gic_real t368 = t224 + (m[166] * R(-0.12319000000000002) + t225);
+        const gic_real t369 = m[163] + t367;
+        const gic_real t370 = m[162] + t368;
+        const gic_real t371 = m[179] + (m[174] * t367 - m[175] * t368) + (y[15] * t369 - y[16] * t370);
+        const gic_real t372 = t227 + (m[172] * R(-0.12319000000000002) + t228);
+        const gic_real t373 = m[164] + t372;
+        const gic_real t374 = m[178] + (m[176] * t368 - m[174] * t372) + (y[17] * t370 - y[15] * t373);
+        const gic_real t375 = m[177] + (m[175] * t372 - m[176] * t367) + (y[16] * t373 - y[17] * t369);
+        const gic_real t376 = y[14] + (t8 * t371 + (t23 * t374 + t32 * t375));
+        const gic_real t377 = y[13] + (t12 * t371 + (t25 * t374 + t33 * t375));
+        const gic_real t378 = y[0] + (t16 * t373 + (t28 * t369 + t34 * t370));
+        const gic_real t379 = y[1] + (t12 * t373 + (t25 * t369 + t33 * t370));
+        gic_real road380[3];
+        if (!road_height(self, time, t378, t379, road380))
             return GIC_ERROR_ROAD;
-        const gic_real t380 = y[12] + (t16 * t370 + (t28 * t373 + t34 * t374));
-        const gic_real t381 = y[2] + (t8 * t372 + (t23 * t368 + t32 * t369));
-        const gic_real t382 = R(0.4699) + road379[0] - t381;
-        const gic_real t383 = GIC_MIN(GIC_MAX(R(100.0) * t382, R(0.0)), R(1.0));
-        const gic_real t384 = (t376 * road379[2] + t380 * road379[1] - t375) * (R(500.0) * ((R(3.0) - (t383 + t383)) * (t383 * t383)));
-        const gic_real t385 = t354 * GIC_MAX(t363 + t361 * R(283000.0), R(0.0)) - t365 + t375 * GIC_MAX(t384 + R(283000.0) * t382, R(0.0));
-        const gic_real t386 = t291 + (m[97] * R(1.029701) + t292);
-        const gic_real t387 = t284 + (m[94] * R(1.029701) + t285);
-        const gic_real t388 = m[91] + t386;
-        const gic_real t389 = m[90] + t387;
-        const gic_real t390 = m[107] + (m[102] * t386 - m[103] * t387) + (y[15] * t388 - y[16] * t389);
-        const gic_real t391 = t287 + (m[100] * R(1.029701) + t288);
-        const gic_real t392 = m[92] + t391;
-        const gic_real t393 = m[106] + (m[104] * t387 - m[102] * t391) + (y[17] * t389 - y[15] * t392);
-        const gic_real t394 = m[105] + (m[103] * t391 - m[104] * t386) + (y[16] * t392 - y[17] * t388);
-        const gic_real t395 = y[14] + (t8 * t390 + (t23 * t393 + t32 * t394));
-        const gic_real t396 = y[13] + (t12 * t390 + (t25 * t393 + t33 * t394));
-        const gic_real t397 = y[0] + (t16 * t392 + (t28 * t388 + t34 * t389));
-        const gic_real t398 = y[1] + (t12 * t392 + (t25 * t388 + t33 * t389));
-        gic_real road399[3];
-        if (!road_height(self, time, t397, t398, road399))
+        const gic_real t381 = y[12] + (t16 * t371 + (t28 * t374 + t34 * t375));
+        const gic_real t382 = t377 * road380[2] + t381 * road380[1] - t376;
+        const gic_real t383 = y[2] + (t8 * t373 + (t23 * t369 + t32 * t370));
+        const gic_real t384 = R(0.4699) + road380[0] - t383;
+        const gic_real t385 = GIC_MIN(GIC_MAX(R(100.0) * t384, R(0.0)), R(1.0));
+        const gic_real t386 = t382 * (R(500.0) * ((R(3.0) - (t385 + t385)) * (t385 * t385)));
+        const gic_real t387 = t354 * GIC_MAX(t364 + t362 * R(283000.0), R(0.0)) - t366 + t376 * GIC_MAX(t386 + R(283000.0) * t384, R(0.0));
+        const gic_real t388 = t291 + (m[97] * R(1.029701) + t292);
+        const gic_real t389 = t284 + (m[94] * R(1.029701) + t285);
+        const gic_real t390 = m[91] + t388;
+        const gic_real t391 = m[90] + t389;
+        const gic_real t392 = m[107] + (m[102] * t388 - m[103] * t389) + (y[15] * t390 - y[16] * t391);
+        const gic_real t393 = t287 + (m[100] * R(1.029701) + t288);
+        const gic_real t394 = m[92] + t393;
+        const gic_real t395 = m[106] + (m[104] * t389 - m[102] * t393) + (y[17] * t391 - y[15] * t394);
+        const gic_real t396 = m[105] + (m[103] * t393 - m[104] * t388) + (y[16] * t394 - y[17] * t390);
+        const gic_real t397 = y[14] + (t8 * t392 + (t23 * t395 + t32 * t396));
+        const gic_real t398 = y[13] + (t12 * t392 + (t25 * t395 + t33 * t396));
+        const gic_real t399 = y[0] + (t16 * t394 + (t28 * t390 + t34 * t391));
+        const gic_real t400 = y[1] + (t12 * t394 + (t25 * t390 + t33 * t391));
+        gic_real road401[3];
+        if (!road_height(self, time, t399, t400, road401))
             return GIC_ERROR_ROAD;
-        const gic_real t400 = y[12] + (t16 * t390 + (t28 * t393 + t34 * t394));
-        const gic_real t401 = y[2] + (t8 * t392 + (t23 * t388 + t32 * t389));
-        const gic_real t402 = R(0.4699) + road399[0] - t401;
-        const gic_real t403 = GIC_MIN(GIC_MAX(R(100.0) * t402, R(0.0)), R(1.0));
-        const gic_real t404 = (t396 * road399[2] + t400 * road399[1] - t395) * (R(500.0) * ((R(3.0) - (t403 + t403)) * (t403 * t403)));
-        const gic_real t405 = t291 + (t292 + m[97] * R(-0.789701));
-        const gic_real t406 = t284 + (t285 + m[94] * R(-0.789701));
-        const gic_real t407 = m[91] + t405;
-        const gic_real t408 = m[90] + t406;
-        const gic_real t409 = m[107] + (m[102] * t405 - m[103] * t406) + (y[15] * t407 - y[16] * t408);
-        const gic_real t410 = t287 + (t288 + m[100] * R(-0.789701));
-        const gic_real t411 = m[92] + t410;
-        const gic_real t412 = m[106] + (m[104] * t406 - m[102] * t410) + (y[17] * t408 - y[15] * t411);
-        const gic_real t413 = m[105] + (m[103] * t410 - m[104] * t405) + (y[16] * t411 - y[17] * t407);
-        const gic_real t414 = y[14] + (t8 * t409 + (t23 * t412 + t32 * t413));
-        const gic_real t415 = y[13] + (t12 * t409 + (t25 * t412 + t33 * t413));
-        const gic_real t416 = y[0] + (t16 * t411 + (t28 * t407 + t34 * t408));
-        const gic_real t417 = y[1] + (t12 * t411 + (t25 * t407 + t33 * t408));
-        gic_real road418[3];
-        if (!road_height(self, time, t416, t417, road418))
+        const gic_real t402 = y[12] + (t16 * t392 + (t28 * t395 + t34 * t396));
+        const gic_real t403 = t398 * road401[2] + t402 * road401[1] - t397;
+        const gic_real t404 = y[2] + (t8 * t394 + (t23 * t390 + t32 * t391));
+        const gic_real t405 = R(0.4699) + road401[0] - t404;
+        const gic_real t406 = GIC_MIN(GIC_MAX(R(100.0) * t405, R(0.0)), R(1.0));
+        const gic_real t407 = t403 * (R(500.0) * ((R(3.0) - (t406 + t406)) * (t406 * t406)));
+        const gic_real t408 = t291 + (t292 + m[97] * R(-0.789701));
+        const gic_real t409 = t284 + (t285 + m[94] * R(-0.789701));
+        const gic_real t410 = m[91] + t408;
+        const gic_real t411 = m[90] + t409;
+        const gic_real t412 = m[107] + (m[102] * t408 - m[103] * t409) + (y[15] * t410 - y[16] * t411);
+        const gic_real t413 = t287 + (t288 + m[100] * R(-0.789701));
+        const gic_real t414 = m[92] + t413;
+        const gic_real t415 = m[106] + (m[104] * t409 - m[102] * t413) + (y[17] * t411 - y[15] * t414);
+        const gic_real t416 = m[105] + (m[103] * t413 - m[104] * t408) + (y[16] * t414 - y[17] * t410);
+        const gic_real t417 = y[14] + (t8 * t412 + (t23 * t415 + t32 * t416));
+        const gic_real t418 = y[13] + (t12 * t412 + (t25 * t415 + t33 * t416));
+        const gic_real t419 = y[0] + (t16 * t414 + (t28 * t410 + t34 * t411));
+        const gic_real t420 = y[1] + (t12 * t414 + (t25 * t410 + t33 * t411));
+        gic_real road421[3];
+        if (!road_height(self, time, t419, t420, road421))
             return GIC_ERROR_ROAD;
-        const gic_real t419 = y[12] + (t16 * t409 + (t28 * t412 + t34 * t413));
-        const gic_real t420 = y[2] + (t8 * t411 + (t23 * t407 + t32 * t408));
-        const gic_real t421 = R(0.4699) + road418[0] - t420;
-        const gic_real t422 = GIC_MIN(GIC_MAX(R(100.0) * t421, R(0.0)), R(1.0));
-        const gic_real t423 = (t415 * road418[2] + t419 * road418[1] - t414) * (R(500.0) * ((R(3.0) - (t422 + t422)) * (t422 * t422)));
-        const gic_real t424 = t385 + t395 * GIC_MAX(t404 + R(283000.0) * t402, R(0.0)) + t414 * GIC_MAX(t423 + R(283000.0) * t421, R(0.0));
-        const gic_real t425 = GIC_FABS(t40) + GIC_FABS(t39) + (GIC_FABS(t66) + GIC_FABS(t53)) + (GIC_FABS(t114) + GIC_FABS(t95)) + (GIC_FABS(t162) + GIC_FABS(t143));
-        const gic_real t426 = t425 + (GIC_FABS(t223) + GIC_FABS(t201)) + (GIC_FABS(t283) + GIC_FABS(t261)) + (GIC_FABS(t343) + GIC_FABS(t321));
-        const gic_real t427 = t3 + t344;
-        const gic_real t428 = t426 + (GIC_FABS(t424) + GIC_FABS(t3));
-        const gic_real t429 = rate[15];
-        const gic_real t430 = rate[16];
-        const gic_real t431 = rate[17];
-        const gic_real t432 = rate[18];
-        const gic_real t433 = rate[19];
-        const gic_real t434 = rate[20];
-        const gic_real t435 = rate[21];
-        const gic_real t436 = rate[22];
-        energy[0] = t427;
-        energy[1] = t424;
-        energy[2] = t428;
-        acc[0] = t429;
+        const gic_real t422 = y[12] + (t16 * t412 + (t28 * t415 + t34 * t416));
+        const gic_real t423 = t418 * road421[2] + t422 * road421[1] - t417;
+        const gic_real t424 = y[2] + (t8 * t414 + (t23 * t410 + t32 * t411));
+        const gic_real t425 = R(0.4699) + road421[0] - t424;
+        const gic_real t426 = GIC_MIN(GIC_MAX(R(100.0) * t425, R(0.0)), R(1.0));
+        const gic_real t427 = t423 * (R(500.0) * ((R(3.0) - (t426 + t426)) * (t426 * t426)));
+        const gic_real t428 = t387 + t397 * GIC_MAX(t407 + R(283000.0) * t405, R(0.0)) + t417 * GIC_MAX(t427 + R(283000.0) * t425, R(0.0));
+        const gic_real t429 = GIC_FABS(t40) + GIC_FABS(t39) + (GIC_FABS(t66) + GIC_FABS(t53));
+        const gic_real t430 = t429 + (GIC_FABS(t114) + GIC_FABS(t95)) + (GIC_FABS(t162) + GIC_FABS(t143));
+        const gic_real t431 = t430 + (GIC_FABS(t223) + GIC_FABS(t201)) + (GIC_FABS(t283) + GIC_FABS(t261));
+        const gic_real t432 = t431 + (GIC_FABS(t343) + GIC_FABS(t321)) + (GIC_FABS(t428) + GIC_FABS(t3));
+        const gic_real t433 = t3 + t344;
+        const gic_real t434 = rate[15];
+        const gic_real t435 = rate[16];
+        const gic_real t436 = rate[17];
+        const gic_real t437 = rate[18];
+        const gic_real t438 = rate[19];
+        const gic_real t439 = rate[20];
+        const gic_real t440 = rate[21];
+        const gic_real t441 = rate[22];
+        energy[0] = t433;
+        energy[1] = t428;
+        energy[2] = t432;
+        acc[0] = t434;
         acc[3] = t35;
-        acc[1] = t430;
+        acc[1] = t435;
         acc[4] = t29;
-        acc[2] = t431;
+        acc[2] = t436;
         acc[5] = t17;
-        acc[6] = t432;
-        acc[7] = t433;
-        acc[8] = t434;
-        acc[9] = t435;
-        acc[10] = t436;
+        acc[6] = t437;
+        acc[7] = t438;
+        acc[8] = t439;
+        acc[9] = t440;
+        acc[10] = t441;
     }
     return GIC_OK;
 }

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Leaves in one expression: about a line of text. */
+/* Leaves in one expression, a function's name counted as one: about a line of text, and a bound on its nesting. */
 enum { LEAVES_MOST = 6 };
 
 /* Binding strength of a node's text. */
@@ -71,7 +71,7 @@ static void size_texts(Emitter *m)
             m->leaves[e] = 1;
             continue;
         }
-        int sum = 0;
+        int sum = op_form[node->op].arity == 1;
         for (int i = 0; i < op_form[node->op].arity; ++i) {
             int own = m->leaves[node->arg[i]];
             sum += own ? own : 1;

@@ -287,6 +287,8 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
         line(out, indent, "gic_real q[%d];", numbers);
     } else if (!strcmp(name, "residual arguments")) {
         write_arguments(g, out, indent, emitted(g, &f->residual, 0));
+    } else if (!strcmp(name, "enough")) {
+        line(out, indent, "const gic_real enough = GIC_ENOUGH(%s);", emit_number(g->pool, f->distance * f->distance));
     } else if (!strcmp(name, "pose")) {
         line(out, indent, "for (i = 0; i < %d; ++i)", numbers);
         line(out, indent + 4, "q[i] = old[i];");

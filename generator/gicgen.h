@@ -542,6 +542,7 @@ typedef struct Formula {
     Dag *dag;
     Layout layout;
     double size;   /* largest distance between points of a subset, m */
+    double distance; /* largest of its reference points from the base's origin at the design, relative to size */
     Block predict; /* q from the start and `change`; reach: squared relative size of that move */
     Block chord;   /* one correction of q with the start's factors; step: its squared relative size */
     Block solve;   /* factors, S, last correction, motion and inertia */

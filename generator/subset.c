@@ -138,6 +138,19 @@ static double subset_size(const Work *w)
     return size > 0 ? size : 1;
 }
 
+/* Largest distance of the bodies' reference points from the base's origin at the design. */
+static double subset_distance(const Work *w)
+{
+    double distance = 0, c[3];
+    for (int s = 0; s < w->dag->samples; s += w->configurations)
+        for (int b = 0; b < w->first->bodies; ++b) {
+            for (int i = 0; i < 3; ++i)
+                c[i] = ex_value(w->dag, w->pose[b].c[i], s);
+            distance = fmax(distance, vec_norm(c));
+        }
+    return distance;
+}
+
 static Ex *make_inputs(Work *w, const char *name, int count)
 {
     Ex *e = pool_alloc(w->pool, (size_t)(count ? count : 1) * sizeof *e);
@@ -477,6 +490,7 @@ static Formula *formulate_class(Work *w)
     Formula *formula = pool_alloc(pool, sizeof *formula);
     formula->dag = formula->predict.dag = formula->chord.dag = formula->solve.dag = formula->residual.dag = dag;
     formula->size = w->size;
+    formula->distance = subset_distance(w) / w->size;
     Factors *factors = factor(w);
     Ex *stored = pool_alloc(pool, (size_t)(w->n * w->n) * sizeof *stored), *q = pool_alloc(pool, (size_t)(7 * bodies) * sizeof *q);
     int count;

@@ -1,384 +1,20 @@
 /* SPDX-License-Identifier: MIT
  * random_vehicle --seed S [--broken]
  *
- * Prints a random vehicle in the format of models/FORMAT.md: bodies that hold suspensions, drawn from a grammar of axles
- * and corners, each of which brings as many equations and coordinates as its bodies have freedoms. Equal seeds give
- * equal vehicles.
+ * Prints a random vehicle in the format of models/FORMAT.md: bodies that hold suspensions, drawn from a grammar of
+ * axles and corners, each of which brings as many equations and coordinates as its bodies have freedoms. Equal seeds
+ * give equal vehicles.
  *
- * With --broken one mistake is made: the format stays valid, the mechanism does not. The first line of stderr then names
+ * With --broken one mistake is made: the format stays valid, the mechanism does not. The first line of stderr names
  * the culprits, bodies, joints and coordinates of which an error message must name at least one. */
+#include "random/vehicle.h"
 #include "reference/support.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const char usage[] = "usage: random_vehicle --seed S [--broken]\n";
-
-typedef enum Kind { BODY, JOINT, COORDINATE, FORCE, WHEEL, OUTPUT, KINDS } Kind;
-
-typedef enum Mistake {
-    NO_MISTAKE,
-    JOINT_MISSING,
-    COORDINATE_MISSING,
-    JOINT_TOO_MANY,
-    COORDINATE_TOO_MANY,
-    BODY_LOOSE,
-    PRISMATIC_TWICE,      /* the rack guided twice */
-    PARALLEL_TWICE,       /* as many equations as unknowns, and yet one thing said twice */
-    TIE_ROD_ON_KINGPIN,   /* singular everywhere */
-    SPRING_THROUGH_HINGE, /* singular at the design */
-    MISTAKES
-} Mistake;
-
-enum { MOST = 160, BASE = 0, NOTHING = -1 };
-
-typedef struct Entry {
-    char name[24], text[360];
-    int end[2];     /* bodies that it concerns, or NOTHING */
-    int coordinate; /* of a force, or NOTHING */
-    bool dropped;
-} Entry;
-
-typedef struct Section {
-    int count;
-    Entry entry[MOST];
-} Section;
-
-typedef struct Vehicle {
-    uint64_t random;
-    bool fixed; /* the base is the ground */
-    int names;
-    Mistake mistake; /* still to be made while the vehicle is put together */
-    char culprits[300];
-    Section section[KINDS];
-} Vehicle;
-
-/* xorshift64* */
-static double uniform(Vehicle *v, double low, double high)
-{
-    v->random ^= v->random >> 12;
-    v->random ^= v->random << 25;
-    v->random ^= v->random >> 27;
-    return low + (high - low) * ((double)(v->random * 0x2545f4914f6cdd1du >> 11) * 0x1p-53);
-}
-
-static bool chance(Vehicle *v, double probability)
-{
-    return uniform(v, 0, 1) < probability;
-}
-
-static int pick(Vehicle *v, int count)
-{
-    return (int)uniform(v, 0, count);
-}
-
-/* ---- points and directions, model frame --------------------------------------------------------------------- */
-
-typedef struct Vec {
-    double x[3];
-} Vec;
-
-/* Whole millimetres, so that points made of others by halving and doubling lie exactly where they should. */
-static Vec near_to(Vehicle *v, double x, double y, double z, double spread)
-{
-    Vec out = {{x, y, z}};
-    for (int i = 0; i < 3; ++i)
-        out.x[i] = round(1000 * (out.x[i] + uniform(v, -spread, spread))) / 1000;
-    return out;
-}
-
-static Vec point(Vehicle *v, double x, double y, double z)
-{
-    return near_to(v, x, y, z, 0.025);
-}
-
-/* A direction not far from the one given, its length is of no account. */
-static Vec direction(Vehicle *v, double x, double y, double z)
-{
-    return near_to(v, x, y, z, 0.15);
-}
-
-static Vec combine(double p, Vec a, double q, Vec b)
-{
-    for (int i = 0; i < 3; ++i)
-        a.x[i] = p * a.x[i] + q * b.x[i];
-    return a;
-}
-
-static Vec cross(Vec a, Vec b)
-{
-    Vec out;
-    for (int i = 0; i < 3; ++i)
-        out.x[i] = a.x[(i + 1) % 3] * b.x[(i + 2) % 3] - a.x[(i + 2) % 3] * b.x[(i + 1) % 3];
-    return out;
-}
-
-static double norm(Vec a)
-{
-    return sqrt(a.x[0] * a.x[0] + a.x[1] * a.x[1] + a.x[2] * a.x[2]);
-}
-
-/* Some direction perpendicular to u. */
-static Vec across(Vehicle *v, Vec u)
-{
-    Vec other, out;
-    do {
-        other = near_to(v, 0, 0, 0, 1);
-        out = cross(u, other);
-    } while (norm(out) < 0.5 * norm(u) * norm(other));
-    return out;
-}
-
-/* ---- entries ----------------------------------------------------------------------------------------------------- */
-
-static void append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
-
-static void append(char *text, size_t size, const char *format, ...)
-{
-    size_t used = strlen(text);
-    va_list args;
-    va_start(args, format);
-    int wanted = vsnprintf(text + used, size - used, format, args);
-    va_end(args);
-    if (wanted < 0 || (size_t)wanted >= size - used)
-        fail("an entry is too long: %s", text);
-}
-
-#define SAY(entry, ...) append((entry)->text, sizeof(entry)->text, __VA_ARGS__)
-
-static void say_vector(Entry *entry, const char *lead, Vec u)
-{
-    SAY(entry, "%s[%.9g, %.9g, %.9g]", lead, u.x[0], u.x[1], u.x[2]);
-}
-
-static Entry *add(Vehicle *v, Kind kind, const char *prefix)
-{
-    Section *section = &v->section[kind];
-    if (section->count == MOST)
-        fail("the vehicle is too large");
-    Entry *entry = &section->entry[section->count++];
-    snprintf(entry->name, sizeof entry->name, "%s_%d", prefix, ++v->names);
-    entry->end[0] = entry->end[1] = entry->coordinate = NOTHING;
-    return entry;
-}
-
-static const char *body_name(const Vehicle *v, int body)
-{
-    return body == NOTHING ? "ground" : v->section[BODY].entry[body].name;
-}
-
-static void culprit(Vehicle *v, const char *name)
-{
-    append(v->culprits, sizeof v->culprits, "%s%s", *v->culprits ? " " : "", name);
-}
-
-static void culprit_bodies(Vehicle *v, const Entry *entry)
-{
-    for (int side = 0; side < 2; ++side)
-        if (entry->end[side] > BASE)
-            culprit(v, body_name(v, entry->end[side]));
-}
-
-/* ---- bodies ------------------------------------------------------------------------------------------------------ */
-
-/* Random Euler parameters and their rotation matrix. */
-static void any_rotation(Vehicle *v, double p[4], double A[3][3])
-{
-    double size;
-    do {
-        size = 0;
-        for (int i = 0; i < 4; ++i) {
-            p[i] = uniform(v, -1, 1);
-            size += p[i] * p[i];
-        }
-    } while (size > 1 || size < 0.1);
-    for (int i = 0; i < 4; ++i)
-        p[i] /= sqrt(size);
-    for (int i = 0; i < 3; ++i) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        A[i][i] = 2 * (p[0] * p[0] + p[1 + i] * p[1 + i]) - 1;
-        A[i][j] = 2 * (p[1 + i] * p[1 + j] - p[0] * p[1 + k]);
-        A[i][k] = 2 * (p[1 + i] * p[1 + k] + p[0] * p[1 + j]);
-    }
-}
-
-static void say_orientation(Vehicle *v, Entry *body)
-{
-    double p[4], A[3][3];
-    any_rotation(v, p, A);
-    switch (pick(v, 4)) {
-    case 0:
-        SAY(body, ", orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}", p[0], p[1], p[2], p[3]);
-        break;
-    case 1:
-        SAY(body, ", orientation: {axis: [%.6g, %.6g, %.6g], angle: %.6g}", p[1], p[2], p[3], uniform(v, -3, 3));
-        break;
-    case 2: {
-        Vec x = near_to(v, 0.5, 0.5, 0.5, 0.45);
-        say_vector(body, ", orientation: {x: ", x);
-        say_vector(body, ", z: ", across(v, x));
-        SAY(body, "}");
-        break;
-    }
-    }
-}
-
-/* An ellipsoid of random half axes about `size`, turned against the body frame; its frame stands anywhere near. */
-static int add_body(Vehicle *v, const char *prefix, Vec com, double mass, double size)
-{
-    Entry *body = add(v, BODY, prefix);
-    double p[4], A[3][3], half[3], J[3][3] = {{0}};
-    any_rotation(v, p, A);
-    mass *= uniform(v, 0.7, 1.4);
-    for (int i = 0; i < 3; ++i)
-        half[i] = size * uniform(v, 0.5, 1.5);
-    for (int k = 0; k < 3; ++k) {
-        double principal = mass / 5 * (half[(k + 1) % 3] * half[(k + 1) % 3] + half[(k + 2) % 3] * half[(k + 2) % 3]);
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-                J[i][j] += principal * A[i][k] * A[j][k];
-    }
-    SAY(body, "mass: %.4g", mass);
-    say_vector(body, ", com: ", com);
-    SAY(body, ", inertia: {xx: %.9g, yy: %.9g, zz: %.9g, xy: %.9g, xz: %.9g, yz: %.9g}", J[0][0], J[1][1], J[2][2],
-        J[0][1], J[0][2], J[1][2]);
-    if (chance(v, 0.7))
-        say_vector(body, ", position: ", near_to(v, com.x[0], com.x[1], com.x[2], 0.2));
-    say_orientation(v, body);
-    return v->section[BODY].count - 1;
-}
-
-/* ---- joints -------------------------------------------------------------------------------------------------------- */
-
-/* What a joint or coordinate is made of; members that its type does not have are NULL. */
-typedef struct Geometry {
-    const Vec *point, *points[2], *axis, *axes[2];
-    bool ordered; /* bodies must not change places */
-} Geometry;
-
-static void say_connection(Vehicle *v, Entry *entry, const char *type, int a, int b, const Geometry *with)
-{
-    bool swap = !with->ordered && chance(v, 0.5);
-    entry->end[0] = a;
-    entry->end[1] = b;
-    SAY(entry, "type: %s, bodies: [%s, %s]", type, body_name(v, swap ? b : a), body_name(v, swap ? a : b));
-    if (with->point)
-        say_vector(entry, ", point: ", *with->point);
-    if (with->points[0]) {
-        say_vector(entry, ", points: [", *with->points[swap]);
-        say_vector(entry, ", ", *with->points[!swap]);
-        SAY(entry, "]");
-    }
-    if (with->axis)
-        say_vector(entry, ", axis: ", *with->axis);
-    if (with->axes[0]) {
-        say_vector(entry, ", axes: [", *with->axes[swap]);
-        say_vector(entry, ", ", *with->axes[!swap]);
-        SAY(entry, "]");
-    }
-}
-
-static Entry *join(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with)
-{
-    Entry *joint = add(v, JOINT, prefix);
-    say_connection(v, joint, type, a, b, with);
-    return joint;
-}
-
-/* b turns on a about u: a revolute, or what is equal to it. */
-static Entry *hinge(Vehicle *v, int a, int b, Vec p, Vec u)
-{
-    Entry *first;
-    switch (chance(v, 0.7) ? 0 : 1 + pick(v, 2)) {
-    case 1:
-        first = join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
-        join(v, "stop", "point_in_plane", a, b, &(Geometry){.point = &p, .axis = &u});
-        return first;
-    case 2:
-        first = join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
-        join(v, "same", "parallel", a, b, &(Geometry){.axis = &u});
-        return first;
-    default:
-        return join(v, "hinge", "revolute", a, b, &(Geometry){.point = &p, .axis = &u});
-    }
-}
-
-/* b slides on a along u. */
-static Entry *guide(Vehicle *v, int a, int b, Vec p, Vec u, bool plain)
-{
-    if (plain || chance(v, 0.7))
-        return join(v, "guide", "prismatic", a, b, &(Geometry){.point = chance(v, 0.5) ? &p : NULL, .axis = &u});
-    Vec s = across(v, u), t = cross(u, s);
-    Entry *first = join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
-    join(v, "key", "perpendicular", a, b, &(Geometry){.axes = {&s, &t}});
-    return first;
-}
-
-static void weld(Vehicle *v, int a, int b, Vec p)
-{
-    if (chance(v, 0.7)) {
-        join(v, "weld", "fixed", a, b, &(Geometry){.point = chance(v, 0.5) ? &p : NULL});
-        return;
-    }
-    Vec u = near_to(v, 0.5, 0.5, 0.5, 0.45), s = across(v, u), t = cross(u, s);
-    hinge(v, a, b, p, u);
-    join(v, "key", "perpendicular", a, b, &(Geometry){.axes = {&s, &t}});
-}
-
-static Entry *ball(Vehicle *v, int a, int b, Vec p)
-{
-    return join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
-}
-
-/* A rod, sometimes of another length than drawn. */
-static Entry *rod(Vehicle *v, int a, int b, Vec p_a, Vec p_b)
-{
-    Entry *joint = join(v, "rod", "distance", a, b, &(Geometry){.points = {&p_a, &p_b}});
-    if (chance(v, 0.1))
-        SAY(joint, ", length: %.6g", norm(combine(1, p_a, -1, p_b)) * uniform(v, 0.985, 1.015));
-    return joint;
-}
-
-/* ---- coordinates --------------------------------------------------------------------------------------------------- */
-
-static void add_spring(Vehicle *v, int coordinate, double stiffness, double free)
-{
-    Entry *force = add(v, FORCE, "force");
-    force->coordinate = coordinate;
-    const char *name = v->section[COORDINATE].entry[coordinate].name;
-    if (chance(v, 0.1))
-        SAY(force, "type: constant, coordinate: %s, value: %.4g", name, uniform(v, -0.02, 0.02) * stiffness);
-    else
-        SAY(force, "type: spring_damper, coordinate: %s, stiffness: %.4g, damping: %.4g, free: %.6g", name,
-            stiffness * uniform(v, 0.5, 2), stiffness * uniform(v, 0, 0.1), free);
-}
-
-/* `reach` is the half width of the range; stiffness 0: no spring. */
-static Entry *coordinate(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with, double reach,
-                         double stiffness, bool may_drive)
-{
-    Entry *entry = add(v, COORDINATE, prefix);
-    int index = v->section[COORDINATE].count - 1;
-    bool length = !strcmp(type, "length");
-    double design = length ? norm(combine(1, *with->points[0], -1, *with->points[1])) : 0;
-    say_connection(v, entry, type, a, b, with);
-    if (!length && chance(v, 0.3)) {
-        design = round(100 * uniform(v, -1, 1)) / 100;
-        SAY(entry, ", design: %.9g", design);
-    }
-    SAY(entry, ", range: [%.9g, %.9g]", design - reach * uniform(v, 0.7, 1.2), design + reach * uniform(v, 0.7, 1.2));
-    if (chance(v, 0.2))
-        SAY(entry, ", initial: %.9g", design + reach * uniform(v, -0.5, 0.5));
-    if (may_drive && index > 0 && chance(v, 0.4))
-        SAY(entry, ", driven: true");
-    if (stiffness > 0 && chance(v, 0.9))
-        add_spring(v, index, stiffness, design + reach * uniform(v, -1, 1));
-    return entry;
-}
 
 /* What holds up an arm that turns about u through p: the angle, or a spring to `foot` on the arm from `seat`. */
 static void suspend(Vehicle *v, int carrier, int arm, Vec p, Vec u, Vec seat, Vec foot)
@@ -386,8 +22,8 @@ static void suspend(Vehicle *v, int carrier, int arm, Vec p, Vec u, Vec seat, Ve
     if (v->mistake == SPRING_THROUGH_HINGE) {
         v->mistake = NO_MISTAKE;
         foot = combine(2, p, -1, seat);
-        Entry *entry = coordinate(v, "spring", "length", carrier, arm, &(Geometry){.points = {&seat, &foot}}, 0.02, 40000,
-                                  false);
+        Entry *entry =
+            coordinate(v, "spring", "length", carrier, arm, &(Geometry){.points = {&seat, &foot}}, 0.02, 40000, false);
         culprit(v, entry->name);
         culprit_bodies(v, entry);
     } else if (chance(v, 0.35)) {
@@ -397,7 +33,7 @@ static void suspend(Vehicle *v, int carrier, int arm, Vec p, Vec u, Vec seat, Ve
     }
 }
 
-/* ---- what holds a corner ----------------------------------------------------------------------------------------- */
+/* ---- what holds a corner ---- */
 
 /* A body between the base and an axle: on a hinge, a guide, or on primitives that leave it to turn and slide. */
 static int add_frame(Vehicle *v, int carrier, double x)
@@ -431,8 +67,8 @@ static int add_frame(Vehicle *v, int carrier, double x)
         }
         coordinate(v, "pitch", "angle", carrier, frame, &(Geometry){.axis = &u}, 0.1, 60000, false);
         if (chance(v, 0.5))
-            coordinate(v, "shift", "translation", carrier, frame, &(Geometry){.points = {&p, &p}, .axis = &u}, 0.03, 300000,
-                       false);
+            coordinate(v, "shift", "translation", carrier, frame, &(Geometry){.points = {&p, &p}, .axis = &u}, 0.03,
+                       300000, false);
         else
             join(v, "cam", "point_in_plane", carrier, frame,
                  &(Geometry){.point = &com, .axis = &(Vec){{0.2, 1, uniform(v, -0.3, 0.3)}}});
@@ -443,7 +79,8 @@ static int add_frame(Vehicle *v, int carrier, double x)
         join(v, "cross", "universal", carrier, frame, &(Geometry){.point = &p, .axes = {&s, &t}});
         for (int side = -1; side <= 1; side += 2) {
             Vec seat = point(v, x + 0.4, 0.45 * side, 0.9), foot = point(v, x + 0.35, 0.4 * side, 0.5);
-            coordinate(v, "mount", "length", carrier, frame, &(Geometry){.points = {&seat, &foot}}, 0.02, 300000, false);
+            coordinate(v, "mount", "length", carrier, frame, &(Geometry){.points = {&seat, &foot}}, 0.02, 300000,
+                       false);
         }
     }
     }
@@ -496,7 +133,7 @@ static Steering add_steering(Vehicle *v, int carrier, double x)
     return (Steering){{left, right}};
 }
 
-/* ---- corners: each ends in the body that carries the wheel ------------------------------------------------------- */
+/* ---- corners: each ends in the body that carries the wheel ---- */
 
 typedef struct Place {
     int carrier, steering; /* bodies that links and tie rods begin at */
@@ -575,8 +212,8 @@ static int strut(Vehicle *v, const Place *place)
 {
     int arm = add_arm(v, place), knuckle = add_knuckle(v, place);
     int damper = add_body(v, "strut", at(v, place, -0.04, 0.58, 0.7), 5, 0.15);
-    Vec low = at(v, place, 0, 0.68, 0.24), seat = at(v, place, -0.01, 0.62, 0.45), top = at(v, place, -0.05, 0.55, 0.85),
-        u = combine(1, top, -1, seat), s = across(v, u), t = cross(u, s);
+    Vec low = at(v, place, 0, 0.68, 0.24), seat = at(v, place, -0.01, 0.62, 0.45),
+        top = at(v, place, -0.05, 0.55, 0.85), u = combine(1, top, -1, seat), s = across(v, u), t = cross(u, s);
     ball(v, arm, knuckle, low);
     if (chance(v, 0.5)) {
         guide(v, knuckle, damper, seat, u, false);
@@ -586,21 +223,6 @@ static int strut(Vehicle *v, const Place *place)
         join(v, "cross", "universal", place->carrier, damper, &(Geometry){.point = &top, .axes = {&s, &t}});
     }
     tie_knuckle(v, place, knuckle, low, top);
-    return knuckle;
-}
-
-static int five_links(Vehicle *v, const Place *place)
-{
-    static const double in[5][3] = {
-        {0.3, 0.35, 0.25}, {-0.35, 0.35, 0.27}, {0.25, 0.4, 0.55}, {-0.2, 0.42, 0.57}, {-0.25, 0.37, 0.35}};
-    static const double out[5][3] = {
-        {0.05, 0.68, 0.22}, {-0.06, 0.68, 0.23}, {0.03, 0.64, 0.58}, {-0.04, 0.63, 0.6}, {-0.16, 0.66, 0.36}};
-    int knuckle = add_knuckle(v, place);
-    for (int i = 0; i < 5; ++i)
-        rod(v, i == 4 ? place->steering : place->carrier, knuckle, at(v, place, in[i][0], in[i][1], in[i][2]),
-            at(v, place, out[i][0], out[i][1], out[i][2]));
-    Vec seat = at(v, place, 0.03, 0.5, 0.85), foot = at(v, place, 0.02, 0.64, 0.3);
-    coordinate(v, "spring", "length", place->carrier, knuckle, &(Geometry){.points = {&seat, &foot}}, 0.03, 40000, false);
     return knuckle;
 }
 
@@ -622,11 +244,27 @@ static int swing_axle(Vehicle *v, const Place *place)
     return arm;
 }
 
+static int five_links(Vehicle *v, const Place *place)
+{
+    static const double in[5][3] = {
+        {0.3, 0.35, 0.25}, {-0.35, 0.35, 0.27}, {0.25, 0.4, 0.55}, {-0.2, 0.42, 0.57}, {-0.25, 0.37, 0.35}};
+    static const double out[5][3] = {
+        {0.05, 0.68, 0.22}, {-0.06, 0.68, 0.23}, {0.03, 0.64, 0.58}, {-0.04, 0.63, 0.6}, {-0.16, 0.66, 0.36}};
+    int knuckle = add_knuckle(v, place);
+    for (int i = 0; i < 5; ++i)
+        rod(v, i == 4 ? place->steering : place->carrier, knuckle, at(v, place, in[i][0], in[i][1], in[i][2]),
+            at(v, place, out[i][0], out[i][1], out[i][2]));
+    Vec seat = at(v, place, 0.03, 0.5, 0.85), foot = at(v, place, 0.02, 0.64, 0.3);
+    coordinate(v, "spring", "length", place->carrier, knuckle, &(Geometry){.points = {&seat, &foot}}, 0.03, 40000,
+               false);
+    return knuckle;
+}
+
 /* A shaft from the carrier to the wheel's carrier, free to become longer. */
 static void add_shaft(Vehicle *v, const Place *place, int knuckle)
 {
-    Vec in = at(v, place, 0, 0.2, 0.38), out = at(v, place, 0, 0.62, 0.35), u = combine(1, out, -1, in), s = across(v, u),
-        t = cross(u, s);
+    Vec in = at(v, place, 0, 0.2, 0.38), out = at(v, place, 0, 0.62, 0.35), u = combine(1, out, -1, in),
+        s = across(v, u), t = cross(u, s);
     int shaft = add_body(v, "shaft", combine(0.5, in, 0.5, out), 6, 0.15);
     if (chance(v, 0.5)) {
         join(v, "cross", "universal", place->carrier, shaft, &(Geometry){.point = &in, .axes = {&s, &t}});
@@ -662,8 +300,7 @@ static void add_wheel(Vehicle *v, const Place *place, int carrier)
 
 static void add_corner(Vehicle *v, const Place *place)
 {
-    int kind = v->mistake == TIE_ROD_ON_KINGPIN ? pick(v, 2) : v->mistake == SPRING_THROUGH_HINGE ? 3 + pick(v, 2) : pick(v, 5);
-    int carrier;
+    int kind = pick(v, v->mistake == TIE_ROD_ON_KINGPIN ? 2 : v->mistake == SPRING_THROUGH_HINGE ? 4 : 5), carrier;
     switch (kind) {
     case 0:
         carrier = wishbones(v, place);
@@ -672,20 +309,20 @@ static void add_corner(Vehicle *v, const Place *place)
         carrier = strut(v, place);
         break;
     case 2:
-        carrier = five_links(v, place);
-        break;
-    case 3:
         carrier = trailing_arm(v, place);
         break;
-    default:
+    case 3:
         carrier = swing_axle(v, place);
+        break;
+    default:
+        carrier = five_links(v, place);
     }
     if (chance(v, 0.2))
         add_shaft(v, place, carrier);
     add_wheel(v, place, carrier);
 }
 
-/* ---- axles --------------------------------------------------------------------------------------------------------- */
+/* ---- axles ---- */
 
 /* Two lower links, and two upper ones or one with a track bar. */
 static void solid_axle(Vehicle *v, int carrier, double x)
@@ -741,7 +378,7 @@ static void add_axle(Vehicle *v, double x)
         add_corner(v, &(Place){carrier, steering.body[i], x, i ? -1 : 1});
 }
 
-/* ---- the whole vehicle --------------------------------------------------------------------------------------------- */
+/* ---- the whole vehicle ---- */
 
 static void point_spring(Vehicle *v)
 {
@@ -867,9 +504,7 @@ int main(int argc, char **argv)
         return 2;
     }
     Vehicle *v = grab(1, sizeof *v);
-    v->random = ((uint64_t)seed + 1) * 0x9e3779b97f4a7c15u | 1;
-    for (int i = 0; i < 20; ++i)
-        uniform(v, 0, 1); /* neighbouring seeds part */
+    start_random(v, seed);
     Mistake mistake = broken ? (Mistake)(1 + (int)fmod(seed, MISTAKES - 1)) : NO_MISTAKE;
     v->mistake = mistake;
     build(v);

@@ -168,6 +168,7 @@ static void cloud_coordinate(Cloud *cloud, const Model *model, const Coordinate 
         cloud_add(cloud, model, coordinate->body[k], coordinate->point[k]);
 }
 
+/* `otherwise` where all points coincide but for rounding */
 static double cloud_size(Cloud *cloud, double otherwise)
 {
     double size = 0;
@@ -177,7 +178,7 @@ static double cloud_size(Cloud *cloud, double otherwise)
             size = fmax(size, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
         }
     free(cloud->point);
-    return size > 0 ? size : otherwise;
+    return size > 1e-9 * otherwise ? size : otherwise;
 }
 
 double subset_length(const Model *model, const Subset *subset)

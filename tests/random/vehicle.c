@@ -1,0 +1,338 @@
+/* SPDX-License-Identifier: MIT
+ * Random numbers, entries and the parts that vehicles are made of. */
+#include "vehicle.h"
+
+#include "../reference/support.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+void start_random(Vehicle *v, double seed)
+{
+    v->random = ((uint64_t)seed + 1) * 0x9e3779b97f4a7c15u | 1;
+    for (int i = 0; i < 20; ++i)
+        uniform(v, 0, 1); /* neighbouring seeds part */
+    v->seed = v->random;
+}
+
+/* xorshift64* */
+double uniform(Vehicle *v, double low, double high)
+{
+    v->random ^= v->random >> 12;
+    v->random ^= v->random << 25;
+    v->random ^= v->random >> 27;
+    return low + (high - low) * ((double)(v->random * 0x2545f4914f6cdd1du >> 11) * 0x1p-53);
+}
+
+bool chance(Vehicle *v, double probability)
+{
+    return uniform(v, 0, 1) < probability;
+}
+
+int pick(Vehicle *v, int count)
+{
+    return (int)uniform(v, 0, count);
+}
+
+/* ---- points and directions, model frame ---- */
+
+static Vec round_to_millimetres(Vec a)
+{
+    for (int i = 0; i < 3; ++i)
+        a.x[i] = round(1000 * a.x[i]) / 1000;
+    return a;
+}
+
+Vec near_to(Vehicle *v, double x, double y, double z, double spread)
+{
+    Vec out = {{x, y, z}};
+    for (int i = 0; i < 3; ++i)
+        out.x[i] += uniform(v, -spread, spread);
+    return round_to_millimetres(out);
+}
+
+/* The same, by random numbers that follow from the place itself: they don't depend on the order in which a compiler
+ * evaluates arguments. */
+static Vec shifted(const Vehicle *v, double x, double y, double z, double spread)
+{
+    Vehicle aside = {.random = v->seed};
+    const double place[] = {x, y, z, spread};
+    for (int i = 0; i < 4; ++i) {
+        aside.random ^= (uint64_t)(int64_t)round(1e6 * place[i]) * 0x9e3779b97f4a7c15u;
+        uniform(&aside, 0, 1);
+    }
+    return near_to(&aside, x, y, z, spread);
+}
+
+Vec point(const Vehicle *v, double x, double y, double z)
+{
+    return shifted(v, x, y, z, 0.025);
+}
+
+Vec direction(const Vehicle *v, double x, double y, double z)
+{
+    return shifted(v, x, y, z, 0.15);
+}
+
+Vec combine(double p, Vec a, double q, Vec b)
+{
+    for (int i = 0; i < 3; ++i)
+        a.x[i] = p * a.x[i] + q * b.x[i];
+    return a;
+}
+
+Vec cross(Vec a, Vec b)
+{
+    Vec out;
+    for (int i = 0; i < 3; ++i)
+        out.x[i] = a.x[(i + 1) % 3] * b.x[(i + 2) % 3] - a.x[(i + 2) % 3] * b.x[(i + 1) % 3];
+    return out;
+}
+
+double norm(Vec a)
+{
+    return sqrt(a.x[0] * a.x[0] + a.x[1] * a.x[1] + a.x[2] * a.x[2]);
+}
+
+Vec across(Vehicle *v, Vec u)
+{
+    Vec other, out;
+    do {
+        other = near_to(v, 0, 0, 0, 1);
+        out = cross(u, other);
+    } while (norm(out) < 0.5 * norm(u) * norm(other));
+    return out;
+}
+
+/* ---- entries ---- */
+
+void append(char *text, size_t size, const char *format, ...)
+{
+    size_t used = strlen(text);
+    va_list args;
+    va_start(args, format);
+    int wanted = vsnprintf(text + used, size - used, format, args);
+    va_end(args);
+    if (wanted < 0 || (size_t)wanted >= size - used)
+        fail("an entry is too long: %s", text);
+}
+
+void say_vector(Entry *entry, const char *lead, Vec u)
+{
+    SAY(entry, "%s[%.9g, %.9g, %.9g]", lead, u.x[0], u.x[1], u.x[2]);
+}
+
+Entry *add(Vehicle *v, Kind kind, const char *prefix)
+{
+    Section *section = &v->section[kind];
+    if (section->count == MOST)
+        fail("the vehicle is too large");
+    Entry *entry = &section->entry[section->count++];
+    snprintf(entry->name, sizeof entry->name, "%s_%d", prefix, ++v->names);
+    entry->end[0] = entry->end[1] = entry->coordinate = NOTHING;
+    return entry;
+}
+
+const char *body_name(const Vehicle *v, int body)
+{
+    return body == NOTHING ? "ground" : v->section[BODY].entry[body].name;
+}
+
+void culprit(Vehicle *v, const char *name)
+{
+    append(v->culprits, sizeof v->culprits, "%s%s", *v->culprits ? " " : "", name);
+}
+
+void culprit_bodies(Vehicle *v, const Entry *entry)
+{
+    for (int side = 0; side < 2; ++side)
+        if (entry->end[side] > BASE)
+            culprit(v, body_name(v, entry->end[side]));
+}
+
+/* ---- bodies ---- */
+
+/* Random Euler parameters and their rotation matrix. */
+static void any_rotation(Vehicle *v, double p[4], double A[3][3])
+{
+    double size;
+    do {
+        size = 0;
+        for (int i = 0; i < 4; ++i) {
+            p[i] = uniform(v, -1, 1);
+            size += p[i] * p[i];
+        }
+    } while (size > 1 || size < 0.1);
+    for (int i = 0; i < 4; ++i)
+        p[i] /= sqrt(size);
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        A[i][i] = 2 * (p[0] * p[0] + p[1 + i] * p[1 + i]) - 1;
+        A[i][j] = 2 * (p[1 + i] * p[1 + j] - p[0] * p[1 + k]);
+        A[i][k] = 2 * (p[1 + i] * p[1 + k] + p[0] * p[1 + j]);
+    }
+}
+
+static void say_orientation(Vehicle *v, Entry *body)
+{
+    double p[4], A[3][3];
+    any_rotation(v, p, A);
+    switch (pick(v, 4)) {
+    case 0:
+        SAY(body, ", orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}", p[0], p[1], p[2], p[3]);
+        break;
+    case 1:
+        SAY(body, ", orientation: {axis: [%.6g, %.6g, %.6g], angle: %.6g}", p[1], p[2], p[3], uniform(v, -3, 3));
+        break;
+    case 2: {
+        Vec x = near_to(v, 0.5, 0.5, 0.5, 0.45);
+        say_vector(body, ", orientation: {x: ", x);
+        say_vector(body, ", z: ", across(v, x));
+        SAY(body, "}");
+        break;
+    }
+    }
+}
+
+int add_body(Vehicle *v, const char *prefix, Vec com, double mass, double size)
+{
+    Entry *body = add(v, BODY, prefix);
+    double p[4], A[3][3], half[3], J[3][3] = {{0}};
+    any_rotation(v, p, A);
+    mass *= uniform(v, 0.7, 1.4);
+    for (int i = 0; i < 3; ++i)
+        half[i] = size * uniform(v, 0.5, 1.5);
+    for (int k = 0; k < 3; ++k) {
+        double principal = mass / 5 * (half[(k + 1) % 3] * half[(k + 1) % 3] + half[(k + 2) % 3] * half[(k + 2) % 3]);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                J[i][j] += principal * A[i][k] * A[j][k];
+    }
+    SAY(body, "mass: %.4g", mass);
+    say_vector(body, ", com: ", com);
+    SAY(body, ", inertia: {xx: %.9g, yy: %.9g, zz: %.9g, xy: %.9g, xz: %.9g, yz: %.9g}", J[0][0], J[1][1], J[2][2],
+        J[0][1], J[0][2], J[1][2]);
+    if (chance(v, 0.7))
+        say_vector(body, ", position: ", near_to(v, com.x[0], com.x[1], com.x[2], 0.2));
+    say_orientation(v, body);
+    return v->section[BODY].count - 1;
+}
+
+/* ---- joints ---- */
+
+void say_connection(Vehicle *v, Entry *entry, const char *type, int a, int b, const Geometry *with)
+{
+    bool swap = !with->ordered && chance(v, 0.5);
+    entry->end[0] = a;
+    entry->end[1] = b;
+    SAY(entry, "type: %s, bodies: [%s, %s]", type, body_name(v, swap ? b : a), body_name(v, swap ? a : b));
+    if (with->point)
+        say_vector(entry, ", point: ", *with->point);
+    if (with->points[0]) {
+        say_vector(entry, ", points: [", *with->points[swap]);
+        say_vector(entry, ", ", *with->points[!swap]);
+        SAY(entry, "]");
+    }
+    if (with->axis)
+        say_vector(entry, ", axis: ", *with->axis);
+    if (with->axes[0]) {
+        say_vector(entry, ", axes: [", *with->axes[swap]);
+        say_vector(entry, ", ", *with->axes[!swap]);
+        SAY(entry, "]");
+    }
+}
+
+Entry *join(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with)
+{
+    Entry *joint = add(v, JOINT, prefix);
+    say_connection(v, joint, type, a, b, with);
+    return joint;
+}
+
+Entry *hinge(Vehicle *v, int a, int b, Vec p, Vec u)
+{
+    Entry *first;
+    switch (chance(v, 0.7) ? 0 : 1 + pick(v, 2)) {
+    case 1:
+        first = join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
+        join(v, "stop", "point_in_plane", a, b, &(Geometry){.point = &p, .axis = &u});
+        return first;
+    case 2:
+        first = join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
+        join(v, "same", "parallel", a, b, &(Geometry){.axis = &u});
+        return first;
+    default:
+        return join(v, "hinge", "revolute", a, b, &(Geometry){.point = &p, .axis = &u});
+    }
+}
+
+Entry *guide(Vehicle *v, int a, int b, Vec p, Vec u, bool plain)
+{
+    if (plain || chance(v, 0.7))
+        return join(v, "guide", "prismatic", a, b, &(Geometry){.point = chance(v, 0.5) ? &p : NULL, .axis = &u});
+    Vec s = across(v, u), t = cross(u, s);
+    Entry *first = join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
+    join(v, "key", "perpendicular", a, b, &(Geometry){.axes = {&s, &t}});
+    return first;
+}
+
+void weld(Vehicle *v, int a, int b, Vec p)
+{
+    if (chance(v, 0.7)) {
+        join(v, "weld", "fixed", a, b, &(Geometry){.point = chance(v, 0.5) ? &p : NULL});
+        return;
+    }
+    Vec u = near_to(v, 0.5, 0.5, 0.5, 0.45), s = across(v, u), t = cross(u, s);
+    hinge(v, a, b, p, u);
+    join(v, "key", "perpendicular", a, b, &(Geometry){.axes = {&s, &t}});
+}
+
+Entry *ball(Vehicle *v, int a, int b, Vec p)
+{
+    return join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
+}
+
+Entry *rod(Vehicle *v, int a, int b, Vec p_a, Vec p_b)
+{
+    Entry *joint = join(v, "rod", "distance", a, b, &(Geometry){.points = {&p_a, &p_b}});
+    if (chance(v, 0.1))
+        SAY(joint, ", length: %.6g", norm(combine(1, p_a, -1, p_b)) * uniform(v, 0.985, 1.015));
+    return joint;
+}
+
+/* ---- coordinates ---- */
+
+static void add_spring(Vehicle *v, int coordinate, double stiffness, double free)
+{
+    Entry *force = add(v, FORCE, "force");
+    force->coordinate = coordinate;
+    const char *name = v->section[COORDINATE].entry[coordinate].name;
+    if (chance(v, 0.1))
+        SAY(force, "type: constant, coordinate: %s, value: %.4g", name, uniform(v, -0.02, 0.02) * stiffness);
+    else
+        SAY(force, "type: spring_damper, coordinate: %s, stiffness: %.4g, damping: %.4g, free: %.6g", name,
+            stiffness * uniform(v, 0.5, 2), stiffness * uniform(v, 0, 0.1), free);
+}
+
+Entry *coordinate(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with, double reach,
+                  double stiffness, bool may_drive)
+{
+    Entry *entry = add(v, COORDINATE, prefix);
+    int index = v->section[COORDINATE].count - 1;
+    bool length = !strcmp(type, "length");
+    double design = length ? norm(combine(1, *with->points[0], -1, *with->points[1])) : 0;
+    say_connection(v, entry, type, a, b, with);
+    if (!length && chance(v, 0.3)) {
+        design = round(100 * uniform(v, -1, 1)) / 100;
+        SAY(entry, ", design: %.9g", design);
+    }
+    SAY(entry, ", range: [%.9g, %.9g]", design - reach * uniform(v, 0.7, 1.2), design + reach * uniform(v, 0.7, 1.2));
+    if (chance(v, 0.2))
+        SAY(entry, ", initial: %.9g", design + reach * uniform(v, -0.5, 0.5));
+    if (may_drive && index > 0 && chance(v, 0.4))
+        SAY(entry, ", driven: true");
+    if (stiffness > 0 && chance(v, 0.9))
+        add_spring(v, index, stiffness, design + reach * uniform(v, -1, 1));
+    return entry;
+}

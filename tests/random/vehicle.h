@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT
+ * A vehicle of models/FORMAT.md while it is put together at random: entries of its sections, as text. */
+#ifndef RANDOM_VEHICLE_H
+#define RANDOM_VEHICLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum Kind { BODY, JOINT, COORDINATE, FORCE, WHEEL, OUTPUT, KINDS } Kind;
+
+typedef enum Mistake {
+    NO_MISTAKE,
+    JOINT_MISSING,
+    COORDINATE_MISSING,
+    JOINT_TOO_MANY,
+    COORDINATE_TOO_MANY,
+    BODY_LOOSE,
+    PRISMATIC_TWICE,      /* the rack guided twice */
+    PARALLEL_TWICE,       /* as many equations as unknowns, and yet one thing said twice */
+    TIE_ROD_ON_KINGPIN,   /* singular everywhere */
+    SPRING_THROUGH_HINGE, /* singular at the design */
+    MISTAKES
+} Mistake;
+
+enum { MOST = 160, BASE = 0, NOTHING = -1 };
+
+typedef struct Entry {
+    char name[24], text[360];
+    int end[2];     /* bodies that it concerns, or NOTHING */
+    int coordinate; /* of a force, or NOTHING */
+    bool dropped;
+} Entry;
+
+typedef struct Section {
+    int count;
+    Entry entry[MOST];
+} Section;
+
+typedef struct Vehicle {
+    uint64_t random, seed;
+    bool fixed; /* the base is the ground */
+    int names;  /* given so far */
+    Mistake mistake; /* still to be made while the vehicle is put together */
+    char culprits[300];
+    Section section[KINDS];
+} Vehicle;
+
+/* A point or direction of the model frame. */
+typedef struct Vec {
+    double x[3];
+} Vec;
+
+/* ---- random numbers; equal seeds give equal ones ---- */
+
+void start_random(Vehicle *v, double seed);
+double uniform(Vehicle *v, double low, double high);
+bool chance(Vehicle *v, double probability);
+int pick(Vehicle *v, int count);
+
+/* ---- points and directions, model frame ---- */
+
+/* Whole millimetres, so that points made of others by halving and doubling lie exactly where they should. */
+Vec near_to(Vehicle *v, double x, double y, double z, double spread);
+Vec point(const Vehicle *v, double x, double y, double z);
+/* A direction not far from the one given; its length is of no account. */
+Vec direction(const Vehicle *v, double x, double y, double z);
+/* p a + q b */
+Vec combine(double p, Vec a, double q, Vec b);
+Vec cross(Vec a, Vec b);
+double norm(Vec a);
+/* Some direction perpendicular to u. */
+Vec across(Vehicle *v, Vec u);
+
+/* ---- entries ---- */
+
+void append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+#define SAY(entry, ...) append((entry)->text, sizeof(entry)->text, __VA_ARGS__)
+
+void say_vector(Entry *entry, const char *lead, Vec u);
+/* A new entry of a section with a name of its own. */
+Entry *add(Vehicle *v, Kind kind, const char *prefix);
+const char *body_name(const Vehicle *v, int body);
+/* Put a name among those of which a message must have one; the bodies of an entry that move. */
+void culprit(Vehicle *v, const char *name);
+void culprit_bodies(Vehicle *v, const Entry *entry);
+
+/* What a joint or coordinate is made of; members that its type does not have are NULL. */
+typedef struct Geometry {
+    const Vec *point, *points[2], *axis, *axes[2];
+    bool ordered; /* bodies must not change places */
+} Geometry;
+
+/* Type, bodies and geometry, the bodies in either order. */
+void say_connection(Vehicle *v, Entry *entry, const char *type, int a, int b, const Geometry *with);
+
+/* ---- parts ---- */
+
+/* An ellipsoid of random half axes about `size`, turned against the body frame; its frame stands anywhere near. */
+int add_body(Vehicle *v, const char *prefix, Vec com, double mass, double size);
+Entry *join(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with);
+/* b turns on a about u: a revolute, or what is equal to it. */
+Entry *hinge(Vehicle *v, int a, int b, Vec p, Vec u);
+/* b slides on a along u: a prismatic joint (always, where `plain`), or what is equal to it. */
+Entry *guide(Vehicle *v, int a, int b, Vec p, Vec u, bool plain);
+/* b is fixed on a, by a joint or by what is equal to it. */
+void weld(Vehicle *v, int a, int b, Vec p);
+Entry *ball(Vehicle *v, int a, int b, Vec p);
+/* A rod, sometimes of another length than drawn. */
+Entry *rod(Vehicle *v, int a, int b, Vec p_a, Vec p_b);
+/* A dual coordinate, mostly with a spring. `reach` is half the width of its range; stiffness 0: no spring. */
+Entry *coordinate(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with, double reach,
+                  double stiffness, bool may_drive);
+
+#endif
