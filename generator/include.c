@@ -78,8 +78,8 @@ static bool is_named_group(const Item *key, const Item *value)
     return is_group(key->text) && value->kind == ITEM_MAP;
 }
 
-/* Put a file's keys and entries over those of `out`, whose maps are its own. `part`: an included file, whose entries may
- * not hide those of another one; NULL: the including file, whose entries replace. */
+/* Put a file's keys and entries over those of `out`, whose maps are its own. `part`: an included file, whose entries
+ * may not hide those of another one; NULL: the including file, whose entries replace. */
 static void put_over(Pool *pool, Item *out, const Item *file, const Item *part)
 {
     for (int i = 0; i < file->count; ++i) {

@@ -88,16 +88,14 @@ static bool has(const Rewrite *rewrite, const char *group, const char *name)
     return map && map->kind == ITEM_MAP && doc_find(map, name);
 }
 
-/* What becomes of a name. It changes sides only where the other side exists: every entry `*_l` has an image. */
+/* What becomes of a name. Every entry `*_l` has an image, so that both sides exist where the left one does. */
 static const char *renamed(const Rewrite *rewrite, const char *group, const char *name)
 {
-    if (!rewrite->mirror)
-        return has(rewrite, group, name) ? pool_print(rewrite->pool, "%s%s", rewrite->prefix, name) : name;
     const char *other = name_mirrored(rewrite->pool, name);
-    if (!other)
-        return name;
-    const char *left = strcmp(name, other) < 0 ? name : other;
-    return has(rewrite, group, left) ? other : name;
+    bool both = other && has(rewrite, group, strcmp(name, other) < 0 ? name : other);
+    if (rewrite->mirror)
+        return both ? other : name;
+    return both || has(rewrite, group, name) ? pool_print(rewrite->pool, "%s%s", rewrite->prefix, name) : name;
 }
 
 /* A formula with the names in it changed. */

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_dump.sh GICGEN COMPARE_DUMP: dumps of tests/dump/*.veh against hand-written ones beside them, or where symmetry or
-# inclusion do work, against the dump of the same model written out without them (*_written.veh).
+# test_dump.sh GICGEN COMPARE_DUMP: dumps of tests/dump/*.veh against hand-written ones beside them, or where symmetry
+# or inclusion do work, against the dump of the same model written out without them (*_written.veh).
 gicgen=$1
 compare=$2
 here=$(dirname "$0")

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # test_read.sh GICGEN: every broken file of tests/bad must be refused with the one message that its first line
 # announces as `# expect: LINE:COLUMN: fragment of the message`, with a caret, exit status 1 and nothing else. A second
-# line `# remedy: fragment` announces the remedy as well; a line `# file: path` that the mistake stands in another file, seen
-# from tests/bad, and a line `# note: fragment` a note.
+# line `# remedy: fragment` announces the remedy as well; a line `# file: path` that the mistake stands in another
+# file, seen from tests/bad, and a line `# note: text` a note.
 gicgen=$1
 here=$(dirname "$0")
 work=$(mktemp -d) || exit 1

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_symmetry.sh GICRUN: a model written for the left side alone moves in the mirror on the right: equal coordinates are
-# mirrored poses, whatever the axes, orientations and products of inertia.
+# test_symmetry.sh GICRUN: a model written for the left side alone moves in the mirror on the right: equal coordinates
+# are mirrored poses, whatever the axes, orientations and products of inertia.
 gicrun=$1
 here=$(dirname "$0")/symmetry
 work=$(mktemp -d) || exit 1
