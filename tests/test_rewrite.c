@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Names inside formulas follow the mirror and a prefix (FORMAT.md sections 12 and 13). */
+#include "../runtime/gicrun.h"
 #include "read.h"
 
 #include <setjmp.h>
@@ -22,7 +23,7 @@ static const char model[] = "gicgen: 1\n"
 /* The tree of `model` with this formula in it. */
 static const Item *file_with(Pool *pool, const char *formula)
 {
-    char path[] = "/tmp/test_rewrite_XXXXXX";
+    char *path = pool_print(pool, "%s/test-rewrite-XXXXXX", temporary_folder());
     int file = mkstemp(path);
     assert_true(file >= 0);
     close(file);
