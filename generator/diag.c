@@ -109,6 +109,8 @@ static void report(Place at, const char *kind, const char *remedy, const char *f
     fputc('\n', stderr);
     if (at.source && at.line > 0)
         print_line(at);
+    if (at.source && at.source->mirrored)
+        fprintf(stderr, "  note: mirrored from '%s'\n", at.source->mirrored);
     if (remedy) {
         fputs("  remedy: ", stderr);
         print_clean(remedy);

@@ -375,7 +375,8 @@ double doc_number(const Item *item, const char *what)
     double value = strtod(s, NULL);
     if (!isfinite(value))
         diag_fail(item->at, "numbers must be below 1.8e308 in magnitude", "%s: %s is too large", what, s);
-    return value;
+    value += item->shift;
+    return item->negated ? 0 - value : value; /* zero stays positive */
 }
 
 bool doc_bool(const Item *item, const char *what)

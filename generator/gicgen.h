@@ -83,10 +83,11 @@ typedef struct Source {
     const char *path; /* as the user gave it */
     const char *bytes;
     size_t size;
+    const char *mirrored; /* its places stand for the mirror image of this entry; NULL: for what is written there */
 } Source;
 
-/* Print `path:line:col: error: <message>`, the source line with a caret under the column, and
- * `  remedy: <remedy>` (remedy may be NULL), all to stderr; exit with status 1. */
+/* Print `path:line:col: error: <message>`, the source line with a caret under the column, in a mirror image
+ * `  note: mirrored from '<entry>'`, and `  remedy: <remedy>` (remedy may be NULL), all to stderr; exit with status 1. */
 _Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* The same as a warning; returns. */
 void diag_warn(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
@@ -104,6 +105,8 @@ typedef struct Item {
     Place at;
     const char *text;     /* scalar: its text (may hold any byte but is terminated) */
     bool quoted;          /* scalar: quoted, so never a number */
+    bool negated;         /* scalar: of a mirror image; its number is -(written + shift) */
+    double shift;         /* scalar: of a moved file; its number is written + shift */
     int count;            /* list: elements; map: pairs */
     struct Item **value;  /* list: the elements; map: the values */
     struct Item **key;    /* map: the keys, all scalars */

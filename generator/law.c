@@ -386,7 +386,7 @@ const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNa
     skip(&p);
     if (*p.s)
         fail(&p, p.s, "an operator is missing, or one parenthesis is too many", "'%.12s' is unexpected", p.s);
-    return law;
+    return item->negated ? negative(&p, law) : law;
 }
 
 bool law_is_tunable(const Law *law, const Model *model)

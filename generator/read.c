@@ -5,10 +5,9 @@
 
 #include <string.h>
 
-enum { FORMAT_VERSION = 1 };
-
 enum {
     FILE_GICGEN,
+    FILE_INCLUDE,
     FILE_MODEL,
     FILE_DESCRIPTION,
     FILE_GRAVITY,
@@ -29,6 +28,7 @@ enum {
 
 static const Key file_key[FILE_KEYS] = {
     [FILE_GICGEN] = {"gicgen", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
+    [FILE_INCLUDE] = {"include", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_MODEL] = {"model", KEY_NAME, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [FILE_DESCRIPTION] = {"description", KEY_TEXT, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_GRAVITY] = {"gravity", KEY_VECTOR, ALL_FORMS, 0, BOUND_NONE, 0},
@@ -48,23 +48,6 @@ static const Key file_key[FILE_KEYS] = {
 
 static const Section file_section = {file_key, FILE_KEYS, NULL, 0, NULL};
 
-/* Before anything else: a file of another version may have keys that this reader would call unknown. */
-static void version_check(const Item *file)
-{
-    if (file->kind != ITEM_MAP)
-        diag_fail(file->at, "begin with `gicgen: 1`; models/FORMAT.md describes the rest",
-                  "a model is a map of keys and values");
-    const Item *item = doc_find(file, "gicgen");
-    if (!item)
-        diag_fail(file->at, "begin the file with `gicgen: 1`", "the model lacks the key 'gicgen'");
-    double version = doc_number(item, "the format version");
-    if (version > FORMAT_VERSION)
-        diag_fail(item->at, "get a newer gicgen, or write `gicgen: 1` and what models/FORMAT.md describes",
-                  "format version %s is too new: this gicgen reads version %d", item->text, FORMAT_VERSION);
-    if (version != FORMAT_VERSION)
-        diag_fail(item->at, "write `gicgen: 1`", "there is no format version %s", item->text);
-}
-
 static void points_read(Reader *reader, const Item *map)
 {
     Entry *entry = section_entries(reader, map, "point", &reader->points);
@@ -79,8 +62,7 @@ const Model *model_read(Pool *pool, const char *path)
 {
     Model *model = pool_alloc(pool, sizeof *model);
     Reader reader = {.pool = pool, .model = model};
-    const Item *file = doc_read(pool, path);
-    version_check(file);
+    const Item *file = file_mirrored(pool, file_included(pool, path));
     Value value[FILE_KEYS];
     section_read(&reader, &file_section, 0, &(Entry){"", "the model", file->at, file}, value);
     *model = (Model){

@@ -12,14 +12,21 @@
 typedef enum KeyKind {
     KEY_TYPE,          /* one of the section's types, for section_type */
     KEY_ITEM,          /* read by the section itself: item */
-    KEY_FORMULA,       /* likewise, a number or a formula */
+    KEY_FORMULA,       /* likewise: a number or a formula */
+    KEY_FORCE_VECTOR,  /* likewise: three of those, components of a force */
+    KEY_TORQUE_VECTOR, /* likewise, of a torque */
+    KEY_INERTIA,       /* likewise: a list of numbers or a map of inertia_section */
+    KEY_ORIENTATION,   /* likewise: a map of orientation_section */
     KEY_TEXT,          /* text */
     KEY_NAME,          /* text */
     KEY_NUMBER,        /* number[0] */
+    KEY_ODD,           /* the same; changes its sign in the mirror */
     KEY_FLAG,          /* flag */
     KEY_RANGE,         /* number[0] < number[1] */
     KEY_VECTOR,        /* number[0..2] */
     KEY_AXIS,          /* number[0..2], unit length */
+    KEY_TURN,          /* the same; an axis that something turns about, which the mirror reverses (axial) */
+    KEY_DUAL_AXIS,     /* the same as KEY_TURN where the type is `angle`, else as KEY_AXIS */
     KEY_AXES,          /* number[0..2], number[3..5], each of unit length */
     KEY_EULER,         /* number[0..3] */
     KEY_POINT,         /* number[0..2] */
@@ -83,7 +90,43 @@ typedef struct Entry {
     const Item *item;
 } Entry;
 
+/* The tables of the sections whose entries hold values that a mirror, a move or a prefix changes. */
+extern const Section parameter_section, table_section, port_section;
+extern const Section body_section, inertia_section, orientation_section, joint_section, coordinate_section;
+extern const Section input_section, force_section, wheel_section, output_section;
+
+/* ---- rewrite.c: entries written anew ---- */
+
+/* What becomes of an entry of a file and of the names in it. */
+typedef struct Rewrite {
+    Pool *pool;
+    const Item *file;     /* the names of its entries change, and what refers to them */
+    const char *prefix;   /* goes in front of every name, "": none */
+    bool mirror;          /* y becomes -y, and names change sides */
+    double shift[3];      /* added to every point, before the mirror */
+    const Source *source; /* where messages place what is written anew; NULL: where it stood */
+} Rewrite;
+
+/* Whether a key of a file holds a map of named entries that rewriting knows. */
+bool is_group(const char *group);
+/* The entry of a file's group ("bodies") that comes of `entry`, and the word that comes of `item`, a reference to the
+ * group or the name of an entry of it. What doesn't fit the tables stays as it is, for the reader to refuse. */
+Item *entry_rewrite(const Rewrite *rewrite, const char *group, Item *entry);
+Item *name_rewrite(const Rewrite *rewrite, const char *group, Item *item);
+/* The name on the other side: `_l` becomes `_r` and `_r` becomes `_l`; NULL for any other name. */
+const char *name_mirrored(Pool *pool, const char *name);
+
+/* ---- symmetry.c, include.c ---- */
+
+/* The file with a mirror image `*_r` behind every entry `*_l` that has none (FORMAT.md section 13). */
+const Item *file_mirrored(Pool *pool, const Item *file);
+/* A file of this format's version with all that it includes (FORMAT.md section 12), as if written in one. */
+const Item *file_included(Pool *pool, const char *path);
+
 /* ---- read_keys.c ---- */
+
+/* Names begin with a letter, of letters, digits and `_`; `what` is what bears the name ("a body"). */
+void name_check(const char *name, const char *what, Place at);
 
 /* The entries of a map of `thing`s ("joint"), in the order of the file, their names checked; none when map is NULL. */
 Entry *section_entries(Reader *reader, const Item *map, const char *thing, int *count);

@@ -10,9 +10,9 @@ enum { BODY_MASS, BODY_COM, BODY_INERTIA, BODY_POSITION, BODY_ORIENTATION, BODY_
 static const Key body_key[BODY_KEYS] = {
     [BODY_MASS] = {"mass", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
     [BODY_COM] = {"com", KEY_POINT, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
-    [BODY_INERTIA] = {"inertia", KEY_ITEM, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [BODY_INERTIA] = {"inertia", KEY_INERTIA, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [BODY_POSITION] = {"position", KEY_POINT, ALL_FORMS, 0, BOUND_NONE, 0},
-    [BODY_ORIENTATION] = {"orientation", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [BODY_ORIENTATION] = {"orientation", KEY_ORIENTATION, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
 enum { INERTIA_KEYS = 6 };
@@ -21,9 +21,9 @@ static const Key inertia_key[INERTIA_KEYS] = {
     {"xx", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
     {"yy", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
     {"zz", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
-    {"xy", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
+    {"xy", KEY_ODD, ALL_FORMS, 0, BOUND_NONE, 0},
     {"xz", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
-    {"yz", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
+    {"yz", KEY_ODD, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
 enum { ORIENTATION_EULER, ORIENTATION_ANGLE, ORIENTATION_AXES, ORIENTATION_FORMS };
@@ -31,7 +31,7 @@ enum { TURN_EULER, TURN_AXIS, TURN_ANGLE, TURN_X, TURN_Z, TURN_KEYS };
 
 static const Key orientation_key[TURN_KEYS] = {
     [TURN_EULER] = {"euler", KEY_EULER, FORM(ORIENTATION_EULER), FORM(ORIENTATION_EULER), BOUND_NONE, 0},
-    [TURN_AXIS] = {"axis", KEY_AXIS, FORM(ORIENTATION_ANGLE), FORM(ORIENTATION_ANGLE), BOUND_NONE, 0},
+    [TURN_AXIS] = {"axis", KEY_TURN, FORM(ORIENTATION_ANGLE), FORM(ORIENTATION_ANGLE), BOUND_NONE, 0},
     [TURN_ANGLE] = {"angle", KEY_NUMBER, FORM(ORIENTATION_ANGLE), FORM(ORIENTATION_ANGLE), BOUND_NONE, 0},
     [TURN_X] = {"x", KEY_AXIS, FORM(ORIENTATION_AXES), FORM(ORIENTATION_AXES), BOUND_NONE, 0},
     [TURN_Z] = {"z", KEY_AXIS, FORM(ORIENTATION_AXES), FORM(ORIENTATION_AXES), BOUND_NONE, 0},
@@ -43,9 +43,9 @@ static const char *const orientation_form[ORIENTATION_FORMS] = {
     [ORIENTATION_AXES] = "by the directions x and z",
 };
 
-static const Section body_section = {body_key, BODY_KEYS, NULL, 0, NULL};
-static const Section inertia_section = {inertia_key, INERTIA_KEYS, NULL, 0, NULL};
-static const Section orientation_section = {orientation_key, TURN_KEYS, NULL, 0, orientation_form};
+const Section body_section = {body_key, BODY_KEYS, NULL, 0, NULL};
+const Section inertia_section = {inertia_key, INERTIA_KEYS, NULL, 0, NULL};
+const Section orientation_section = {orientation_key, TURN_KEYS, NULL, 0, orientation_form};
 
 static const double triangle_tolerance = 1e-9, euler_tolerance = 1e-6;
 /* Sine of the smallest angle between the given x and z directions. */

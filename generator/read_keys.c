@@ -14,13 +14,20 @@ static const char *const kind_example[KEY_KINDS] = {
     [KEY_TYPE] = "name",
     [KEY_ITEM] = "{...}",
     [KEY_FORMULA] = "formula",
+    [KEY_FORCE_VECTOR] = "[x, y, z]",
+    [KEY_TORQUE_VECTOR] = "[x, y, z]",
+    [KEY_INERTIA] = "[Ixx, Iyy, Izz]",
+    [KEY_ORIENTATION] = "{...}",
     [KEY_TEXT] = "text",
     [KEY_NAME] = "name",
     [KEY_NUMBER] = "number",
+    [KEY_ODD] = "number",
     [KEY_FLAG] = "true",
     [KEY_RANGE] = "[low, high]",
     [KEY_VECTOR] = "[x, y, z]",
     [KEY_AXIS] = "[x, y, z]",
+    [KEY_TURN] = "[x, y, z]",
+    [KEY_DUAL_AXIS] = "[x, y, z]",
     [KEY_AXES] = "[[x, y, z], [x, y, z]]",
     [KEY_EULER] = "[e0, e1, e2, e3]",
     [KEY_POINT] = "[x, y, z]",
@@ -47,7 +54,7 @@ static const char *const keyword[] = {
     "void", "volatile", "wchar_t", "while", "xor", "xor_eq",
 };
 
-static void name_check(const char *name, const char *what, Place at)
+void name_check(const char *name, const char *what, Place at)
 {
     size_t length = strlen(name);
     bool good = length > 0 && !(name[0] >= '0' && name[0] <= '9') && name[0] != '_';
@@ -187,7 +194,8 @@ double number_read(Reader *reader, const Item *item, const char *what)
     double number = law_number(law, reader->model);
     if (!isfinite(number))
         diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number", what);
-    return number;
+    number += item->shift;
+    return item->negated ? 0 - number : number;
 }
 
 void vector_read(Reader *reader, const Item *item, const char *what, double *out, int size)
@@ -238,6 +246,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         text_check(value->text, what, item->at);
         break;
     case KEY_NUMBER:
+    case KEY_ODD:
         read_number(reader, key, item, what, value->number);
         break;
     case KEY_FLAG:
@@ -252,6 +261,8 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         vector_read(reader, item, what, value->number, 3);
         break;
     case KEY_AXIS:
+    case KEY_TURN:
+    case KEY_DUAL_AXIS:
         read_axis(reader, item, what, value->number);
         break;
     case KEY_AXES:
@@ -303,6 +314,10 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     case KEY_TYPE:
     case KEY_ITEM:
     case KEY_FORMULA:
+    case KEY_FORCE_VECTOR:
+    case KEY_TORQUE_VECTOR:
+    case KEY_INERTIA:
+    case KEY_ORIENTATION:
     case KEY_KINDS:
         break;
     }

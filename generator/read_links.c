@@ -82,7 +82,7 @@ static const double drawn_tolerance = 1e-12;
 /* Largest angle by which a given u_b may miss the plane perpendicular to u_a, degrees. */
 static const double axes_tolerance = 10;
 
-static const Section joint_section = {joint_key, LINK_KEYS, joint_type_name, JOINT_TYPES, joint_type_name};
+const Section joint_section = {joint_key, LINK_KEYS, joint_type_name, JOINT_TYPES, joint_type_name};
 
 enum {
     DUAL_TYPE,
@@ -103,15 +103,15 @@ static const Key coordinate_key[DUAL_KEYS] = {
     [DUAL_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [DUAL_BODIES] = {"bodies", KEY_BODIES, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [DUAL_POINTS] = {"points", KEY_POINTS, DUAL_ENDS, FORM(COORDINATE_LENGTH), BOUND_NONE, 0},
-    [DUAL_AXIS] = {"axis", KEY_AXIS, DUAL_AXES, DUAL_AXES, BOUND_NONE, 0},
+    [DUAL_AXIS] = {"axis", KEY_DUAL_AXIS, DUAL_AXES, DUAL_AXES, BOUND_NONE, 0},
     [DUAL_DESIGN] = {"design", KEY_NUMBER, DUAL_AXES, 0, BOUND_NONE, 0},
     [DUAL_RANGE] = {"range", KEY_RANGE, ALL_FORMS, 0, BOUND_NONE, 0},
     [DUAL_INITIAL] = {"initial", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
     [DUAL_DRIVEN] = {"driven", KEY_FLAG, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-static const Section coordinate_section = {coordinate_key, DUAL_KEYS, coordinate_type_name, COORDINATE_TYPES,
-                                           coordinate_type_name};
+const Section coordinate_section = {coordinate_key, DUAL_KEYS, coordinate_type_name, COORDINATE_TYPES,
+                                    coordinate_type_name};
 
 double points_distance(const Value *points, const char *what, double d[3])
 {

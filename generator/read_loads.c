@@ -12,7 +12,7 @@ static const Key input_key[INPUT_KEYS] = {
     [INPUT_DEFAULT] = {"default", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-static const Section input_section = {input_key, INPUT_KEYS, NULL, 0, NULL};
+const Section input_section = {input_key, INPUT_KEYS, NULL, 0, NULL};
 
 enum {
     ELEMENT_TYPE,
@@ -48,8 +48,8 @@ static const Key force_key[ELEMENT_KEYS] = {
     [ELEMENT_BODY] = {"body", KEY_BODY, FORM(FORCE_LOAD), FORM(FORCE_LOAD), BOUND_NONE, 0},
     [ELEMENT_POINT] = {"point", KEY_POINT, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
     [ELEMENT_IN] = {"in", KEY_FRAME, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
-    [ELEMENT_FORCE] = {"force", KEY_ITEM, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
-    [ELEMENT_TORQUE] = {"torque", KEY_ITEM, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
+    [ELEMENT_FORCE] = {"force", KEY_FORCE_VECTOR, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
+    [ELEMENT_TORQUE] = {"torque", KEY_TORQUE_VECTOR, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
 };
 
 enum { TYPE_SPRING, TYPE_FORCE, TYPE_LOAD, TYPES };
@@ -70,7 +70,7 @@ static const char *const force_form_name[FORCE_TYPES] = {
 
 const char *const force_local[FORCE_LOCALS] = {"length", "speed"};
 
-static const Section force_section = {force_key, ELEMENT_KEYS, force_type_name, TYPES, force_form_name};
+const Section force_section = {force_key, ELEMENT_KEYS, force_type_name, TYPES, force_form_name};
 
 enum { TIRE_BODY, TIRE_CENTER, TIRE_RADIUS, TIRE_STIFFNESS, TIRE_DAMPING, TIRE_FADE, TIRE_KEYS };
 
@@ -83,7 +83,7 @@ static const Key wheel_key[TIRE_KEYS] = {
     [TIRE_FADE] = {"fade", KEY_NUMBER, ALL_FORMS, 0, BOUND_POSITIVE, 0.01},
 };
 
-static const Section wheel_section = {wheel_key, TIRE_KEYS, NULL, 0, NULL};
+const Section wheel_section = {wheel_key, TIRE_KEYS, NULL, 0, NULL};
 
 /* The three inputs of a driven coordinate: value, rate, acceleration. */
 static void driven_inputs(Reader *reader, Coordinate *coordinate)

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_dump.sh GICGEN COMPARE_DUMP: dumps of tests/dump/*.veh against hand-written ones beside them.
+# test_dump.sh GICGEN COMPARE_DUMP: dumps of tests/dump/*.veh against hand-written ones beside them, or where symmetry
+# or inclusion do work, against the dump of the same model written out without them (*_written.veh).
 gicgen=$1
 compare=$2
 here=$(dirname "$0")
@@ -26,6 +27,18 @@ for expected in "$here"/dump/*.json; do
     fi
 done
 
+# a written-out model has names ending in _L instead of _l, which would have a mirror image
+for written in "$here"/dump/*_written.veh; do
+    model=${written%_written.veh}.veh
+    if ! "$gicgen" --dump-model "$written" >"$work/names" || ! "$gicgen" --dump-model "$model" >"$work/dump"; then
+        fail "$model or $written: not read"
+    elif sed 's/_L\([".]\)/_l\1/g' "$work/names" >"$work/expected" && "$compare" "$work/expected" "$work/dump"; then
+        pass
+    else
+        fail "$model: dumped otherwise than $written"
+    fi
+done
+
 # the comparison itself must notice one changed digit and a changed text
 "$gicgen" --dump-model "$here/dump/free_base.veh" >"$work/dump" || fail "free_base: not read"
 for change in 's/0\.25,/0.2500000000001,/' 's/"tire"/"tyre"/' 's/"driven": true/"driven": false/'; do
@@ -45,5 +58,35 @@ else
     fail "standard input gives another dump than the file"
 fi
 
+# standard input includes files of the folder one is in
+program=$(cd "$(dirname "$gicgen")" && pwd)/$(basename "$gicgen")
+(cd "$here/dump" && "$program" --dump-model -) <"$here/dump/include.veh" >"$work/again"
+"$gicgen" --dump-model "$here/dump/include.veh" >"$work/dump"
+if [ -s "$work/again" ] && cmp -s "$work/dump" "$work/again"; then
+    pass
+else
+    fail "standard input includes other files than the file"
+fi
+
+# 16 levels of inclusion are read, 17 are not
+cp "$here/dump/parts/complete.veh" "$work/level0.veh"
+level=0
+while [ "$level" -lt 17 ]; do
+    above=$((level + 1))
+    printf 'gicgen: 1\ninclude: level%d.veh\nmodel: deep\n' "$level" >"$work/level$above.veh"
+    level=$above
+done
+if "$gicgen" --dump-model "$work/level16.veh" >"$work/dump" && grep -q '"turn"' "$work/dump"; then
+    pass
+else
+    fail "16 levels of inclusion are too many"
+fi
+"$gicgen" --dump-model "$work/level17.veh" >"$work/dump" 2>"$work/err"
+if [ $? -eq 1 ] && [ ! -s "$work/dump" ] && grep -q 'level1.veh:2:10: error: .*16 levels' "$work/err"; then
+    pass
+else
+    fail "17 levels of inclusion: $(cat "$work/err")"
+fi
+
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 9 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 15 ]

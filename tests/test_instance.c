@@ -210,17 +210,17 @@ static void test_out_of_reach(void **unused)
 {
     (void)unused;
     Failure *failure = failure_new();
-    failure->bad.state[HMMWV_STATE_SPRING_RL] = 0.9;
-    assert_refused(failure, 0.005, GIC_ERROR_NEWTON, "wheel_rl");
+    failure->bad.state[HMMWV_STATE_SPRING_R_L] = 0.9;
+    assert_refused(failure, 0.005, GIC_ERROR_NEWTON, "wheel_r_l");
     failure = failure_new();
-    failure->bad.state[HMMWV_STATE_SPRING_FR] = -0.1;
-    assert_refused(failure, 0.005, GIC_ERROR_NEWTON, "lca_fr");
+    failure->bad.state[HMMWV_STATE_SPRING_F_R] = -0.1;
+    assert_refused(failure, 0.005, GIC_ERROR_NEWTON, "lca_f_r");
     /* the rack far to the left pulls at the right tie rod until that and the steering arm are in line */
     failure = failure_new();
     failure->bad.state[HMMWV_STATE_RACK] = 1.5;
-    assert_refused(failure, 0.005, GIC_ERROR_NEWTON, "wheel_fr");
+    assert_refused(failure, 0.005, GIC_ERROR_NEWTON, "wheel_f_r");
     failure = failure_new();
-    failure->bad.state[HMMWV_STATE_SPRING_FL] = 1e300;
+    failure->bad.state[HMMWV_STATE_SPRING_F_L] = 1e300;
     assert_refused(failure, 0.005, GIC_ERROR_REACH, NULL);
 }
 
@@ -312,7 +312,7 @@ static void test_inputs_refused(void **unused)
     }
     car.input[STEERED_INPUT_RACK] = -1.5;
     assert_int_equal(steered_step(&car, 0.005, GIC_AB3), GIC_ERROR_NEWTON);
-    assert_string_equal(steered_status_subset(&car), "wheel_fl");
+    assert_string_equal(steered_status_subset(&car), "wheel_f_l");
     car.input[STEERED_INPUT_RACK] = 0;
     assert_int_equal(steered_step(&car, 0.005, GIC_AB3), GIC_OK);
 }

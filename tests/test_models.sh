@@ -146,7 +146,11 @@ near "$(at end bounce.value)" 0 1e-4 "rest of the quarter car"
 rest() {
     scene "duration: 2" "step: 0.005" "output_step: 0.1" "initial: {position: [0, 0, $2], orientation: {pitch: $3}}"
     run "$1"
-    load=$(for wheel in fl fr rl rr; do at 0 tire_$wheel.fz; done | awk '{ sum += $1 } END { printf "%.9g\n", sum }')
+    case $4 in
+    *_l) corners="f_l f_r r_l r_r" ;;
+    *) corners="fl fr rl rr" ;;
+    esac
+    load=$(for wheel in $corners; do at 0 tire_$wheel.fz; done | awk '{ sum += $1 } END { printf "%.9g\n", sum }')
     near "$load" "$(awk -v mass="$5" 'BEGIN { print 9.81 * mass }')" 10 "load on the tires of $1"
     value=$(at 0 "$4.value")
     for time in 0 1 2; do
@@ -157,8 +161,8 @@ rest() {
 }
 
 # masses: chassis and rack, then arms, wheel assemblies, axle
-rest hmmwv 0.4740625 0.0004326 spring_fl "$(awk 'BEGIN { print 2095.592 + 4 * (23.965 + 90.555) }')"
-near "$(at 0 spring_fl.value)" 0.246463 1e-6 "front spring at its design length"
+rest hmmwv 0.4740625 0.0004326 spring_f_l "$(awk 'BEGIN { print 2095.592 + 4 * (23.965 + 90.555) }')"
+near "$(at 0 spring_f_l.value)" 0.246463 1e-6 "front spring at its design length"
 rest hmmwv14 0.473856 0.0004314 spring_rl "$(awk 'BEGIN { print 2095.592 + 4 * (23.965 + 5.813 + 90.555) }')"
 rest five_link 0.474472 0.0006879 spring_rl "$(awk 'BEGIN { print 2095.592 + 2 * 23.965 + 4 * 90.555 }')"
 rest solid_axle 0.473694 0.0002147 spring_rl "$(awk 'BEGIN { print 2095.592 + 2 * (23.965 + 90.555) + 271.11 }')"
@@ -172,7 +176,7 @@ for how in "ab3 0.01" "rk4 0.001"; do
     run hmmwv
     cp "$work/csv" "$work/${how% *}.csv"
 done
-for name in chassis.z wheel_rl.z wheel_fl.z; do
+for name in chassis.z wheel_r_l.z wheel_f_l.z; do
     for time in 1 2 3 4; do
         cp "$work/rk4.csv" "$work/csv"
         value=$(at $time $name)

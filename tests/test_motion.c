@@ -38,8 +38,8 @@ static void test_pendulum(void **unused)
 static void smooth_ride(gic_method method, int steps, double end[HMMWV_STATES])
 {
     static const gic_road_sine waves = {{gic_sine_height}, 0.004, 8, 1, 0.5};
-    static const char *const deflection[] = {"tire_fl.deflection", "tire_fr.deflection", "tire_rl.deflection",
-                                             "tire_rr.deflection"};
+    static const char *const deflection[] = {"tire_f_l.deflection", "tire_f_r.deflection", "tire_r_l.deflection",
+                                             "tire_r_r.deflection"};
     Vehicle car = vehicle_new(&hmmwv_model);
     car.head->road = &waves.head;
     *state_named(&car, "r.z") = 0.476;
@@ -92,7 +92,7 @@ static void test_orders(void **unused)
 /* Energy with what the tires store, on the flat road. */
 static double total_energy(Vehicle *car)
 {
-    static const char *const tire[] = {"tire_fl", "tire_fr", "tire_rl", "tire_rr"};
+    static const char *const tire[] = {"tire_f_l", "tire_f_r", "tire_r_l", "tire_r_r"};
     assert_int_equal(car->model->outputs(car->head), GIC_OK);
     double energy = output_named(car, "energy.kinetic") + output_named(car, "energy.potential");
     for (int i = 0; i < 4; ++i) {
@@ -188,8 +188,8 @@ static void fly(int steps, double *off, double *drift)
         car.state[GLIDER_STATE_OMEGA_X + i] = omega[i];
     }
     car.state[GLIDER_STATE_R_Z] = 100;
-    car.state[GLIDER_STATE_SPRING_FL] += 0.02;
-    car.state[GLIDER_STATE_SPRING_RR] -= 0.015;
+    car.state[GLIDER_STATE_SPRING_F_L] += 0.02;
+    car.state[GLIDER_STATE_SPRING_R_R] -= 0.015;
     car.state[GLIDER_STATE_RACK] = 0.01;
     centre_of_mass(&car, start);
     for (int i = 0; i < 3; ++i)
@@ -208,7 +208,7 @@ static void fly(int steps, double *off, double *drift)
             *off = fmax(*off, fabs(centre[i] - expected));
         }
         assert_int_equal(car.model->outputs(car.head), GIC_OK);
-        assert_true(car.output[GLIDER_OUTPUT_TIRE_FL_FZ] == 0);
+        assert_true(car.output[GLIDER_OUTPUT_TIRE_F_L_FZ] == 0);
         *drift = fmax(*drift, fabs(car.output[GLIDER_OUTPUT_ENERGY_KINETIC] + car.output[GLIDER_OUTPUT_ENERGY_POTENTIAL] -
                                    energy));
     }

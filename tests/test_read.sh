@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # test_read.sh GICGEN: every broken file of tests/bad must be refused with the one message that its first line
 # announces as `# expect: LINE:COLUMN: fragment of the message`, with a caret, exit status 1 and nothing else. A second
-# line `# remedy: fragment` announces the remedy as well.
+# line `# remedy: fragment` announces the remedy as well; a line `# file: path` that the mistake stands in another
+# file, seen from tests/bad, and a line `# note: text` a note.
 gicgen=$1
 here=$(dirname "$0")
 work=$(mktemp -d) || exit 1
@@ -17,6 +18,10 @@ why() {
     fragment=$(printf '%s\n' "$expected" | sed 's/^[^:]*:[^:]*: //')
     column=${place#*:}
     remedy=$(sed -n '2s/^# remedy: //p' "$1")
+    note=$(sed -n 's/^# note: //p' "$1")
+    other=$(sed -n 's/^# file: //p' "$1")
+    file=${other:+$here/bad/$other}
+    file=${file:-$1}
     "$gicgen" --dump-model "$1" >"$work/out" 2>"$work/err"
     status=$?
     head -n 1 "$work/err" >"$work/message"
@@ -28,7 +33,7 @@ why() {
         echo "something on standard output"
     elif [ "$(grep -c 'error:' "$work/err")" -ne 1 ]; then
         echo "not exactly one error"
-    elif ! grep -qF -e "$1:$place: error: " "$work/message"; then
+    elif ! grep -qF -e "$file:$place: error: " "$work/message"; then
         echo "not at $place: $(cat "$work/message")"
     elif ! grep -qF -e "$fragment" "$work/message"; then
         echo "not '$fragment': $(cat "$work/message")"
@@ -36,6 +41,8 @@ why() {
         echo "no caret"
     elif [ "$column" -lt 100 ] && [ "$(sed -n 3p "$work/err" | tr -d '\n' | wc -c)" -ne $((column + 2)) ]; then
         echo "the caret is not below column $column"
+    elif [ "$(sed -n 's/^  note: //p' "$work/err")" != "$note" ]; then
+        echo "not the note '$note': $(grep '^  note: ' "$work/err")"
     elif ! grep '^  remedy: ' "$work/err" >"$work/remedy"; then
         echo "no remedy"
     elif ! grep -qF -e "$remedy" "$work/remedy"; then
@@ -54,4 +61,4 @@ for file in "$here"/bad/*.veh; do
 done
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 140 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 165 ]

@@ -45,7 +45,7 @@ static inline Builder start(const char *base)
     char *lines = pool_alloc(b.pool, LINES);
     memset(lines, '\n', LINES - 1);
     Source *source = pool_alloc(b.pool, sizeof *source);
-    *source = (Source){"car.veh", lines, LINES - 1};
+    *source = (Source){.path = "car.veh", .bytes = lines, .size = LINES - 1};
     b.model.source = source;
     b.model.name = "car";
     b.model.free_base = strcmp(base, "ground") != 0;

@@ -61,7 +61,7 @@ int main(void)
 
     /* a mistake of the program does no harm: the vehicle stays as it was, and says what is wrong */
     hmmwv_snapshot(&fleet.car[0], &kept);
-    fleet.car[0].state[HMMWV_STATE_SPRING_RL] = GIC_R(3.0);
+    fleet.car[0].state[HMMWV_STATE_SPRING_R_L] = GIC_R(3.0);
     status = hmmwv_step(&fleet.car[0], GIC_R(0.005), GIC_AB3);
     if (status == GIC_OK || !hmmwv_status_subset(&fleet.car[0]))
         return report("a spring of 3 m", NULL, status);
@@ -81,7 +81,7 @@ int main(void)
         if (pose[2] != car->output[HMMWV_OUTPUT_CHASSIS_Z])
             return report("chassis is the first body", NULL, GIC_OK);
         printf("%.9g %.9g %.9g %.9g\n", (double)hmmwv_time(car), (double)pose[0], (double)pose[2],
-               (double)car->output[HMMWV_OUTPUT_WHEEL_FL_Z]);
+               (double)car->output[HMMWV_OUTPUT_WHEEL_F_L_Z]);
     }
     if (pendulum_outputs(&fleet.clock) != GIC_OK)
         return 1;

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: MIT
+ * Entries of a model written anew: in the mirror, moved, or with other names (FORMAT.md sections 12 and 13). The one
+ * table here says for each kind of value what becomes of it. */
+#include "read.h"
+
+#include <ctype.h>
+#include <string.h>
+
+enum { X = 1 << 0, Y = 1 << 1, Z = 1 << 2, LONGEST = 4 /* list of numbers that a kind has */ };
+
+/* Formulas name coordinates, inputs and what else can stand in them. */
+typedef enum Words { WORDS_NONE, WORDS_FORMULA, WORDS_NAME } Words;
+
+typedef struct Rule {
+    unsigned odd;      /* bit i: component i changes its sign in the mirror y -> -y */
+    bool place;        /* components are those of a point, which can be moved */
+    bool pair;         /* a list of two such values */
+    Words words;       /* what a scalar that is no number may be */
+    const char *group; /* WORDS_NAME: of an entry of this group */
+    const Section *section; /* a map of keys with rules of their own, where it is a map */
+} Rule;
+
+static const Rule rule[KEY_KINDS] = {
+    [KEY_ITEM] = {.words = WORDS_FORMULA},
+    [KEY_FORMULA] = {.words = WORDS_FORMULA},
+    [KEY_FORCE_VECTOR] = {.odd = Y, .words = WORDS_FORMULA},
+    [KEY_TORQUE_VECTOR] = {.odd = X | Z, .words = WORDS_FORMULA},
+    [KEY_NUMBER] = {.words = WORDS_FORMULA},
+    [KEY_INERTIA] = {.section = &inertia_section},
+    [KEY_ORIENTATION] = {.section = &orientation_section},
+    [KEY_ODD] = {.odd = X},
+    [KEY_AXIS] = {.odd = Y},
+    [KEY_TURN] = {.odd = X | Z},
+    [KEY_AXES] = {.odd = Y, .pair = true},
+    [KEY_EULER] = {.odd = X << 1 | Z << 1}, /* behind e0, the direction of an axis of rotation */
+    [KEY_POINT] = {.odd = Y, .place = true, .words = WORDS_NAME, .group = "points"},
+    [KEY_POINTS] = {.odd = Y, .place = true, .pair = true, .words = WORDS_NAME, .group = "points"},
+    [KEY_BODY] = {.words = WORDS_NAME, .group = "bodies"},
+    [KEY_BODIES] = {.pair = true, .words = WORDS_NAME, .group = "bodies"},
+    [KEY_FORCE_BODIES] = {.pair = true, .words = WORDS_NAME, .group = "bodies"},
+    [KEY_FRAME] = {.words = WORDS_NAME, .group = "bodies"},
+    [KEY_COORDINATE] = {.words = WORDS_NAME, .group = "coordinates"},
+    [KEY_FORCE] = {.words = WORDS_NAME, .group = "forces"},
+    [KEY_WHEEL] = {.words = WORDS_NAME, .group = "wheels"},
+};
+
+/* Maps of named entries in a file; without a section an entry is a point. */
+static const struct {
+    const char *name;
+    const Section *section;
+    bool formulas; /* its names may stand in formulas */
+} groups[] = {
+    {"points", NULL, false},
+    {"bodies", &body_section, false},
+    {"joints", &joint_section, false},
+    {"coordinates", &coordinate_section, true},
+    {"inputs", &input_section, true},
+    {"parameters", &parameter_section, true},
+    {"tables", &table_section, true},
+    {"ports", &port_section, false},
+    {"forces", &force_section, false},
+    {"wheels", &wheel_section, false},
+    {"outputs", &output_section, false},
+};
+
+enum { GROUPS = sizeof groups / sizeof *groups };
+
+static int group_index(const char *name)
+{
+    int i = 0;
+    while (i < GROUPS && strcmp(groups[i].name, name))
+        ++i;
+    return i;
+}
+
+bool is_group(const char *group)
+{
+    return group_index(group) < GROUPS;
+}
+
+const char *name_mirrored(Pool *pool, const char *name)
+{
+    size_t length = strlen(name);
+    if (length < 3 || name[length - 2] != '_' || (name[length - 1] != 'l' && name[length - 1] != 'r'))
+        return NULL;
+    char *other = pool_print(pool, "%s", name);
+    other[length - 1] = name[length - 1] == 'l' ? 'r' : 'l';
+    return other;
+}
+
+static bool has(const Rewrite *rewrite, const char *group, const char *name)
+{
+    const Item *map = doc_find(rewrite->file, group);
+    return map && map->kind == ITEM_MAP && doc_find(map, name);
+}
+
+/* What becomes of a name. Every entry `*_l` has an image, so that both sides exist where the left one does. */
+static const char *renamed(const Rewrite *rewrite, const char *group, const char *name)
+{
+    const char *other = name_mirrored(rewrite->pool, name);
+    bool both = other && has(rewrite, group, strcmp(name, other) < 0 ? name : other);
+    if (rewrite->mirror)
+        return both ? other : name;
+    return both || has(rewrite, group, name) ? pool_print(rewrite->pool, "%s%s", rewrite->prefix, name) : name;
+}
+
+/* A formula with the names in it changed. */
+static const char *formula_renamed(const Rewrite *rewrite, const char *s)
+{
+    Text text = {.pool = rewrite->pool};
+    while (*s) {
+        size_t length = 0;
+        bool word = isalpha((unsigned char)*s);
+        bool number = isdigit((unsigned char)*s) || *s == '.'; /* and what follows at once: 1e3, .rate */
+        while (isalnum((unsigned char)s[length]) || s[length] == '_' || (number && s[length] == '.'))
+            ++length;
+        length += length == 0;
+        const char *name = pool_print(rewrite->pool, "%.*s", (int)length, s), *other = name;
+        for (int i = 0; word && i < GROUPS && other == name; ++i)
+            if (groups[i].formulas)
+                other = renamed(rewrite, groups[i].name, name);
+        text_add(&text, other, strlen(other));
+        s += length;
+    }
+    return text.s;
+}
+
+/* A copy for changing, with its place in messages. */
+static Item *copy(const Rewrite *rewrite, const Item *item)
+{
+    Item *other = pool_alloc(rewrite->pool, sizeof *other);
+    *other = *item;
+    if (rewrite->source)
+        other->at.source = rewrite->source;
+    return other;
+}
+
+static Item **copies(const Rewrite *rewrite, Item **item, int count)
+{
+    size_t size = sizeof *item * (size_t)count;
+    return pool_grow(rewrite->pool, item, size, size);
+}
+
+static Item *number_rewrite(const Rewrite *rewrite, const Rule *how, int component, Item *item)
+{
+    if (item->kind != ITEM_SCALAR)
+        return item;
+    Item *other = copy(rewrite, item);
+    other->negated = item->negated != (rewrite->mirror && (how->odd >> component & 1));
+    if (how->place)
+        other->shift += rewrite->shift[component];
+    bool formula = how->words == WORDS_FORMULA || how->place || how->odd; /* any component may be one */
+    if (formula && item->text[0])
+        other->text = formula_renamed(rewrite, item->text);
+    return other;
+}
+
+static Item *map_rewrite(const Rewrite *rewrite, const Section *section, Item *map);
+
+/* pair: whether this is the list of two values, or one of them. */
+static Item *value_rewrite(const Rewrite *rewrite, const Rule *how, bool pair, Item *item)
+{
+    if (item->kind == ITEM_MAP)
+        return how->section ? map_rewrite(rewrite, how->section, item) : item;
+    if (item->kind == ITEM_SCALAR && how->words == WORDS_NAME && !pair)
+        return name_rewrite(rewrite, how->group, item);
+    if (item->kind == ITEM_SCALAR)
+        return number_rewrite(rewrite, how, 0, item);
+    if (item->count > (pair ? 2 : how->place ? 3 : LONGEST))
+        return item;
+    Item *other = copy(rewrite, item);
+    other->value = copies(rewrite, item->value, item->count);
+    for (int i = 0; i < item->count; ++i)
+        other->value[i] = pair ? value_rewrite(rewrite, how, false, item->value[i])
+                               : number_rewrite(rewrite, how, i, item->value[i]);
+    return other;
+}
+
+/* The kind of a key of a section; of an unknown key KEY_TEXT, which stays as it is. */
+static KeyKind kind_of(const Section *section, const Item *map, const char *name)
+{
+    KeyKind kind = KEY_TEXT;
+    for (int k = 0; k < section->keys; ++k)
+        if (!strcmp(section->key[k].name, name))
+            kind = section->key[k].kind;
+    if (kind != KEY_DUAL_AXIS)
+        return kind;
+    const Item *type = doc_find(map, "type");
+    bool angle = type && type->kind == ITEM_SCALAR && !strcmp(type->text, coordinate_type_name[COORDINATE_ANGLE]);
+    return angle ? KEY_TURN : KEY_AXIS;
+}
+
+static Item *map_rewrite(const Rewrite *rewrite, const Section *section, Item *map)
+{
+    Item *other = copy(rewrite, map);
+    other->value = copies(rewrite, map->value, map->count);
+    other->key = copies(rewrite, map->key, map->count);
+    for (int i = 0; i < map->count; ++i) {
+        const Rule *how = &rule[kind_of(section, map, map->key[i]->text)];
+        other->key[i] = copy(rewrite, map->key[i]);
+        other->value[i] = value_rewrite(rewrite, how, how->pair, map->value[i]);
+    }
+    return other;
+}
+
+Item *entry_rewrite(const Rewrite *rewrite, const char *group, Item *entry)
+{
+    const Section *section = groups[group_index(group)].section;
+    if (!section)
+        return value_rewrite(rewrite, &rule[KEY_POINT], false, entry);
+    return entry->kind == ITEM_MAP ? map_rewrite(rewrite, section, entry) : entry;
+}
+
+Item *name_rewrite(const Rewrite *rewrite, const char *group, Item *item)
+{
+    if (item->kind != ITEM_SCALAR)
+        return item;
+    Item *other = copy(rewrite, item);
+    other->text = renamed(rewrite, group, item->text);
+    return other;
+}
