@@ -294,8 +294,9 @@ static void add_wheel(Vehicle *v, const Place *place, int carrier)
     Entry *wheel = add(v, WHEEL, "wheel");
     SAY(wheel, "body: %s", body_name(v, carrier));
     say_vector(wheel, ", center: ", center);
-    SAY(wheel, ", radius: %.3g, stiffness: %.4g, damping: %.3g", uniform(v, 0.3, 0.36), uniform(v, 1e5, 3e5),
-        uniform(v, 0, 800));
+    SAY(wheel, ", radius: %.3g", uniform(v, 0.3, 0.36));
+    SAY(wheel, ", stiffness: %.4g", uniform(v, 1e5, 3e5));
+    SAY(wheel, ", damping: %.3g", uniform(v, 0, 800));
 }
 
 static void add_corner(Vehicle *v, const Place *place)
@@ -386,7 +387,8 @@ static void point_spring(Vehicle *v)
     Entry *force = add(v, FORCE, "tie");
     say_connection(v, force, "spring_damper", a, b,
                    &(Geometry){.points = {&(Vec){{0.1, 0.2, 0.3}}, &(Vec){{0.8, uniform(v, -1, 1), 0.9}}}});
-    SAY(force, ", stiffness: %.4g, damping: %.4g", uniform(v, 0, 5000), uniform(v, 0, 500));
+    SAY(force, ", stiffness: %.4g", uniform(v, 0, 5000));
+    SAY(force, ", damping: %.4g", uniform(v, 0, 500));
 }
 
 static void add_outputs(Vehicle *v)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Emitted C against the graph it came from: random blocks are compiled by the system's compiler and must give the same bits. And
- * templates. */
+ * Emitted C against the graph it came from: random blocks are compiled by the system's compiler and must give the same
+ * bits. And templates. */
 #include "gicrun.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ static char *new_folder(Pool *pool)
     return folder;
 }
 
-/* ---- numbers ---------------------------------------------------------------------------------------------------- */
+/* ---- numbers --------------------------------------------------------------------------------------------- */
 
 /* What stands between R( and ). */
 static double read_back(const char *text)
@@ -36,9 +36,9 @@ static void test_numbers(void **state)
 {
     (void)state;
     Pool *pool = pool_new();
-    const double special[] = {0,       1,     -1,     0.1,    -0.1,   1.0 / 3, 1e308,  -1e308, 5e-324,    -5e-324, 2.2250738585072014e-308,
-                              4.9e-310, 1e22,  1e23,   1e15,   1e16,   123456789012345678.0,    0x1p53, 0x1.fffffffffffffp1023, 9.81, 1e-5,
-                              0.5,      2e-308, 100000, 1e300 * 1.1, 3};
+    const double special[] = {0, 1, -1, 3, 0.1, -0.1, 0.5, 1.0 / 3, 9.81, 1e-5, 100000, 1e15, 1e16, 1e22, 1e23, 0x1p53,
+                              123456789012345678.0, 1e308, -1e308, 0x1.fffffffffffffp1023, 1e300 * 1.1, 5e-324, -5e-324,
+                              4.9e-310, 2e-308, 2.2250738585072014e-308};
     for (size_t i = 0; i < sizeof special / sizeof *special; ++i) {
         double back = read_back(emit_number(pool, special[i]));
         assert_memory_equal(&back, &special[i], sizeof back);
@@ -62,7 +62,7 @@ static void test_numbers(void **state)
     pool_free(pool);
 }
 
-/* ---- a program of blocks ------------------------------------------------------------------------------------------ */
+/* ---- a program of blocks --------------------------------------------------------------------------------- */
 
 enum { BLOCKS = 80, INPUTS = 6, STORES = 5, MEMBERS = 2, SAMPLES = 4, TERMS = 50 };
 
@@ -73,18 +73,19 @@ typedef struct Program {
     int blocks;
 } Program;
 
-static const char prologue[] = "#include <math.h>\n#include <stdint.h>\n#include <stdio.h>\n#include <string.h>\n"
-                               "typedef double gic_real;\n"
-                               "#define GIC_R(x) ((gic_real)(x))\n#define R(x) GIC_R(x)\n"
-                               "#define GIC_SQRT(x) sqrt(x)\n#define GIC_FABS(x) fabs(x)\n#define GIC_ATAN2(y, x) atan2(y, x)\n"
-                               "#define GIC_MIN(a, b) ((a) < (b) ? (a) : (b))\n#define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))\n"
-                               "enum { GIC_OK = 0, GIC_ERROR_ROAD = -9 };\n"
-                               "static void show(int status, const gic_real *x, int count)\n{\n    printf(\"%d\", status);\n"
-                               "    for (int i = 0; i < count; ++i) {\n        uint64_t bits;\n        memcpy(&bits, x + i, 8);\n"
-                               "        printf(\" %016llx\", (unsigned long long)bits);\n    }\n    printf(\"\\n\");\n}\n"
-                               "/* h = x + 2 y with a hole beyond x = 100 */\n"
-                               "int road_height(const void *self, gic_real time, gic_real x, gic_real y, gic_real out[3])\n"
-                               "{\n    (void)self, (void)time;\n    out[0] = x + 2 * y, out[1] = 1, out[2] = 2;\n    return x < 100;\n}\n";
+static const char prologue[] =
+    "#include <math.h>\n#include <stdint.h>\n#include <stdio.h>\n#include <string.h>\n"
+    "typedef double gic_real;\n"
+    "#define GIC_R(x) ((gic_real)(x))\n#define R(x) GIC_R(x)\n"
+    "#define GIC_SQRT(x) sqrt(x)\n#define GIC_FABS(x) fabs(x)\n#define GIC_ATAN2(y, x) atan2(y, x)\n"
+    "#define GIC_MIN(a, b) ((a) < (b) ? (a) : (b))\n#define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))\n"
+    "enum { GIC_OK = 0, GIC_ERROR_ROAD = -9 };\n"
+    "static void show(int status, const gic_real *x, int count)\n{\n    printf(\"%d\", status);\n"
+    "    for (int i = 0; i < count; ++i) {\n        uint64_t bits;\n        memcpy(&bits, x + i, 8);\n"
+    "        printf(\" %016llx\", (unsigned long long)bits);\n    }\n    printf(\"\\n\");\n}\n"
+    "/* h = x + 2 y with a hole beyond x = 100 */\n"
+    "int road_height(const void *self, gic_real time, gic_real x, gic_real y, gic_real out[3])\n"
+    "{\n    (void)self, (void)time;\n    out[0] = x + 2 * y, out[1] = 1, out[2] = 2;\n    return x < 100;\n}\n";
 
 static Program program_new(void)
 {
@@ -115,13 +116,14 @@ static void list(Text *out, const char *name, const double *value, int count)
 }
 
 /* Call the last function with these inputs and show `results` numbers of the array `shown`. */
-static void program_call(Program *program, const double *q, int inputs, const double *k, int constants, const char *shown, int results)
+static void program_call(Program *program, const double *q, int inputs, const double *k, int constants,
+                         const char *shown, int results)
 {
     text_print(&program->calls, "    {\n        gic_real x[%d] = {0};\n", results + 1);
     list(&program->calls, "q", q, inputs);
     list(&program->calls, "k", k, constants);
-    text_print(&program->calls, "        int status = f%d(0, 0, q, x, k);\n        show(status, %s, %d);\n    }\n", program->blocks - 1,
-               shown, results);
+    text_print(&program->calls, "        int status = f%d(0, 0, q, x, k);\n        show(status, %s, %d);\n    }\n",
+               program->blocks - 1, shown, results);
 }
 
 /* Compile and run; returns what it printed. */
@@ -131,11 +133,11 @@ static char *program_run(Program *program)
     const char *source = pool_print(program->pool, "%s/p.c", folder), *compiler = getenv("CC");
     text_print(&program->functions, "int main(void)\n{\n%s    return 0;\n}\n", program->calls.s);
     file_write(source, program->functions.s, program->functions.size);
-    const char *command =
-        pool_print(program->pool,
-                   "cd %s && %s -std=c99 -O1 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -ffp-contract=off p.c -lm -o p && "
-                   "./p >out",
-                   folder, compiler ? compiler : "cc");
+    const char *command = pool_print(program->pool,
+                                     "cd %s && %s -std=c99 -O1 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror "
+                                     "-ffp-contract=off p.c -lm -o p && "
+                                     "./p >out",
+                                     folder, compiler ? compiler : "cc");
     int status = system(command);
     size_t size;
     char *printed = status ? NULL : file_read(program->pool, pool_print(program->pool, "%s/out", folder), &size);
@@ -163,7 +165,7 @@ static void assert_line(char **printed, int status, const double *value, int cou
     *printed = end + 1;
 }
 
-/* ---- random blocks ------------------------------------------------------------------------------------------------- */
+/* ---- random blocks --------------------------------------------------------------------------------------- */
 
 /* A random operation on earlier terms; raw nodes too, for their text must be right without simplification. */
 static Ex grow(Dag *dag, Random *random, const Ex *term, int count)
@@ -254,7 +256,7 @@ static void test_random_blocks(void **state)
     pool_free(program.pool);
 }
 
-/* ---- order of operations -------------------------------------------------------------------------------------------- */
+/* ---- order of operations --------------------------------------------------------------------------------- */
 
 /* With a = 1, b = 1e16, c = -1e16, d = 3 every grouping has its own value. */
 static void test_grouping(void **state)
@@ -287,7 +289,8 @@ static void test_grouping(void **state)
     };
 #undef OP2
     enum { COUNT = sizeof e / sizeof *e };
-    const double expected[COUNT] = {0, 1, -9999999999999995.0, -1e16 - 3 + 1, 1, 1.0 / 3 / 3, 3 * (1.0 / 3), 1.0 / 9, -8, 4, 3, 2, 12, 3, 5, -2};
+    const double expected[COUNT] = {
+        0, 1, -9999999999999995.0, -1e16 - 3 + 1, 1, 1.0 / 3 / 3, 3 * (1.0 / 3), 1.0 / 9, -8, 4, 3, 2, 12, 3, 5, -2};
     Block block = {.dag = dag};
     Constants constants = {0};
     for (int i = 0; i < COUNT; ++i)
@@ -327,7 +330,7 @@ static void test_function_text(void **state)
     pool_free(pool);
 }
 
-/* ---- stores and checks ------------------------------------------------------------------------------------------------ */
+/* ---- stores and checks ----------------------------------------------------------------------------------- */
 
 /* Results go where inputs were read: all of them as they were before. */
 static void test_stores_in_place(void **state)
@@ -363,8 +366,8 @@ static void test_checks(void **state)
     static const struct {
         double q[2];
         int status;
-    } call[] = {{{1, 1}, 0}, {{-1, 1}, -1}, {{0.5, 1}, -1}, {{0.51, -1}, 0}, {{1, 0.25}, -2}, {{1, -0.25}, -2}, {{1, -0.26}, 0},
-                {{0, 0}, -1}};
+    } call[] = {{{1, 1}, 0},     {{-1, 1}, -1},    {{0.5, 1}, -1},  {{0.51, -1}, 0},
+                {{1, 0.25}, -2}, {{1, -0.25}, -2}, {{1, -0.26}, 0}, {{0, 0}, -1}};
     enum { CALLS = sizeof call / sizeof *call };
     Program program = program_new();
     Dag *dag = dag_new(program.pool, 1, 1);
@@ -381,8 +384,9 @@ static void test_checks(void **state)
     for (int i = 0; i < CALLS; ++i)
         program_call(&program, call[i].q, 2, NULL, 0, "x", 1);
     /* not a number is not above anything */
-    text_print(&program.calls, "    {\n        gic_real x[1] = {0}, q[2] = {1, NAN};\n        show(f0(0, 0, q, x, q), x, 1);\n"
-                               "        q[0] = NAN, q[1] = 1;\n        show(f0(0, 0, q, x, q), x, 1);\n    }\n");
+    text_print(&program.calls,
+               "    {\n        gic_real x[1] = {0}, q[2] = {1, NAN};\n        show(f0(0, 0, q, x, q), x, 1);\n"
+               "        q[0] = NAN, q[1] = 1;\n        show(f0(0, 0, q, x, q), x, 1);\n    }\n");
     char *printed = program_run(&program);
     for (int i = 0; i < CALLS; ++i)
         assert_line(&printed, call[i].status, (double[]){call[i].status ? 0 : call[i].q[0] * call[i].q[1]}, 1);
@@ -419,7 +423,7 @@ static void test_road(void **state)
     pool_free(program.pool);
 }
 
-/* ---- templates ---------------------------------------------------------------------------------------------------------- */
+/* ---- templates ------------------------------------------------------------------------------------------- */
 
 static void insert(void *context, const char *name, Text *out, int indent)
 {
@@ -447,7 +451,8 @@ static void test_template(void **state)
     assert_string_equal(expanded(pool, "int PREFIX_setup(PREFIX *self);\n", NULL), "int car_setup(car *self);\n");
     assert_string_equal(expanded(pool, "enum { UPPER_SIZE = sizeof(PREFIX_CLASS_t) }; /* UPPER */\n", "arm"),
                         "enum { CAR_SIZE = sizeof(car_arm_t) }; /* CAR */\n");
-    assert_string_equal(expanded(pool, "CLASS x = PREFIX_x; y(&PREFIX, -PREFIX)\n", "arm"), "arm x = car_x; y(&car, -car)\n");
+    assert_string_equal(expanded(pool, "CLASS x = PREFIX_x; y(&PREFIX, -PREFIX)\n", "arm"),
+                        "arm x = car_x; y(&car, -car)\n");
     /* without a class that word is one like others; within a word nothing is replaced */
     assert_string_equal(expanded(pool, "CLASS MYPREFIX 2UPPER\n", NULL), "CLASS MYPREFIX 2UPPER\n");
     assert_string_equal(expanded(pool, "a\n/* @states@ */\n    /* @two words@ */\n\nb\n", NULL),
@@ -456,7 +461,8 @@ static void test_template(void **state)
     assert_string_equal(expanded(pool, "x; /* @states@ */\n/* @states@ */ y;\n/* states */\n", NULL),
                         "x; /* @states@ */\n/* @states@ */ y;\n/* states */\n");
     /* remarks are not copied, comments are */
-    assert_string_equal(expanded(pool, "/*- for the reader of the template: PREFIX */\n/* copied */\na\n", NULL), "/* copied */\na\n");
+    assert_string_equal(expanded(pool, "/*- for the reader of the template: PREFIX */\n/* copied */\na\n", NULL),
+                        "/* copied */\na\n");
     assert_string_equal(expanded(pool, "the last line has no end", NULL), "the last line has no end\n");
     pool_free(pool);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Straight-line factorizations against dense elimination in extended precision, and their operations against counts by hand. */
+ * Straight-line factorizations against dense elimination in extended precision, and their operations against counts by
+ * hand. */
 #include "gicgen.h"
 
 #include <math.h>
@@ -11,7 +12,7 @@
 
 enum { N_MAX = 12 };
 
-/* ---- the reference ------------------------------------------------------------------------------------------------- */
+/* ---- the reference --------------------------------------------------------------------------------------- */
 
 /* x = A^-1 b by elimination with full pivoting in extended precision. Returns the smallest pivot over the largest. */
 static long double solve_long(int n, const double *A0, const double *b0, long double *x)
@@ -75,7 +76,7 @@ static long double expand(int n, const double *A)
     return sum;
 }
 
-/* ---- a system of expressions ------------------------------------------------------------------------------------- */
+/* ---- a system of expressions ----------------------------------------------------------------------------- */
 
 typedef struct System {
     Pool *pool;
@@ -123,7 +124,8 @@ static bool system_solve(System *sys)
     return sys->factors != NULL;
 }
 
-/* x against the reference at the usable samples; every system is well conditioned once its rows and columns are scaled. */
+/* x against the reference at the usable samples; every system is well conditioned once its rows and columns are scaled.
+ */
 static void assert_solution(const System *sys, const double *value, const double *right, double tolerance)
 {
     int n = sys->n;
@@ -181,7 +183,7 @@ static void assert_count(Count count, int add, int multiply, int divide)
     assert_int_equal(count.function, 0);
 }
 
-/* ---- solutions ------------------------------------------------------------------------------------------------------- */
+/* ---- solutions ------------------------------------------------------------------------------------------- */
 
 enum { SAMPLES = 3 };
 
@@ -241,8 +243,8 @@ static void test_sparse(void **state)
     }
 }
 
-/* A triangular matrix with rows and columns shuffled needs substitution only, in the order that undoes the shuffling: no product
- * but one for each entry off the diagonal and one for each pivot's reciprocal. */
+/* A triangular matrix with rows and columns shuffled needs substitution only, in the order that undoes the shuffling:
+ * no product but one for each entry off the diagonal and one for each pivot's reciprocal. */
 static void test_permuted_triangular(void **state)
 {
     (void)state;
@@ -332,6 +334,13 @@ static void test_pivot_for_all_samples(void **state)
     assert_true(system_solve(&sys));
     assert_solution(&sys, one, b, 1e-13);
     pool_free(sys.pool);
+    /* an entry may be large at one sample, yet too small at the other for multipliers below ten */
+    const double small[] = {1e-6, 1, 1, 0.5, /**/ 1, 0.3, 0.4, 1};
+    sys = system_new(2, 2, small, b);
+    assert_true(system_solve(&sys));
+    assert_false(sys.factors->row[0] == 0 && sys.factors->column[0] == 0);
+    assert_solution(&sys, small, b, 1e-14);
+    pool_free(sys.pool);
     /* larger ones: a permutation differs from sample to sample, and noise gives the pivots that are good at all */
     Random random = {6};
     int tried = 0;
@@ -354,7 +363,7 @@ static void test_pivot_for_all_samples(void **state)
     }
 }
 
-/* ---- rank ---------------------------------------------------------------------------------------------------------- */
+/* ---- rank ------------------------------------------------------------------------------------------------ */
 
 static void test_rank(void **state)
 {
@@ -404,7 +413,7 @@ static void test_nearly_singular(void **state)
     }
 }
 
-/* ---- operations --------------------------------------------------------------------------------------------------- */
+/* ---- operations ------------------------------------------------------------------------------------------ */
 
 static void test_unit_rows(void **state)
 {
@@ -430,7 +439,7 @@ static void test_unit_rows(void **state)
     pool_free(sys.pool);
 }
 
-/* ---- symmetric ------------------------------------------------------------------------------------------------------ */
+/* ---- symmetric ------------------------------------------------------------------------------------------- */
 
 /* Cholesky in extended precision. */
 static void solve_cholesky(int n, const double *A, const double *b, long double *x)
@@ -495,8 +504,9 @@ static void test_symmetric(void **state)
     }
 }
 
-/* The arrow, its head first: taken in the given order it would fill up. Leaves first: for each of the m leaves a reciprocal, a
- * multiplier, the update of the head; forward one update, backward two products and one update; the head a reciprocal and a product. */
+/* The arrow, its head first: taken in the given order it would fill up. Leaves first: for each of the m leaves a
+ * reciprocal, a multiplier, the update of the head; forward one update, backward two products and one update; the head
+ * a reciprocal and a product. */
 static void test_arrow(void **state)
 {
     (void)state;
@@ -521,7 +531,7 @@ static void test_arrow(void **state)
     }
 }
 
-/* ---- numeric -------------------------------------------------------------------------------------------------------- */
+/* ---- numeric --------------------------------------------------------------------------------------------- */
 
 static void test_determinant(void **state)
 {

@@ -334,8 +334,9 @@ static void test_cylindrical(void **unused)
     (void)unused;
     Model *model = model_parse(
         HEAD("fixed") GROUND_BODY "," BOB JOINTS
-            JOINT("cylindrical", "0", "1", "[0,0,0]", "[-0.5,-0.1,0.3]", "[0,1,0]", "[0,1,0]", "null", "null") COORDINATES
-            COORDINATE("phi", "angle", "0", "1", "null", "null", "[0,1,0]", "[1,0,0]", "[1,0,0]", "0", "null", "false") ","
+            JOINT("cylindrical", "0", "1", "[0,0,0]", "[-0.5,-0.1,0.3]", "[0,1,0]", "[0,1,0]", "null", "null")
+            COORDINATES COORDINATE("phi", "angle", "0", "1", "null", "null", "[0,1,0]", "[1,0,0]", "[1,0,0]", "0",
+                                   "null", "false") ","
             COORDINATE("s", "translation", "0", "1", "[0,0,0]", "[-0.5,-0.1,0.3]", "[0,1,0]", "null", "null", "0", "0",
                        "false") FORCES ALONG("1", "40", "5", "0.125") WHEELS SEQUENCE TAIL, "sleeve");
     Solver *solver = solver_new(model);
@@ -383,7 +384,7 @@ static void test_fixed(void **unused)
 }
 
 /* A universal joint: input shaft along x, output shaft inclined by atan(3/4) towards y, the two axes of its cross
- * perpendicular. Output angle phi of input angle theta: tan phi = tan theta / cos(inclination), for any number of turns. */
+ * perpendicular. Any number of turns. */
 static void test_universal_shafts(void **unused)
 {
     (void)unused;
@@ -393,15 +394,14 @@ static void test_universal_shafts(void **unused)
             JOINT("revolute", "0", "1", "[0,0,0]", "[0,0,0]", "[1,0,0]", "[1,0,0]", "null", "null") ","
             JOINT("revolute", "0", "2", "[1,0,0]", "[0,0,0]", "[0.8,0.6,0]", "[0.8,0.6,0]", "null", "null") ","
             JOINT("perpendicular", "1", "2", "null", "null", "[0,0,1]", "[-0.6,0.8,0]", "null", "null") COORDINATES
-            COORDINATE("theta", "angle", "0", "1", "null", "null", "[1,0,0]", "[0,1,0]", "[0,1,0]", "0", "null", "false")
-            FORCES ALONG("0", "3", "2", "1") WHEELS SEQUENCE TAIL, "shafts");
+            COORDINATE("theta", "angle", "0", "1", "null", "null", "[1,0,0]", "[0,1,0]", "[0,1,0]", "0", "null",
+                       "false") FORCES ALONG("0", "3", "2", "1") WHEELS SEQUENCE TAIL, "shafts");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
     const real u[3] = {0.8L, 0.6L, 0}, incline = 0.8L;
     for (int i = 0; i < 5; ++i) {
         real theta = 3.7L * i - 7, rate = 1.5L - i, c = cosl(theta), n = sinl(theta);
-        /* Cross axes: (0, -sin, cos)(theta) and cos(phi) (-0.6, 0.8, 0) + sin(phi) (0, 0, 1): tan phi = 0.8 tan theta.
-         * theta is measured where the input's axis stands upright, so 0.8 is where the textbook divides. */
+        /* the axes (0, -sin, cos)(theta) and cos(phi) (-0.6, 0.8, 0) + sin(phi) (0, 0, 1): tan phi = 0.8 tan theta */
         real phi = atan2l(incline * n, c), bottom = c * c + incline * incline * n * n;
         real ratio = incline / bottom, ratio_slope = incline * 2 * n * c * (1 - incline * incline) / (bottom * bottom);
         state->w[0] = theta;
@@ -420,14 +420,13 @@ static void test_universal_shafts(void **unused)
     model_free(model);
 }
 
-/* A cross between two forks, with both universal joints on it, one body more than the equations need: the input shaft
- * and the cross. A universal joint leaves the cross two rotations, about its own two axes. */
+/* A bob on a universal joint, placed by two lengths. */
 static void test_universal(void **unused)
 {
     (void)unused;
     Model *model = model_parse(
-        HEAD("fixed") GROUND_BODY "," BODY("bob", "3", "[0,0,0]", "[0.5,0.5,0.25,0,0,0]", "[0,0,-2]", "[1,0,0,0]") JOINTS
-            JOINT("universal", "0", "1", "[0,0,0]", "[0,0,2]", "[1,0,0]", "[0,1,0]", "null", "null") COORDINATES
+        HEAD("fixed") GROUND_BODY "," BODY("bob", "3", "[0,0,0]", "[0.5,0.5,0.25,0,0,0]", "[0,0,-2]", "[1,0,0,0]")
+            JOINTS JOINT("universal", "0", "1", "[0,0,0]", "[0,0,2]", "[1,0,0]", "[0,1,0]", "null", "null") COORDINATES
             COORDINATE("swing", "length", "0", "1", "[0,-2,0]", "[0,0,0]", "null", "null", "null",
                        "2.8284271247461901", "null", "false") ","
             COORDINATE("nod", "length", "0", "1", "[2,0,0]", "[0,0,0]", "null", "null", "null", "2.8284271247461901",
@@ -435,7 +434,7 @@ static void test_universal(void **unused)
         "universal");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
-    /* turned by theta about x, then by phi about the own y: bob at 2 (-sin phi, sin theta cos phi, -cos theta cos phi) */
+    /* turned by theta about x, then by phi about its own y: the bob's place is as follows */
     real theta = 0.4L, phi = 0.3L;
     real x = -2 * sinl(phi), y = 2 * sinl(theta) * cosl(phi), z = -2 * cosl(theta) * cosl(phi);
     state->w[0] = sqrtl(8 + 4 * y);
@@ -452,9 +451,9 @@ static void test_universal(void **unused)
     model_free(model);
 }
 
-/* ---- the planar four-bar linkage, three revolutes and a point on a line --------------------------------------------- */
+/* ---- the planar four-bar linkage, three revolutes and a point on a line ------------------------------------------ */
 
-/* x' = (bottom right-hand sides) of  p x + q y = r  in the plane, by Cramer's rule. */
+/* out[0] p + out[1] q = r in the plane, by Cramer's rule */
 static void solve_planar(const real p[2], const real q[2], const real r[2], real out[2])
 {
     real determinant = p[0] * q[1] - p[1] * q[0];
@@ -473,9 +472,9 @@ static void test_four_bar(void **unused)
             JOINT("revolute", "0", "1", "[0,0,0]", "[0,0,-0.5]", "[0,-1,0]", "[0,-1,0]", "null", "null") ","
             JOINT("revolute", "1", "2", "[0,0,0.5]", "[-1.75,0,-0.5]", "[0,-1,0]", "[0,-1,0]", "null", "null") ","
             JOINT("revolute", "0", "3", "[4,0,0]", "[0.25,0,-1]", "[0,-1,0]", "[0,-1,0]", "null", "null") ","
-            JOINT("point_on_line", "2", "3", "[1.75,0,0.5]", "[-0.25,0,1]", "[0,-1,0]", "null", "null", "null") COORDINATES
-            COORDINATE("theta", "angle", "0", "1", "null", "null", "[0,-1,0]", "[1,0,0]", "[1,0,0]", "0", "null", "false")
-            FORCES ALONG("0", "3", "2", "1") WHEELS SEQUENCE TAIL, "four-bar");
+            JOINT("point_on_line", "2", "3", "[1.75,0,0.5]", "[-0.25,0,1]", "[0,-1,0]", "null", "null", "null")
+            COORDINATES COORDINATE("theta", "angle", "0", "1", "null", "null", "[0,-1,0]", "[1,0,0]", "[1,0,0]", "0",
+                                   "null", "false") FORCES ALONG("0", "3", "2", "1") WHEELS SEQUENCE TAIL, "four-bar");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
     const real b = sqrtl(3.5L * 3.5L + 1), c = sqrtl(4.25L), mass[3] = {2, 3, 4}, J[3] = {0.25L, 1.5L, 0.75L};
@@ -488,7 +487,8 @@ static void test_four_bar(void **unused)
         real end[2] = {4 + c * cosl(angle[2]), c * sinl(angle[2])};
         angle[1] = atan2l(end[1] - pin[1], end[0] - pin[0]);
         /* e(angle0) + b e(angle1) - c e(angle2) = const, differentiated once and twice with respect to angle0 */
-        real along_b[2] = {-b * sinl(angle[1]), b * cosl(angle[1])}, along_c[2] = {c * sinl(angle[2]), -c * cosl(angle[2])};
+        real along_b[2] = {-b * sinl(angle[1]), b * cosl(angle[1])},
+             along_c[2] = {c * sinl(angle[2]), -c * cosl(angle[2])};
         real once[2] = {pin[1], -pin[0]}, twice[2], s[2];
         solve_planar(along_b, along_c, once, s);
         slope[1] = s[0];

@@ -69,7 +69,8 @@ static Mechanism *corners(void)
     *model = (Model){.gravity = {0.5, -0.25, -9.81}, .free_base = true, .bodies = PARTS,
                      .coordinates = 3, .forces = 5, .wheels = 2,
                      .body = mechanism->body, .joint = mechanism->joint,
-                     .coordinate = mechanism->coordinate, .force = mechanism->force, .wheel = mechanism->wheel, .length = 4};
+                     .coordinate = mechanism->coordinate, .force = mechanism->force, .wheel = mechanism->wheel,
+                     .length = 4};
     add_joint(mechanism, PRISMATIC, CHASSIS, RACK, rack, rack, rack_axis, rack_axis);
     add_joint(mechanism, REVOLUTE, CHASSIS, ARM, hinge, hinge, hinge_axis, hinge_axis);
     add_joint(mechanism, SPHERICAL, ARM, KNUCKLE, ball, ball, none, none);
@@ -131,8 +132,9 @@ static Mechanism *train(void)
         {"slider", 30, {0, 0, 0.1}, {1, 2, 2, 0, 0.1, 0}, {2.3, 1.2, 0.8}, {0.5, 0.5, -0.5, 0.5}},
         {"lever", 12, {0.1, 0, 0}, {1, 2, 2, 0, 0.1, 0}, {3, 1.3, 0.9}, {0.28, 0.96, 0, 0}},
     };
-    static const double none[3] = {0}, drum[3] = {1, 0, 0.5}, drum_axis[3] = {0.6, 0, 0.8}, cross_at[3] = {1.2, 0.3, 0.7},
-                        fork_in[3] = {0, 1, 0}, fork_out[3] = {0.8, 0, -0.6}, stay_in[3] = {2, 0.5, 0.2},
+    static const double none[3] = {0}, drum[3] = {1, 0, 0.5}, drum_axis[3] = {0.6, 0, 0.8},
+                        cross_at[3] = {1.2, 0.3, 0.7}, fork_in[3] = {0, 1, 0}, fork_out[3] = {0.8, 0, -0.6},
+                        stay_in[3] = {2, 0.5, 0.2},
                         stay[3] = {1.8, 0.9, 0.8}, weld[3] = {1.8, 0.9, 0.9}, line[3] = {2.2, 1.1, 0.9},
                         line_axis[3] = {0, 0.6, 0.8}, plane[3] = {2, 1.4, 0.6}, plane_axis[3] = {0.28, 0.96, 0},
                         x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1}, ball[3] = {2.6, 1.3, 0.9},

@@ -37,40 +37,36 @@ int pick(Vehicle *v, int count)
 
 /* ---- points and directions, model frame ---- */
 
-static Vec round_to_millimetres(Vec a)
-{
-    for (int i = 0; i < 3; ++i)
-        a.x[i] = round(1000 * a.x[i]) / 1000;
-    return a;
-}
-
 Vec near_to(Vehicle *v, double x, double y, double z, double spread)
 {
     Vec out = {{x, y, z}};
     for (int i = 0; i < 3; ++i)
-        out.x[i] += uniform(v, -spread, spread);
-    return round_to_millimetres(out);
+        out.x[i] = round(1000 * (out.x[i] + uniform(v, -spread, spread))) / 1000;
+    return out;
 }
 
 /* The same, by random numbers that follow from the place itself: they don't depend on the order in which a compiler
  * evaluates arguments. */
-static Vec shifted(const Vehicle *v, double x, double y, double z, double spread)
+static Vec shifted(Vehicle *v, double x, double y, double z, double spread)
 {
-    Vehicle aside = {.random = v->seed};
     const double place[] = {x, y, z, spread};
+    uint64_t kept = v->random;
+    v->random = v->seed;
     for (int i = 0; i < 4; ++i) {
-        aside.random ^= (uint64_t)(int64_t)round(1e6 * place[i]) * 0x9e3779b97f4a7c15u;
-        uniform(&aside, 0, 1);
+        v->random ^= (uint64_t)(int64_t)round(1e6 * place[i]) * 0x9e3779b97f4a7c15u;
+        uniform(v, 0, 1);
     }
-    return near_to(&aside, x, y, z, spread);
+    Vec out = near_to(v, x, y, z, spread);
+    v->random = kept;
+    return out;
 }
 
-Vec point(const Vehicle *v, double x, double y, double z)
+Vec point(Vehicle *v, double x, double y, double z)
 {
     return shifted(v, x, y, z, 0.025);
 }
 
-Vec direction(const Vehicle *v, double x, double y, double z)
+Vec direction(Vehicle *v, double x, double y, double z)
 {
     return shifted(v, x, y, z, 0.15);
 }
@@ -308,11 +304,12 @@ static void add_spring(Vehicle *v, int coordinate, double stiffness, double free
     Entry *force = add(v, FORCE, "force");
     force->coordinate = coordinate;
     const char *name = v->section[COORDINATE].entry[coordinate].name;
-    if (chance(v, 0.1))
+    if (chance(v, 0.1)) {
         SAY(force, "type: constant, coordinate: %s, value: %.4g", name, uniform(v, -0.02, 0.02) * stiffness);
-    else
-        SAY(force, "type: spring_damper, coordinate: %s, stiffness: %.4g, damping: %.4g, free: %.6g", name,
-            stiffness * uniform(v, 0.5, 2), stiffness * uniform(v, 0, 0.1), free);
+        return;
+    }
+    SAY(force, "type: spring_damper, coordinate: %s, stiffness: %.4g", name, stiffness * uniform(v, 0.5, 2));
+    SAY(force, ", damping: %.4g, free: %.6g", stiffness * uniform(v, 0, 0.1), free);
 }
 
 Entry *coordinate(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with, double reach,
@@ -327,7 +324,8 @@ Entry *coordinate(Vehicle *v, const char *prefix, const char *type, int a, int b
         design = round(100 * uniform(v, -1, 1)) / 100;
         SAY(entry, ", design: %.9g", design);
     }
-    SAY(entry, ", range: [%.9g, %.9g]", design - reach * uniform(v, 0.7, 1.2), design + reach * uniform(v, 0.7, 1.2));
+    SAY(entry, ", range: [%.9g, ", design - reach * uniform(v, 0.7, 1.2));
+    SAY(entry, "%.9g]", design + reach * uniform(v, 0.7, 1.2));
     if (chance(v, 0.2))
         SAY(entry, ", initial: %.9g", design + reach * uniform(v, -0.5, 0.5));
     if (may_drive && index > 0 && chance(v, 0.4))

@@ -38,10 +38,10 @@ typedef struct Section {
 } Section;
 
 typedef struct Vehicle {
-    uint64_t random, seed;
-    bool fixed; /* the base is the ground */
-    int names;  /* given so far */
-    Mistake mistake; /* still to be made while the vehicle is put together */
+    uint64_t random, seed; /* random numbers: as they stand, as they started */
+    bool fixed;            /* the base is the ground */
+    int names;             /* given so far */
+    Mistake mistake;       /* still to be made while the vehicle is put together */
     char culprits[300];
     Section section[KINDS];
 } Vehicle;
@@ -62,9 +62,9 @@ int pick(Vehicle *v, int count);
 
 /* Whole millimetres, so that points made of others by halving and doubling lie exactly where they should. */
 Vec near_to(Vehicle *v, double x, double y, double z, double spread);
-Vec point(const Vehicle *v, double x, double y, double z);
+Vec point(Vehicle *v, double x, double y, double z);
 /* A direction not far from the one given; its length is of no account. */
-Vec direction(const Vehicle *v, double x, double y, double z);
+Vec direction(Vehicle *v, double x, double y, double z);
 /* p a + q b */
 Vec combine(double p, Vec a, double q, Vec b);
 Vec cross(Vec a, Vec b);

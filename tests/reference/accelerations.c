@@ -193,6 +193,34 @@ typedef struct Sum {
     quad *w;
 } Sum;
 
+/* How fast the two ends of a coordinate accelerate, added up: angular accelerations for an angle, else those of the
+ * points. The coordinate's own acceleration is a difference of the two. */
+static quad ends(const Solver *solver, const Coordinate *coordinate)
+{
+    const Model *model = solver->model;
+    quad sum = 0;
+    for (int side = 0; side < 2; ++side) {
+        int body = coordinate->body[side];
+        if (body < solver->first)
+            continue;
+        const quad *second = solver->unknown + BODY_COORDINATES * (body - solver->first);
+        const quad *p = solver->configuration->q[body] + 3;
+        quad s[3], B[3][4], x[3];
+        if (coordinate->type == ANGLE) {
+            euler_rate_matrix(p, B);
+            for (int i = 0; i < 3; ++i)
+                x[i] = 2 * quad_dot(B[i], second + 3, 4);
+        } else {
+            from_com(model, body, coordinate->point[side], s);
+            rotation_slope(p, s, B);
+            for (int i = 0; i < 3; ++i)
+                x[i] = second[i] + quad_dot(B[i], second + 3, 4);
+        }
+        sum += norm(x);
+    }
+    return sum;
+}
+
 /* Solve for what solver->force alone does, and add magnitudes to the scales. */
 static void contribution(Solver *solver, Sum *sum)
 {
@@ -213,7 +241,7 @@ static void contribution(Solver *solver, Sum *sum)
         if (!model->coordinate[c].driven) {
             quad w = *unknown_row(solver, solver->rows - model->coordinates + c);
             sum->w[c] += w;
-            solver->w_scale[c] += fabsq(w);
+            solver->w_scale[c] += fabsq(w) + ends(solver, &model->coordinate[c]);
         }
     clear_force(solver);
 }

@@ -29,7 +29,8 @@ typedef struct Solver {
     quad *w_second;                             /* result: [coordinates]; driven: as given */
     quad *drive_force;                          /* result: [coordinates] multiplier along a driven one; free: 0 */
     /* result: sums of magnitudes of the contributions of the single terms to a, alpha, w'': gravity and velocity term
-     * of every body, every force element, every wheel */
+     * of every body, every force element, every wheel; to w'' with those to the accelerations of both its ends, whose
+     * difference it is */
     quad a_scale, alpha_scale, *w_scale;
     quad sum_error;                             /* result: largest deviation of the contributions' sum from the whole,
                                                    relative to the scale */
