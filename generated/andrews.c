@@ -42,10 +42,10 @@
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'K1' (1 times)                        187       268       3      0         4
- *   subset 'K2_K3' (1 times)                     684       860       6      0         0
- *   subset 'K5_K4' (2 times)                     734       918       6      0         0
+ *   subset 'K2_K3' (1 times)                     686       863       6      0         0
+ *   subset 'K5_K4' (2 times)                     736       921       6      0         0
  *   forces and equations of motion                28        25       2      1         0
- *   all together                                2367      2989      23      1         4
+ *   all together                                2373      2998      23      1         4
  *   outputs, when asked for                      241       404       0      1        18
  */
 #include "andrews.h"
@@ -260,6 +260,8 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
             const gic_real t28 = t23 * t16 * t27;
             const gic_real t29 = t17 + t20 * t25 + t26 * t28;
             if (!(GIC_FABS(t29) > R(1e-07)))
+                return GIC_ERROR_SINGULAR;
+            if (!(t6 > R(0.0)))
                 return GIC_ERROR_SINGULAR;
             if (!(t17 > R(0.0)))
                 return GIC_ERROR_SINGULAR;
@@ -787,6 +789,10 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t99 = t97 * t98;
             const gic_real t100 = t92 - t95 * t99;
             if (!(GIC_FABS(t100) > R(3.092243737396613e-09)))
+                return GIC_ERROR_SINGULAR;
+            if (!(t5 > R(0.0)))
+                return GIC_ERROR_SINGULAR;
+            if (!(m0[11] * t54 + (m0[8] * t61 + m0[5] * t57) > R(0.0)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t101 = R(-1.1519648082658485e-19) * m0[4] + R(0.006999999999999999) * m0[3];
             const gic_real t102 = m0[0] + t101 - q[0];
@@ -1604,6 +1610,10 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t97 = (t95 - t68 * t88 - t79 * t90) * t96;
             const gic_real t98 = t91 - t92 * t97;
             if (!(GIC_FABS(t98) > R(1.0121428177496187e-08)))
+                return GIC_ERROR_SINGULAR;
+            if (!(t5 > R(0.0)))
+                return GIC_ERROR_SINGULAR;
+            if (!(t5 * t17 + (t55 * t35 + t60 * t29) > R(0.0)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t99 = R(-0.06934) - q[0];
             const gic_real t100 = q[0] + t99;

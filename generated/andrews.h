@@ -42,10 +42,10 @@
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'K1' (1 times)                        187       268       3      0         4
- *   subset 'K2_K3' (1 times)                     684       860       6      0         0
- *   subset 'K5_K4' (2 times)                     734       918       6      0         0
+ *   subset 'K2_K3' (1 times)                     686       863       6      0         0
+ *   subset 'K5_K4' (2 times)                     736       921       6      0         0
  *   forces and equations of motion                28        25       2      1         0
- *   all together                                2367      2989      23      1         4
+ *   all together                                2373      2998      23      1         4
  *   outputs, when asked for                      241       404       0      1        18
  */
 #ifndef ANDREWS_H

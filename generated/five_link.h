@@ -61,12 +61,12 @@
  *
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      135       164       2      0         0
+ *   subset 'rack' (1 times)                      137       164       2      0         0
  *   subset 'lca_fl' (2 times)                    291       362       3      0         0
  *   subset 'wheel_rl' (2 times)                  594       673       6      0         0
  *   subset 'wheel_fl' (2 times)                  534       606       3      0         0
  *   forces and equations of motion               714       659      11      0         4
- *   all together                                3687      4105      37      0         4
+ *   all together                                3689      4105      37      0         4
  *   outputs, when asked for                      663       772       0      0        10
  */
 #ifndef FIVE_LINK_H

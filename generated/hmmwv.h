@@ -67,12 +67,12 @@
  *
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      135       164       2      0         0
+ *   subset 'rack' (1 times)                      137       164       2      0         0
  *   subset 'lca_f_l' (4 times)                   291       362       3      0         0
  *   subset 'wheel_f_l' (2 times)                 534       606       3      0         0
- *   subset 'wheel_r_l' (2 times)                 445       532       3      0         0
+ *   subset 'wheel_r_l' (2 times)                 447       538       3      0         0
  *   forces and equations of motion               754       653      11      0         4
- *   all together                                4011      4541      37      0         4
+ *   all together                                4017      4553      37      0         4
  *   outputs, when asked for                      757       901       0      0         7
  */
 #ifndef HMMWV_H

@@ -69,12 +69,12 @@
  *
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      135       164       2      0         0
+ *   subset 'rack' (1 times)                      137       164       2      0         0
  *   subset 'lca_fl' (4 times)                    291       362       3      0         0
- *   subset 'uca_fl_wheel_fl' (2 times)           929      1030       6      0         0
- *   subset 'uca_rl_wheel_rl' (2 times)           783       863       6      0         0
+ *   subset 'uca_fl_wheel_fl' (2 times)           931      1033       6      0         0
+ *   subset 'uca_rl_wheel_rl' (2 times)           785       866       6      0         0
  *   forces and equations of motion               922       841      15      4         4
- *   all together                                5645      6239      53      4         4
+ *   all together                                5655      6251      53      4         4
  *   outputs, when asked for                     1060      1284       2      2        13
  */
 #include "hmmwv14.h"
@@ -257,115 +257,121 @@ static int hmmwv14_solve_rack(hmmwv14 *self, const gic_real *GIC_RESTRICT k, con
             const gic_real t1 = q[4] + q[4];
             const gic_real t2 = q[4] * t1;
             const gic_real t3 = q[6] + q[6];
-            const gic_real t4 = t2 + q[6] * t3 - R(1.0);
-            if (!(GIC_FABS(t4) > R(1e-07)))
+            const gic_real t4 = t2 + q[6] * t3;
+            const gic_real t5 = t4 - R(1.0);
+            if (!(GIC_FABS(t5) > R(1e-07)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t5 = q[5] + q[5];
-            const gic_real t6 = q[6] * t5;
-            const gic_real t7 = q[3] * t1;
-            const gic_real t8 = t6 + t7;
-            const gic_real t9 = R(1.0) / t4;
-            const gic_real t10 = (t6 - t7) * t9;
-            const gic_real t11 = t2 + q[5] * t5 - R(1.0) - t8 * t10;
-            if (!(GIC_FABS(t11) > R(1e-07)))
+            const gic_real t6 = q[5] + q[5];
+            const gic_real t7 = t2 + q[5] * t6;
+            const gic_real t8 = q[6] * t6;
+            const gic_real t9 = q[3] * t1;
+            const gic_real t10 = t8 + t9;
+            const gic_real t11 = R(1.0) / t5;
+            const gic_real t12 = (t8 - t9) * t11;
+            const gic_real t13 = t7 - R(1.0) - t10 * t12;
+            if (!(GIC_FABS(t13) > R(1e-07)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t12 = R(1.438648) - q[0];
-            const gic_real t13 = q[0] + t12;
-            const gic_real t14 = x[0] - q[1];
-            const gic_real t15 = q[1] + t14;
-            const gic_real t16 = R(0.05422899999999997) - q[2];
-            const gic_real t17 = q[2] + t16;
-            const gic_real t18 = q[3] * t3;
-            const gic_real t19 = q[5] * t1;
-            const gic_real t20 = t18 - t19;
-            const gic_real t21 = R(1.0) / t11;
-            const gic_real t22 = t21 * (q[4] * t3 + q[3] * t5 - t20 * t10);
-            const gic_real t23 = t9 * (t20 - t8 * t22);
-            const gic_real t24 = R(0.5) * t23;
-            const gic_real t25 = R(0.5) * t22;
-            const gic_real t26 = t19 - t18;
-            const gic_real t27 = t9 * (t8 - t26 * t22);
-            const gic_real t28 = R(0.5) * t27;
-            const gic_real t29 = q[3] - (q[6] * t24 + (q[5] * t25 + q[4] * t28));
-            const gic_real t30 = q[6] + (q[5] * t28 - q[4] * t25 + q[3] * t24);
-            const gic_real t31 = q[5] + (q[4] * t24 - q[6] * t28 + q[3] * t25);
-            const gic_real t32 = q[4] + (q[6] * t25 - q[5] * t24 + q[3] * t28);
-            const gic_real t33 = t30 * t30 + (t31 * t31 + t32 * t32) + t29 * t29;
-            const gic_real t34 = R(1.5) - R(0.5) * t33;
-            const gic_real t35 = t29 * t34;
-            const gic_real t36 = t32 * t34;
-            const gic_real t37 = t31 * t34;
-            const gic_real t38 = t30 * t34;
-            const gic_real t39 = t16 * t16 + (t14 * t14 + t12 * t12) + (t23 * t23 + (t22 * t22 + t27 * t27));
-            const gic_real t40 = t37 + t37;
-            const gic_real t41 = t37 * t40;
-            const gic_real t42 = t38 + t38;
-            const gic_real t43 = t38 * t42;
-            const gic_real t44 = t36 + t36;
-            const gic_real t45 = t37 * t44;
-            const gic_real t46 = t35 * t42;
-            const gic_real t47 = t36 * t42;
-            const gic_real t48 = t35 * t40;
-            const gic_real t49 = t36 * t44;
-            const gic_real t50 = t38 * t40;
-            const gic_real t51 = t35 * t44;
-            const gic_real t52 = t13 * R(9.072);
-            const gic_real t53 = t15 * R(9.072);
-            const gic_real t54 = t17 * R(9.072);
-            const gic_real t55 = t15 * t53;
-            const gic_real t56 = t17 * t54;
-            const gic_real t57 = t13 * t52;
-            const gic_real t58 = t15 * turn[0] - t13 * turn[1];
-            const gic_real t59 = rate[0] + (rate[0] + (t13 * turn[2] - t17 * turn[0]));
-            const gic_real t60 = R(9.072) * (turn[1] * t58 - turn[2] * t59);
-            const gic_real t61 = t17 * turn[1] - t15 * turn[2];
-            const gic_real t62 = R(9.072) * (turn[2] * t61 - turn[0] * t58);
-            const gic_real t63 = R(9.072) * (turn[0] * t59 - turn[1] * t61);
-            const gic_real t64 = R(1.0) - (t41 + t43);
-            const gic_real t65 = t45 - t46;
-            const gic_real t66 = t47 + t48;
-            const gic_real t67 = t45 + t46;
-            const gic_real t68 = R(1.0) - (t49 + t43);
-            const gic_real t69 = t50 - t51;
-            const gic_real t70 = t47 - t48;
-            const gic_real t71 = t50 + t51;
-            const gic_real t72 = R(1.0) - (t49 + t41);
-            const gic_real t73 = rate[0];
-            const gic_real t74 = R(1.0) + (t55 + t56);
-            const gic_real t75 = R(1.0) + (t57 + t56);
-            const gic_real t76 = R(1.0) + (t57 + t55);
-            const gic_real t77 = -(t15 * t52);
-            const gic_real t78 = -(t17 * t52);
-            const gic_real t79 = -(t17 * t53);
-            const gic_real t80 = t15 * t63 - t17 * t62;
-            const gic_real t81 = t17 * t60 - t13 * t63;
-            const gic_real t82 = t13 * t62 - t15 * t60;
-            const gic_real t83 = -t54;
-            q[0] = t13;
-            q[1] = t15;
-            q[2] = t17;
-            q[3] = t35;
-            q[4] = t36;
-            q[5] = t37;
-            q[6] = t38;
-            step = t39;
-            motion[0] = t13;
-            motion[1] = t15;
-            motion[2] = t17;
-            motion[3] = t64;
-            motion[4] = t65;
-            motion[5] = t66;
-            motion[6] = t67;
-            motion[7] = t68;
-            motion[8] = t69;
-            motion[9] = t70;
-            motion[10] = t71;
-            motion[11] = t72;
+            if (!(R(1.0) - t4 > R(0.0)))
+                return GIC_ERROR_SINGULAR;
+            if (!(R(1.0) - t7 > R(0.0)))
+                return GIC_ERROR_SINGULAR;
+            const gic_real t14 = R(1.438648) - q[0];
+            const gic_real t15 = q[0] + t14;
+            const gic_real t16 = x[0] - q[1];
+            const gic_real t17 = q[1] + t16;
+            const gic_real t18 = R(0.05422899999999997) - q[2];
+            const gic_real t19 = q[2] + t18;
+            const gic_real t20 = q[3] * t3;
+            const gic_real t21 = q[5] * t1;
+            const gic_real t22 = t20 - t21;
+            const gic_real t23 = R(1.0) / t13;
+            const gic_real t24 = t23 * (q[4] * t3 + q[3] * t6 - t22 * t12);
+            const gic_real t25 = t11 * (t22 - t10 * t24);
+            const gic_real t26 = R(0.5) * t25;
+            const gic_real t27 = R(0.5) * t24;
+            const gic_real t28 = t21 - t20;
+            const gic_real t29 = t11 * (t10 - t28 * t24);
+            const gic_real t30 = R(0.5) * t29;
+            const gic_real t31 = q[3] - (q[6] * t26 + (q[5] * t27 + q[4] * t30));
+            const gic_real t32 = q[6] + (q[5] * t30 - q[4] * t27 + q[3] * t26);
+            const gic_real t33 = q[5] + (q[4] * t26 - q[6] * t30 + q[3] * t27);
+            const gic_real t34 = q[4] + (q[6] * t27 - q[5] * t26 + q[3] * t30);
+            const gic_real t35 = t32 * t32 + (t33 * t33 + t34 * t34) + t31 * t31;
+            const gic_real t36 = R(1.5) - R(0.5) * t35;
+            const gic_real t37 = t31 * t36;
+            const gic_real t38 = t34 * t36;
+            const gic_real t39 = t33 * t36;
+            const gic_real t40 = t32 * t36;
+            const gic_real t41 = t18 * t18 + (t16 * t16 + t14 * t14) + (t25 * t25 + (t24 * t24 + t29 * t29));
+            const gic_real t42 = t39 + t39;
+            const gic_real t43 = t39 * t42;
+            const gic_real t44 = t40 + t40;
+            const gic_real t45 = t40 * t44;
+            const gic_real t46 = t38 + t38;
+            const gic_real t47 = t39 * t46;
+            const gic_real t48 = t37 * t44;
+            const gic_real t49 = t38 * t44;
+            const gic_real t50 = t37 * t42;
+            const gic_real t51 = t38 * t46;
+            const gic_real t52 = t40 * t42;
+            const gic_real t53 = t37 * t46;
+            const gic_real t54 = t15 * R(9.072);
+            const gic_real t55 = t17 * R(9.072);
+            const gic_real t56 = t19 * R(9.072);
+            const gic_real t57 = t17 * t55;
+            const gic_real t58 = t19 * t56;
+            const gic_real t59 = t15 * t54;
+            const gic_real t60 = t17 * turn[0] - t15 * turn[1];
+            const gic_real t61 = rate[0] + (rate[0] + (t15 * turn[2] - t19 * turn[0]));
+            const gic_real t62 = R(9.072) * (turn[1] * t60 - turn[2] * t61);
+            const gic_real t63 = t19 * turn[1] - t17 * turn[2];
+            const gic_real t64 = R(9.072) * (turn[2] * t63 - turn[0] * t60);
+            const gic_real t65 = R(9.072) * (turn[0] * t61 - turn[1] * t63);
+            const gic_real t66 = R(1.0) - (t43 + t45);
+            const gic_real t67 = t47 - t48;
+            const gic_real t68 = t49 + t50;
+            const gic_real t69 = t47 + t48;
+            const gic_real t70 = R(1.0) - (t51 + t45);
+            const gic_real t71 = t52 - t53;
+            const gic_real t72 = t49 - t50;
+            const gic_real t73 = t52 + t53;
+            const gic_real t74 = R(1.0) - (t51 + t43);
+            const gic_real t75 = rate[0];
+            const gic_real t76 = R(1.0) + (t57 + t58);
+            const gic_real t77 = R(1.0) + (t59 + t58);
+            const gic_real t78 = R(1.0) + (t59 + t57);
+            const gic_real t79 = -(t17 * t54);
+            const gic_real t80 = -(t19 * t54);
+            const gic_real t81 = -(t19 * t55);
+            const gic_real t82 = t17 * t65 - t19 * t64;
+            const gic_real t83 = t19 * t62 - t15 * t65;
+            const gic_real t84 = t15 * t64 - t17 * t62;
+            const gic_real t85 = -t56;
+            q[0] = t15;
+            q[1] = t17;
+            q[2] = t19;
+            q[3] = t37;
+            q[4] = t38;
+            q[5] = t39;
+            q[6] = t40;
+            step = t41;
+            motion[0] = t15;
+            motion[1] = t17;
+            motion[2] = t19;
+            motion[3] = t66;
+            motion[4] = t67;
+            motion[5] = t68;
+            motion[6] = t69;
+            motion[7] = t70;
+            motion[8] = t71;
+            motion[9] = t72;
+            motion[10] = t73;
+            motion[11] = t74;
             motion[12] = R(0.0);
             motion[13] = R(0.0);
             motion[14] = R(0.0);
             motion[15] = R(0.0);
-            motion[16] = t73;
+            motion[16] = t75;
             motion[17] = R(0.0);
             motion[18] = R(0.0);
             motion[19] = R(0.0);
@@ -385,33 +391,33 @@ static int hmmwv14_solve_rack(hmmwv14 *self, const gic_real *GIC_RESTRICT k, con
             start[10] = R(0.0);
             start[11] = R(1.0);
             start[12] = R(0.0);
-            start[13] = t9;
-            start[14] = t26;
-            start[15] = t8;
-            start[16] = t10;
-            start[17] = t21;
-            inertia[0] = t52;
-            inertia[1] = t53;
-            inertia[2] = t54;
-            inertia[3] = t74;
-            inertia[4] = t75;
-            inertia[5] = t76;
-            inertia[6] = t77;
-            inertia[7] = t78;
-            inertia[8] = t79;
-            inertia[9] = t60;
-            inertia[10] = t62;
-            inertia[11] = t63;
-            inertia[12] = t80;
-            inertia[13] = t81;
-            inertia[14] = t82;
+            start[13] = t11;
+            start[14] = t28;
+            start[15] = t10;
+            start[16] = t12;
+            start[17] = t23;
+            inertia[0] = t54;
+            inertia[1] = t55;
+            inertia[2] = t56;
+            inertia[3] = t76;
+            inertia[4] = t77;
+            inertia[5] = t78;
+            inertia[6] = t79;
+            inertia[7] = t80;
+            inertia[8] = t81;
+            inertia[9] = t62;
+            inertia[10] = t64;
+            inertia[11] = t65;
+            inertia[12] = t82;
+            inertia[13] = t83;
+            inertia[14] = t84;
             inertia[15] = R(0.0);
             inertia[16] = R(9.072);
             inertia[17] = R(0.0);
-            inertia[18] = t83;
+            inertia[18] = t85;
             inertia[19] = R(0.0);
-            inertia[20] = t52;
-            inertia[21] = t62;
+            inertia[20] = t54;
+            inertia[21] = t64;
             inertia[22] = R(9.072);
         }
         ++self->head.correction_count;
@@ -630,6 +636,8 @@ static int hmmwv14_solve_lca_fl(hmmwv14 *self, const gic_real *GIC_RESTRICT k, c
             const gic_real t28 = (t18 * t23 - t22 * t19) * t27;
             const gic_real t29 = t14 * t19 - t18 * t20 + t21 * t25 - t26 * t28;
             if (!(GIC_FABS(t29) > R(7.42620050296135e-09)))
+                return GIC_ERROR_SINGULAR;
+            if (!(t6 > R(0.0)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t30 = k[6] - q[0];
             const gic_real t31 = q[0] + t30;
@@ -896,16 +904,18 @@ static gic_real hmmwv14_residual_lca_fl(const gic_real *GIC_RESTRICT k, const hm
     return worst;
 }
 
-static const gic_real hmmwv14_k_uca_fl_wheel_fl[2][12] = {
+static const gic_real hmmwv14_k_uca_fl_wheel_fl[2][13] = {
     { /* uca_fl */
         R(0.03459480000000004), R(0.448437), R(-0.07099299999999997), R(3.469446951953614e-18),
         R(0.030306109019851125), R(0.13607944895268467), R(-3.469446951953614e-18), R(0.2667481144968474),
-        R(0.4618482), R(0.49375935710120966), R(0.1333626625632361), R(0.08910630000000008),
+        R(-0.1394133303209898), R(0.4618482), R(0.49375935710120966), R(0.1333626625632361),
+        R(0.08910630000000008),
     },
     { /* uca_fr */
         R(-0.03459480000000004), R(-0.448437), R(0.07099299999999997), R(-3.469446951953614e-18),
         R(-0.030306109019851125), R(-0.13607944895268467), R(3.469446951953614e-18), R(-0.2667481144968474),
-        R(-0.4618482), R(-0.49375935710120966), R(-0.1333626625632361), R(-0.08910630000000008),
+        R(0.1394133303209898), R(-0.4618482), R(-0.49375935710120966), R(-0.1333626625632361),
+        R(-0.08910630000000008),
     },
 };
 
@@ -1000,7 +1010,7 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
         for (i = 0; i < GIC_CHORDS; ++i) {
             {
                 const gic_real t1 = R(1.5309008) - q[0];
-                const gic_real t2 = k[8] - q[1];
+                const gic_real t2 = k[9] - q[1];
                 const gic_real t3 = R(0.22009100000000004) - q[2];
                 const gic_real t4 = q[4] + q[4];
                 const gic_real t5 = q[4] * t4;
@@ -1027,7 +1037,7 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
                 const gic_real t26 = q[10] * t18;
                 const gic_real t27 = t25 - t26;
                 const gic_real t28 = q[9] + (R(0.33360360000000006) * t20 + (k[2] * t23 + R(-0.017475200000000024) * t27));
-                const gic_real t29 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[9] * m1[10] + R(-0.03556000000000003) * m1[9]));
+                const gic_real t29 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[10] * m1[10] + R(-0.03556000000000003) * m1[9]));
                 const gic_real t30 = t29 - q[9];
                 const gic_real t31 = q[9] + (R(0.10177780000000003) * t20 + (k[0] * t23 + R(-0.14025880000000002) * t27));
                 const gic_real t32 = t31 - (m0[2] + k[1] * m0[10]);
@@ -1045,9 +1055,9 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
                 const gic_real t44 = q[7] + (R(0.10177780000000003) * t41 + (k[0] * t42 + R(-0.14025880000000002) * t43));
                 const gic_real t45 = t44 - (m0[0] + k[1] * m0[4]);
                 const gic_real t46 = t32 * t32 + (t40 * t40 + t45 * t45) - R(0.14941089924212003);
-                const gic_real t47 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[9] * m1[4] + R(-0.03556000000000003) * m1[3]));
+                const gic_real t47 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[10] * m1[4] + R(-0.03556000000000003) * m1[3]));
                 const gic_real t48 = t47 - q[7];
-                const gic_real t49 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[9] * m1[7] + R(-0.03556000000000003) * m1[6]));
+                const gic_real t49 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[10] * m1[7] + R(-0.03556000000000003) * m1[6]));
                 const gic_real t50 = t49 - q[8];
                 const gic_real t51 = t46 * R(0.5) + f[0] * t48 + f[1] * t50 + f[2] * t30;
                 const gic_real t52 = q[2] + t15 - t28 - (q[2] - R(0.22009100000000004)) - t30 + f[21] * t51;
@@ -1063,7 +1073,7 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
                 const gic_real t62 = t53 + t54;
                 const gic_real t63 = R(1.1338201752909144e-08) * (t8 - t9) + (k[7] * t61 + R(0.06516162806573095) * t62);
                 const gic_real t64 = q[8] + (R(0.33360360000000006) * t33 + (k[2] * t35 + R(-0.017475200000000024) * t38));
-                const gic_real t65 = q[1] + t63 - t64 - (q[1] - k[8]) - t50 - f[10] * t51;
+                const gic_real t65 = q[1] + t63 - t64 - (q[1] - k[9]) - t50 - f[10] * t51;
                 const gic_real t66 = t65 - f[11] * t60;
                 const gic_real t67 = k[3] * t10 + R(0.9999999999999999) * t14;
                 const gic_real t68 = k[3] * t61 + R(0.9999999999999999) * t62;
@@ -1241,24 +1251,26 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t89 = t74 * t76 - t78 * t80 - t81 * t83 - t84 * t88;
             if (!(GIC_FABS(t89) > R(1.2777721100965236e-07)))
                 return GIC_ERROR_SINGULAR;
+            if (!(R(0.21526024724178433) * t64 + (k[8] * t56 + R(0.9665541626242249) * t69) > R(0.0)))
+                return GIC_ERROR_SINGULAR;
             const gic_real t90 = R(1.5309008) - q[0];
             const gic_real t91 = q[0] + t90;
-            const gic_real t92 = k[8] - q[1];
+            const gic_real t92 = k[9] - q[1];
             const gic_real t93 = q[1] + t92;
             const gic_real t94 = R(0.22009100000000004) - q[2];
             const gic_real t95 = q[2] + t94;
             const gic_real t96 = R(1.0) / t89;
-            const gic_real t97 = R(6.938893903907228e-18) * m1[11] + (k[9] * m1[10] + R(-0.03556000000000003) * m1[9]);
+            const gic_real t97 = R(6.938893903907228e-18) * m1[11] + (k[10] * m1[10] + R(-0.03556000000000003) * m1[9]);
             const gic_real t98 = m1[2] + t97 - q[9];
             const gic_real t99 = q[2] + t82 - (q[9] + t30) - (q[2] - R(0.22009100000000004)) - t98;
             const gic_real t100 = t24 * t24 + (t28 * t28 + t39 * t39) - R(0.14941089924212003);
-            const gic_real t101 = R(6.938893903907228e-18) * m1[5] + (k[9] * m1[4] + R(-0.03556000000000003) * m1[3]);
+            const gic_real t101 = R(6.938893903907228e-18) * m1[5] + (k[10] * m1[4] + R(-0.03556000000000003) * m1[3]);
             const gic_real t102 = m1[0] + t101 - q[7];
-            const gic_real t103 = R(6.938893903907228e-18) * m1[8] + (k[9] * m1[7] + R(-0.03556000000000003) * m1[6]);
+            const gic_real t103 = R(6.938893903907228e-18) * m1[8] + (k[10] * m1[7] + R(-0.03556000000000003) * m1[6]);
             const gic_real t104 = m1[1] + t103 - q[8];
             const gic_real t105 = t100 * R(0.5) + t39 * t102 + t28 * t104 + t24 * t98;
             const gic_real t106 = q[0] + t77 - (q[7] + t34) - (q[0] - R(1.5309008)) - t102;
-            const gic_real t107 = q[1] + t74 - (q[8] + t43) - (q[1] - k[8]) - t104;
+            const gic_real t107 = q[1] + t74 - (q[8] + t43) - (q[1] - k[9]) - t104;
             const gic_real t108 = t107 - t42 * t105 - t46 * t106;
             const gic_real t109 = t99 + t75 * t105 + t76 * t106 + t80 * t108;
             const gic_real t110 = k[4] * t64 + (R(0.9902342769914657) * t56 + k[5] * t69);
@@ -1440,22 +1452,22 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t286 = t41 * (t248 + t44 * t285 + t40 * t283);
             const gic_real t287 = -t215;
             const gic_real t288 = -t216;
-            const gic_real t289 = t162 * R(8.518978193491379e-06) + (t159 * k[10] + t155 * R(0.03259759362516592));
+            const gic_real t289 = t162 * R(8.518978193491379e-06) + (t159 * k[11] + t155 * R(0.03259759362516592));
             const gic_real t290 = t91 + t289;
             const gic_real t291 = R(5.813) * t290;
-            const gic_real t292 = t272 * R(0.09182100000000004) + (t269 * k[11] + t265 * R(-0.004825999999999997));
+            const gic_real t292 = t272 * R(0.09182100000000004) + (t269 * k[12] + t265 * R(-0.004825999999999997));
             const gic_real t293 = t128 + t292;
             const gic_real t294 = R(90.555) * t293;
-            const gic_real t295 = t168 * R(8.518978193491379e-06) + (t165 * k[10] + t163 * R(0.03259759362516592));
+            const gic_real t295 = t168 * R(8.518978193491379e-06) + (t165 * k[11] + t163 * R(0.03259759362516592));
             const gic_real t296 = t93 + t295;
             const gic_real t297 = R(5.813) * t296;
-            const gic_real t298 = t278 * R(0.09182100000000004) + (t275 * k[11] + t273 * R(-0.004825999999999997));
+            const gic_real t298 = t278 * R(0.09182100000000004) + (t275 * k[12] + t273 * R(-0.004825999999999997));
             const gic_real t299 = t129 + t298;
             const gic_real t300 = R(90.555) * t299;
-            const gic_real t301 = t171 * R(8.518978193491379e-06) + (t170 * k[10] + t169 * R(0.03259759362516592));
+            const gic_real t301 = t171 * R(8.518978193491379e-06) + (t170 * k[11] + t169 * R(0.03259759362516592));
             const gic_real t302 = t95 + t301;
             const gic_real t303 = R(5.813) * t302;
-            const gic_real t304 = t281 * R(0.09182100000000004) + (t280 * k[11] + t279 * R(-0.004825999999999997));
+            const gic_real t304 = t281 * R(0.09182100000000004) + (t280 * k[12] + t279 * R(-0.004825999999999997));
             const gic_real t305 = t130 + t304;
             const gic_real t306 = R(90.555) * t305;
             const gic_real t307 = t162 * R(0.03138);
@@ -1812,7 +1824,7 @@ static gic_real hmmwv14_residual_uca_fl_wheel_fl(const gic_real *GIC_RESTRICT k,
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(1.5309008)) * R(2.928075656552032)), GIC_FABS((q[1] - k[8]) * R(2.928075656552032)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(1.5309008)) * R(2.928075656552032)), GIC_FABS((q[1] - k[9]) * R(2.928075656552032)));
         const gic_real t2 = q[5] + q[5];
         const gic_real t3 = q[6] * t2;
         const gic_real t4 = q[4] + q[4];
@@ -1866,10 +1878,10 @@ static gic_real hmmwv14_residual_uca_fl_wheel_fl(const gic_real *GIC_RESTRICT k,
         const gic_real t52 = q[9] + (R(0.33360360000000006) * t49 + (k[2] * t50 + R(-0.017475200000000024) * t51));
         const gic_real t53 = R(1.1338201752909144e-08) * (R(1.0) - (t12 + t20)) + (k[7] * t6 + R(0.06516162806573095) * t10);
         const gic_real t54 = GIC_MAX(GIC_MAX(t40, GIC_FABS((t47 - (q[1] + t48)) * R(2.928075656552032))), GIC_FABS((t52 - (q[2] + t53)) * R(2.928075656552032)));
-        const gic_real t55 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[9] * m1[4] + R(-0.03556000000000003) * m1[3]));
-        const gic_real t56 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[9] * m1[7] + R(-0.03556000000000003) * m1[6]));
+        const gic_real t55 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[10] * m1[4] + R(-0.03556000000000003) * m1[3]));
+        const gic_real t56 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[10] * m1[7] + R(-0.03556000000000003) * m1[6]));
         const gic_real t57 = GIC_MAX(GIC_MAX(t54, GIC_FABS((q[7] - t55) * R(2.928075656552032))), GIC_FABS((q[8] - t56) * R(2.928075656552032)));
-        const gic_real t58 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[9] * m1[10] + R(-0.03556000000000003) * m1[9]));
+        const gic_real t58 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[10] * m1[10] + R(-0.03556000000000003) * m1[9]));
         const gic_real t59 = q[9] + (R(0.10177780000000003) * t49 + (k[0] * t50 + R(-0.14025880000000002) * t51));
         const gic_real t60 = t59 - (m0[2] + k[1] * m0[10]);
         const gic_real t61 = q[8] + (R(0.10177780000000003) * t43 + (k[0] * t45 + R(-0.14025880000000002) * t46));
@@ -1883,16 +1895,18 @@ static gic_real hmmwv14_residual_uca_fl_wheel_fl(const gic_real *GIC_RESTRICT k,
     return worst;
 }
 
-static const gic_real hmmwv14_k_uca_rl_wheel_rl[2][12] = {
+static const gic_real hmmwv14_k_uca_rl_wheel_rl[2][13] = {
     { /* uca_rl */
         R(0.03459480000000004), R(0.416052), R(-0.07099299999999997), R(-5.421010862427522e-20),
         R(-0.0007652649994718039), R(-1.0776391091961054e-05), R(-1.6940658945086007e-21), R(0.253605357573192),
-        R(0.462153), R(0.49375935710120966), R(0.1268157381236126), R(0.08910630000000008),
+        R(0.0007653408717829899), R(0.462153), R(0.49375935710120966), R(0.1268157381236126),
+        R(0.08910630000000008),
     },
     { /* uca_rr */
         R(-0.03459480000000004), R(-0.416052), R(0.07099299999999997), R(5.421010862427522e-20),
         R(0.0007652649994718039), R(1.0776391091961054e-05), R(1.6940658945086007e-21), R(-0.253605357573192),
-        R(-0.462153), R(-0.49375935710120966), R(-0.1268157381236126), R(-0.08910630000000008),
+        R(-0.0007653408717829899), R(-0.462153), R(-0.49375935710120966), R(-0.1268157381236126),
+        R(-0.08910630000000008),
     },
 };
 
@@ -1986,7 +2000,7 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
         for (i = 0; i < GIC_CHORDS; ++i) {
             {
                 const gic_real t1 = R(-1.475859) - q[0];
-                const gic_real t2 = k[8] - q[1];
+                const gic_real t2 = k[9] - q[1];
                 const gic_real t3 = R(0.22567900000000007) - q[2];
                 const gic_real t4 = q[5] + q[5];
                 const gic_real t5 = q[6] * t4;
@@ -2021,7 +2035,7 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
                 const gic_real t34 = q[10] * t28;
                 const gic_real t35 = t33 + t34;
                 const gic_real t36 = q[2] + t27 - (q[9] + (R(0.33401) * t32 + k[2] * t35));
-                const gic_real t37 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[9] * m0[10] + R(0.03556000000000003) * m0[9]));
+                const gic_real t37 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[10] * m0[10] + R(0.03556000000000003) * m0[9]));
                 const gic_real t38 = t37 - q[9];
                 const gic_real t39 = q[13] + q[13];
                 const gic_real t40 = q[11] * t39;
@@ -2040,9 +2054,9 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
                 const gic_real t53 = R(0.10883900000000002) * t51 + (k[0] * t52 + R(0.1347216) * (R(1.0) - (t31 + t45)));
                 const gic_real t54 = q[7] + t53 - R(-1.465699);
                 const gic_real t55 = t43 * t43 + (t50 * t50 + t54 * t54) - R(0.1714924505628);
-                const gic_real t56 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[9] * m0[4] + R(0.03556000000000003) * m0[3]));
+                const gic_real t56 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[10] * m0[4] + R(0.03556000000000003) * m0[3]));
                 const gic_real t57 = t56 - q[7];
-                const gic_real t58 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[9] * m0[7] + R(0.03556000000000003) * m0[6]));
+                const gic_real t58 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[10] * m0[7] + R(0.03556000000000003) * m0[6]));
                 const gic_real t59 = t58 - q[8];
                 const gic_real t60 = t55 * R(0.5) + f[0] * t57 + f[1] * t59 + f[2] * t38;
                 const gic_real t61 = R(2.8645315225742096e-09) * (t10 + t11) + (k[7] * t21 + R(-0.17747212962088846) * t23);
@@ -2051,7 +2065,7 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
                 const gic_real t64 = t36 - (q[2] - R(0.22567900000000007)) - t38 + f[21] * t60 + f[22] * t63;
                 const gic_real t65 = R(2.8645315225742096e-09) * (t5 - t7) + (k[7] * t16 + R(-0.17747212962088846) * t19);
                 const gic_real t66 = q[1] + t65 - (q[8] + (R(0.33401) * t44 + k[2] * t46));
-                const gic_real t67 = t66 - (q[1] - k[8]) - t59 - f[10] * t60 - f[11] * t63;
+                const gic_real t67 = t66 - (q[1] - k[9]) - t59 - f[10] * t60 - f[11] * t63;
                 const gic_real t68 = t64 + f[23] * t67 + t25 * f[24] - f[25] * t26;
                 const gic_real t69 = f[26] * t68;
                 const gic_real t70 = f[19] * (t26 - f[20] * t69);
@@ -2211,26 +2225,28 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t77 = t62 * t66 - t67 - t68 * t71 - t72 * t76;
             if (!(GIC_FABS(t77) > R(2.626672667561925e-08)))
                 return GIC_ERROR_SINGULAR;
+            if (!(R(0.014080507566174662) * t57 + (k[8] * t49 + R(0.9999005718370345) * t45) > R(0.0)))
+                return GIC_ERROR_SINGULAR;
             const gic_real t78 = R(-1.475859) - q[0];
             const gic_real t79 = q[0] + t78;
-            const gic_real t80 = k[8] - q[1];
+            const gic_real t80 = k[9] - q[1];
             const gic_real t81 = q[1] + t80;
             const gic_real t82 = R(0.22567900000000007) - q[2];
             const gic_real t83 = q[2] + t82;
             const gic_real t84 = k[5] * t57 + (R(0.9999997071266321) * t49 + k[4] * t45);
             const gic_real t85 = t84 * t60 - (R(0.9999008646813683) * t57 + (k[6] * t49 + R(-0.014080511689981543) * t45));
             const gic_real t86 = R(1.0) / t77;
-            const gic_real t87 = R(6.938893903907228e-18) * m0[11] + (k[9] * m0[10] + R(0.03556000000000003) * m0[9]);
+            const gic_real t87 = R(6.938893903907228e-18) * m0[11] + (k[10] * m0[10] + R(0.03556000000000003) * m0[9]);
             const gic_real t88 = m0[2] + t87 - q[9];
             const gic_real t89 = q[2] + t62 - (q[9] + t22) - (q[2] - R(0.22567900000000007)) - t88;
             const gic_real t90 = t19 * t19 + (t20 * t20 + t27 * t27) - R(0.1714924505628);
-            const gic_real t91 = R(6.938893903907228e-18) * m0[5] + (k[9] * m0[4] + R(0.03556000000000003) * m0[3]);
+            const gic_real t91 = R(6.938893903907228e-18) * m0[5] + (k[10] * m0[4] + R(0.03556000000000003) * m0[3]);
             const gic_real t92 = m0[0] + t91 - q[7];
-            const gic_real t93 = R(6.938893903907228e-18) * m0[8] + (k[9] * m0[7] + R(0.03556000000000003) * m0[6]);
+            const gic_real t93 = R(6.938893903907228e-18) * m0[8] + (k[10] * m0[7] + R(0.03556000000000003) * m0[6]);
             const gic_real t94 = m0[1] + t93 - q[8];
             const gic_real t95 = t90 * R(0.5) + t27 * t92 + t20 * t94 + t19 * t88;
             const gic_real t96 = q[0] + t69 - (q[7] + t25) - (q[0] - R(-1.475859)) - t92;
-            const gic_real t97 = q[1] + t67 - (q[8] + t31) - (q[1] - k[8]) - t94;
+            const gic_real t97 = q[1] + t67 - (q[8] + t31) - (q[1] - k[9]) - t94;
             const gic_real t98 = t97 - t30 * t95 - t34 * t96;
             const gic_real t99 = t89 + t63 * t95 + t64 * t96 + t66 * t98;
             const gic_real t100 = t86 * (t99 + t84 * t71 - t76 * t85);
@@ -2389,22 +2405,22 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t253 = t33 * t252;
             const gic_real t254 = t29 * (t209 + t32 * t253 + t28 * t251);
             const gic_real t255 = -t185;
-            const gic_real t256 = t150 * R(-1.232760342215547e-05) + (t147 * k[10] + t143 * R(-0.08873623391306125));
+            const gic_real t256 = t150 * R(-1.232760342215547e-05) + (t147 * k[11] + t143 * R(-0.08873623391306125));
             const gic_real t257 = t79 + t256;
             const gic_real t258 = R(5.813) * t257;
-            const gic_real t259 = t240 * R(0.09182100000000004) + t237 * k[11];
+            const gic_real t259 = t240 * R(0.09182100000000004) + t237 * k[12];
             const gic_real t260 = t116 + t259;
             const gic_real t261 = R(90.555) * t260;
-            const gic_real t262 = t156 * R(-1.232760342215547e-05) + (t153 * k[10] + t151 * R(-0.08873623391306125));
+            const gic_real t262 = t156 * R(-1.232760342215547e-05) + (t153 * k[11] + t151 * R(-0.08873623391306125));
             const gic_real t263 = t81 + t262;
             const gic_real t264 = R(5.813) * t263;
-            const gic_real t265 = t246 * R(0.09182100000000004) + t243 * k[11];
+            const gic_real t265 = t246 * R(0.09182100000000004) + t243 * k[12];
             const gic_real t266 = t117 + t265;
             const gic_real t267 = R(90.555) * t266;
-            const gic_real t268 = t159 * R(-1.232760342215547e-05) + (t158 * k[10] + t157 * R(-0.08873623391306125));
+            const gic_real t268 = t159 * R(-1.232760342215547e-05) + (t158 * k[11] + t157 * R(-0.08873623391306125));
             const gic_real t269 = t83 + t268;
             const gic_real t270 = R(5.813) * t269;
-            const gic_real t271 = t249 * R(0.09182100000000004) + t248 * k[11];
+            const gic_real t271 = t249 * R(0.09182100000000004) + t248 * k[12];
             const gic_real t272 = t118 + t271;
             const gic_real t273 = R(90.555) * t272;
             const gic_real t274 = t150 * R(0.03138);
@@ -2694,7 +2710,7 @@ static gic_real hmmwv14_residual_uca_rl_wheel_rl(const gic_real *GIC_RESTRICT k,
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(-1.475859)) * R(2.928503331078754)), GIC_FABS((q[1] - k[8]) * R(2.928503331078754)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(-1.475859)) * R(2.928503331078754)), GIC_FABS((q[1] - k[9]) * R(2.928503331078754)));
         const gic_real t2 = q[5] + q[5];
         const gic_real t3 = q[6] * t2;
         const gic_real t4 = q[4] + q[4];
@@ -2744,10 +2760,10 @@ static gic_real hmmwv14_residual_uca_rl_wheel_rl(const gic_real *GIC_RESTRICT k,
         const gic_real t48 = t37 + t38;
         const gic_real t49 = R(2.8645315225742096e-09) * (R(1.0) - (t12 + t20)) + (k[7] * t6 + R(-0.17747212962088846) * t10);
         const gic_real t50 = q[9] + (R(0.33401) * t47 + k[2] * t48) - (q[2] + t49);
-        const gic_real t51 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[9] * m0[4] + R(0.03556000000000003) * m0[3]));
+        const gic_real t51 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[10] * m0[4] + R(0.03556000000000003) * m0[3]));
         const gic_real t52 = GIC_MAX(GIC_MAX(t45, GIC_FABS(t50 * R(2.928503331078754))), GIC_FABS((q[7] - t51) * R(2.928503331078754)));
-        const gic_real t53 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[9] * m0[7] + R(0.03556000000000003) * m0[6]));
-        const gic_real t54 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[9] * m0[10] + R(0.03556000000000003) * m0[9]));
+        const gic_real t53 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[10] * m0[7] + R(0.03556000000000003) * m0[6]));
+        const gic_real t54 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[10] * m0[10] + R(0.03556000000000003) * m0[9]));
         const gic_real t55 = GIC_MAX(GIC_MAX(t52, GIC_FABS((q[8] - t53) * R(2.928503331078754))), GIC_FABS((q[9] - t54) * R(2.928503331078754)));
         const gic_real t56 = R(0.10883900000000002) * t47 + (k[0] * t48 + R(0.1347216) * (t27 - t29));
         const gic_real t57 = q[9] + t56 - R(0.058674000000000004);

@@ -69,12 +69,12 @@
  *
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      135       164       2      0         0
+ *   subset 'rack' (1 times)                      137       164       2      0         0
  *   subset 'lca_fl' (4 times)                    291       362       3      0         0
- *   subset 'uca_fl_wheel_fl' (2 times)           929      1030       6      0         0
- *   subset 'uca_rl_wheel_rl' (2 times)           783       863       6      0         0
+ *   subset 'uca_fl_wheel_fl' (2 times)           931      1033       6      0         0
+ *   subset 'uca_rl_wheel_rl' (2 times)           785       866       6      0         0
  *   forces and equations of motion               922       841      15      4         4
- *   all together                                5645      6239      53      4         4
+ *   all together                                5655      6251      53      4         4
  *   outputs, when asked for                     1060      1284       2      2        13
  */
 #ifndef HMMWV14_H

@@ -227,6 +227,8 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t22 = (t8 - R(1.0)) * t9 - t12 + t13 * t18 - t19 * t21;
             if (!(GIC_FABS(t22) > R(1e-07)))
                 return GIC_ERROR_SINGULAR;
+            if (!(t5 > R(0.0)))
+                return GIC_ERROR_SINGULAR;
             const gic_real t23 = R(1.0) - t8;
             const gic_real t24 = t23 * t9 + t12;
             if (!(t24 > R(0.0)))

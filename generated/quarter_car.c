@@ -38,11 +38,11 @@
  *
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
- *   subset 'carriage' (1 times)                  112       134       3      0         0
- *   subset 'arm' (1 times)                       480       580       3      0         0
+ *   subset 'carriage' (1 times)                  113       134       3      0         0
+ *   subset 'arm' (1 times)                       482       583       3      0         0
  *   subset 'wheel' (1 times)                     625       711       3      0         0
  *   forces and equations of motion                48        41       2      0         1
- *   all together                                1265      1466      11      0         1
+ *   all together                                1268      1469      11      0         1
  *   outputs, when asked for                      126       186       0      0         1
  */
 #include "quarter_car.h"
@@ -228,84 +228,89 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
             if (!(GIC_FABS(t6) > R(1e-07)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t7 = q[6] + q[6];
-            const gic_real t8 = q[3] * t1;
-            const gic_real t9 = q[6] * t3;
-            const gic_real t10 = t8 - t9;
-            const gic_real t11 = R(1.0) / t6;
-            const gic_real t12 = (t9 + t8) * t11;
-            const gic_real t13 = t2 + q[6] * t7 - R(1.0) - t10 * t12;
-            if (!(GIC_FABS(t13) > R(1e-07)))
+            const gic_real t8 = t2 + q[6] * t7;
+            const gic_real t9 = q[3] * t1;
+            const gic_real t10 = q[6] * t3;
+            const gic_real t11 = t9 - t10;
+            const gic_real t12 = R(1.0) / t6;
+            const gic_real t13 = (t10 + t9) * t12;
+            const gic_real t14 = t8 - R(1.0) - t11 * t13;
+            if (!(GIC_FABS(t14) > R(1e-07)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t14 = x[0] - (q[2] - R(0.687));
-            const gic_real t15 = q[2] + t14;
-            const gic_real t16 = R(1.0) / t13;
-            const gic_real t17 = q[4] * t7 + q[3] * t3;
-            const gic_real t18 = t16 * (q[3] * t7 - q[5] * t1 + t17 * t12);
-            const gic_real t19 = R(0.5) * t18;
-            const gic_real t20 = R(1.0) / t5;
-            const gic_real t21 = t20 * (t10 - t17 * t18);
-            const gic_real t22 = R(0.5) * t21;
-            const gic_real t23 = t11 * (t17 + t10 * t18);
-            const gic_real t24 = R(0.5) * t23;
-            const gic_real t25 = q[3] - (q[6] * t19 + (q[4] * t22 - q[5] * t24));
-            const gic_real t26 = q[6] + (q[4] * t24 + q[5] * t22 + q[3] * t19);
-            const gic_real t27 = q[5] + (q[4] * t19 - q[6] * t22 - q[3] * t24);
-            const gic_real t28 = q[4] + (q[3] * t22 - (q[5] * t19 + q[6] * t24));
-            const gic_real t29 = t26 * t26 + (t27 * t27 + t28 * t28) + t25 * t25;
-            const gic_real t30 = R(1.5) - R(0.5) * t29;
-            const gic_real t31 = t25 * t30;
-            const gic_real t32 = t28 * t30;
-            const gic_real t33 = t27 * t30;
-            const gic_real t34 = t26 * t30;
-            const gic_real t35 = t14 * t14 + (q[1] * q[1] + q[0] * q[0]) + (t18 * t18 + (t23 * t23 + t21 * t21));
-            const gic_real t36 = t33 + t33;
-            const gic_real t37 = t33 * t36;
-            const gic_real t38 = t34 + t34;
-            const gic_real t39 = t34 * t38;
-            const gic_real t40 = t32 + t32;
-            const gic_real t41 = t33 * t40;
-            const gic_real t42 = t31 * t38;
-            const gic_real t43 = t32 * t38;
-            const gic_real t44 = t31 * t36;
-            const gic_real t45 = t32 * t40;
-            const gic_real t46 = t34 * t36;
-            const gic_real t47 = t31 * t40;
-            const gic_real t48 = R(1.0) - (t37 + t39);
-            const gic_real t49 = t41 - t42;
-            const gic_real t50 = t43 + t44;
-            const gic_real t51 = t41 + t42;
-            const gic_real t52 = R(1.0) - (t45 + t39);
-            const gic_real t53 = t46 - t47;
-            const gic_real t54 = t43 - t44;
-            const gic_real t55 = t46 + t47;
-            const gic_real t56 = R(1.0) - (t45 + t37);
-            const gic_real t57 = rate[0];
+            if (!(t6 > R(0.0)))
+                return GIC_ERROR_SINGULAR;
+            if (!(R(1.0) - t8 > R(0.0)))
+                return GIC_ERROR_SINGULAR;
+            const gic_real t15 = x[0] - (q[2] - R(0.687));
+            const gic_real t16 = q[2] + t15;
+            const gic_real t17 = R(1.0) / t14;
+            const gic_real t18 = q[4] * t7 + q[3] * t3;
+            const gic_real t19 = t17 * (q[3] * t7 - q[5] * t1 + t18 * t13);
+            const gic_real t20 = R(0.5) * t19;
+            const gic_real t21 = R(1.0) / t5;
+            const gic_real t22 = t21 * (t11 - t18 * t19);
+            const gic_real t23 = R(0.5) * t22;
+            const gic_real t24 = t12 * (t18 + t11 * t19);
+            const gic_real t25 = R(0.5) * t24;
+            const gic_real t26 = q[3] - (q[6] * t20 + (q[4] * t23 - q[5] * t25));
+            const gic_real t27 = q[6] + (q[4] * t25 + q[5] * t23 + q[3] * t20);
+            const gic_real t28 = q[5] + (q[4] * t20 - q[6] * t23 - q[3] * t25);
+            const gic_real t29 = q[4] + (q[3] * t23 - (q[5] * t20 + q[6] * t25));
+            const gic_real t30 = t27 * t27 + (t28 * t28 + t29 * t29) + t26 * t26;
+            const gic_real t31 = R(1.5) - R(0.5) * t30;
+            const gic_real t32 = t26 * t31;
+            const gic_real t33 = t29 * t31;
+            const gic_real t34 = t28 * t31;
+            const gic_real t35 = t27 * t31;
+            const gic_real t36 = t15 * t15 + (q[1] * q[1] + q[0] * q[0]) + (t19 * t19 + (t24 * t24 + t22 * t22));
+            const gic_real t37 = t34 + t34;
+            const gic_real t38 = t34 * t37;
+            const gic_real t39 = t35 + t35;
+            const gic_real t40 = t35 * t39;
+            const gic_real t41 = t33 + t33;
+            const gic_real t42 = t34 * t41;
+            const gic_real t43 = t32 * t39;
+            const gic_real t44 = t33 * t39;
+            const gic_real t45 = t32 * t37;
+            const gic_real t46 = t33 * t41;
+            const gic_real t47 = t35 * t37;
+            const gic_real t48 = t32 * t41;
+            const gic_real t49 = R(1.0) - (t38 + t40);
+            const gic_real t50 = t42 - t43;
+            const gic_real t51 = t44 + t45;
+            const gic_real t52 = t42 + t43;
+            const gic_real t53 = R(1.0) - (t46 + t40);
+            const gic_real t54 = t47 - t48;
+            const gic_real t55 = t44 - t45;
+            const gic_real t56 = t47 + t48;
+            const gic_real t57 = R(1.0) - (t46 + t38);
+            const gic_real t58 = rate[0];
             q[0] = R(0.0);
             q[1] = R(0.0);
-            q[2] = t15;
-            q[3] = t31;
-            q[4] = t32;
-            q[5] = t33;
-            q[6] = t34;
-            step = t35;
+            q[2] = t16;
+            q[3] = t32;
+            q[4] = t33;
+            q[5] = t34;
+            q[6] = t35;
+            step = t36;
             motion[0] = R(0.0);
             motion[1] = R(0.0);
-            motion[2] = t15;
-            motion[3] = t48;
-            motion[4] = t49;
-            motion[5] = t50;
-            motion[6] = t51;
-            motion[7] = t52;
-            motion[8] = t53;
-            motion[9] = t54;
-            motion[10] = t55;
-            motion[11] = t56;
+            motion[2] = t16;
+            motion[3] = t49;
+            motion[4] = t50;
+            motion[5] = t51;
+            motion[6] = t52;
+            motion[7] = t53;
+            motion[8] = t54;
+            motion[9] = t55;
+            motion[10] = t56;
+            motion[11] = t57;
             motion[12] = R(0.0);
             motion[13] = R(0.0);
             motion[14] = R(0.0);
             motion[15] = R(0.0);
             motion[16] = R(0.0);
-            motion[17] = t57;
+            motion[17] = t58;
             motion[18] = R(0.0);
             motion[19] = R(0.0);
             motion[20] = R(0.0);
@@ -324,12 +329,12 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
             start[10] = R(0.0);
             start[11] = R(0.0);
             start[12] = R(1.0);
-            start[13] = t20;
-            start[14] = t17;
-            start[15] = t11;
-            start[16] = t10;
-            start[17] = t12;
-            start[18] = t16;
+            start[13] = t21;
+            start[14] = t18;
+            start[15] = t12;
+            start[16] = t11;
+            start[17] = t13;
+            start[18] = t17;
             inertia[15] = R(0.0);
             inertia[16] = R(0.0);
             inertia[17] = R(525.59);
@@ -575,6 +580,8 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
             const gic_real t55 = (t33 * t49 - t45 * t37 - t23 * t50) * t54;
             const gic_real t56 = t32 * t37 - t33 * t41 - t44 * t50 - t53 * t55;
             if (!(GIC_FABS(t56) > R(6.171290232860452e-09)))
+                return GIC_ERROR_SINGULAR;
+            if (!(m0[9] * t18 + (m0[6] * t12 + m0[3] * t6) > R(0.0)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t57 = R(-0.21300000000000008) * m0[5] + R(0.307086) * m0[4];
             const gic_real t58 = m0[0] + t57 - q[0];

@@ -38,11 +38,11 @@
  *
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
- *   subset 'carriage' (1 times)                  112       134       3      0         0
- *   subset 'arm' (1 times)                       480       580       3      0         0
+ *   subset 'carriage' (1 times)                  113       134       3      0         0
+ *   subset 'arm' (1 times)                       482       583       3      0         0
  *   subset 'wheel' (1 times)                     625       711       3      0         0
  *   forces and equations of motion                48        41       2      0         1
- *   all together                                1265      1466      11      0         1
+ *   all together                                1268      1469      11      0         1
  *   outputs, when asked for                      126       186       0      0         1
  */
 #ifndef QUARTER_CAR_H

@@ -56,12 +56,12 @@
  *
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      135       164       2      0         0
+ *   subset 'rack' (1 times)                      137       164       2      0         0
  *   subset 'lca_fl' (2 times)                    291       362       3      0         0
  *   subset 'axle' (1 times)                      658       737       6      0         0
  *   subset 'wheel_fl' (2 times)                  534       606       3      0         0
  *   forces and equations of motion               732       689       9      0         4
- *   all together                                3175      3526      29      0         4
+ *   all together                                3177      3526      29      0         4
  *   outputs, when asked for                      602       694       0      0        10
  */
 #ifndef SOLID_AXLE_H

@@ -59,12 +59,12 @@
  *
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      135       164       2      0         0
+ *   subset 'rack' (1 times)                      137       164       2      0         0
  *   subset 'lca_fl' (2 times)                    254       341       3      0         4
  *   subset 'wheel_fl' (2 times)                  534       606       3      0         0
  *   subset 'lca_fl_2' (2 times)                  280       354       2      0         4
  *   forces and equations of motion               876       841      15      4         4
- *   all together                                3147      3607      33      4        20
+ *   all together                                3149      3607      33      4        20
  *   outputs, when asked for                      777       902       4      4        10
  */
 #ifndef TRAILING_ARM_H

@@ -174,7 +174,7 @@ static const Item *file_read_whole(Pool *pool, const Open *open);
 static const Item *part_read(Pool *pool, const Item *item, const Open *from)
 {
     Value value[PART_KEYS] = {{.text = NULL}};
-    Reader reader = {.pool = pool};
+    Reader reader = {.pool = pool, .model = &(Model){0}}; /* no parameters here */
     const Item *file = item;
     if (item->kind == ITEM_MAP) {
         section_read(&reader, &part_section, 0, &(Entry){"include", "include", item->at, item}, value);

@@ -165,10 +165,14 @@ int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *c
     other = vector_axis(dag, end[1], fixture->side[1][1]);
     for (int i = 0; parts & PART_POINT && i < 3; ++i)
         row[rows++] = row_component(dag, &link, i);
-    for (int i = 0; parts & PART_PARALLEL && i < 2; ++i)
-        row[rows++] = row_angle(dag, &side[i], &axis[1]);
-    if (parts & PART_LOCK)
-        row[rows++] = row_angle(dag, &side[0], &other);
+    for (int i = 0; parts & PART_PARALLEL && i < 2; ++i) {
+        row[rows] = row_angle(dag, &side[i], &axis[1]);
+        row[rows++].guard = ex_dot(dag, axis[0].v, axis[1].v); /* not half a turn away */
+    }
+    if (parts & PART_LOCK) {
+        row[rows] = row_angle(dag, &side[0], &other);
+        row[rows++].guard = ex_dot(dag, side[1].v, other.v);
+    }
     for (int i = 0; parts & PART_LINE && i < 2; ++i)
         row[rows++] = row_along(dag, &link, 0, &side[i]);
     if (parts & PART_LENGTH)

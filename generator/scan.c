@@ -83,34 +83,40 @@ static void reset(Scan *scan)
     }
 }
 
+static void warn(const Scan *scan, int lost, double value)
+{
+    const Coordinate *c = &scan->model->coordinate[scan->coordinate];
+    const Subset *subset = &scan->sequence->subset[lost];
+    Text bodies = {.pool = scan->pool};
+    for (int b = 0; b < subset->bodies; ++b)
+        text_print(&bodies, "%s'%s'", b ? ", " : "", scan->model->body[subset->body[b]].name);
+    diag_warn(c->at, "end the range before that value, or choose a coordinate that keeps determining these bodies",
+              "coordinate '%s' stops being independent at %.6g, inside its range [%g, %g]: beyond it the pose of %s is no longer "
+              "determined (the other coordinates at their design values)",
+              c->name, value, c->range[0], c->range[1], bodies.s);
+}
+
+/* Towards one end of the range in steps that shrink where a subset is lost: a loss that no step is small enough to pass is real. */
 static void scan_end(Scan *scan, double end)
 {
-    const int steps_least = 8, steps_most = 400, halvings = 20;
+    const int steps_least = 8, steps_most = 400;
     const double turn = 0.1; /* of a body in one step, or move relative to the subset's size */
+    const double least = 1e-7; /* of the way */
     const Coordinate *c = &scan->model->coordinate[scan->coordinate];
-    double wanted = fabs(end - c->design) * scan->sampling->swing[scan->coordinate] / turn;
+    double way = end - c->design, wanted = fabs(way) * scan->sampling->swing[scan->coordinate] / turn;
     int steps = wanted < steps_least ? steps_least : wanted > steps_most ? steps_most : (int)wanted;
+    double usual = 1.0 / steps, step = usual, share = 0;
     reset(scan);
-    for (int step = 1; step <= steps; ++step) {
-        double good = c->design + (end - c->design) * (step - 1) / steps, bad = c->design + (end - c->design) * step / steps;
-        int lost = scan_value(scan, bad);
-        if (lost < 0)
-            continue;
-        for (int i = 0; i < halvings; ++i) {
-            double middle = good + (bad - good) / 2;
-            if (scan_value(scan, middle) < 0)
-                good = middle;
-            else
-                bad = middle;
+    while (share < 1) {
+        double next = share + step < 1 ? share + step : 1;
+        int lost = scan_value(scan, c->design + way * next);
+        if (lost < 0) {
+            share = next;
+            step = fmin(2 * step, usual);
+        } else if ((step /= 2) < least) {
+            warn(scan, lost, c->design + way * share);
+            return;
         }
-        Text bodies = {.pool = scan->pool};
-        for (int b = 0; b < scan->sequence->subset[lost].bodies; ++b)
-            text_print(&bodies, "%s'%s'", b ? ", " : "", scan->model->body[scan->sequence->subset[lost].body[b]].name);
-        diag_warn(c->at, "end the range before that value, or choose a coordinate that keeps determining these bodies",
-                  "coordinate '%s' stops being independent at %.6g, inside its range [%g, %g]: beyond it bodies %s are no longer "
-                  "determined (the others at their design values)",
-                  c->name, good, c->range[0], c->range[1], bodies.s);
-        return;
     }
 }
 

@@ -212,22 +212,30 @@ void subset_explain_singular(Work *w, const Sampling *sampling, int subset)
         if (any)
             text_print(&bodies, "%s'%s'", bodies.size ? ", " : "", w->model->body[member->body[b]].name);
     }
-    int first = 0;
-    while (!row[first])
-        ++first;
-    const Connection *tie = &w->connection[w->row_of[first]];
-    int place = tie->is_coordinate ? w->row_of[first] - member->joints : w->row_of[first];
+    /* the one with the fewest equations is the likeliest to be misplaced */
+    int worst = -1, fewest = 0;
+    for (int i = 0; i < w->connections; ++i) {
+        int equations_of = w->connection[i].is_coordinate ? 1 : joint_equations[w->model->joint[w->connection[i].index].type];
+        bool any = false;
+        for (int r = 0; r < w->n; ++r)
+            any = any || (row[r] && w->row_of[r] == i);
+        if (any && (worst < 0 || equations_of < fewest))
+            worst = i, fewest = equations_of;
+    }
+    const Connection *tie = &w->connection[worst];
+    int place = tie->is_coordinate ? worst - member->joints : worst;
     Place at = tie->is_coordinate ? w->model->coordinate[member->coordinate[place]].at : w->model->joint[member->joint[place]].at;
     if (design_only)
         diag_fail(at,
                   "draw the mechanism in another position, move one of the points, or choose a coordinate that is independent here",
                   "the design configuration is singular: there, and only there, %s fix the same motion (%d of %d equations are "
-                  "independent), and bodies %s can still move",
+                  "independent), and the pose of %s is not determined",
                   equations.s, rank, w->n, bodies.s);
     diag_fail(at,
-              joints > 1 ? "they close a loop that fixes some motion twice: replace one of the joints by one with fewer equations "
-                           "(spherical, cylindrical, point_on_line, distance), and determine what is free by another joint or coordinate"
+              joints > 1 ? "move its points or axes out of line with the others; or, where these joints close a loop that fixes a motion "
+                           "twice by its kind, take one with fewer equations (spherical, cylindrical, point_on_line, distance)"
                          : "move its points or axes so that it acts on what is free, or choose another joint or coordinate",
-              "%s fix the same motion twice in every configuration (%d of %d equations are independent), while bodies %s stay free",
+              "%s fix the same motion twice in every configuration (%d of %d equations are independent), while the pose of %s is not "
+              "determined",
               equations.s, rank, w->n, bodies.s);
 }

@@ -25,11 +25,12 @@ static bool word_character(char c)
     return isalnum((unsigned char)c) || c == '_';
 }
 
-/* The longest of the known words at the start of an identifier part: PREFIX in PREFIX_setup, but not in MYPREFIX. */
+/* A known word that is a whole part of an identifier: PREFIX in PREFIX_setup, but neither in MYPREFIX nor in PREFIXED. */
 static size_t replace_word(const char *s, size_t left, const char *word, const char *by, Text *out)
 {
     size_t length = strlen(word);
-    if (left < length || memcmp(s, word, length))
+    bool whole = left >= length && !memcmp(s, word, length) && (left == length || !isalnum((unsigned char)s[length]));
+    if (!whole)
         return 0;
     text_print(out, "%s", by);
     return length;

@@ -137,7 +137,7 @@ coordinates:
   turn: {type: angle, bodies: [ground, cart], axis: [1, 0, 0]}
   swing: {type: angle, bodies: [ground, rod], axis: [0, 1, 0]}
 END
-refused guide "'guide'" "'turn'" "'cart' stay free" "in every configuration" "(5 of 6 "
+refused turn "'guide'" "'turn'" "the pose of 'cart' is not determined" "in every configuration" "(5 of 6 "
 silent pivot swing rod
 
 # two coordinates along the tube, none about it
@@ -150,7 +150,7 @@ coordinates:
   slide: {type: translation, bodies: [ground, sleeve], axis: [1, 0, 0]}
   again: {type: length, bodies: [ground, sleeve], points: [[-1, 0, 0], [0, 0, 0]]}
 END
-refused again "'slide'" "'again'" "'sleeve' stay free" "in every configuration"
+refused again "'slide'" "'again'" "the pose of 'sleeve' is not determined" "in every configuration"
 silent tube
 
 # kingpin NAME X: the knuckle's upper links meet in one point above the lower ball joint; the tie rod ends X from the
@@ -171,7 +171,7 @@ coordinates:
 END
 }
 kingpin through_kingpin 0
-refused ball "'tie'" "'ball'" "'knuckle' stay free" "in every configuration" "(5 of 6 "
+refused tie "'tie'" "'ball'" "the pose of 'knuckle' is not determined" "in every configuration" "(5 of 6 "
 silent hinge travel arm
 kingpin beside_kingpin 0.15
 good
@@ -180,7 +180,7 @@ good
 
 # the strut through the pivot does not feel a first turn of the rod
 pendulum through -2 0 0 2.5 3.2
-refused pivot "'strut'" "'rod' can still move" "the design configuration is singular" "there, and only there" "(5 of 6 "
+refused strut "'strut'" "the pose of 'rod' is not determined" "the design configuration is singular" "there, and only there" "(5 of 6 "
 
 # coupler and rocker on one line
 model dead_centre <<'END'
@@ -194,7 +194,7 @@ joints:
 coordinates:
   turn: {type: angle, bodies: [ground, crank], axis: [0, 1, 0]}
 END
-refused second "'coupler'" "'rocker' can still move" "the design configuration is singular"
+refused coupler "'coupler'" "the pose of 'rocker' is not determined" "the design configuration is singular"
 silent first turn crank
 
 # ---- singular inside a range ---------------------------------------------------------------------------------

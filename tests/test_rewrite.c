@@ -18,7 +18,7 @@ static const char model[] = "gicgen: 1\n"
                             "inputs:\n"
                             "  brake_l: {}\n"
                             "forces:\n"
-                            "  law_l: {type: constant, coordinate: spring_l, value: FORMULA}\n";
+                            "  law_l: {type: force, coordinate: spring_l, value: FORMULA}\n";
 
 /* The tree of `model` with this formula in it. */
 static const Item *file_with(Pool *pool, const char *formula)

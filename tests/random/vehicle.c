@@ -305,7 +305,7 @@ static void add_spring(Vehicle *v, int coordinate, double stiffness, double free
     force->coordinate = coordinate;
     const char *name = v->section[COORDINATE].entry[coordinate].name;
     if (chance(v, 0.1)) {
-        SAY(force, "type: constant, coordinate: %s, value: %.4g", name, uniform(v, -0.02, 0.02) * stiffness);
+        SAY(force, "type: force, coordinate: %s, value: %.4g", name, uniform(v, -0.02, 0.02) * stiffness);
         return;
     }
     SAY(force, "type: spring_damper, coordinate: %s, stiffness: %.4g", name, stiffness * uniform(v, 0.5, 2));
