@@ -1272,16 +1272,16 @@ static gic_real andrews_residual_K2_K3(const gic_real *GIC_RESTRICT k, const and
 
 static const gic_real andrews_k_K5_K4[2][18] = {
     { /* K5 */
-        R(1.0000000000000002), R(-0.4682992918749422), R(0.8835699028540007), R(0.9999999999999999),
-        R(0.8835699028540009), R(0.4682992918749423), R(1.734723475976807e-18), R(0.04000000000000001),
-        R(-0.019999999999999997), R(2.168404344971009e-18), R(0.009160000000000003), R(0.023080000000000007),
+        R(1.0000000000000002), R(-0.019999999999999997), R(2.168404344971009e-18), R(1.734723475976807e-18),
+        R(0.04000000000000001), R(0.9999999999999999), R(-0.4682992918749422), R(0.8835699028540007),
+        R(0.8835699028540009), R(0.4682992918749423), R(0.009160000000000003), R(0.023080000000000007),
         R(0.0705), R(-0.005789999999999998), R(1.3010426069826053e-18), R(1.169e-05),
         R(1.0), R(0.9999999999999998),
     },
     { /* K7 */
-        R(0.9999999999999999), R(-0.9426716373147774), R(0.3337217167076134), R(1.0),
-        R(0.33372171670761336), R(0.9426716373147773), R(-0.039999999999999994), R(-8.673617379884035e-19),
-        R(-4.336808689942018e-19), R(0.02), R(-0.01228), R(-0.004489999999999999),
+        R(0.9999999999999999), R(-4.336808689942018e-19), R(0.02), R(-0.039999999999999994),
+        R(-8.673617379884035e-19), R(1.0), R(-0.9426716373147774), R(0.3337217167076134),
+        R(0.33372171670761336), R(0.9426716373147773), R(-0.01228), R(-0.004489999999999999),
         R(0.05498), R(-4.336808689942018e-19), R(0.005790000000000001), R(1.912e-05),
         R(1.0000000000000002), R(1.0000000000000002),
     },
@@ -1389,16 +1389,16 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t12 = q[13] + q[13];
                 const gic_real t13 = q[11] * t12;
                 const gic_real t14 = q[10] * t8;
-                const gic_real t15 = q[9] + (k[8] * (t9 + t11) + k[9] * (t13 - t14));
+                const gic_real t15 = q[9] + (k[1] * (t9 + t11) + k[2] * (t13 - t14));
                 const gic_real t16 = t15 - (m0[2] + R(-0.03500000000000001) * m0[10]);
                 const gic_real t17 = q[11] * t10;
                 const gic_real t18 = q[13] * t12;
                 const gic_real t19 = q[12] * t10;
                 const gic_real t20 = q[10] * t12;
-                const gic_real t21 = k[8] * (R(1.0) - (t17 + t18)) + k[9] * (t19 + t20);
+                const gic_real t21 = k[1] * (R(1.0) - (t17 + t18)) + k[2] * (t19 + t20);
                 const gic_real t22 = q[8] + t21 - (m0[1] + R(-0.03500000000000001) * m0[7]);
                 const gic_real t23 = q[12] * t8;
-                const gic_real t24 = k[8] * (t19 - t20) + k[9] * (R(1.0) - (t23 + t18));
+                const gic_real t24 = k[1] * (t19 - t20) + k[2] * (R(1.0) - (t23 + t18));
                 const gic_real t25 = q[7] + t24 - (m0[0] + R(-0.03500000000000001) * m0[4]);
                 const gic_real t26 = t22 * (R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6]) + t25 * (R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3]);
                 const gic_real t27 = q[4] + q[4];
@@ -1407,26 +1407,26 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t30 = t28 - t29;
                 const gic_real t31 = q[6] * t3;
                 const gic_real t32 = R(1.0) - (q[5] * t5 + t31);
-                const gic_real t33 = q[0] + (k[6] * t30 + k[7] * t32) - q[7] - (q[0] - R(-0.06934));
+                const gic_real t33 = q[0] + (k[3] * t30 + k[4] * t32) - q[7] - (q[0] - R(-0.06934));
                 const gic_real t34 = t16 * (R(-0.43971364724701895) * m0[10] + R(0.898138023036952) * m0[9]) + t26 + f[19] * t33;
                 const gic_real t35 = R(1.0) - (q[4] * t27 + t31);
                 const gic_real t36 = t28 + t29;
-                const gic_real t37 = q[1] + (k[6] * t35 + k[7] * t36) - q[8] - (q[1] - R(-0.00227));
+                const gic_real t37 = q[1] + (k[3] * t35 + k[4] * t36) - q[8] - (q[1] - R(-0.00227));
                 const gic_real t38 = q[6] * t5;
                 const gic_real t39 = q[3] * t27;
                 const gic_real t40 = t38 + t39;
                 const gic_real t41 = t4 - t6;
-                const gic_real t42 = q[2] + (k[6] * t40 + k[7] * t41) - q[9] - q[2];
+                const gic_real t42 = q[2] + (k[3] * t40 + k[4] * t41) - q[9] - q[2];
                 const gic_real t43 = t7 * f[22] - (t34 + f[20] * t37 + f[21] * t42);
                 const gic_real t44 = k[0] * (t38 - t39);
-                const gic_real t45 = k[3] * (R(1.0) - (t17 + t23));
-                const gic_real t46 = k[3] * (t9 - t11);
-                const gic_real t47 = k[3] * (t13 + t14);
-                const gic_real t48 = (k[1] * t35 + k[2] * t36) * t46 + (k[1] * t30 + k[2] * t32) * t47;
-                const gic_real t49 = t7 * f[7] - ((k[1] * t40 + k[2] * t41) * t45 + t48);
+                const gic_real t45 = k[5] * (R(1.0) - (t17 + t23));
+                const gic_real t46 = k[5] * (t9 - t11);
+                const gic_real t47 = k[5] * (t13 + t14);
+                const gic_real t48 = (k[6] * t35 + k[7] * t36) * t46 + (k[6] * t30 + k[7] * t32) * t47;
+                const gic_real t49 = t7 * f[7] - ((k[6] * t40 + k[7] * t41) * t45 + t48);
                 const gic_real t50 = t49 + t44 * f[8];
-                const gic_real t51 = (k[4] * t35 + k[5] * t36) * t46 + (k[4] * t30 + k[5] * t32) * t47;
-                const gic_real t52 = t7 * f[13] - ((k[4] * t40 + k[5] * t41) * t45 + t51);
+                const gic_real t51 = (k[8] * t35 + k[9] * t36) * t46 + (k[8] * t30 + k[9] * t32) * t47;
+                const gic_real t52 = t7 * f[13] - ((k[8] * t40 + k[9] * t41) * t45 + t51);
                 const gic_real t53 = t52 + t44 * f[14] - f[15] * t50;
                 const gic_real t54 = t43 + t44 * f[23] - f[24] * t50 - f[25] * t53;
                 const gic_real t55 = t22 * (R(0.8981380230369522) * m0[7] + R(0.43971364724701906) * m0[6]) + t25 * (R(0.8981380230369522) * m0[4] + R(0.43971364724701906) * m0[3]);
@@ -1516,12 +1516,12 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t9 = t6 - t8;
             const gic_real t10 = q[6] * t7;
             const gic_real t11 = R(1.0) - (t4 + t10);
-            const gic_real t12 = k[1] * t9 + k[2] * t11;
+            const gic_real t12 = k[6] * t9 + k[7] * t11;
             const gic_real t13 = q[11] + q[11];
             const gic_real t14 = q[11] * t13;
             const gic_real t15 = q[12] + q[12];
             const gic_real t16 = q[12] * t15;
-            const gic_real t17 = k[3] * (R(1.0) - (t14 + t16));
+            const gic_real t17 = k[5] * (R(1.0) - (t14 + t16));
             const gic_real t18 = t12 * t17;
             const gic_real t19 = q[6] * t3;
             const gic_real t20 = q[3] * t1;
@@ -1529,29 +1529,29 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t22 = q[4] * t7;
             const gic_real t23 = q[3] * t3;
             const gic_real t24 = t22 - t23;
-            const gic_real t25 = k[1] * t21 + k[2] * t24;
+            const gic_real t25 = k[6] * t21 + k[7] * t24;
             const gic_real t26 = q[13] + q[13];
             const gic_real t27 = q[11] * t26;
             const gic_real t28 = q[10] * t15;
-            const gic_real t29 = k[3] * (t27 + t28);
+            const gic_real t29 = k[5] * (t27 + t28);
             const gic_real t30 = t25 * t29;
             const gic_real t31 = t18 - t30;
             if (!(GIC_FABS(t31) > R(1e-07)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t32 = k[4] * t21 + k[5] * t24;
+            const gic_real t32 = k[8] * t21 + k[9] * t24;
             const gic_real t33 = q[13] * t15;
             const gic_real t34 = q[10] * t13;
-            const gic_real t35 = k[3] * (t33 - t34);
+            const gic_real t35 = k[5] * (t33 - t34);
             const gic_real t36 = t32 * t35;
             const gic_real t37 = R(1.0) - (t2 + t10);
             const gic_real t38 = t6 + t8;
-            const gic_real t39 = k[4] * t37 + k[5] * t38;
+            const gic_real t39 = k[8] * t37 + k[9] * t38;
             const gic_real t40 = t39 * t17;
             const gic_real t41 = t25 * t35;
-            const gic_real t42 = k[1] * t37 + k[2] * t38;
+            const gic_real t42 = k[6] * t37 + k[7] * t38;
             const gic_real t43 = t42 * t17;
             const gic_real t44 = t41 - t43;
-            const gic_real t45 = k[4] * t9 + k[5] * t11;
+            const gic_real t45 = k[8] * t9 + k[9] * t11;
             const gic_real t46 = t45 * t17;
             const gic_real t47 = t32 * t29;
             const gic_real t48 = R(1.0) / t31;
@@ -1559,12 +1559,12 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t50 = t36 - t40 - t44 * t49;
             if (!(GIC_FABS(t50) > R(1.0146238103623228e-07)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t51 = k[6] * t9 + k[7] * t11;
+            const gic_real t51 = k[3] * t9 + k[4] * t11;
             const gic_real t52 = R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6];
-            const gic_real t53 = k[6] * t37 + k[7] * t38;
+            const gic_real t53 = k[3] * t37 + k[4] * t38;
             const gic_real t54 = R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3];
             const gic_real t55 = k[0] * (t19 - t20);
-            const gic_real t56 = k[6] * t21 + k[7] * t24;
+            const gic_real t56 = k[3] * t21 + k[4] * t24;
             const gic_real t57 = R(-0.43971364724701895) * m0[10] + R(0.898138023036952) * m0[9];
             const gic_real t58 = R(1.0) / t5;
             const gic_real t59 = (t56 * t54 - t51 * t57) * t58;
@@ -1577,18 +1577,18 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t66 = (t30 - t18) * t58;
             const gic_real t67 = (t43 - t41) * t61;
             const gic_real t68 = t64 - t65 + t55 * t66 - t60 * t67;
-            const gic_real t69 = k[8] * (t33 + t34) + k[9] * (t27 - t28);
+            const gic_real t69 = k[1] * (t33 + t34) + k[2] * (t27 - t28);
             const gic_real t70 = q[12] * t13;
             const gic_real t71 = q[10] * t26;
             const gic_real t72 = q[13] * t26;
-            const gic_real t73 = k[8] * (t70 - t71) + k[9] * (R(1.0) - (t16 + t72));
+            const gic_real t73 = k[1] * (t70 - t71) + k[2] * (R(1.0) - (t16 + t72));
             const gic_real t74 = (t69 * t54 - t73 * t57) * t48;
             const gic_real t75 = t45 * t35;
             const gic_real t76 = t39 * t29;
             const gic_real t77 = (t47 - t46) * t58;
             const gic_real t78 = (t40 - t36) * t61;
             const gic_real t79 = t75 - t76 + t55 * t77 - t60 * t78 - t68 * t49;
-            const gic_real t80 = k[8] * (R(1.0) - (t14 + t72)) + k[9] * (t70 + t71);
+            const gic_real t80 = k[1] * (R(1.0) - (t14 + t72)) + k[2] * (t70 + t71);
             const gic_real t81 = R(1.0) / t50;
             const gic_real t82 = (t80 * t57 - t69 * t52 - t44 * t74) * t81;
             const gic_real t83 = t63 - t68 * t74 - t79 * t82;
@@ -2074,39 +2074,39 @@ static gic_real andrews_residual_K5_K4(const gic_real *GIC_RESTRICT k, const and
         const gic_real t12 = t10 - t11;
         const gic_real t13 = q[6] * t2;
         const gic_real t14 = R(1.0) - (q[5] * t4 + t13);
-        const gic_real t15 = (q[7] - (q[0] + (k[6] * t12 + k[7] * t14))) * R(24.999999999999996);
+        const gic_real t15 = (q[7] - (q[0] + (k[3] * t12 + k[4] * t14))) * R(24.999999999999996);
         const gic_real t16 = R(1.0) - (q[4] * t8 + t13);
         const gic_real t17 = t10 + t11;
-        const gic_real t18 = (q[8] - (q[1] + (k[6] * t16 + k[7] * t17))) * R(24.999999999999996);
+        const gic_real t18 = (q[8] - (q[1] + (k[3] * t16 + k[4] * t17))) * R(24.999999999999996);
         const gic_real t19 = GIC_MAX(GIC_MAX(GIC_MAX(t6, GIC_FABS(t7 - t9)), GIC_FABS(t15)), GIC_FABS(t18));
         const gic_real t20 = t7 + t9;
         const gic_real t21 = t3 - t5;
-        const gic_real t22 = (q[9] - (q[2] + (k[6] * t20 + k[7] * t21))) * R(24.999999999999996);
+        const gic_real t22 = (q[9] - (q[2] + (k[3] * t20 + k[4] * t21))) * R(24.999999999999996);
         const gic_real t23 = q[11] + q[11];
         const gic_real t24 = q[11] * t23;
         const gic_real t25 = q[12] + q[12];
         const gic_real t26 = q[12] * t25;
-        const gic_real t27 = k[3] * (R(1.0) - (t24 + t26));
+        const gic_real t27 = k[5] * (R(1.0) - (t24 + t26));
         const gic_real t28 = q[13] * t25;
         const gic_real t29 = q[10] * t23;
-        const gic_real t30 = k[3] * (t28 - t29);
+        const gic_real t30 = k[5] * (t28 - t29);
         const gic_real t31 = q[13] + q[13];
         const gic_real t32 = q[11] * t31;
         const gic_real t33 = q[10] * t25;
-        const gic_real t34 = k[3] * (t32 + t33);
-        const gic_real t35 = (k[1] * t16 + k[2] * t17) * t30 + (k[1] * t12 + k[2] * t14) * t34;
-        const gic_real t36 = ((k[1] * t20 + k[2] * t21) * t27 + t35) * k[16];
-        const gic_real t37 = (k[4] * t16 + k[5] * t17) * t30 + (k[4] * t12 + k[5] * t14) * t34;
-        const gic_real t38 = ((k[4] * t20 + k[5] * t21) * t27 + t37) * k[17];
+        const gic_real t34 = k[5] * (t32 + t33);
+        const gic_real t35 = (k[6] * t16 + k[7] * t17) * t30 + (k[6] * t12 + k[7] * t14) * t34;
+        const gic_real t36 = ((k[6] * t20 + k[7] * t21) * t27 + t35) * k[16];
+        const gic_real t37 = (k[8] * t16 + k[9] * t17) * t30 + (k[8] * t12 + k[9] * t14) * t34;
+        const gic_real t38 = ((k[8] * t20 + k[9] * t21) * t27 + t37) * k[17];
         const gic_real t39 = GIC_MAX(GIC_MAX(GIC_MAX(t19, GIC_FABS(t22)), GIC_FABS(t36)), GIC_FABS(t38));
-        const gic_real t40 = q[9] + (k[8] * (t28 + t29) + k[9] * (t32 - t33));
+        const gic_real t40 = q[9] + (k[1] * (t28 + t29) + k[2] * (t32 - t33));
         const gic_real t41 = t40 - (m0[2] + R(-0.03500000000000001) * m0[10]);
         const gic_real t42 = q[13] * t31;
         const gic_real t43 = q[12] * t23;
         const gic_real t44 = q[10] * t31;
-        const gic_real t45 = k[8] * (R(1.0) - (t24 + t42)) + k[9] * (t43 + t44);
+        const gic_real t45 = k[1] * (R(1.0) - (t24 + t42)) + k[2] * (t43 + t44);
         const gic_real t46 = q[8] + t45 - (m0[1] + R(-0.03500000000000001) * m0[7]);
-        const gic_real t47 = k[8] * (t43 - t44) + k[9] * (R(1.0) - (t26 + t42));
+        const gic_real t47 = k[1] * (t43 - t44) + k[2] * (R(1.0) - (t26 + t42));
         const gic_real t48 = q[7] + t47 - (m0[0] + R(-0.03500000000000001) * m0[4]);
         const gic_real t49 = t46 * (R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6]) + t48 * (R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3]);
         const gic_real t50 = (t41 * (R(-0.43971364724701895) * m0[10] + R(0.898138023036952) * m0[9]) + t49) * R(24.99999999999999);

@@ -459,23 +459,23 @@ static gic_real hmmwv14_residual_rack(const gic_real *GIC_RESTRICT k, const hmmw
 
 static const gic_real hmmwv14_k_lca_fl[4][11] = {
     { /* lca_fl */
-        R(0.01121887479261392), R(0.2403881036540444), R(0.09720579999999998), R(0.19748500000000002),
-        R(0.509778), R(1.792978), R(1.688965), R(0.307086),
+        R(1.688965), R(0.307086), R(0.01121887479261392), R(0.2403881036540444),
+        R(0.09720579999999998), R(0.19748500000000002), R(0.509778), R(1.792978),
         R(3.0379110359107786e-06), R(0.24689200985615367), R(7.8923759275231005),
     },
     { /* lca_fr */
-        R(0.01121887479261392), R(-0.2403881036540444), R(0.09720579999999998), R(0.19748500000000002),
-        R(-0.509778), R(1.792978), R(1.688965), R(-0.307086),
+        R(1.688965), R(-0.307086), R(0.01121887479261392), R(-0.2403881036540444),
+        R(0.09720579999999998), R(0.19748500000000002), R(-0.509778), R(1.792978),
         R(3.0379110359107786e-06), R(-0.24689200985615367), R(7.8923759275231005),
     },
     { /* lca_rl */
-        R(0.011218874792613923), R(0.24038810365404442), R(-0.09720579999999998), R(0.2564892),
-        R(0.5015738), R(-1.792978), R(-1.688965), R(0.307086),
+        R(-1.688965), R(0.307086), R(0.011218874792613923), R(0.24038810365404442),
+        R(-0.09720579999999998), R(0.2564892), R(0.5015738), R(-1.792978),
         R(-3.0379110358344508e-06), R(0.246867347245056), R(6.355965194292886),
     },
     { /* lca_rr */
-        R(0.011218874792613923), R(-0.24038810365404442), R(-0.09720579999999998), R(0.2564892),
-        R(-0.5015738), R(-1.792978), R(-1.688965), R(-0.307086),
+        R(-1.688965), R(-0.307086), R(0.011218874792613923), R(-0.24038810365404442),
+        R(-0.09720579999999998), R(0.2564892), R(-0.5015738), R(-1.792978),
         R(-3.0379110358344508e-06), R(-0.246867347245056), R(6.355965194292886),
     },
 };
@@ -539,8 +539,8 @@ static int hmmwv14_solve_lca_fl(hmmwv14 *self, const gic_real *GIC_RESTRICT k, c
         /* correct with the old factors until what a further correction would change, about step times reach, is rounding */
         for (i = 0; i < GIC_CHORDS; ++i) {
             {
-                const gic_real t1 = k[6] - q[0];
-                const gic_real t2 = k[7] - q[1];
+                const gic_real t1 = k[0] - q[0];
+                const gic_real t2 = k[1] - q[1];
                 const gic_real t3 = q[4] + q[4];
                 const gic_real t4 = q[4] * t3;
                 const gic_real t5 = q[5] + q[5];
@@ -551,16 +551,16 @@ static int hmmwv14_solve_lca_fl(hmmwv14 *self, const gic_real *GIC_RESTRICT k, c
                 const gic_real t10 = q[4] * t9;
                 const gic_real t11 = q[3] * t5;
                 const gic_real t12 = t10 - t11;
-                const gic_real t13 = k[0] * (R(1.0) - (t4 + t6)) + (k[1] * (t7 + t8) + k[2] * t12);
-                const gic_real t14 = q[2] + t13 - k[3];
+                const gic_real t13 = k[2] * (R(1.0) - (t4 + t6)) + (k[3] * (t7 + t8) + k[4] * t12);
+                const gic_real t14 = q[2] + t13 - k[5];
                 const gic_real t15 = q[6] * t9;
                 const gic_real t16 = q[5] * t3;
                 const gic_real t17 = q[3] * t9;
                 const gic_real t18 = t16 + t17;
-                const gic_real t19 = k[0] * (t7 - t8) + (k[1] * (R(1.0) - (t4 + t15)) + k[2] * t18);
-                const gic_real t20 = q[1] + t19 - k[4];
-                const gic_real t21 = k[1] * (t16 - t17) + k[2] * (R(1.0) - (t6 + t15));
-                const gic_real t22 = q[0] + (k[0] * (t10 + t11) + t21) - k[5];
+                const gic_real t19 = k[2] * (t7 - t8) + (k[3] * (R(1.0) - (t4 + t15)) + k[4] * t18);
+                const gic_real t20 = q[1] + t19 - k[6];
+                const gic_real t21 = k[3] * (t16 - t17) + k[4] * (R(1.0) - (t6 + t15));
+                const gic_real t22 = q[0] + (k[2] * (t10 + t11) + t21) - k[7];
                 const gic_real t23 = t14 * t14 + (t20 * t20 + t22 * t22) - x[0] * x[0];
                 const gic_real t24 = q[2] * f[6] - (t23 * R(0.5) + f[4] * t1 + f[5] * t2);
                 const gic_real t25 = R(0.9999999999999998) * t18;
@@ -619,16 +619,16 @@ static int hmmwv14_solve_lca_fl(hmmwv14 *self, const gic_real *GIC_RESTRICT k, c
             const gic_real t11 = q[5] * t8;
             const gic_real t12 = q[3] * t3;
             const gic_real t13 = t11 + t12;
-            const gic_real t14 = k[0] * (t7 - t9) + (k[1] * (R(1.0) - (t10 + t4)) + k[2] * t13);
+            const gic_real t14 = k[2] * (t7 - t9) + (k[3] * (R(1.0) - (t10 + t4)) + k[4] * t13);
             const gic_real t15 = q[4] * t3;
             const gic_real t16 = q[3] * t1;
             const gic_real t17 = t15 - t16;
-            const gic_real t18 = k[0] * (R(1.0) - (t10 + t2)) + (k[1] * (t7 + t9) + k[2] * t17);
-            const gic_real t19 = q[2] + t18 - k[3];
-            const gic_real t20 = q[1] + t14 - k[4];
+            const gic_real t18 = k[2] * (R(1.0) - (t10 + t2)) + (k[3] * (t7 + t9) + k[4] * t17);
+            const gic_real t19 = q[2] + t18 - k[5];
+            const gic_real t20 = q[1] + t14 - k[6];
             const gic_real t21 = R(0.9999999999999998) * t17;
-            const gic_real t22 = k[0] * (t15 + t16) + (k[1] * (t11 - t12) + k[2] * t5);
-            const gic_real t23 = q[0] + t22 - k[5];
+            const gic_real t22 = k[2] * (t15 + t16) + (k[3] * (t11 - t12) + k[4] * t5);
+            const gic_real t23 = q[0] + t22 - k[7];
             const gic_real t24 = R(1.0) / t6;
             const gic_real t25 = (t22 * t20 - t14 * t23) * t24;
             const gic_real t26 = R(0.9999999999999998) * t13;
@@ -639,9 +639,9 @@ static int hmmwv14_solve_lca_fl(hmmwv14 *self, const gic_real *GIC_RESTRICT k, c
                 return GIC_ERROR_SINGULAR;
             if (!(t6 > R(0.0)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t30 = k[6] - q[0];
+            const gic_real t30 = k[0] - q[0];
             const gic_real t31 = q[0] + t30;
-            const gic_real t32 = k[7] - q[1];
+            const gic_real t32 = k[1] - q[1];
             const gic_real t33 = q[1] + t32;
             const gic_real t34 = R(1.0) / t29;
             const gic_real t35 = t19 * t19 + (t20 * t20 + t23 * t23) - x[0] * x[0];
@@ -875,7 +875,7 @@ static gic_real hmmwv14_residual_lca_fl(const gic_real *GIC_RESTRICT k, const hm
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - k[6]) * R(3.852963219305647)), GIC_FABS((q[1] - k[7]) * R(3.852963219305647)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - k[0]) * R(3.852963219305647)), GIC_FABS((q[1] - k[1]) * R(3.852963219305647)));
         const gic_real t2 = q[4] + q[4];
         const gic_real t3 = q[5] * t2;
         const gic_real t4 = q[6] + q[6];
@@ -890,13 +890,13 @@ static gic_real hmmwv14_residual_lca_fl(const gic_real *GIC_RESTRICT k, const hm
         const gic_real t13 = q[5] * t8;
         const gic_real t14 = q[6] * t8;
         const gic_real t15 = q[3] * t2;
-        const gic_real t16 = k[0] * (R(1.0) - (t12 + t13)) + (k[1] * (t14 + t15) + k[2] * t10);
-        const gic_real t17 = q[2] + t16 - k[3];
+        const gic_real t16 = k[2] * (R(1.0) - (t12 + t13)) + (k[3] * (t14 + t15) + k[4] * t10);
+        const gic_real t17 = q[2] + t16 - k[5];
         const gic_real t18 = q[6] * t4;
-        const gic_real t19 = k[0] * (t14 - t15) + (k[1] * (R(1.0) - (t12 + t18)) + k[2] * t6);
-        const gic_real t20 = q[1] + t19 - k[4];
-        const gic_real t21 = k[1] * (t3 - t5) + k[2] * (R(1.0) - (t13 + t18));
-        const gic_real t22 = q[0] + (k[0] * (t7 + t9) + t21) - k[5];
+        const gic_real t19 = k[2] * (t14 - t15) + (k[3] * (R(1.0) - (t12 + t18)) + k[4] * t6);
+        const gic_real t20 = q[1] + t19 - k[6];
+        const gic_real t21 = k[3] * (t3 - t5) + k[4] * (R(1.0) - (t13 + t18));
+        const gic_real t22 = q[0] + (k[2] * (t7 + t9) + t21) - k[7];
         const gic_real t23 = t17 * t17 + (t20 * t20 + t22 * t22) - x[0] * x[0];
         const gic_real t24 = GIC_MAX(t11, GIC_FABS(t23 * k[10]));
         worst = t24;
@@ -906,15 +906,15 @@ static gic_real hmmwv14_residual_lca_fl(const gic_real *GIC_RESTRICT k, const hm
 
 static const gic_real hmmwv14_k_uca_fl_wheel_fl[2][13] = {
     { /* uca_fl */
-        R(0.03459480000000004), R(0.448437), R(-0.07099299999999997), R(3.469446951953614e-18),
-        R(0.030306109019851125), R(0.13607944895268467), R(-3.469446951953614e-18), R(0.2667481144968474),
-        R(-0.1394133303209898), R(0.4618482), R(0.49375935710120966), R(0.1333626625632361),
+        R(0.4618482), R(0.2667481144968474), R(-0.07099299999999997), R(0.49375935710120966),
+        R(0.03459480000000004), R(0.448437), R(3.469446951953614e-18), R(0.030306109019851125),
+        R(0.13607944895268467), R(-3.469446951953614e-18), R(-0.1394133303209898), R(0.1333626625632361),
         R(0.08910630000000008),
     },
     { /* uca_fr */
-        R(-0.03459480000000004), R(-0.448437), R(0.07099299999999997), R(-3.469446951953614e-18),
-        R(-0.030306109019851125), R(-0.13607944895268467), R(3.469446951953614e-18), R(-0.2667481144968474),
-        R(0.1394133303209898), R(-0.4618482), R(-0.49375935710120966), R(-0.1333626625632361),
+        R(-0.4618482), R(-0.2667481144968474), R(0.07099299999999997), R(-0.49375935710120966),
+        R(-0.03459480000000004), R(-0.448437), R(-3.469446951953614e-18), R(-0.030306109019851125),
+        R(-0.13607944895268467), R(3.469446951953614e-18), R(0.1394133303209898), R(-0.1333626625632361),
         R(-0.08910630000000008),
     },
 };
@@ -1010,7 +1010,7 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
         for (i = 0; i < GIC_CHORDS; ++i) {
             {
                 const gic_real t1 = R(1.5309008) - q[0];
-                const gic_real t2 = k[9] - q[1];
+                const gic_real t2 = k[0] - q[1];
                 const gic_real t3 = R(0.22009100000000004) - q[2];
                 const gic_real t4 = q[4] + q[4];
                 const gic_real t5 = q[4] * t4;
@@ -1023,7 +1023,7 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
                 const gic_real t12 = q[4] * t11;
                 const gic_real t13 = q[3] * t6;
                 const gic_real t14 = t12 - t13;
-                const gic_real t15 = R(1.1338201752909144e-08) * (R(1.0) - (t5 + t7)) + (k[7] * t10 + R(0.06516162806573095) * t14);
+                const gic_real t15 = R(1.1338201752909144e-08) * (R(1.0) - (t5 + t7)) + (k[1] * t10 + R(0.06516162806573095) * t14);
                 const gic_real t16 = q[11] + q[11];
                 const gic_real t17 = q[11] * t16;
                 const gic_real t18 = q[12] + q[12];
@@ -1037,27 +1037,27 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
                 const gic_real t26 = q[10] * t18;
                 const gic_real t27 = t25 - t26;
                 const gic_real t28 = q[9] + (R(0.33360360000000006) * t20 + (k[2] * t23 + R(-0.017475200000000024) * t27));
-                const gic_real t29 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[10] * m1[10] + R(-0.03556000000000003) * m1[9]));
+                const gic_real t29 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[3] * m1[10] + R(-0.03556000000000003) * m1[9]));
                 const gic_real t30 = t29 - q[9];
-                const gic_real t31 = q[9] + (R(0.10177780000000003) * t20 + (k[0] * t23 + R(-0.14025880000000002) * t27));
-                const gic_real t32 = t31 - (m0[2] + k[1] * m0[10]);
+                const gic_real t31 = q[9] + (R(0.10177780000000003) * t20 + (k[4] * t23 + R(-0.14025880000000002) * t27));
+                const gic_real t32 = t31 - (m0[2] + k[5] * m0[10]);
                 const gic_real t33 = t21 - t22;
                 const gic_real t34 = q[13] * t24;
                 const gic_real t35 = R(1.0) - (t17 + t34);
                 const gic_real t36 = q[12] * t16;
                 const gic_real t37 = q[10] * t24;
                 const gic_real t38 = t36 + t37;
-                const gic_real t39 = q[8] + (R(0.10177780000000003) * t33 + (k[0] * t35 + R(-0.14025880000000002) * t38));
-                const gic_real t40 = t39 - (m0[1] + k[1] * m0[7]);
+                const gic_real t39 = q[8] + (R(0.10177780000000003) * t33 + (k[4] * t35 + R(-0.14025880000000002) * t38));
+                const gic_real t40 = t39 - (m0[1] + k[5] * m0[7]);
                 const gic_real t41 = t25 + t26;
                 const gic_real t42 = t36 - t37;
                 const gic_real t43 = R(1.0) - (t19 + t34);
-                const gic_real t44 = q[7] + (R(0.10177780000000003) * t41 + (k[0] * t42 + R(-0.14025880000000002) * t43));
-                const gic_real t45 = t44 - (m0[0] + k[1] * m0[4]);
+                const gic_real t44 = q[7] + (R(0.10177780000000003) * t41 + (k[4] * t42 + R(-0.14025880000000002) * t43));
+                const gic_real t45 = t44 - (m0[0] + k[5] * m0[4]);
                 const gic_real t46 = t32 * t32 + (t40 * t40 + t45 * t45) - R(0.14941089924212003);
-                const gic_real t47 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[10] * m1[4] + R(-0.03556000000000003) * m1[3]));
+                const gic_real t47 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[3] * m1[4] + R(-0.03556000000000003) * m1[3]));
                 const gic_real t48 = t47 - q[7];
-                const gic_real t49 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[10] * m1[7] + R(-0.03556000000000003) * m1[6]));
+                const gic_real t49 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[3] * m1[7] + R(-0.03556000000000003) * m1[6]));
                 const gic_real t50 = t49 - q[8];
                 const gic_real t51 = t46 * R(0.5) + f[0] * t48 + f[1] * t50 + f[2] * t30;
                 const gic_real t52 = q[2] + t15 - t28 - (q[2] - R(0.22009100000000004)) - t30 + f[21] * t51;
@@ -1066,21 +1066,21 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
                 const gic_real t55 = t53 - t54;
                 const gic_real t56 = q[6] * t11;
                 const gic_real t57 = R(1.0) - (t7 + t56);
-                const gic_real t58 = R(1.1338201752909144e-08) * (t12 + t13) + (k[7] * t55 + R(0.06516162806573095) * t57);
+                const gic_real t58 = R(1.1338201752909144e-08) * (t12 + t13) + (k[1] * t55 + R(0.06516162806573095) * t57);
                 const gic_real t59 = q[7] + (R(0.33360360000000006) * t41 + (k[2] * t42 + R(-0.017475200000000024) * t43));
                 const gic_real t60 = q[0] + t58 - t59 - (q[0] - R(1.5309008)) - t48;
                 const gic_real t61 = R(1.0) - (t5 + t56);
                 const gic_real t62 = t53 + t54;
-                const gic_real t63 = R(1.1338201752909144e-08) * (t8 - t9) + (k[7] * t61 + R(0.06516162806573095) * t62);
+                const gic_real t63 = R(1.1338201752909144e-08) * (t8 - t9) + (k[1] * t61 + R(0.06516162806573095) * t62);
                 const gic_real t64 = q[8] + (R(0.33360360000000006) * t33 + (k[2] * t35 + R(-0.017475200000000024) * t38));
-                const gic_real t65 = q[1] + t63 - t64 - (q[1] - k[9]) - t50 - f[10] * t51;
+                const gic_real t65 = q[1] + t63 - t64 - (q[1] - k[0]) - t50 - f[10] * t51;
                 const gic_real t66 = t65 - f[11] * t60;
-                const gic_real t67 = k[3] * t10 + R(0.9999999999999999) * t14;
-                const gic_real t68 = k[3] * t61 + R(0.9999999999999999) * t62;
-                const gic_real t69 = k[3] * t55 + R(0.9999999999999999) * t57;
-                const gic_real t70 = k[4] * t67 + (R(0.9902342769914657) * t68 + k[5] * t69);
+                const gic_real t67 = k[6] * t10 + R(0.9999999999999999) * t14;
+                const gic_real t68 = k[6] * t61 + R(0.9999999999999999) * t62;
+                const gic_real t69 = k[6] * t55 + R(0.9999999999999999) * t57;
+                const gic_real t70 = k[7] * t67 + (R(0.9902342769914657) * t68 + k[8] * t69);
                 const gic_real t71 = t52 + f[22] * t60 + f[23] * t66 + t70 * f[24];
-                const gic_real t72 = t70 * f[18] - (R(0.9760863515660297) * t67 + (k[6] * t68 + R(-0.2173831508800009) * t69));
+                const gic_real t72 = t70 * f[18] - (R(0.9760863515660297) * t67 + (k[9] * t68 + R(-0.2173831508800009) * t69));
                 const gic_real t73 = f[26] * (t71 - f[25] * t72);
                 const gic_real t74 = R(0.5) * t73;
                 const gic_real t75 = f[19] * (t72 - f[20] * t73);
@@ -1162,20 +1162,20 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t10 = q[12] * t3;
             const gic_real t11 = q[10] * t7;
             const gic_real t12 = t10 + t11;
-            const gic_real t13 = R(0.10177780000000003) * t5 + (k[0] * t9 + R(-0.14025880000000002) * t12);
+            const gic_real t13 = R(0.10177780000000003) * t5 + (k[4] * t9 + R(-0.14025880000000002) * t12);
             const gic_real t14 = q[12] * t1;
             const gic_real t15 = R(1.0) - (t6 + t14);
             const gic_real t16 = t2 + t4;
             const gic_real t17 = q[11] * t7;
             const gic_real t18 = q[10] * t1;
             const gic_real t19 = t17 - t18;
-            const gic_real t20 = R(0.10177780000000003) * t15 + (k[0] * t16 + R(-0.14025880000000002) * t19);
+            const gic_real t20 = R(0.10177780000000003) * t15 + (k[4] * t16 + R(-0.14025880000000002) * t19);
             const gic_real t21 = q[9] + t20;
-            const gic_real t22 = k[1] * m0[10];
+            const gic_real t22 = k[5] * m0[10];
             const gic_real t23 = m0[2] + t22;
             const gic_real t24 = t21 - t23;
             const gic_real t25 = q[8] + t13;
-            const gic_real t26 = k[1] * m0[7];
+            const gic_real t26 = k[5] * m0[7];
             const gic_real t27 = m0[1] + t26;
             const gic_real t28 = t25 - t27;
             const gic_real t29 = t13 * t24 - t20 * t28;
@@ -1188,9 +1188,9 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t32 = t10 - t11;
             const gic_real t33 = R(1.0) - (t14 + t8);
             const gic_real t34 = R(0.33360360000000006) * t31 + (k[2] * t32 + R(-0.017475200000000024) * t33);
-            const gic_real t35 = R(0.10177780000000003) * t31 + (k[0] * t32 + R(-0.14025880000000002) * t33);
+            const gic_real t35 = R(0.10177780000000003) * t31 + (k[4] * t32 + R(-0.14025880000000002) * t33);
             const gic_real t36 = q[7] + t35;
-            const gic_real t37 = k[1] * m0[4];
+            const gic_real t37 = k[5] * m0[4];
             const gic_real t38 = m0[0] + t37;
             const gic_real t39 = t36 - t38;
             const gic_real t40 = t35 * t28 - t13 * t39;
@@ -1211,7 +1211,7 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t53 = q[5] * t48;
             const gic_real t54 = q[3] * t50;
             const gic_real t55 = t53 + t54;
-            const gic_real t56 = k[3] * t52 + R(0.9999999999999999) * t55;
+            const gic_real t56 = k[6] * t52 + R(0.9999999999999999) * t55;
             const gic_real t57 = q[5] + q[5];
             const gic_real t58 = q[6] * t57;
             const gic_real t59 = q[3] * t48;
@@ -1219,31 +1219,31 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t61 = q[4] * t50;
             const gic_real t62 = q[3] * t57;
             const gic_real t63 = t61 - t62;
-            const gic_real t64 = k[3] * t60 + R(0.9999999999999999) * t63;
-            const gic_real t65 = k[4] * t56 - R(0.9902342769914657) * t64;
+            const gic_real t64 = k[6] * t60 + R(0.9999999999999999) * t63;
+            const gic_real t65 = k[7] * t56 - R(0.9902342769914657) * t64;
             if (!(GIC_FABS(t65) > R(2.1738315088000096e-08)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t66 = t53 - t54;
             const gic_real t67 = q[5] * t57;
             const gic_real t68 = R(1.0) - (t67 + t51);
-            const gic_real t69 = k[3] * t66 + R(0.9999999999999999) * t68;
-            const gic_real t70 = k[5] * t64 - k[4] * t69;
+            const gic_real t69 = k[6] * t66 + R(0.9999999999999999) * t68;
+            const gic_real t70 = k[8] * t64 - k[7] * t69;
             const gic_real t71 = R(1.0) / t65;
-            const gic_real t72 = (R(0.9760863515660297) * t56 - k[6] * t64) * t71;
+            const gic_real t72 = (R(0.9760863515660297) * t56 - k[9] * t64) * t71;
             const gic_real t73 = R(-0.2173831508800009) * t64 - R(0.9760863515660297) * t69 - t70 * t72;
             if (!(GIC_FABS(t73) > R(9.902342769914657e-08)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t74 = R(1.1338201752909144e-08) * (t58 - t59) + (k[7] * t52 + R(0.06516162806573095) * t55);
+            const gic_real t74 = R(1.1338201752909144e-08) * (t58 - t59) + (k[1] * t52 + R(0.06516162806573095) * t55);
             const gic_real t75 = t43 * t41;
             const gic_real t76 = (t34 + t44 * t75) * t45;
-            const gic_real t77 = R(1.1338201752909144e-08) * (t61 + t62) + (k[7] * t66 + R(0.06516162806573095) * t68);
+            const gic_real t77 = R(1.1338201752909144e-08) * (t61 + t62) + (k[1] * t66 + R(0.06516162806573095) * t68);
             const gic_real t78 = t77 + t74 * t46;
             const gic_real t79 = R(1.0) / t47;
             const gic_real t80 = (t40 * t75 + t43 * t76) * t79;
-            const gic_real t81 = R(0.9902342769914657) * t69 - k[5] * t56;
-            const gic_real t82 = R(1.1338201752909144e-08) * (R(1.0) - (t49 + t67)) + (k[7] * t60 + R(0.06516162806573095) * t63);
+            const gic_real t81 = R(0.9902342769914657) * t69 - k[8] * t56;
+            const gic_real t82 = R(1.1338201752909144e-08) * (R(1.0) - (t49 + t67)) + (k[1] * t60 + R(0.06516162806573095) * t63);
             const gic_real t83 = (t82 * t80 - t74) * t71;
-            const gic_real t84 = k[6] * t69 - R(-0.2173831508800009) * t56 - t81 * t72;
+            const gic_real t84 = k[9] * t69 - R(-0.2173831508800009) * t56 - t81 * t72;
             const gic_real t85 = t82 * t46;
             const gic_real t86 = t77 - t82 * t76 + t85 * t80 - t70 * t83;
             const gic_real t87 = R(1.0) / t73;
@@ -1251,30 +1251,30 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t89 = t74 * t76 - t78 * t80 - t81 * t83 - t84 * t88;
             if (!(GIC_FABS(t89) > R(1.2777721100965236e-07)))
                 return GIC_ERROR_SINGULAR;
-            if (!(R(0.21526024724178433) * t64 + (k[8] * t56 + R(0.9665541626242249) * t69) > R(0.0)))
+            if (!(R(0.21526024724178433) * t64 + (k[10] * t56 + R(0.9665541626242249) * t69) > R(0.0)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t90 = R(1.5309008) - q[0];
             const gic_real t91 = q[0] + t90;
-            const gic_real t92 = k[9] - q[1];
+            const gic_real t92 = k[0] - q[1];
             const gic_real t93 = q[1] + t92;
             const gic_real t94 = R(0.22009100000000004) - q[2];
             const gic_real t95 = q[2] + t94;
             const gic_real t96 = R(1.0) / t89;
-            const gic_real t97 = R(6.938893903907228e-18) * m1[11] + (k[10] * m1[10] + R(-0.03556000000000003) * m1[9]);
+            const gic_real t97 = R(6.938893903907228e-18) * m1[11] + (k[3] * m1[10] + R(-0.03556000000000003) * m1[9]);
             const gic_real t98 = m1[2] + t97 - q[9];
             const gic_real t99 = q[2] + t82 - (q[9] + t30) - (q[2] - R(0.22009100000000004)) - t98;
             const gic_real t100 = t24 * t24 + (t28 * t28 + t39 * t39) - R(0.14941089924212003);
-            const gic_real t101 = R(6.938893903907228e-18) * m1[5] + (k[10] * m1[4] + R(-0.03556000000000003) * m1[3]);
+            const gic_real t101 = R(6.938893903907228e-18) * m1[5] + (k[3] * m1[4] + R(-0.03556000000000003) * m1[3]);
             const gic_real t102 = m1[0] + t101 - q[7];
-            const gic_real t103 = R(6.938893903907228e-18) * m1[8] + (k[10] * m1[7] + R(-0.03556000000000003) * m1[6]);
+            const gic_real t103 = R(6.938893903907228e-18) * m1[8] + (k[3] * m1[7] + R(-0.03556000000000003) * m1[6]);
             const gic_real t104 = m1[1] + t103 - q[8];
             const gic_real t105 = t100 * R(0.5) + t39 * t102 + t28 * t104 + t24 * t98;
             const gic_real t106 = q[0] + t77 - (q[7] + t34) - (q[0] - R(1.5309008)) - t102;
-            const gic_real t107 = q[1] + t74 - (q[8] + t43) - (q[1] - k[9]) - t104;
+            const gic_real t107 = q[1] + t74 - (q[8] + t43) - (q[1] - k[0]) - t104;
             const gic_real t108 = t107 - t42 * t105 - t46 * t106;
             const gic_real t109 = t99 + t75 * t105 + t76 * t106 + t80 * t108;
-            const gic_real t110 = k[4] * t64 + (R(0.9902342769914657) * t56 + k[5] * t69);
-            const gic_real t111 = t110 * t72 - (R(0.9760863515660297) * t64 + (k[6] * t56 + R(-0.2173831508800009) * t69));
+            const gic_real t110 = k[7] * t64 + (R(0.9902342769914657) * t56 + k[8] * t69);
+            const gic_real t111 = t110 * t72 - (R(0.9760863515660297) * t64 + (k[9] * t56 + R(-0.2173831508800009) * t69));
             const gic_real t112 = t96 * (t109 + t110 * t83 - t88 * t111);
             const gic_real t113 = R(0.5) * t112;
             const gic_real t114 = t87 * (t111 - t84 * t112);
@@ -1364,8 +1364,8 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t198 = t69 * t194 - t64 * t192;
             const gic_real t199 = t194 * t198 + t193 * t195;
             const gic_real t200 = t192 * t198 - t193 * t196;
-            const gic_real t201 = R(0.9902342769914657) * t197 + k[5] * t199 - k[4] * t200;
-            const gic_real t202 = k[6] * t197 + R(-0.2173831508800009) * t199 - R(0.9760863515660297) * t200 - t72 * t201;
+            const gic_real t201 = R(0.9902342769914657) * t197 + k[8] * t199 - k[7] * t200;
+            const gic_real t202 = k[9] * t197 + R(-0.2173831508800009) * t199 - R(0.9760863515660297) * t200 - t72 * t201;
             const gic_real t203 = t77 * t194 - t82 * t192;
             const gic_real t204 = t74 * t194 + t82 * t193;
             const gic_real t205 = t85 * t177 - (t175 + t82 * t178) + t78 * t176;
@@ -1824,7 +1824,7 @@ static gic_real hmmwv14_residual_uca_fl_wheel_fl(const gic_real *GIC_RESTRICT k,
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(1.5309008)) * R(2.928075656552032)), GIC_FABS((q[1] - k[9]) * R(2.928075656552032)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(1.5309008)) * R(2.928075656552032)), GIC_FABS((q[1] - k[0]) * R(2.928075656552032)));
         const gic_real t2 = q[5] + q[5];
         const gic_real t3 = q[6] * t2;
         const gic_real t4 = q[4] + q[4];
@@ -1834,21 +1834,21 @@ static gic_real hmmwv14_residual_uca_fl_wheel_fl(const gic_real *GIC_RESTRICT k,
         const gic_real t8 = q[4] * t7;
         const gic_real t9 = q[3] * t2;
         const gic_real t10 = t8 - t9;
-        const gic_real t11 = k[3] * t6 + R(0.9999999999999999) * t10;
+        const gic_real t11 = k[6] * t6 + R(0.9999999999999999) * t10;
         const gic_real t12 = q[4] * t4;
         const gic_real t13 = q[6] * t7;
         const gic_real t14 = R(1.0) - (t12 + t13);
         const gic_real t15 = q[5] * t4;
         const gic_real t16 = q[3] * t7;
         const gic_real t17 = t15 + t16;
-        const gic_real t18 = k[3] * t14 + R(0.9999999999999999) * t17;
+        const gic_real t18 = k[6] * t14 + R(0.9999999999999999) * t17;
         const gic_real t19 = t15 - t16;
         const gic_real t20 = q[5] * t2;
         const gic_real t21 = R(1.0) - (t20 + t13);
-        const gic_real t22 = k[3] * t19 + R(0.9999999999999999) * t21;
-        const gic_real t23 = (k[4] * t11 + (R(0.9902342769914657) * t18 + k[5] * t22)) * R(1.024499521374931);
+        const gic_real t22 = k[6] * t19 + R(0.9999999999999999) * t21;
+        const gic_real t23 = (k[7] * t11 + (R(0.9902342769914657) * t18 + k[8] * t22)) * R(1.024499521374931);
         const gic_real t24 = GIC_MAX(GIC_MAX(t1, GIC_FABS((q[2] - R(0.22009100000000004)) * R(2.928075656552032))), GIC_FABS(t23));
-        const gic_real t25 = (R(0.9760863515660297) * t11 + (k[6] * t18 + R(-0.2173831508800009) * t22)) * R(1.0098620328900394);
+        const gic_real t25 = (R(0.9760863515660297) * t11 + (k[9] * t18 + R(-0.2173831508800009) * t22)) * R(1.0098620328900394);
         const gic_real t26 = q[13] + q[13];
         const gic_real t27 = q[11] * t26;
         const gic_real t28 = q[12] + q[12];
@@ -1862,7 +1862,7 @@ static gic_real hmmwv14_residual_uca_fl_wheel_fl(const gic_real *GIC_RESTRICT k,
         const gic_real t36 = q[13] * t26;
         const gic_real t37 = R(1.0) - (t35 + t36);
         const gic_real t38 = q[7] + (R(0.33360360000000006) * t30 + (k[2] * t34 + R(-0.017475200000000024) * t37));
-        const gic_real t39 = R(1.1338201752909144e-08) * (t8 + t9) + (k[7] * t19 + R(0.06516162806573095) * t21);
+        const gic_real t39 = R(1.1338201752909144e-08) * (t8 + t9) + (k[1] * t19 + R(0.06516162806573095) * t21);
         const gic_real t40 = GIC_MAX(GIC_MAX(t24, GIC_FABS(t25)), GIC_FABS((t38 - (q[0] + t39)) * R(2.928075656552032)));
         const gic_real t41 = q[13] * t28;
         const gic_real t42 = q[10] * t31;
@@ -1871,23 +1871,23 @@ static gic_real hmmwv14_residual_uca_fl_wheel_fl(const gic_real *GIC_RESTRICT k,
         const gic_real t45 = R(1.0) - (t44 + t36);
         const gic_real t46 = t32 + t33;
         const gic_real t47 = q[8] + (R(0.33360360000000006) * t43 + (k[2] * t45 + R(-0.017475200000000024) * t46));
-        const gic_real t48 = R(1.1338201752909144e-08) * (t3 - t5) + (k[7] * t14 + R(0.06516162806573095) * t17);
+        const gic_real t48 = R(1.1338201752909144e-08) * (t3 - t5) + (k[1] * t14 + R(0.06516162806573095) * t17);
         const gic_real t49 = R(1.0) - (t44 + t35);
         const gic_real t50 = t41 + t42;
         const gic_real t51 = t27 - t29;
         const gic_real t52 = q[9] + (R(0.33360360000000006) * t49 + (k[2] * t50 + R(-0.017475200000000024) * t51));
-        const gic_real t53 = R(1.1338201752909144e-08) * (R(1.0) - (t12 + t20)) + (k[7] * t6 + R(0.06516162806573095) * t10);
+        const gic_real t53 = R(1.1338201752909144e-08) * (R(1.0) - (t12 + t20)) + (k[1] * t6 + R(0.06516162806573095) * t10);
         const gic_real t54 = GIC_MAX(GIC_MAX(t40, GIC_FABS((t47 - (q[1] + t48)) * R(2.928075656552032))), GIC_FABS((t52 - (q[2] + t53)) * R(2.928075656552032)));
-        const gic_real t55 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[10] * m1[4] + R(-0.03556000000000003) * m1[3]));
-        const gic_real t56 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[10] * m1[7] + R(-0.03556000000000003) * m1[6]));
+        const gic_real t55 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[3] * m1[4] + R(-0.03556000000000003) * m1[3]));
+        const gic_real t56 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[3] * m1[7] + R(-0.03556000000000003) * m1[6]));
         const gic_real t57 = GIC_MAX(GIC_MAX(t54, GIC_FABS((q[7] - t55) * R(2.928075656552032))), GIC_FABS((q[8] - t56) * R(2.928075656552032)));
-        const gic_real t58 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[10] * m1[10] + R(-0.03556000000000003) * m1[9]));
-        const gic_real t59 = q[9] + (R(0.10177780000000003) * t49 + (k[0] * t50 + R(-0.14025880000000002) * t51));
-        const gic_real t60 = t59 - (m0[2] + k[1] * m0[10]);
-        const gic_real t61 = q[8] + (R(0.10177780000000003) * t43 + (k[0] * t45 + R(-0.14025880000000002) * t46));
-        const gic_real t62 = t61 - (m0[1] + k[1] * m0[7]);
-        const gic_real t63 = q[7] + (R(0.10177780000000003) * t30 + (k[0] * t34 + R(-0.14025880000000002) * t37));
-        const gic_real t64 = t63 - (m0[0] + k[1] * m0[4]);
+        const gic_real t58 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[3] * m1[10] + R(-0.03556000000000003) * m1[9]));
+        const gic_real t59 = q[9] + (R(0.10177780000000003) * t49 + (k[4] * t50 + R(-0.14025880000000002) * t51));
+        const gic_real t60 = t59 - (m0[2] + k[5] * m0[10]);
+        const gic_real t61 = q[8] + (R(0.10177780000000003) * t43 + (k[4] * t45 + R(-0.14025880000000002) * t46));
+        const gic_real t62 = t61 - (m0[1] + k[5] * m0[7]);
+        const gic_real t63 = q[7] + (R(0.10177780000000003) * t30 + (k[4] * t34 + R(-0.14025880000000002) * t37));
+        const gic_real t64 = t63 - (m0[0] + k[5] * m0[4]);
         const gic_real t65 = t60 * t60 + (t62 * t62 + t64 * t64) - R(0.14941089924212003);
         const gic_real t66 = GIC_MAX(GIC_MAX(t57, GIC_FABS((q[9] - t58) * R(2.928075656552032))), GIC_FABS(t65 * R(3.9285226675160785)));
         worst = t66;
@@ -1897,15 +1897,15 @@ static gic_real hmmwv14_residual_uca_fl_wheel_fl(const gic_real *GIC_RESTRICT k,
 
 static const gic_real hmmwv14_k_uca_rl_wheel_rl[2][13] = {
     { /* uca_rl */
-        R(0.03459480000000004), R(0.416052), R(-0.07099299999999997), R(-5.421010862427522e-20),
-        R(-0.0007652649994718039), R(-1.0776391091961054e-05), R(-1.6940658945086007e-21), R(0.253605357573192),
-        R(0.0007653408717829899), R(0.462153), R(0.49375935710120966), R(0.1268157381236126),
+        R(0.462153), R(-5.421010862427522e-20), R(-1.0776391091961054e-05), R(-0.0007652649994718039),
+        R(-1.6940658945086007e-21), R(0.253605357573192), R(-0.07099299999999997), R(0.49375935710120966),
+        R(0.03459480000000004), R(0.416052), R(0.0007653408717829899), R(0.1268157381236126),
         R(0.08910630000000008),
     },
     { /* uca_rr */
-        R(-0.03459480000000004), R(-0.416052), R(0.07099299999999997), R(5.421010862427522e-20),
-        R(0.0007652649994718039), R(1.0776391091961054e-05), R(1.6940658945086007e-21), R(-0.253605357573192),
-        R(-0.0007653408717829899), R(-0.462153), R(-0.49375935710120966), R(-0.1268157381236126),
+        R(-0.462153), R(5.421010862427522e-20), R(1.0776391091961054e-05), R(0.0007652649994718039),
+        R(1.6940658945086007e-21), R(-0.253605357573192), R(0.07099299999999997), R(-0.49375935710120966),
+        R(-0.03459480000000004), R(-0.416052), R(-0.0007653408717829899), R(-0.1268157381236126),
         R(-0.08910630000000008),
     },
 };
@@ -2000,7 +2000,7 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
         for (i = 0; i < GIC_CHORDS; ++i) {
             {
                 const gic_real t1 = R(-1.475859) - q[0];
-                const gic_real t2 = k[9] - q[1];
+                const gic_real t2 = k[0] - q[1];
                 const gic_real t3 = R(0.22567900000000007) - q[2];
                 const gic_real t4 = q[5] + q[5];
                 const gic_real t5 = q[6] * t4;
@@ -2011,21 +2011,21 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
                 const gic_real t10 = q[4] * t9;
                 const gic_real t11 = q[3] * t4;
                 const gic_real t12 = t10 - t11;
-                const gic_real t13 = k[3] * t8 + R(0.9999999999999999) * t12;
+                const gic_real t13 = k[1] * t8 + R(0.9999999999999999) * t12;
                 const gic_real t14 = q[4] * t6;
                 const gic_real t15 = q[6] * t9;
                 const gic_real t16 = R(1.0) - (t14 + t15);
                 const gic_real t17 = q[5] * t6;
                 const gic_real t18 = q[3] * t9;
                 const gic_real t19 = t17 + t18;
-                const gic_real t20 = k[3] * t16 + R(0.9999999999999999) * t19;
+                const gic_real t20 = k[1] * t16 + R(0.9999999999999999) * t19;
                 const gic_real t21 = t17 - t18;
                 const gic_real t22 = q[5] * t4;
                 const gic_real t23 = R(1.0) - (t22 + t15);
-                const gic_real t24 = k[3] * t21 + R(0.9999999999999999) * t23;
-                const gic_real t25 = k[5] * t13 + (R(0.9999997071266321) * t20 + k[4] * t24);
-                const gic_real t26 = t25 * f[18] - (R(0.9999008646813683) * t13 + (k[6] * t20 + R(-0.014080511689981543) * t24));
-                const gic_real t27 = R(2.8645315225742096e-09) * (R(1.0) - (t14 + t22)) + (k[7] * t8 + R(-0.17747212962088846) * t12);
+                const gic_real t24 = k[1] * t21 + R(0.9999999999999999) * t23;
+                const gic_real t25 = k[2] * t13 + (R(0.9999997071266321) * t20 + k[3] * t24);
+                const gic_real t26 = t25 * f[18] - (R(0.9999008646813683) * t13 + (k[4] * t20 + R(-0.014080511689981543) * t24));
+                const gic_real t27 = R(2.8645315225742096e-09) * (R(1.0) - (t14 + t22)) + (k[5] * t8 + R(-0.17747212962088846) * t12);
                 const gic_real t28 = q[11] + q[11];
                 const gic_real t29 = q[11] * t28;
                 const gic_real t30 = q[12] + q[12];
@@ -2034,38 +2034,38 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
                 const gic_real t33 = q[13] * t30;
                 const gic_real t34 = q[10] * t28;
                 const gic_real t35 = t33 + t34;
-                const gic_real t36 = q[2] + t27 - (q[9] + (R(0.33401) * t32 + k[2] * t35));
-                const gic_real t37 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[10] * m0[10] + R(0.03556000000000003) * m0[9]));
+                const gic_real t36 = q[2] + t27 - (q[9] + (R(0.33401) * t32 + k[6] * t35));
+                const gic_real t37 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[7] * m0[10] + R(0.03556000000000003) * m0[9]));
                 const gic_real t38 = t37 - q[9];
                 const gic_real t39 = q[13] + q[13];
                 const gic_real t40 = q[11] * t39;
                 const gic_real t41 = q[10] * t30;
-                const gic_real t42 = R(0.10883900000000002) * t32 + (k[0] * t35 + R(0.1347216) * (t40 - t41));
+                const gic_real t42 = R(0.10883900000000002) * t32 + (k[8] * t35 + R(0.1347216) * (t40 - t41));
                 const gic_real t43 = q[9] + t42 - R(0.058674000000000004);
                 const gic_real t44 = t33 - t34;
                 const gic_real t45 = q[13] * t39;
                 const gic_real t46 = R(1.0) - (t29 + t45);
                 const gic_real t47 = q[12] * t28;
                 const gic_real t48 = q[10] * t39;
-                const gic_real t49 = R(0.10883900000000002) * t44 + (k[0] * t46 + R(0.1347216) * (t47 + t48));
-                const gic_real t50 = q[8] + t49 - k[1];
+                const gic_real t49 = R(0.10883900000000002) * t44 + (k[8] * t46 + R(0.1347216) * (t47 + t48));
+                const gic_real t50 = q[8] + t49 - k[9];
                 const gic_real t51 = t40 + t41;
                 const gic_real t52 = t47 - t48;
-                const gic_real t53 = R(0.10883900000000002) * t51 + (k[0] * t52 + R(0.1347216) * (R(1.0) - (t31 + t45)));
+                const gic_real t53 = R(0.10883900000000002) * t51 + (k[8] * t52 + R(0.1347216) * (R(1.0) - (t31 + t45)));
                 const gic_real t54 = q[7] + t53 - R(-1.465699);
                 const gic_real t55 = t43 * t43 + (t50 * t50 + t54 * t54) - R(0.1714924505628);
-                const gic_real t56 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[10] * m0[4] + R(0.03556000000000003) * m0[3]));
+                const gic_real t56 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[7] * m0[4] + R(0.03556000000000003) * m0[3]));
                 const gic_real t57 = t56 - q[7];
-                const gic_real t58 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[10] * m0[7] + R(0.03556000000000003) * m0[6]));
+                const gic_real t58 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[7] * m0[7] + R(0.03556000000000003) * m0[6]));
                 const gic_real t59 = t58 - q[8];
                 const gic_real t60 = t55 * R(0.5) + f[0] * t57 + f[1] * t59 + f[2] * t38;
-                const gic_real t61 = R(2.8645315225742096e-09) * (t10 + t11) + (k[7] * t21 + R(-0.17747212962088846) * t23);
-                const gic_real t62 = q[0] + t61 - (q[7] + (R(0.33401) * t51 + k[2] * t52));
+                const gic_real t61 = R(2.8645315225742096e-09) * (t10 + t11) + (k[5] * t21 + R(-0.17747212962088846) * t23);
+                const gic_real t62 = q[0] + t61 - (q[7] + (R(0.33401) * t51 + k[6] * t52));
                 const gic_real t63 = t62 - (q[0] - R(-1.475859)) - t57;
                 const gic_real t64 = t36 - (q[2] - R(0.22567900000000007)) - t38 + f[21] * t60 + f[22] * t63;
-                const gic_real t65 = R(2.8645315225742096e-09) * (t5 - t7) + (k[7] * t16 + R(-0.17747212962088846) * t19);
-                const gic_real t66 = q[1] + t65 - (q[8] + (R(0.33401) * t44 + k[2] * t46));
-                const gic_real t67 = t66 - (q[1] - k[9]) - t59 - f[10] * t60 - f[11] * t63;
+                const gic_real t65 = R(2.8645315225742096e-09) * (t5 - t7) + (k[5] * t16 + R(-0.17747212962088846) * t19);
+                const gic_real t66 = q[1] + t65 - (q[8] + (R(0.33401) * t44 + k[6] * t46));
+                const gic_real t67 = t66 - (q[1] - k[0]) - t59 - f[10] * t60 - f[11] * t63;
                 const gic_real t68 = t64 + f[23] * t67 + t25 * f[24] - f[25] * t26;
                 const gic_real t69 = f[26] * t68;
                 const gic_real t70 = f[19] * (t26 - f[20] * t69);
@@ -2147,30 +2147,30 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t9 = R(1.0) - (t6 + t8);
             const gic_real t10 = q[12] * t3;
             const gic_real t11 = q[10] * t7;
-            const gic_real t12 = R(0.10883900000000002) * t5 + (k[0] * t9 + R(0.1347216) * (t10 + t11));
+            const gic_real t12 = R(0.10883900000000002) * t5 + (k[8] * t9 + R(0.1347216) * (t10 + t11));
             const gic_real t13 = q[12] * t1;
             const gic_real t14 = R(1.0) - (t6 + t13);
             const gic_real t15 = t2 + t4;
             const gic_real t16 = q[11] * t7;
             const gic_real t17 = q[10] * t1;
-            const gic_real t18 = R(0.10883900000000002) * t14 + (k[0] * t15 + R(0.1347216) * (t16 - t17));
+            const gic_real t18 = R(0.10883900000000002) * t14 + (k[8] * t15 + R(0.1347216) * (t16 - t17));
             const gic_real t19 = q[9] + t18 - R(0.058674000000000004);
-            const gic_real t20 = q[8] + t12 - k[1];
+            const gic_real t20 = q[8] + t12 - k[9];
             const gic_real t21 = t12 * t19 - t18 * t20;
             if (!(GIC_FABS(t21) > R(4.68379989802557e-09)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t22 = R(0.33401) * t14 + k[2] * t15;
+            const gic_real t22 = R(0.33401) * t14 + k[6] * t15;
             if (!(GIC_FABS(t22) > R(3.364047545679519e-08)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t23 = t16 + t17;
             const gic_real t24 = t10 - t11;
-            const gic_real t25 = R(0.33401) * t23 + k[2] * t24;
-            const gic_real t26 = R(0.10883900000000002) * t23 + (k[0] * t24 + R(0.1347216) * (R(1.0) - (t13 + t8)));
+            const gic_real t25 = R(0.33401) * t23 + k[6] * t24;
+            const gic_real t26 = R(0.10883900000000002) * t23 + (k[8] * t24 + R(0.1347216) * (R(1.0) - (t13 + t8)));
             const gic_real t27 = q[7] + t26 - R(-1.465699);
             const gic_real t28 = t26 * t20 - t12 * t27;
             const gic_real t29 = R(1.0) / t21;
             const gic_real t30 = t22 * t29;
-            const gic_real t31 = R(0.33401) * t5 + k[2] * t9;
+            const gic_real t31 = R(0.33401) * t5 + k[6] * t9;
             const gic_real t32 = t18 * t27 - t26 * t19;
             const gic_real t33 = R(1.0) / t22;
             const gic_real t34 = t32 * t30 * t33;
@@ -2186,12 +2186,12 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t42 = q[5] * t41;
             const gic_real t43 = q[6] * t38;
             const gic_real t44 = R(1.0) - (t42 + t43);
-            const gic_real t45 = k[3] * t40 + R(0.9999999999999999) * t44;
+            const gic_real t45 = k[1] * t40 + R(0.9999999999999999) * t44;
             const gic_real t46 = q[4] * t36;
             const gic_real t47 = R(1.0) - (t46 + t43);
             const gic_real t48 = t37 + t39;
-            const gic_real t49 = k[3] * t47 + R(0.9999999999999999) * t48;
-            const gic_real t50 = R(0.9999997071266321) * t45 - k[4] * t49;
+            const gic_real t49 = k[1] * t47 + R(0.9999999999999999) * t48;
+            const gic_real t50 = R(0.9999997071266321) * t45 - k[3] * t49;
             if (!(GIC_FABS(t50) > R(9.999008646813682e-08)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t51 = q[6] * t41;
@@ -2200,24 +2200,24 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t54 = q[4] * t38;
             const gic_real t55 = q[3] * t41;
             const gic_real t56 = t54 - t55;
-            const gic_real t57 = k[3] * t53 + R(0.9999999999999999) * t56;
-            const gic_real t58 = k[4] * t57 - k[5] * t45;
+            const gic_real t57 = k[1] * t53 + R(0.9999999999999999) * t56;
+            const gic_real t58 = k[3] * t57 - k[2] * t45;
             const gic_real t59 = R(1.0) / t50;
-            const gic_real t60 = (k[6] * t45 - R(-0.014080511689981543) * t49) * t59;
+            const gic_real t60 = (k[4] * t45 - R(-0.014080511689981543) * t49) * t59;
             const gic_real t61 = R(-0.014080511689981543) * t57 - R(0.9999008646813683) * t45 - t58 * t60;
             if (!(GIC_FABS(t61) > R(9.999997071266317e-08)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t62 = R(2.8645315225742096e-09) * (R(1.0) - (t46 + t42)) + (k[7] * t53 + R(-0.17747212962088846) * t56);
+            const gic_real t62 = R(2.8645315225742096e-09) * (R(1.0) - (t46 + t42)) + (k[5] * t53 + R(-0.17747212962088846) * t56);
             const gic_real t63 = t31 * t29;
             const gic_real t64 = (t25 + t32 * t63) * t33;
             const gic_real t65 = R(1.0) / t35;
             const gic_real t66 = (t28 * t63 + t31 * t64) * t65;
-            const gic_real t67 = R(2.8645315225742096e-09) * (t51 - t52) + (k[7] * t47 + R(-0.17747212962088846) * t48);
-            const gic_real t68 = k[5] * t49 - R(0.9999997071266321) * t57;
-            const gic_real t69 = R(2.8645315225742096e-09) * (t54 + t55) + (k[7] * t40 + R(-0.17747212962088846) * t44);
+            const gic_real t67 = R(2.8645315225742096e-09) * (t51 - t52) + (k[5] * t47 + R(-0.17747212962088846) * t48);
+            const gic_real t68 = k[2] * t49 - R(0.9999997071266321) * t57;
+            const gic_real t69 = R(2.8645315225742096e-09) * (t54 + t55) + (k[5] * t40 + R(-0.17747212962088846) * t44);
             const gic_real t70 = t69 + t67 * t34;
             const gic_real t71 = (t67 * t64 - t70 * t66) * t59;
-            const gic_real t72 = R(0.9999008646813683) * t49 - k[6] * t57 - t68 * t60;
+            const gic_real t72 = R(0.9999008646813683) * t49 - k[4] * t57 - t68 * t60;
             const gic_real t73 = t62 * t34;
             const gic_real t74 = t69 - t62 * t64 + t73 * t66 - t58 * t71;
             const gic_real t75 = R(1.0) / t61;
@@ -2225,28 +2225,28 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t77 = t62 * t66 - t67 - t68 * t71 - t72 * t76;
             if (!(GIC_FABS(t77) > R(2.626672667561925e-08)))
                 return GIC_ERROR_SINGULAR;
-            if (!(R(0.014080507566174662) * t57 + (k[8] * t49 + R(0.9999005718370345) * t45) > R(0.0)))
+            if (!(R(0.014080507566174662) * t57 + (k[10] * t49 + R(0.9999005718370345) * t45) > R(0.0)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t78 = R(-1.475859) - q[0];
             const gic_real t79 = q[0] + t78;
-            const gic_real t80 = k[9] - q[1];
+            const gic_real t80 = k[0] - q[1];
             const gic_real t81 = q[1] + t80;
             const gic_real t82 = R(0.22567900000000007) - q[2];
             const gic_real t83 = q[2] + t82;
-            const gic_real t84 = k[5] * t57 + (R(0.9999997071266321) * t49 + k[4] * t45);
-            const gic_real t85 = t84 * t60 - (R(0.9999008646813683) * t57 + (k[6] * t49 + R(-0.014080511689981543) * t45));
+            const gic_real t84 = k[2] * t57 + (R(0.9999997071266321) * t49 + k[3] * t45);
+            const gic_real t85 = t84 * t60 - (R(0.9999008646813683) * t57 + (k[4] * t49 + R(-0.014080511689981543) * t45));
             const gic_real t86 = R(1.0) / t77;
-            const gic_real t87 = R(6.938893903907228e-18) * m0[11] + (k[10] * m0[10] + R(0.03556000000000003) * m0[9]);
+            const gic_real t87 = R(6.938893903907228e-18) * m0[11] + (k[7] * m0[10] + R(0.03556000000000003) * m0[9]);
             const gic_real t88 = m0[2] + t87 - q[9];
             const gic_real t89 = q[2] + t62 - (q[9] + t22) - (q[2] - R(0.22567900000000007)) - t88;
             const gic_real t90 = t19 * t19 + (t20 * t20 + t27 * t27) - R(0.1714924505628);
-            const gic_real t91 = R(6.938893903907228e-18) * m0[5] + (k[10] * m0[4] + R(0.03556000000000003) * m0[3]);
+            const gic_real t91 = R(6.938893903907228e-18) * m0[5] + (k[7] * m0[4] + R(0.03556000000000003) * m0[3]);
             const gic_real t92 = m0[0] + t91 - q[7];
-            const gic_real t93 = R(6.938893903907228e-18) * m0[8] + (k[10] * m0[7] + R(0.03556000000000003) * m0[6]);
+            const gic_real t93 = R(6.938893903907228e-18) * m0[8] + (k[7] * m0[7] + R(0.03556000000000003) * m0[6]);
             const gic_real t94 = m0[1] + t93 - q[8];
             const gic_real t95 = t90 * R(0.5) + t27 * t92 + t20 * t94 + t19 * t88;
             const gic_real t96 = q[0] + t69 - (q[7] + t25) - (q[0] - R(-1.475859)) - t92;
-            const gic_real t97 = q[1] + t67 - (q[8] + t31) - (q[1] - k[9]) - t94;
+            const gic_real t97 = q[1] + t67 - (q[8] + t31) - (q[1] - k[0]) - t94;
             const gic_real t98 = t97 - t30 * t95 - t34 * t96;
             const gic_real t99 = t89 + t63 * t95 + t64 * t96 + t66 * t98;
             const gic_real t100 = t86 * (t99 + t84 * t71 - t76 * t85);
@@ -2372,8 +2372,8 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
             const gic_real t220 = t45 * t175 - t57 * t171;
             const gic_real t221 = t175 * t220 + t173 * t217;
             const gic_real t222 = t171 * t220 - t173 * t218;
-            const gic_real t223 = R(0.9999997071266321) * t219 + k[4] * t221 - k[5] * t222;
-            const gic_real t224 = k[6] * t219 + R(-0.014080511689981543) * t221 - R(0.9999008646813683) * t222 - t60 * t223;
+            const gic_real t223 = R(0.9999997071266321) * t219 + k[3] * t221 - k[2] * t222;
+            const gic_real t224 = k[4] * t219 + R(-0.014080511689981543) * t221 - R(0.9999008646813683) * t222 - t60 * t223;
             const gic_real t225 = t86 * (t216 - t71 * t223 - t76 * t224);
             const gic_real t226 = t75 * (t224 - t72 * t225);
             const gic_real t227 = t59 * (t223 - t58 * t226 - t68 * t225);
@@ -2710,7 +2710,7 @@ static gic_real hmmwv14_residual_uca_rl_wheel_rl(const gic_real *GIC_RESTRICT k,
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(-1.475859)) * R(2.928503331078754)), GIC_FABS((q[1] - k[9]) * R(2.928503331078754)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(-1.475859)) * R(2.928503331078754)), GIC_FABS((q[1] - k[0]) * R(2.928503331078754)));
         const gic_real t2 = q[5] + q[5];
         const gic_real t3 = q[6] * t2;
         const gic_real t4 = q[4] + q[4];
@@ -2720,21 +2720,21 @@ static gic_real hmmwv14_residual_uca_rl_wheel_rl(const gic_real *GIC_RESTRICT k,
         const gic_real t8 = q[4] * t7;
         const gic_real t9 = q[3] * t2;
         const gic_real t10 = t8 - t9;
-        const gic_real t11 = k[3] * t6 + R(0.9999999999999999) * t10;
+        const gic_real t11 = k[1] * t6 + R(0.9999999999999999) * t10;
         const gic_real t12 = q[4] * t4;
         const gic_real t13 = q[6] * t7;
         const gic_real t14 = R(1.0) - (t12 + t13);
         const gic_real t15 = q[5] * t4;
         const gic_real t16 = q[3] * t7;
         const gic_real t17 = t15 + t16;
-        const gic_real t18 = k[3] * t14 + R(0.9999999999999999) * t17;
+        const gic_real t18 = k[1] * t14 + R(0.9999999999999999) * t17;
         const gic_real t19 = t15 - t16;
         const gic_real t20 = q[5] * t2;
         const gic_real t21 = R(1.0) - (t20 + t13);
-        const gic_real t22 = k[3] * t19 + R(0.9999999999999999) * t21;
-        const gic_real t23 = (k[5] * t11 + (R(0.9999997071266321) * t18 + k[4] * t22)) * R(1.0000991451474173);
+        const gic_real t22 = k[1] * t19 + R(0.9999999999999999) * t21;
+        const gic_real t23 = (k[2] * t11 + (R(0.9999997071266321) * t18 + k[3] * t22)) * R(1.0000991451474173);
         const gic_real t24 = GIC_MAX(GIC_MAX(t1, GIC_FABS((q[2] - R(0.22567900000000007)) * R(2.928503331078754))), GIC_FABS(t23));
-        const gic_real t25 = (R(0.9999008646813683) * t11 + (k[6] * t18 + R(-0.014080511689981543) * t22)) * R(1.000000292873454);
+        const gic_real t25 = (R(0.9999008646813683) * t11 + (k[4] * t18 + R(-0.014080511689981543) * t22)) * R(1.000000292873454);
         const gic_real t26 = q[13] + q[13];
         const gic_real t27 = q[11] * t26;
         const gic_real t28 = q[12] + q[12];
@@ -2744,32 +2744,32 @@ static gic_real hmmwv14_residual_uca_rl_wheel_rl(const gic_real *GIC_RESTRICT k,
         const gic_real t32 = q[12] * t31;
         const gic_real t33 = q[10] * t26;
         const gic_real t34 = t32 - t33;
-        const gic_real t35 = R(2.8645315225742096e-09) * (t8 + t9) + (k[7] * t19 + R(-0.17747212962088846) * t21);
-        const gic_real t36 = q[7] + (R(0.33401) * t30 + k[2] * t34) - (q[0] + t35);
+        const gic_real t35 = R(2.8645315225742096e-09) * (t8 + t9) + (k[5] * t19 + R(-0.17747212962088846) * t21);
+        const gic_real t36 = q[7] + (R(0.33401) * t30 + k[6] * t34) - (q[0] + t35);
         const gic_real t37 = q[13] * t28;
         const gic_real t38 = q[10] * t31;
         const gic_real t39 = t37 - t38;
         const gic_real t40 = q[11] * t31;
         const gic_real t41 = q[13] * t26;
         const gic_real t42 = R(1.0) - (t40 + t41);
-        const gic_real t43 = R(2.8645315225742096e-09) * (t3 - t5) + (k[7] * t14 + R(-0.17747212962088846) * t17);
-        const gic_real t44 = q[8] + (R(0.33401) * t39 + k[2] * t42) - (q[1] + t43);
+        const gic_real t43 = R(2.8645315225742096e-09) * (t3 - t5) + (k[5] * t14 + R(-0.17747212962088846) * t17);
+        const gic_real t44 = q[8] + (R(0.33401) * t39 + k[6] * t42) - (q[1] + t43);
         const gic_real t45 = GIC_MAX(GIC_MAX(GIC_MAX(t24, GIC_FABS(t25)), GIC_FABS(t36 * R(2.928503331078754))), GIC_FABS(t44 * R(2.928503331078754)));
         const gic_real t46 = q[12] * t28;
         const gic_real t47 = R(1.0) - (t40 + t46);
         const gic_real t48 = t37 + t38;
-        const gic_real t49 = R(2.8645315225742096e-09) * (R(1.0) - (t12 + t20)) + (k[7] * t6 + R(-0.17747212962088846) * t10);
-        const gic_real t50 = q[9] + (R(0.33401) * t47 + k[2] * t48) - (q[2] + t49);
-        const gic_real t51 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[10] * m0[4] + R(0.03556000000000003) * m0[3]));
+        const gic_real t49 = R(2.8645315225742096e-09) * (R(1.0) - (t12 + t20)) + (k[5] * t6 + R(-0.17747212962088846) * t10);
+        const gic_real t50 = q[9] + (R(0.33401) * t47 + k[6] * t48) - (q[2] + t49);
+        const gic_real t51 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[7] * m0[4] + R(0.03556000000000003) * m0[3]));
         const gic_real t52 = GIC_MAX(GIC_MAX(t45, GIC_FABS(t50 * R(2.928503331078754))), GIC_FABS((q[7] - t51) * R(2.928503331078754)));
-        const gic_real t53 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[10] * m0[7] + R(0.03556000000000003) * m0[6]));
-        const gic_real t54 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[10] * m0[10] + R(0.03556000000000003) * m0[9]));
+        const gic_real t53 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[7] * m0[7] + R(0.03556000000000003) * m0[6]));
+        const gic_real t54 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[7] * m0[10] + R(0.03556000000000003) * m0[9]));
         const gic_real t55 = GIC_MAX(GIC_MAX(t52, GIC_FABS((q[8] - t53) * R(2.928503331078754))), GIC_FABS((q[9] - t54) * R(2.928503331078754)));
-        const gic_real t56 = R(0.10883900000000002) * t47 + (k[0] * t48 + R(0.1347216) * (t27 - t29));
+        const gic_real t56 = R(0.10883900000000002) * t47 + (k[8] * t48 + R(0.1347216) * (t27 - t29));
         const gic_real t57 = q[9] + t56 - R(0.058674000000000004);
-        const gic_real t58 = R(0.10883900000000002) * t39 + (k[0] * t42 + R(0.1347216) * (t32 + t33));
-        const gic_real t59 = q[8] + t58 - k[1];
-        const gic_real t60 = R(0.10883900000000002) * t30 + (k[0] * t34 + R(0.1347216) * (R(1.0) - (t46 + t41)));
+        const gic_real t58 = R(0.10883900000000002) * t39 + (k[8] * t42 + R(0.1347216) * (t32 + t33));
+        const gic_real t59 = q[8] + t58 - k[9];
+        const gic_real t60 = R(0.10883900000000002) * t30 + (k[8] * t34 + R(0.1347216) * (R(1.0) - (t46 + t41)));
         const gic_real t61 = q[7] + t60 - R(-1.465699);
         const gic_real t62 = t57 * t57 + (t59 * t59 + t61 * t61) - R(0.1714924505628);
         const gic_real t63 = GIC_MAX(t55, GIC_FABS(t62 * R(3.614956002238164)));

@@ -446,10 +446,10 @@ static gic_real solid_axle_residual_rack(const gic_real *GIC_RESTRICT k, const s
 
 static const gic_real solid_axle_k_lca_fl[2][4] = {
     { /* lca_fl */
-        R(0.2403881036540444), R(0.509778), R(0.307086), R(0.24689200985615367),
+        R(0.307086), R(0.2403881036540444), R(0.509778), R(0.24689200985615367),
     },
     { /* lca_fr */
-        R(-0.2403881036540444), R(-0.509778), R(-0.307086), R(-0.24689200985615367),
+        R(-0.307086), R(-0.2403881036540444), R(-0.509778), R(-0.24689200985615367),
     },
 };
 
@@ -513,7 +513,7 @@ static int solid_axle_solve_lca_fl(solid_axle *self, const gic_real *GIC_RESTRIC
         for (i = 0; i < GIC_CHORDS; ++i) {
             {
                 const gic_real t1 = R(1.688965) - q[0];
-                const gic_real t2 = k[2] - q[1];
+                const gic_real t2 = k[0] - q[1];
                 const gic_real t3 = q[4] + q[4];
                 const gic_real t4 = q[4] * t3;
                 const gic_real t5 = q[5] + q[5];
@@ -524,15 +524,15 @@ static int solid_axle_solve_lca_fl(solid_axle *self, const gic_real *GIC_RESTRIC
                 const gic_real t10 = q[4] * t9;
                 const gic_real t11 = q[3] * t5;
                 const gic_real t12 = t10 - t11;
-                const gic_real t13 = R(0.01121887479261392) * (R(1.0) - (t4 + t6)) + (k[0] * (t7 + t8) + R(0.09720579999999998) * t12);
+                const gic_real t13 = R(0.01121887479261392) * (R(1.0) - (t4 + t6)) + (k[1] * (t7 + t8) + R(0.09720579999999998) * t12);
                 const gic_real t14 = q[2] + t13 - R(0.19748500000000002);
                 const gic_real t15 = q[6] * t9;
                 const gic_real t16 = q[5] * t3;
                 const gic_real t17 = q[3] * t9;
                 const gic_real t18 = t16 + t17;
-                const gic_real t19 = R(0.01121887479261392) * (t7 - t8) + (k[0] * (R(1.0) - (t4 + t15)) + R(0.09720579999999998) * t18);
-                const gic_real t20 = q[1] + t19 - k[1];
-                const gic_real t21 = k[0] * (t16 - t17) + R(0.09720579999999998) * (R(1.0) - (t6 + t15));
+                const gic_real t19 = R(0.01121887479261392) * (t7 - t8) + (k[1] * (R(1.0) - (t4 + t15)) + R(0.09720579999999998) * t18);
+                const gic_real t20 = q[1] + t19 - k[2];
+                const gic_real t21 = k[1] * (t16 - t17) + R(0.09720579999999998) * (R(1.0) - (t6 + t15));
                 const gic_real t22 = q[0] + (R(0.01121887479261392) * (t10 + t11) + t21) - R(1.792978);
                 const gic_real t23 = t14 * t14 + (t20 * t20 + t22 * t22) - x[0] * x[0];
                 const gic_real t24 = q[2] * f[6] - (t23 * R(0.5) + f[4] * t1 + f[5] * t2);
@@ -592,15 +592,15 @@ static int solid_axle_solve_lca_fl(solid_axle *self, const gic_real *GIC_RESTRIC
             const gic_real t11 = q[5] * t8;
             const gic_real t12 = q[3] * t3;
             const gic_real t13 = t11 + t12;
-            const gic_real t14 = R(0.01121887479261392) * (t7 - t9) + (k[0] * (R(1.0) - (t10 + t4)) + R(0.09720579999999998) * t13);
+            const gic_real t14 = R(0.01121887479261392) * (t7 - t9) + (k[1] * (R(1.0) - (t10 + t4)) + R(0.09720579999999998) * t13);
             const gic_real t15 = q[4] * t3;
             const gic_real t16 = q[3] * t1;
             const gic_real t17 = t15 - t16;
-            const gic_real t18 = R(0.01121887479261392) * (R(1.0) - (t10 + t2)) + (k[0] * (t7 + t9) + R(0.09720579999999998) * t17);
+            const gic_real t18 = R(0.01121887479261392) * (R(1.0) - (t10 + t2)) + (k[1] * (t7 + t9) + R(0.09720579999999998) * t17);
             const gic_real t19 = q[2] + t18 - R(0.19748500000000002);
-            const gic_real t20 = q[1] + t14 - k[1];
+            const gic_real t20 = q[1] + t14 - k[2];
             const gic_real t21 = R(0.9999999999999998) * t17;
-            const gic_real t22 = R(0.01121887479261392) * (t15 + t16) + (k[0] * (t11 - t12) + R(0.09720579999999998) * t5);
+            const gic_real t22 = R(0.01121887479261392) * (t15 + t16) + (k[1] * (t11 - t12) + R(0.09720579999999998) * t5);
             const gic_real t23 = q[0] + t22 - R(1.792978);
             const gic_real t24 = R(1.0) / t6;
             const gic_real t25 = (t22 * t20 - t14 * t23) * t24;
@@ -614,7 +614,7 @@ static int solid_axle_solve_lca_fl(solid_axle *self, const gic_real *GIC_RESTRIC
                 return GIC_ERROR_SINGULAR;
             const gic_real t30 = R(1.688965) - q[0];
             const gic_real t31 = q[0] + t30;
-            const gic_real t32 = k[2] - q[1];
+            const gic_real t32 = k[0] - q[1];
             const gic_real t33 = q[1] + t32;
             const gic_real t34 = R(1.0) / t29;
             const gic_real t35 = t19 * t19 + (t20 * t20 + t23 * t23) - x[0] * x[0];
@@ -848,7 +848,7 @@ static gic_real solid_axle_residual_lca_fl(const gic_real *GIC_RESTRICT k, const
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(1.688965)) * R(3.852963219305648)), GIC_FABS((q[1] - k[2]) * R(3.852963219305648)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(1.688965)) * R(3.852963219305648)), GIC_FABS((q[1] - k[0]) * R(3.852963219305648)));
         const gic_real t2 = q[4] + q[4];
         const gic_real t3 = q[5] * t2;
         const gic_real t4 = q[6] + q[6];
@@ -863,12 +863,12 @@ static gic_real solid_axle_residual_lca_fl(const gic_real *GIC_RESTRICT k, const
         const gic_real t13 = q[5] * t8;
         const gic_real t14 = q[6] * t8;
         const gic_real t15 = q[3] * t2;
-        const gic_real t16 = R(0.01121887479261392) * (R(1.0) - (t12 + t13)) + (k[0] * (t14 + t15) + R(0.09720579999999998) * t10);
+        const gic_real t16 = R(0.01121887479261392) * (R(1.0) - (t12 + t13)) + (k[1] * (t14 + t15) + R(0.09720579999999998) * t10);
         const gic_real t17 = q[2] + t16 - R(0.19748500000000002);
         const gic_real t18 = q[6] * t4;
-        const gic_real t19 = R(0.01121887479261392) * (t14 - t15) + (k[0] * (R(1.0) - (t12 + t18)) + R(0.09720579999999998) * t6);
-        const gic_real t20 = q[1] + t19 - k[1];
-        const gic_real t21 = k[0] * (t3 - t5) + R(0.09720579999999998) * (R(1.0) - (t13 + t18));
+        const gic_real t19 = R(0.01121887479261392) * (t14 - t15) + (k[1] * (R(1.0) - (t12 + t18)) + R(0.09720579999999998) * t6);
+        const gic_real t20 = q[1] + t19 - k[2];
+        const gic_real t21 = k[1] * (t3 - t5) + R(0.09720579999999998) * (R(1.0) - (t13 + t18));
         const gic_real t22 = q[0] + (R(0.01121887479261392) * (t7 + t9) + t21) - R(1.792978);
         const gic_real t23 = t17 * t17 + (t20 * t20 + t22 * t22) - x[0] * x[0];
         const gic_real t24 = GIC_MAX(t11, GIC_FABS(t23 * R(7.892375927523102)));
@@ -1630,12 +1630,12 @@ static gic_real solid_axle_residual_axle(const gic_real *GIC_RESTRICT k, const s
 
 static const gic_real solid_axle_k_wheel_fl[2][7] = {
     { /* wheel_fl */
-        R(0.03459480000000004), R(0.448437), R(-0.07099299999999997), R(0.4527638),
-        R(-0.1394133303209898), R(0.49375935710120966), R(0.08910630000000008),
+        R(0.49375935710120966), R(0.03459480000000004), R(0.448437), R(-0.07099299999999997),
+        R(0.4527638), R(-0.1394133303209898), R(0.08910630000000008),
     },
     { /* wheel_fr */
-        R(-0.03459480000000004), R(-0.448437), R(0.07099299999999997), R(-0.4527638),
-        R(0.1394133303209898), R(-0.49375935710120966), R(-0.08910630000000008),
+        R(-0.49375935710120966), R(-0.03459480000000004), R(-0.448437), R(0.07099299999999997),
+        R(-0.4527638), R(0.1394133303209898), R(-0.08910630000000008),
     },
 };
 
@@ -1699,11 +1699,11 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
         /* correct with the old factors until what a further correction would change, about step times reach, is rounding */
         for (i = 0; i < GIC_CHORDS; ++i) {
             {
-                const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[5] * m1[4] + R(-0.03556000000000003) * m1[3]));
+                const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[0] * m1[4] + R(-0.03556000000000003) * m1[3]));
                 const gic_real t2 = t1 - q[0];
-                const gic_real t3 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[5] * m1[7] + R(-0.03556000000000003) * m1[6]));
+                const gic_real t3 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[0] * m1[7] + R(-0.03556000000000003) * m1[6]));
                 const gic_real t4 = t3 - q[1];
-                const gic_real t5 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[5] * m1[10] + R(-0.03556000000000003) * m1[9]));
+                const gic_real t5 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[0] * m1[10] + R(-0.03556000000000003) * m1[9]));
                 const gic_real t6 = t5 - q[2];
                 const gic_real t7 = q[4] + q[4];
                 const gic_real t8 = q[4] * t7;
@@ -1717,34 +1717,34 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
                 const gic_real t16 = q[4] * t15;
                 const gic_real t17 = q[3] * t9;
                 const gic_real t18 = t16 - t17;
-                const gic_real t19 = q[2] + (R(0.10177780000000003) * t11 + (k[0] * t14 + R(-0.14025880000000002) * t18));
-                const gic_real t20 = t19 - (m0[2] + k[1] * m0[10]);
+                const gic_real t19 = q[2] + (R(0.10177780000000003) * t11 + (k[1] * t14 + R(-0.14025880000000002) * t18));
+                const gic_real t20 = t19 - (m0[2] + k[2] * m0[10]);
                 const gic_real t21 = t12 - t13;
                 const gic_real t22 = q[6] * t15;
                 const gic_real t23 = R(1.0) - (t8 + t22);
                 const gic_real t24 = q[5] * t7;
                 const gic_real t25 = q[3] * t15;
                 const gic_real t26 = t24 + t25;
-                const gic_real t27 = q[1] + (R(0.10177780000000003) * t21 + (k[0] * t23 + R(-0.14025880000000002) * t26));
-                const gic_real t28 = t27 - (m0[1] + k[1] * m0[7]);
+                const gic_real t27 = q[1] + (R(0.10177780000000003) * t21 + (k[1] * t23 + R(-0.14025880000000002) * t26));
+                const gic_real t28 = t27 - (m0[1] + k[2] * m0[7]);
                 const gic_real t29 = t16 + t17;
                 const gic_real t30 = t24 - t25;
                 const gic_real t31 = R(1.0) - (t10 + t22);
-                const gic_real t32 = q[0] + (R(0.10177780000000003) * t29 + (k[0] * t30 + R(-0.14025880000000002) * t31));
-                const gic_real t33 = t32 - (m0[0] + k[1] * m0[4]);
+                const gic_real t32 = q[0] + (R(0.10177780000000003) * t29 + (k[1] * t30 + R(-0.14025880000000002) * t31));
+                const gic_real t33 = t32 - (m0[0] + k[2] * m0[4]);
                 const gic_real t34 = t20 * t20 + (t28 * t28 + t33 * t33) - R(0.14941089924212003);
                 const gic_real t35 = t34 * R(0.5) + f[0] * t2 + f[1] * t4 + f[2] * t6;
-                const gic_real t36 = q[2] + (R(0.33360360000000006) * t11 + (k[2] * t14 + R(-0.017475200000000024) * t18));
+                const gic_real t36 = q[2] + (R(0.33360360000000006) * t11 + (k[3] * t14 + R(-0.017475200000000024) * t18));
                 const gic_real t37 = t36 - R(0.23411769999999998);
-                const gic_real t38 = q[1] + (R(0.33360360000000006) * t21 + (k[2] * t23 + R(-0.017475200000000024) * t26));
-                const gic_real t39 = t38 - k[3];
-                const gic_real t40 = q[0] + (R(0.33360360000000006) * t29 + (k[2] * t30 + R(-0.017475200000000024) * t31));
+                const gic_real t38 = q[1] + (R(0.33360360000000006) * t21 + (k[3] * t23 + R(-0.017475200000000024) * t26));
+                const gic_real t39 = t38 - k[4];
+                const gic_real t40 = q[0] + (R(0.33360360000000006) * t29 + (k[3] * t30 + R(-0.017475200000000024) * t31));
                 const gic_real t41 = t40 - R(1.593883);
                 const gic_real t42 = t37 * t37 + (t39 * t39 + t41 * t41) - R(0.07115456010869);
                 const gic_real t43 = R(0.5) * t42 + f[6] * t2 + f[7] * t4 + f[8] * t6;
                 const gic_real t44 = f[9] * t35 - t43;
-                const gic_real t45 = R(4.3116545195287515e-08) - (R(0.21526024724178433) * t37 + (k[4] * t39 + R(0.9665541626242249) * t41));
-                const gic_real t46 = t45 - R(0.9665541626242249) * t2 - k[4] * t4 - R(0.21526024724178433) * t6;
+                const gic_real t45 = R(4.3116545195287515e-08) - (R(0.21526024724178433) * t37 + (k[5] * t39 + R(0.9665541626242249) * t41));
+                const gic_real t46 = t45 - R(0.9665541626242249) * t2 - k[5] * t4 - R(0.21526024724178433) * t6;
                 const gic_real t47 = f[14] * (t46 + f[12] * t35 - f[13] * t44);
                 const gic_real t48 = f[10] * (t44 - f[11] * t47);
                 const gic_real t49 = R(0.5) * t48;
@@ -1797,20 +1797,20 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
             const gic_real t10 = q[5] * t3;
             const gic_real t11 = q[3] * t7;
             const gic_real t12 = t10 + t11;
-            const gic_real t13 = R(0.10177780000000003) * t5 + (k[0] * t9 + R(-0.14025880000000002) * t12);
+            const gic_real t13 = R(0.10177780000000003) * t5 + (k[1] * t9 + R(-0.14025880000000002) * t12);
             const gic_real t14 = q[5] * t1;
             const gic_real t15 = R(1.0) - (t6 + t14);
             const gic_real t16 = t2 + t4;
             const gic_real t17 = q[4] * t7;
             const gic_real t18 = q[3] * t1;
             const gic_real t19 = t17 - t18;
-            const gic_real t20 = R(0.10177780000000003) * t15 + (k[0] * t16 + R(-0.14025880000000002) * t19);
+            const gic_real t20 = R(0.10177780000000003) * t15 + (k[1] * t16 + R(-0.14025880000000002) * t19);
             const gic_real t21 = q[2] + t20;
-            const gic_real t22 = k[1] * m0[10];
+            const gic_real t22 = k[2] * m0[10];
             const gic_real t23 = m0[2] + t22;
             const gic_real t24 = t21 - t23;
             const gic_real t25 = q[1] + t13;
-            const gic_real t26 = k[1] * m0[7];
+            const gic_real t26 = k[2] * m0[7];
             const gic_real t27 = m0[1] + t26;
             const gic_real t28 = t25 - t27;
             const gic_real t29 = t13 * t24 - t20 * t28;
@@ -1819,17 +1819,17 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
             const gic_real t30 = t17 + t18;
             const gic_real t31 = t10 - t11;
             const gic_real t32 = R(1.0) - (t14 + t8);
-            const gic_real t33 = R(0.33360360000000006) * t30 + (k[2] * t31 + R(-0.017475200000000024) * t32);
-            const gic_real t34 = R(0.33360360000000006) * t5 + (k[2] * t9 + R(-0.017475200000000024) * t12);
-            const gic_real t35 = q[1] + t34 - k[3];
+            const gic_real t33 = R(0.33360360000000006) * t30 + (k[3] * t31 + R(-0.017475200000000024) * t32);
+            const gic_real t34 = R(0.33360360000000006) * t5 + (k[3] * t9 + R(-0.017475200000000024) * t12);
+            const gic_real t35 = q[1] + t34 - k[4];
             const gic_real t36 = q[0] + t33 - R(1.593883);
-            const gic_real t37 = R(0.10177780000000003) * t30 + (k[0] * t31 + R(-0.14025880000000002) * t32);
+            const gic_real t37 = R(0.10177780000000003) * t30 + (k[1] * t31 + R(-0.14025880000000002) * t32);
             const gic_real t38 = q[0] + t37;
-            const gic_real t39 = k[1] * m0[4];
+            const gic_real t39 = k[2] * m0[4];
             const gic_real t40 = m0[0] + t39;
             const gic_real t41 = t38 - t40;
             const gic_real t42 = t37 * t28 - t13 * t41;
-            const gic_real t43 = R(0.33360360000000006) * t15 + (k[2] * t16 + R(-0.017475200000000024) * t19);
+            const gic_real t43 = R(0.33360360000000006) * t15 + (k[3] * t16 + R(-0.017475200000000024) * t19);
             const gic_real t44 = q[2] + t43 - R(0.23411769999999998);
             const gic_real t45 = R(1.0) / t29;
             const gic_real t46 = (t34 * t44 - t43 * t35) * t45;
@@ -1837,20 +1837,20 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
             if (!(GIC_FABS(t47) > R(1.5702185883473105e-08)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t48 = t20 * t41 - t37 * t24;
-            const gic_real t49 = (R(0.21526024724178433) * t34 - k[4] * t43) * t45;
+            const gic_real t49 = (R(0.21526024724178433) * t34 - k[5] * t43) * t45;
             const gic_real t50 = t43 * t36 - t33 * t44 - t48 * t46;
             const gic_real t51 = R(1.0) / t47;
-            const gic_real t52 = (k[4] * t33 - R(0.9665541626242249) * t34 - t42 * t49) * t51;
+            const gic_real t52 = (k[5] * t33 - R(0.9665541626242249) * t34 - t42 * t49) * t51;
             const gic_real t53 = R(0.9665541626242249) * t43 - R(0.21526024724178433) * t33 - t48 * t49 - t50 * t52;
             if (!(GIC_FABS(t53) > R(3.3266643612763756e-08)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t54 = R(6.938893903907228e-18) * m1[5] + (k[5] * m1[4] + R(-0.03556000000000003) * m1[3]);
+            const gic_real t54 = R(6.938893903907228e-18) * m1[5] + (k[0] * m1[4] + R(-0.03556000000000003) * m1[3]);
             const gic_real t55 = m1[0] + t54 - q[0];
             const gic_real t56 = q[0] + t55;
-            const gic_real t57 = R(6.938893903907228e-18) * m1[8] + (k[5] * m1[7] + R(-0.03556000000000003) * m1[6]);
+            const gic_real t57 = R(6.938893903907228e-18) * m1[8] + (k[0] * m1[7] + R(-0.03556000000000003) * m1[6]);
             const gic_real t58 = m1[1] + t57 - q[1];
             const gic_real t59 = q[1] + t58;
-            const gic_real t60 = R(6.938893903907228e-18) * m1[11] + (k[5] * m1[10] + R(-0.03556000000000003) * m1[9]);
+            const gic_real t60 = R(6.938893903907228e-18) * m1[11] + (k[0] * m1[10] + R(-0.03556000000000003) * m1[9]);
             const gic_real t61 = m1[2] + t60 - q[2];
             const gic_real t62 = q[2] + t61;
             const gic_real t63 = t24 * t24 + (t28 * t28 + t41 * t41) - R(0.14941089924212003);
@@ -1859,8 +1859,8 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
             const gic_real t66 = R(0.5) * t65 + t36 * t55 + t35 * t58 + t44 * t61;
             const gic_real t67 = t46 * t64 - t66;
             const gic_real t68 = R(1.0) / t53;
-            const gic_real t69 = R(4.3116545195287515e-08) - (R(0.21526024724178433) * t44 + (k[4] * t35 + R(0.9665541626242249) * t36));
-            const gic_real t70 = t69 - R(0.9665541626242249) * t55 - k[4] * t58 - R(0.21526024724178433) * t61;
+            const gic_real t69 = R(4.3116545195287515e-08) - (R(0.21526024724178433) * t44 + (k[5] * t35 + R(0.9665541626242249) * t36));
+            const gic_real t70 = t69 - R(0.9665541626242249) * t55 - k[5] * t58 - R(0.21526024724178433) * t61;
             const gic_real t71 = t68 * (t70 + t49 * t64 - t52 * t67);
             const gic_real t72 = t51 * (t67 - t50 * t71);
             const gic_real t73 = R(0.5) * t72;
@@ -1912,7 +1912,7 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
             const gic_real t119 = m1[29] - (m1[25] * t54 - m1[24] * t57);
             const gic_real t120 = t41 * t117 + t28 * t118 + t24 * t119;
             const gic_real t121 = t46 * t120 - (t36 * t117 + t35 * t118 + t44 * t119);
-            const gic_real t122 = t49 * t120 - (R(0.9665541626242249) * t117 + k[4] * t118 + R(0.21526024724178433) * t119);
+            const gic_real t122 = t49 * t120 - (R(0.9665541626242249) * t117 + k[5] * t118 + R(0.21526024724178433) * t119);
             const gic_real t123 = t68 * (t122 - t52 * t121);
             const gic_real t124 = t51 * (t121 - t50 * t123);
             const gic_real t125 = t45 * (t120 + t42 * t124 + t48 * t123);
@@ -1960,8 +1960,8 @@ static int solid_axle_solve_wheel_fl(solid_axle *self, const gic_real *GIC_RESTR
             const gic_real t167 = t159 * t159 + (t161 * t161 + t163 * t163) + (t35 * t164 - t36 * t165 - t44 * t166);
             const gic_real t168 = t167 + t151 * t36 + t154 * t35 + t156 * t44;
             const gic_real t169 = t46 * t157 - t168;
-            const gic_real t170 = R(0.21526024724178433) * t166 - (k[4] * t164 - R(0.9665541626242249) * t165) - R(0.9665541626242249) * t151;
-            const gic_real t171 = t170 - k[4] * t154 - R(0.21526024724178433) * t156 + t49 * t157;
+            const gic_real t170 = R(0.21526024724178433) * t166 - (k[5] * t164 - R(0.9665541626242249) * t165) - R(0.9665541626242249) * t151;
+            const gic_real t171 = t170 - k[5] * t154 - R(0.21526024724178433) * t156 + t49 * t157;
             const gic_real t172 = t68 * (t171 - t52 * t169);
             const gic_real t173 = t51 * (t169 - t50 * t172);
             const gic_real t174 = t45 * (t157 + t42 * t173 + t48 * t172);
@@ -2187,10 +2187,10 @@ static gic_real solid_axle_residual_wheel_fl(const gic_real *GIC_RESTRICT k, con
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[5] * m1[4] + R(-0.03556000000000003) * m1[3]));
-        const gic_real t2 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[5] * m1[7] + R(-0.03556000000000003) * m1[6]));
+        const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[0] * m1[4] + R(-0.03556000000000003) * m1[3]));
+        const gic_real t2 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[0] * m1[7] + R(-0.03556000000000003) * m1[6]));
         const gic_real t3 = GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928075656552032)), GIC_FABS((q[1] - t2) * R(2.928075656552032)));
-        const gic_real t4 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[5] * m1[10] + R(-0.03556000000000003) * m1[9]));
+        const gic_real t4 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[0] * m1[10] + R(-0.03556000000000003) * m1[9]));
         const gic_real t5 = q[4] + q[4];
         const gic_real t6 = q[4] * t5;
         const gic_real t7 = q[5] + q[5];
@@ -2203,31 +2203,31 @@ static gic_real solid_axle_residual_wheel_fl(const gic_real *GIC_RESTRICT k, con
         const gic_real t14 = q[4] * t13;
         const gic_real t15 = q[3] * t7;
         const gic_real t16 = t14 - t15;
-        const gic_real t17 = q[2] + (R(0.10177780000000003) * t9 + (k[0] * t12 + R(-0.14025880000000002) * t16));
-        const gic_real t18 = t17 - (m0[2] + k[1] * m0[10]);
+        const gic_real t17 = q[2] + (R(0.10177780000000003) * t9 + (k[1] * t12 + R(-0.14025880000000002) * t16));
+        const gic_real t18 = t17 - (m0[2] + k[2] * m0[10]);
         const gic_real t19 = t10 - t11;
         const gic_real t20 = q[6] * t13;
         const gic_real t21 = R(1.0) - (t6 + t20);
         const gic_real t22 = q[5] * t5;
         const gic_real t23 = q[3] * t13;
         const gic_real t24 = t22 + t23;
-        const gic_real t25 = q[1] + (R(0.10177780000000003) * t19 + (k[0] * t21 + R(-0.14025880000000002) * t24));
-        const gic_real t26 = t25 - (m0[1] + k[1] * m0[7]);
+        const gic_real t25 = q[1] + (R(0.10177780000000003) * t19 + (k[1] * t21 + R(-0.14025880000000002) * t24));
+        const gic_real t26 = t25 - (m0[1] + k[2] * m0[7]);
         const gic_real t27 = t14 + t15;
         const gic_real t28 = t22 - t23;
         const gic_real t29 = R(1.0) - (t8 + t20);
-        const gic_real t30 = q[0] + (R(0.10177780000000003) * t27 + (k[0] * t28 + R(-0.14025880000000002) * t29));
-        const gic_real t31 = t30 - (m0[0] + k[1] * m0[4]);
+        const gic_real t30 = q[0] + (R(0.10177780000000003) * t27 + (k[1] * t28 + R(-0.14025880000000002) * t29));
+        const gic_real t31 = t30 - (m0[0] + k[2] * m0[4]);
         const gic_real t32 = t18 * t18 + (t26 * t26 + t31 * t31) - R(0.14941089924212003);
         const gic_real t33 = GIC_MAX(GIC_MAX(t3, GIC_FABS((q[2] - t4) * R(2.928075656552032))), GIC_FABS(t32 * R(3.9285226675160785)));
-        const gic_real t34 = q[2] + (R(0.33360360000000006) * t9 + (k[2] * t12 + R(-0.017475200000000024) * t16));
+        const gic_real t34 = q[2] + (R(0.33360360000000006) * t9 + (k[3] * t12 + R(-0.017475200000000024) * t16));
         const gic_real t35 = t34 - R(0.23411769999999998);
-        const gic_real t36 = q[1] + (R(0.33360360000000006) * t19 + (k[2] * t21 + R(-0.017475200000000024) * t24));
-        const gic_real t37 = t36 - k[3];
-        const gic_real t38 = q[0] + (R(0.33360360000000006) * t27 + (k[2] * t28 + R(-0.017475200000000024) * t29));
+        const gic_real t36 = q[1] + (R(0.33360360000000006) * t19 + (k[3] * t21 + R(-0.017475200000000024) * t24));
+        const gic_real t37 = t36 - k[4];
+        const gic_real t38 = q[0] + (R(0.33360360000000006) * t27 + (k[3] * t28 + R(-0.017475200000000024) * t29));
         const gic_real t39 = t38 - R(1.593883);
         const gic_real t40 = t35 * t35 + (t37 * t37 + t39 * t39) - R(0.07115456010869);
-        const gic_real t41 = R(0.21526024724178433) * t35 + (k[4] * t37 + R(0.9665541626242249) * t39) - R(4.3116545195287515e-08);
+        const gic_real t41 = R(0.21526024724178433) * t35 + (k[5] * t37 + R(0.9665541626242249) * t39) - R(4.3116545195287515e-08);
         const gic_real t42 = GIC_MAX(GIC_MAX(t33, GIC_FABS(t40 * R(5.571891251504319))), GIC_FABS(t41 * R(3.029396354366955)));
         worst = t42;
     }

@@ -2,6 +2,8 @@
  * Straight-line code before it is text. */
 #include "gicgen.h"
 
+#include <string.h>
+
 void block_store(Block *block, Ex value, const char *format, ...)
 {
     va_list args;
@@ -21,13 +23,35 @@ void block_check(Block *block, Ex value, bool magnitude, double least, const cha
     *POOL_PUSH(block->dag->pool, block->check, block->checks) = (Check){value, least, magnitude, status};
 }
 
-Count block_count(const Block *block)
+static Ex *block_roots(const Block *block, int *count)
 {
-    int roots = block->stores + block->checks;
-    Ex *root = pool_alloc(block->dag->pool, (size_t)roots * sizeof *root);
+    *count = block->stores + block->checks;
+    Ex *root = pool_alloc(block->dag->pool, (size_t)(*count + 1) * sizeof *root);
     for (int i = 0; i < block->stores; ++i)
         root[i] = block->store[i].value;
     for (int i = 0; i < block->checks; ++i)
         root[block->stores + i] = block->check[i].value;
+    return root;
+}
+
+Count block_count(const Block *block)
+{
+    int roots;
+    const Ex *root = block_roots(block, &roots);
     return dag_count(block->dag, root, roots);
+}
+
+bool block_reads(const Block *block, const char *array)
+{
+    int roots;
+    const Dag *dag = block->dag;
+    const Ex *root = block_roots(block, &roots);
+    const bool *needed = dag_needed(dag, root, roots);
+    size_t length = strlen(array);
+    for (int e = 0; e < dag->nodes; ++e) {
+        const Node *node = &dag->node[e];
+        if (needed[e] && node->op == OP_INPUT && !strncmp(node->name, array, length) && node->name[length] == '[')
+            return true;
+    }
+    return false;
 }

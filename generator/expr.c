@@ -419,6 +419,20 @@ void dag_evaluate(Dag *dag, int first, int count)
     }
 }
 
+const bool *dag_needed(const Dag *dag, const Ex *root, int roots)
+{
+    /* arguments have smaller numbers than the nodes that use them: one backward sweep marks what is needed */
+    bool *needed = pool_alloc(dag->pool, (size_t)dag->nodes * sizeof *needed);
+    for (int i = 0; i < roots; ++i)
+        needed[root[i]] = true;
+    for (int e = dag->nodes - 1; e >= 0; --e) {
+        const Node *node = &dag->node[e];
+        for (int i = 0; needed[e] && node->level == LEVEL_VARIABLE && i < op_arity[node->op]; ++i)
+            needed[node->arg[i]] = true;
+    }
+    return needed;
+}
+
 Count dag_count(const Dag *dag, const Ex *root, int roots)
 {
     static const char kind[OP_COUNT] = {
@@ -427,16 +441,11 @@ Count dag_count(const Dag *dag, const Ex *root, int roots)
 #undef OP_KIND
     };
     Count count = {0};
-    /* arguments have smaller numbers than the nodes that use them: one backward sweep marks what is needed */
-    bool *needed = pool_alloc(dag->pool, (size_t)dag->nodes * sizeof *needed);
-    for (int i = 0; i < roots; ++i)
-        needed[root[i]] = true;
-    for (int e = dag->nodes - 1; e >= 0; --e) {
+    const bool *needed = dag_needed(dag, root, roots);
+    for (int e = 0; e < dag->nodes; ++e) {
         const Node *node = &dag->node[e];
         if (!needed[e] || node->level < LEVEL_VARIABLE)
             continue;
-        for (int i = 0; i < op_arity[node->op]; ++i)
-            needed[node->arg[i]] = true;
         switch (kind[node->op]) {
         case 'a': ++count.add; break;
         case 'm': ++count.multiply; break;

@@ -235,33 +235,24 @@ static void write_abi(Generation *g, Text *out)
 
 /* ---- classes ------------------------------------------------------------------------------------------------------------ */
 
-static const char *emitted(Generation *g, const Block *block, int indent)
+static bool any_reads(const Block *const *block, int blocks, const char *array)
 {
-    Text text = {.pool = g->pool};
-    block_emit(&text, block, &g->constants[g->class], indent);
-    return text.s ? text.s : "";
+    bool any = false;
+    for (int i = 0; i < blocks; ++i)
+        any = any || block_reads(block[i], array);
+    return any;
 }
 
-/* Does the text read `name[...]`? */
-static bool mentions(const char *text, const char *name)
-{
-    size_t length = strlen(name);
-    for (const char *s = text; (s = strstr(s, name)); s += length)
-        if (s[length] == '[' && (s == text || !(isalnum((unsigned char)s[-1]) || s[-1] == '_' || s[-1] == '>' || s[-1] == '.')))
-            return true;
-    return false;
-}
-
-/* Local names for the links that the texts mention. */
-static void write_arguments(Generation *g, Text *out, int indent, const char *text)
+/* Local names for the links that the blocks read. */
+static void write_arguments(Generation *g, Text *out, int indent, const Block *const *block, int blocks)
 {
     static const char *const part[] = {"x", "rate", "change", "turn"};
     const Subset *first = &g->sequence->subset[g->sequence->class[g->class].member[0]];
     for (int i = 0; i < first->knowns; ++i)
-        if (mentions(text, pool_print(g->pool, "m%d", i)))
+        if (any_reads(block, blocks, pool_print(g->pool, "m%d", i)))
             line(out, indent, "const gic_real *const m%d = links->known[%d]; /* %s */", i, i, g->model->body[first->known[i]].name);
     for (int i = 0; i < 4; ++i)
-        if (mentions(text, part[i]))
+        if (any_reads(block, blocks, part[i]))
             line(out, indent, "const gic_real *const %s = links->%s;", part[i], part[i]);
     if (!first->knowns && !first->deps)
         line(out, indent, "(void)links;");
@@ -285,15 +276,15 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
                         "\n * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */\n",
                    f->layout.start_S, f->layout.start_factors);
     } else if (!strcmp(name, "solve arguments")) {
-        const char *text = pool_print(g->pool, "%s%s%s", emitted(g, &f->predict, 0), emitted(g, &f->chord, 0), emitted(g, &f->solve, 0));
-        write_arguments(g, out, indent, text);
-        if (mentions(text, "s"))
+        const Block *const block[] = {&f->predict, &f->chord, &f->solve};
+        write_arguments(g, out, indent, block, 3);
+        if (any_reads(block, 3, "s"))
             line(out, indent, "const gic_real *const s = old + %d; /* unit velocities at the start */", f->layout.start_S);
-        if (mentions(text, "f"))
+        if (any_reads(block, 3, "f"))
             line(out, indent, "const gic_real *const f = old + %d; /* factors at the start */", f->layout.start_factors);
         line(out, indent, "gic_real q[%d];", numbers);
     } else if (!strcmp(name, "residual arguments")) {
-        write_arguments(g, out, indent, emitted(g, &f->residual, 0));
+        write_arguments(g, out, indent, (const Block *const[]){&f->residual}, 1);
     } else if (!strcmp(name, "enough")) {
         line(out, indent, "const gic_real enough = GIC_ENOUGH(%s);", emit_number(g->pool, f->distance * f->distance));
     } else if (!strcmp(name, "pose")) {
@@ -307,7 +298,7 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
                              : !strcmp(name, "chord")  ? &f->chord
                              : !strcmp(name, "solve")  ? &f->solve
                                                        : &f->residual;
-        text_print(out, "%s", emitted(g, block, indent));
+        block_emit(out, block, &g->constants[g->class], indent);
     }
 }
 

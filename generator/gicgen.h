@@ -484,6 +484,8 @@ typedef struct Count {
 } Count;
 
 Count dag_count(const Dag *dag, const Ex *root, int roots);
+/* [nodes] which nodes are needed for some roots. */
+const bool *dag_needed(const Dag *dag, const Ex *root, int roots);
 
 /* ---- linear.c: straight-line factorizations ------------------------------------------------------------ */
 
@@ -607,6 +609,8 @@ typedef struct Block {
 void block_store(Block *block, Ex value, const char *format, ...) __attribute__((format(printf, 3, 4)));
 void block_check(Block *block, Ex value, bool magnitude, double least, const char *status);
 Count block_count(const Block *block);
+/* Does it read an input `array[...]`? */
+bool block_reads(const Block *block, const char *array);
 
 /* ---- subset.c, follow.c, inertia.c: recovery of one class of decoupled subsets ------------------------------------------------------- */
 
