@@ -141,7 +141,8 @@ static void subset_draw(Text *out, const Model *model, const Sequence *sequence,
 {
     const Subset *subset = &sequence->subset[index];
     if (subset->bodies > 1)
-        text_print(out, "    subgraph cluster_%d {\n    style=\"rounded,dashed\"; node [penwidth=2];\n", index);
+        text_print(out, "    subgraph cluster_%d {\n    label=\"one subset: %d x %d\"; style=\"rounded,dashed\"; node [penwidth=2];\n",
+                   index, 7 * subset->bodies, 7 * subset->bodies);
     for (int i = 0; i < subset->bodies; ++i)
         body_draw(out, model, sequence, subset->body[i]);
     if (subset->bodies > 1)
