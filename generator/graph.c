@@ -148,7 +148,7 @@ static bool flow_push(Flow *flow, int source)
 
 /* ---- diagnosis -------------------------------------------------------------------------------- */
 
-enum { NAMES_SHOWN = 8 };
+enum { NAMES_SHOWN = 12 };
 
 /* A part of the graph that is to be reported. */
 typedef struct Part {
