@@ -3,7 +3,7 @@
 #   make                build/gicgen and build/gicrun
 #   make demo           the HMMWV over the paper's road: build/demo/
 #   make test           every test
-#   make generated      generated/*.c and *.h from models/*.veh
+#   make generated      generated/*.c and *.h from models/*.veh, and models/veh.schema.json
 #   make debug          the same programs with the sanitizers, in build/debug/
 #   make deps           install the packages that all of this needs (Debian)
 #   make clean
@@ -154,6 +154,7 @@ demo: all
 
 generated: $(BUILD)/gicgen
 	@mkdir -p generated
+	$(BUILD)/gicgen --schema > models/veh.schema.json
 	for model in $(models); do $(BUILD)/gicgen models/$$model.veh -o generated/$$model.c || exit 1; done
 
 debug:

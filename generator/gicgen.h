@@ -339,6 +339,10 @@ extern const int joint_equations[JOINT_TYPES];                   /* FORMAT.md se
 extern const char *const coordinate_type_name[COORDINATE_TYPES];
 extern const char *const output_type_name[OUTPUT_TYPES];
 
+/* schema.c: a JSON Schema of `.veh` files for editors, and all their keys as a table for people; both from the reader's own tables. */
+void schema_print(Text *out);
+void keys_print(Text *out);
+
 /* Read and resolve a `.veh` file. Any mistake ends in diag_fail. */
 const Model *model_read(Pool *pool, const char *path);
 

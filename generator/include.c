@@ -18,7 +18,7 @@ static const Key part_key[PART_KEYS] = {
     [PART_PREFIX] = {"prefix", KEY_NAME, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-static const Section part_section = {part_key, PART_KEYS, NULL, 0, NULL};
+static const Section part_section = {part_key, PART_KEYS, NULL, 0, NULL, NULL};
 
 /* A file being read, and the one that includes it. */
 typedef struct Open {

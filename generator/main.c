@@ -10,6 +10,8 @@ static const char usage[] =
     "       gicgen --sequence MODEL.veh       print the computational sequence\n"
     "       gicgen --graph FILE MODEL.veh     draw bodies, joints and stages: FILE.svg (needs Graphviz) or FILE.dot\n"
     "       gicgen --dump-model MODEL.veh     print the resolved model as JSON\n"
+    "       gicgen --list-keys                all keys of a model file\n"
+    "       gicgen --schema                   the same as a JSON Schema for editors\n"
     "\n"
     "options:\n"
     "  -o FILE          where to write; FILE.c gets a FILE.h beside it; `-` is standard output\n"
@@ -46,6 +48,16 @@ static void set_task(Options *options, Task task)
     options->task = task;
 }
 
+/* What the reader knows, without a model. */
+static void print_tables(bool schema)
+{
+    Pool *pool = pool_new();
+    Text text = {.pool = pool};
+    (schema ? schema_print : keys_print)(&text);
+    file_write("-", text.s, text.size);
+    pool_free(pool);
+}
+
 static Options read_options(int count, char **word)
 {
     Options options = {.task = TASK_GENERATE};
@@ -56,6 +68,9 @@ static Options read_options(int count, char **word)
             exit(0);
         } else if (!strcmp(w, "--version")) {
             puts("gicgen " GICGEN_VERSION);
+            exit(0);
+        } else if (!strcmp(w, "--list-keys") || !strcmp(w, "--schema")) {
+            print_tables(!strcmp(w, "--schema"));
             exit(0);
         } else if (!strcmp(w, "-o")) {
             options.output = argument(count, word, &i);

@@ -46,7 +46,7 @@ static const Key file_key[FILE_KEYS] = {
     [FILE_OUTPUTS] = {"outputs", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-static const Section file_section = {file_key, FILE_KEYS, NULL, 0, NULL};
+const Section file_section = {file_key, FILE_KEYS, NULL, 0, NULL, NULL};
 
 static void points_read(Reader *reader, const Item *map)
 {

@@ -61,6 +61,7 @@ typedef struct Section {
     const char *const *type; /* what the key `type` may be, where there is one */
     int types;
     const char *const *form; /* names of the forms, for messages; NULL: there is one form */
+    const unsigned *type_forms; /* the forms that a type can have; NULL: type i has form i */
 } Section;
 
 typedef struct Value {
@@ -91,9 +92,15 @@ typedef struct Entry {
 } Entry;
 
 /* The tables of the sections whose entries hold values that a mirror, a move or a prefix changes. */
+extern const Section file_section;
 extern const Section parameter_section, table_section, port_section;
 extern const Section body_section, inertia_section, orientation_section, joint_section, coordinate_section;
 extern const Section input_section, force_section, wheel_section, output_section;
+
+/* What to write for each kind of value, for people. */
+extern const char *const kind_example[KEY_KINDS];
+/* The section of the entries of a group of the file ("joints"); NULL: points, or no group. */
+const Section *group_section(const char *group);
 
 /* ---- rewrite.c: entries written anew ---- */
 

@@ -43,9 +43,9 @@ static const char *const orientation_form[ORIENTATION_FORMS] = {
     [ORIENTATION_AXES] = "by the directions x and z",
 };
 
-const Section body_section = {body_key, BODY_KEYS, NULL, 0, NULL};
-const Section inertia_section = {inertia_key, INERTIA_KEYS, NULL, 0, NULL};
-const Section orientation_section = {orientation_key, TURN_KEYS, NULL, 0, orientation_form};
+const Section body_section = {body_key, BODY_KEYS, NULL, 0, NULL, NULL};
+const Section inertia_section = {inertia_key, INERTIA_KEYS, NULL, 0, NULL, NULL};
+const Section orientation_section = {orientation_key, TURN_KEYS, NULL, 0, orientation_form, NULL};
 
 static const double triangle_tolerance = 1e-9, euler_tolerance = 1e-6;
 /* Sine of the smallest angle between the given x and z directions. */

@@ -10,7 +10,7 @@
 enum { NAME_LENGTH = 40 };
 
 /* What to write, for remedies. */
-static const char *const kind_example[KEY_KINDS] = {
+const char *const kind_example[KEY_KINDS] = {
     [KEY_TYPE] = "name",
     [KEY_ITEM] = "{...}",
     [KEY_FORMULA] = "formula",

@@ -12,7 +12,7 @@ static const Key parameter_key[PARAMETER_KEYS] = {
     [PARAMETER_TUNABLE] = {"tunable", KEY_FLAG, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-const Section parameter_section = {parameter_key, PARAMETER_KEYS, NULL, 0, NULL};
+const Section parameter_section = {parameter_key, PARAMETER_KEYS, NULL, 0, NULL, NULL};
 
 enum { TABLE_X, TABLE_Y, TABLE_INTERPOLATION, TABLE_BEYOND, TABLE_KEYS };
 
@@ -23,7 +23,7 @@ static const Key table_key[TABLE_KEYS] = {
     [TABLE_BEYOND] = {"beyond", KEY_TEXT, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-const Section table_section = {table_key, TABLE_KEYS, NULL, 0, NULL};
+const Section table_section = {table_key, TABLE_KEYS, NULL, 0, NULL, NULL};
 
 enum { PORT_BODY, PORT_POINT, PORT_IN, PORT_KEYS };
 
@@ -33,7 +33,7 @@ static const Key port_key[PORT_KEYS] = {
     [PORT_IN] = {"in", KEY_FRAME, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-const Section port_section = {port_key, PORT_KEYS, NULL, 0, NULL};
+const Section port_section = {port_key, PORT_KEYS, NULL, 0, NULL, NULL};
 
 /* A parameter is `name: number` or `name: {value: number, ...}`. */
 void parameters_read(Reader *reader, const Item *map)

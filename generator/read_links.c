@@ -82,7 +82,7 @@ static const double drawn_tolerance = 1e-12;
 /* Largest angle by which a given u_b may miss the plane perpendicular to u_a, degrees. */
 static const double axes_tolerance = 10;
 
-const Section joint_section = {joint_key, LINK_KEYS, joint_type_name, JOINT_TYPES, joint_type_name};
+const Section joint_section = {joint_key, LINK_KEYS, joint_type_name, JOINT_TYPES, joint_type_name, NULL};
 
 enum {
     DUAL_TYPE,
@@ -111,7 +111,7 @@ static const Key coordinate_key[DUAL_KEYS] = {
 };
 
 const Section coordinate_section = {coordinate_key, DUAL_KEYS, coordinate_type_name, COORDINATE_TYPES,
-                                    coordinate_type_name};
+                                    coordinate_type_name, NULL};
 
 double points_distance(const Value *points, const char *what, double d[3])
 {

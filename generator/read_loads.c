@@ -12,7 +12,7 @@ static const Key input_key[INPUT_KEYS] = {
     [INPUT_DEFAULT] = {"default", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-const Section input_section = {input_key, INPUT_KEYS, NULL, 0, NULL};
+const Section input_section = {input_key, INPUT_KEYS, NULL, 0, NULL, NULL};
 
 enum {
     ELEMENT_TYPE,
@@ -70,7 +70,13 @@ static const char *const force_form_name[FORCE_TYPES] = {
 
 const char *const force_local[FORCE_LOCALS] = {"length", "speed"};
 
-const Section force_section = {force_key, ELEMENT_KEYS, force_type_name, TYPES, force_form_name};
+static const unsigned force_type_forms[TYPES] = {
+    [TYPE_SPRING] = FORCE_SPRING,
+    [TYPE_FORCE] = FORCE_LAWS,
+    [TYPE_LOAD] = FORM(FORCE_LOAD),
+};
+
+const Section force_section = {force_key, ELEMENT_KEYS, force_type_name, TYPES, force_form_name, force_type_forms};
 
 enum { TIRE_BODY, TIRE_CENTER, TIRE_RADIUS, TIRE_STIFFNESS, TIRE_DAMPING, TIRE_FADE, TIRE_KEYS };
 
@@ -83,7 +89,7 @@ static const Key wheel_key[TIRE_KEYS] = {
     [TIRE_FADE] = {"fade", KEY_NUMBER, ALL_FORMS, 0, BOUND_POSITIVE, 0.01},
 };
 
-const Section wheel_section = {wheel_key, TIRE_KEYS, NULL, 0, NULL};
+const Section wheel_section = {wheel_key, TIRE_KEYS, NULL, 0, NULL, NULL};
 
 /* The three inputs of a driven coordinate: value, rate, acceleration. */
 static void driven_inputs(Reader *reader, Coordinate *coordinate)

@@ -55,7 +55,7 @@ static const OutputKind output_kind[OUTPUT_TYPES] = {
     [OUTPUT_ENERGY] = {2, {"kinetic", "potential"}, {"J", "J"}, {0}},
 };
 
-const Section output_section = {output_key, WATCH_KEYS, output_type_name, OUTPUT_TYPES, output_type_name};
+const Section output_section = {output_key, WATCH_KEYS, output_type_name, OUTPUT_TYPES, output_type_name, NULL};
 
 /* Whether an output belongs to an angle, directly or by a force along it. */
 static bool of_angle(const Model *model, const Output *output)

@@ -73,6 +73,12 @@ static int group_index(const char *name)
     return i;
 }
 
+const Section *group_section(const char *group)
+{
+    int i = group_index(group);
+    return i < GROUPS ? groups[i].section : NULL;
+}
+
 bool is_group(const char *group)
 {
     return group_index(group) < GROUPS;

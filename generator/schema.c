@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: MIT
+ * The reader's tables of keys as a JSON Schema, which lets an editor complete and underline, and as a table for people: neither can
+ * say anything else than what the reader reads. */
+#include "read.h"
+
+#include <string.h>
+
+static const char name_pattern[] = "^[A-Za-z][A-Za-z0-9_]{0,39}$";
+
+/* Definitions that kinds refer to. A number may be a formula of parameters, so any text may stand for one. */
+static const char definitions[] =
+    "  \"$defs\": {\n"
+    "    \"number\": {\"type\": [\"number\", \"string\"]},\n"
+    "    \"name\": {\"type\": \"string\", \"pattern\": \"^[A-Za-z][A-Za-z0-9_]{0,39}$\"},\n"
+    "    \"vector\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 3, \"maxItems\": 3},\n"
+    "    \"point\": {\"anyOf\": [{\"$ref\": \"#/$defs/vector\"}, {\"$ref\": \"#/$defs/name\"}]},\n"
+    "    \"numbers\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 2},\n"
+    "    \"include\": {\"anyOf\": [{\"type\": \"string\"}, {\"type\": \"object\", \"required\": [\"file\"], \"additionalProperties\": false,\n"
+    "      \"properties\": {\"file\": {\"type\": \"string\"}, \"at\": {\"$ref\": \"#/$defs/vector\"}, \"prefix\": {\"type\": \"string\"}}}]}\n"
+    "  },\n";
+
+static void reference(Text *out, const char *name)
+{
+    text_print(out, "{\"$ref\": \"#/$defs/%s\"}", name);
+}
+
+static void pair(Text *out, const char *name)
+{
+    text_print(out, "{\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/%s\"}, \"minItems\": 2, \"maxItems\": 2}", name);
+}
+
+static void object(Text *out, const Section *section, int indent);
+
+static void value(Text *out, const Section *section, const Key *key, int indent)
+{
+    switch (key->kind) {
+    case KEY_NUMBER:
+    case KEY_ODD:
+        if (key->bound == BOUND_NONE)
+            reference(out, "number");
+        else
+            text_print(out, "{\"anyOf\": [{\"type\": \"number\", \"%s\": 0}, {\"type\": \"string\"}]}",
+                       key->bound == BOUND_POSITIVE ? "exclusiveMinimum" : "minimum");
+        break;
+    case KEY_FORMULA: reference(out, "number"); break;
+    case KEY_FLAG: text_print(out, "{\"type\": \"boolean\"}"); break;
+    case KEY_RANGE: pair(out, "number"); break;
+    case KEY_VECTOR:
+    case KEY_AXIS:
+    case KEY_TURN:
+    case KEY_DUAL_AXIS:
+    case KEY_FORCE_VECTOR:
+    case KEY_TORQUE_VECTOR: reference(out, "vector"); break;
+    case KEY_AXES: pair(out, "vector"); break;
+    case KEY_EULER:
+        text_print(out, "{\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 4, \"maxItems\": 4}");
+        break;
+    case KEY_POINT: reference(out, "point"); break;
+    case KEY_POINTS: pair(out, "point"); break;
+    case KEY_BODIES:
+    case KEY_FORCE_BODIES: pair(out, "name"); break;
+    case KEY_NAME:
+    case KEY_BODY:
+    case KEY_FRAME:
+    case KEY_COORDINATE:
+    case KEY_FORCE:
+    case KEY_WHEEL: reference(out, "name"); break;
+    case KEY_INERTIA:
+        text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/vector\"}, ");
+        object(out, &inertia_section, indent);
+        text_print(out, "]}");
+        break;
+    case KEY_ORIENTATION: object(out, &orientation_section, indent); break;
+    case KEY_ITEM:
+        if (section == &table_section)
+            reference(out, "numbers");
+        else
+            text_print(out, "{}");
+        break;
+    default: text_print(out, "{\"type\": \"string\"}");
+    }
+}
+
+/* One form of a section: `type` is its word for the key of that name, or NULL. */
+static void form(Text *out, const Section *section, int which, const char *type, int indent)
+{
+    text_print(out, "{\"type\": \"object\", \"additionalProperties\": false, \"properties\": {");
+    const char *separator = "";
+    for (int k = 0; k < section->keys; ++k) {
+        const Key *key = &section->key[k];
+        if (!(key->allowed & FORM(which)))
+            continue;
+        text_print(out, "%s\n%*s\"%s\": ", separator, indent + 2, "", key->name);
+        separator = ",";
+        if (key->kind == KEY_TYPE)
+            text_print(out, "{\"const\": \"%s\"}", type);
+        else
+            value(out, section, key, indent + 2);
+    }
+    text_print(out, "},\n%*s\"required\": [", indent, "");
+    separator = "";
+    for (int k = 0; k < section->keys; ++k)
+        if (section->key[k].required & section->key[k].allowed & FORM(which)) {
+            text_print(out, "%s\"%s\"", separator, section->key[k].name);
+            separator = ", ";
+        }
+    text_print(out, "]}");
+}
+
+/* The forms that some choice of keys selects, where there is no type. */
+static unsigned forms_by_keys(const Section *section)
+{
+    unsigned forms = 0;
+    for (int k = 0; k < section->keys; ++k)
+        forms |= section->key[k].allowed == ALL_FORMS ? 0 : section->key[k].allowed;
+    return forms;
+}
+
+static void object(Text *out, const Section *section, int indent)
+{
+    const int forms_most = 32;
+    const char *separator = "";
+    if (!section->types && !section->form) {
+        form(out, section, 0, NULL, indent);
+        return;
+    }
+    text_print(out, "{\"anyOf\": [");
+    for (int t = 0; t == 0 || t < section->types; ++t) {
+        unsigned forms = !section->types ? forms_by_keys(section) : section->type_forms ? section->type_forms[t] : FORM(t);
+        for (int f = 0; f < forms_most; ++f)
+            if (forms & FORM(f)) {
+                text_print(out, "%s\n%*s", separator, indent, "");
+                separator = ",";
+                form(out, section, f, section->types ? section->type[t] : NULL, indent);
+            }
+    }
+    text_print(out, "]}");
+}
+
+void schema_print(Text *out)
+{
+    text_print(out, "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"gicgen model (.veh)\",\n%s", definitions);
+    text_print(out, "  \"type\": \"object\", \"required\": [\"gicgen\"], \"additionalProperties\": false,\n  \"properties\": {");
+    for (int k = 0; k < file_section.keys; ++k) {
+        const Key *key = &file_section.key[k];
+        const Section *section = group_section(key->name);
+        text_print(out, "%s\n    \"%s\": ", k ? "," : "", key->name);
+        if (!strcmp(key->name, "gicgen"))
+            text_print(out, "{\"const\": 1}");
+        else if (!strcmp(key->name, "include"))
+            text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/include\"}, {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/include\"}}]}");
+        else if (!section && strcmp(key->name, "points"))
+            value(out, &file_section, key, 4);
+        else {
+            text_print(out, "{\"type\": \"object\", \"propertyNames\": {\"pattern\": \"%s\"}, \"additionalProperties\":\n      ", name_pattern);
+            if (section == &parameter_section)
+                text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, ");
+            if (section)
+                object(out, section, 6);
+            else
+                reference(out, "vector");
+            text_print(out, "%s}", section == &parameter_section ? "]}" : "");
+        }
+    }
+    text_print(out, "\n  }\n}\n");
+}
+
+/* ---- for people ------------------------------------------------------------------------------------------ */
+
+/* Words of the types for which a key is allowed, or all. */
+static void types_of(Text *out, const Section *section, unsigned forms)
+{
+    const char *separator = " for ";
+    unsigned all = 0;
+    for (int t = 0; t < section->types; ++t)
+        all |= section->type_forms ? section->type_forms[t] : FORM(t);
+    if (!section->types || (forms & all) == all)
+        return;
+    for (int t = 0; t < section->types; ++t)
+        if (forms & (section->type_forms ? section->type_forms[t] : FORM(t))) {
+            text_print(out, "%s%s", separator, section->type[t]);
+            separator = ", ";
+        }
+}
+
+static void section_keys(Text *out, const char *name, const Section *section)
+{
+    text_print(out, "\n%s\n", name);
+    for (int k = 0; k < section->keys; ++k) {
+        const Key *key = &section->key[k];
+        text_print(out, "  %-15s %-22s", key->name, kind_example[key->kind]);
+        if (key->kind == KEY_TYPE) {
+            for (int t = 0; t < section->types; ++t)
+                text_print(out, "%s%s", t ? ", " : " one of: ", section->type[t]);
+        } else {
+            text_print(out, " %s", key->required ? "required" : "optional");
+            types_of(out, section, key->required ? key->required : key->allowed);
+            if (key->required && key->required != key->allowed)
+                text_print(out, "; optional otherwise"), types_of(out, section, key->allowed & ~key->required);
+        }
+        text_print(out, "\n");
+    }
+}
+
+void keys_print(Text *out)
+{
+    text_print(out, "Keys of a .veh file; models/FORMAT.md says what they mean.\n");
+    section_keys(out, "the file", &file_section);
+    for (int k = 0; k < file_section.keys; ++k)
+        if (group_section(file_section.key[k].name))
+            section_keys(out, file_section.key[k].name, group_section(file_section.key[k].name));
+    section_keys(out, "inertia as a map", &inertia_section);
+    section_keys(out, "orientation (one of the three ways)", &orientation_section);
+}

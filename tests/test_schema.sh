@@ -1,0 +1,52 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_schema.sh GICGEN: the JSON Schema of model files. What the reader reads fits it, and what has a wrong structure (unknown, missing
+# and misplaced keys, wrong kinds) does not; the committed schema, the list of keys and FORMAT.md are those of the reader.
+gicgen=$1
+root=$(dirname "$0")/..
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+passed=0
+failed=0
+
+check() {
+    if [ "$1" -eq 0 ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAIL $2"
+    fi
+}
+
+"$gicgen" --schema >"$work/schema" && cmp "$work/schema" "$root/models/veh.schema.json"
+check $? "models/veh.schema.json is not what --schema prints"
+# fits FILE
+fits() {
+    /usr/bin/python3 "$root/tests/schema.py" "$work/schema" "$1" >"$work/said" && grep -q '^good' "$work/said"
+}
+
+for model in "$root"/models/*.veh "$root"/tests/dump/*.veh "$root"/tests/laws/*.veh; do
+    fits "$model"
+    check $? "$(cat "$work/said")"
+done
+
+# structure is what a schema can see; values that contradict each other are left to the reader
+for name in body_key_missing body_key_unknown body_not_map coordinate_angle_points coordinate_axis coordinate_type force_both \
+    force_law_stiffness force_law_value force_neither force_type gravity_length include_key inertia_key inertia_length \
+    joint_axes_axis joint_axes_flat joint_axes_missing joint_axes_one joint_axis_and_axes joint_axis_missing \
+    joint_bodies_three joint_key_foreign joint_length_negative joint_offset_foreign joint_point_missing joint_type \
+    joint_type_missing key_unknown load_list mass_negative mass_zero name_bad not_a_map orientation_mixed output_in_foreign \
+    output_type parameter_flag point_length section_list table_short version_missing version_zero wheel_radius_missing; do
+    fits "$root/tests/bad/$name.veh"
+    grep -q '^bad' "$work/said"
+    check $? "$name fits the schema"
+done
+
+"$gicgen" --list-keys >"$work/keys"
+for key in $(sed -n 's/^  \([a-z]*\) .*/\1/p' "$work/keys" | sort -u); do
+    grep -q "[\`{ ]$key[\`:]" "$root/models/FORMAT.md" && grep -q "\"$key\": " "$work/schema"
+    check $? "key '$key' is missing in FORMAT.md or in the schema"
+done
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
