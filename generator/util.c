@@ -119,15 +119,18 @@ void text_add(Text *text, const char *s, size_t size)
 
 void text_print(Text *text, const char *format, ...)
 {
-    va_list args;
-    va_start(args, format);
-    int size = vsnprintf(NULL, 0, format, args);
-    va_end(args);
-    text_reserve(text, (size_t)size);
-    va_start(args, format);
-    vsnprintf(text->s + text->size, (size_t)size + 1, format, args);
-    va_end(args);
-    text->size += (size_t)size;
+    text_reserve(text, 120); /* most prints fit at once */
+    for (bool again = false;; again = true) {
+        va_list args;
+        va_start(args, format);
+        size_t size = (size_t)vsnprintf(text->s + text->size, text->room - text->size, format, args);
+        va_end(args);
+        if (again || text->size + size < text->room) {
+            text->size += size;
+            return;
+        }
+        text_reserve(text, size);
+    }
 }
 
 uint64_t random_bits(Random *random)
