@@ -22,7 +22,8 @@ static _Noreturn void assembly_fail(const Model *model, const Subset *subset)
     const char *what = joint ? joint->name : model->body[subset->body[0]].name;
     diag_fail(joint ? joint->at : model->body[subset->body[0]].at,
               "give lengths nearer to the drawing's, or draw the mechanism nearer to where the lengths put it",
-              "the mechanism can't be assembled: body '%s' can't follow from the drawing to the given lengths, '%s' among them",
+              "the mechanism can't be assembled: body '%s' can't follow from the drawing to the given lengths, '%s' "
+              "among them",
               model->body[subset->body[0]].name, what);
 }
 

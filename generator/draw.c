@@ -123,8 +123,7 @@ static void body_draw(Text *out, const Model *model, const Sequence *sequence, i
     int weight = subset < 0 ? 0 : body == BODY_BASE ? 1 : 7;
     text_print(out, "    b%d [label=\"", body);
     quoted_add(out, model->body[body].name);
-    text_print(out, "\\n%d\", fillcolor=\"%s\"];\n", weight,
-               color_of(subset < 0 ? 0 : sequence->subset[subset].stage));
+    text_print(out, "\\n%d\", fillcolor=\"%s\"];\n", weight, color_of(subset < 0 ? 0 : sequence->subset[subset].stage));
     if (weight)
         text_print(out, "    b%d -- b%d [label=\"1\", color=gray50, fontcolor=gray50];\n", body, body);
 }
@@ -141,7 +140,9 @@ static void subset_draw(Text *out, const Model *model, const Sequence *sequence,
 {
     const Subset *subset = &sequence->subset[index];
     if (subset->bodies > 1)
-        text_print(out, "    subgraph cluster_%d {\n    label=\"one subset: %d x %d\"; style=\"rounded,dashed\"; node [penwidth=2];\n",
+        text_print(out,
+                   "    subgraph cluster_%d {\n    label=\"one subset: %d x %d\"; style=\"rounded,dashed\"; node "
+                   "[penwidth=2];\n",
                    index, 7 * subset->bodies, 7 * subset->bodies);
     for (int i = 0; i < subset->bodies; ++i)
         body_draw(out, model, sequence, subset->body[i]);

@@ -144,21 +144,15 @@ static void coordinates(Text *out, const Model *model)
 /* A formula as nested lists, operator first; parameters as their values. */
 static void formula(Text *out, const Law *law, const Model *model)
 {
-    static const char *const word[] = {[LAW_INPUT] = "input", [LAW_VALUE] = "value", [LAW_RATE] = "rate", [LAW_TABLE] = "table"};
+    static const char *const word[] = {
+        [LAW_INPUT] = "input", [LAW_VALUE] = "value", [LAW_RATE] = "rate", [LAW_TABLE] = "table"};
     switch (law->op) {
     case LAW_NUMBER:
-    case LAW_PARAMETER:
-        text_print(out, "%.17g", law_number(law, model));
-        return;
+    case LAW_PARAMETER: text_print(out, "%.17g", law_number(law, model)); return;
     case LAW_TIME:
-    case LAW_LOCAL:
-        text_print(out, "[\"%s\"]", law->name);
-        return;
-    case LAW_CALL:
-        text_print(out, "[\"%s\"", law->name);
-        break;
-    default:
-        text_print(out, "[\"%s\", %d", word[law->op], law->index);
+    case LAW_LOCAL: text_print(out, "[\"%s\"]", law->name); return;
+    case LAW_CALL: text_print(out, "[\"%s\"", law->name); break;
+    default: text_print(out, "[\"%s\", %d", word[law->op], law->index);
     }
     for (int i = 0; i < 3 && law->arg[i]; ++i) {
         add(out, ", ");
@@ -327,8 +321,8 @@ void model_dump(Text *out, const Model *model, const Sequence *sequence)
         const char *name;
         void (*entries)(Text *out, const Model *model);
     } list[] = {
-        {"bodies", bodies}, {"joints", joints}, {"coordinates", coordinates}, {"forces", forces},
-        {"wheels", wheels}, {"inputs", inputs}, {"parameters", parameters}, {"tables", tables},
+        {"bodies", bodies}, {"joints", joints},   {"coordinates", coordinates}, {"forces", forces},
+        {"wheels", wheels}, {"inputs", inputs},   {"parameters", parameters},   {"tables", tables},
         {"ports", ports},   {"outputs", outputs},
     };
     add(out, "{\"gicgen_dump\": 1");

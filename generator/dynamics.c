@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * Equations of motion in the reduced form (method.md, Proposition 2.1, in twists), and their solution.
+ * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1, in twists), and their solution.
  *
  * Unknowns: alpha and a of a free base (base frame; a is the acceleration of its origin less gravity), then the free
- * coordinates' accelerations. The subsets have already summed up their bodies: what is left is the composite inertia, one row a
- * coordinate, and an elimination that takes the suspension coordinates first, because they couple only to the base. */
+ * coordinates' accelerations. The subsets have already summed up their bodies: what is left is the composite inertia,
+ * one row a coordinate, and an elimination that takes the suspension coordinates first, because they couple only to the
+ * base. */
 #include "gicgen.h"
 
 /* Sums over all subsets. */
@@ -35,8 +36,12 @@ static void add_base(Whole *whole, Composite *c)
     }
     whole_inertia(whole, BODY_BASE, J);
     const double m = base->mass, *r = base->com;
-    const double steiner[6] = {m * (r[1] * r[1] + r[2] * r[2]), m * (r[0] * r[0] + r[2] * r[2]), m * (r[0] * r[0] + r[1] * r[1]),
-                               -m * r[0] * r[1], -m * r[0] * r[2], -m * r[1] * r[2]};
+    const double steiner[6] = {m * (r[1] * r[1] + r[2] * r[2]),
+                               m * (r[0] * r[0] + r[2] * r[2]),
+                               m * (r[0] * r[0] + r[1] * r[1]),
+                               -m * r[0] * r[1],
+                               -m * r[0] * r[2],
+                               -m * r[1] * r[2]};
     for (int i = 0; i < 6; ++i) {
         J[i] = ex_add(dag, J[i], ex_literal(dag, steiner[i]));
         c->second[i] = ex_add(dag, c->second[i], J[i]);
@@ -201,8 +206,8 @@ Block *dynamics_block(Whole *whole)
     for (int k = 0; k < n; ++k) {
         Ex diagonal = M[n * factors->row[k] + factors->row[k]];
         if (dag->node[factors->pivot[k]].level == LEVEL_VARIABLE)
-            block_check(block, ex_sub(dag, factors->pivot[k], ex_mul(dag, ex_literal(dag, definite), diagonal)), false, 0,
-                        "GIC_ERROR_MASS");
+            block_check(block, ex_sub(dag, factors->pivot[k], ex_mul(dag, ex_literal(dag, definite), diagonal)), false,
+                        0, "GIC_ERROR_MASS");
     }
     linear_solve(dag, factors, z, z);
     if (whole->model->free_base)
@@ -217,7 +222,8 @@ Block *dynamics_block(Whole *whole)
 
 /* ---- the same equations a second time, body by body: what the emitted self-test compares with ------------------- */
 
-/* Residual of Newton's and Euler's equations, projected on the coordinates, plus what moves it: nothing is shared with compose(). */
+/* Residual of Newton's and Euler's equations, projected on the coordinates, plus what moves it: nothing is shared with
+ * compose(). */
 typedef struct Projection {
     Ex moment[3], force[3], *along;
 } Projection;
@@ -336,7 +342,8 @@ Block *energy_block(Whole *whole)
         Ex acceleration[3], angular[3], velocity[3], total[3], J[6], t[3];
         Vector com = whole_point(whole, b, model->body[b].com);
         whole_inertia(whole, b, J);
-        whole_acceleration(whole, b, &com, alpha, a, w2, acceleration); /* less gravity: the potential's rate is in it */
+        whole_acceleration(whole, b, &com, alpha, a, w2,
+                           acceleration); /* less gravity: the potential's rate is in it */
         whole_velocity_in_base(whole, &com, velocity);
         whole_angular_acceleration(whole, b, alpha, w2, angular);
         ex_add3(dag, whole->turn, whole->motion[b].omega, total);

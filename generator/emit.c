@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Blocks as C text. A node that is used once is written where it is used, up to a small size, so that a line says something;
- * everything else is a temporary. Statements come depth-first from the results, which keeps few values alive at a time. */
+ * Blocks as C text. A node that is used once is written where it is used, up to a small size, so that a line says
+ * something; everything else is a temporary. Statements come depth-first from the results, which keeps few values alive
+ * at a time. */
 #include "gicgen.h"
 
 #include <math.h>
@@ -200,8 +201,8 @@ static void write_check(Emitter *m, const Check *check)
     Text line = {.pool = m->dag->pool};
     write_temporaries(m, check->value);
     write_text(m, &line, check->value, 0);
-    text_print(m->out, check->magnitude ? "%*sif (!(GIC_FABS(%s) > %s))\n" : "%*sif (!(%s > %s))\n", m->indent, "", line.s,
-               emit_number(m->dag->pool, check->least));
+    text_print(m->out, check->magnitude ? "%*sif (!(GIC_FABS(%s) > %s))\n" : "%*sif (!(%s > %s))\n", m->indent, "",
+               line.s, emit_number(m->dag->pool, check->least));
     text_print(m->out, "%*sreturn %s;\n", m->indent + 4, "", check->status);
 }
 

@@ -76,7 +76,8 @@ static void dag_grow(Dag *dag)
 {
     int room = dag->room ? 2 * dag->room : 256;
     size_t row = (size_t)dag->samples * sizeof *dag->value;
-    dag->node = pool_grow(dag->pool, dag->node, (size_t)dag->nodes * sizeof *dag->node, (size_t)room * sizeof *dag->node);
+    dag->node =
+        pool_grow(dag->pool, dag->node, (size_t)dag->nodes * sizeof *dag->node, (size_t)room * sizeof *dag->node);
     dag->value = pool_grow(dag->pool, dag->value, (size_t)dag->nodes * row, (size_t)room * row);
     dag->room = room;
 }
@@ -413,8 +414,7 @@ void dag_evaluate(Dag *dag, int first, int count)
 {
     for (Ex e = 0; e < (Ex)dag->nodes; ++e) {
         const Node *node = &dag->node[e];
-        if (node->level == LEVEL_VARIABLE && node->op != OP_INPUT && node->op != OP_ROAD_PART &&
-            node->op != OP_TABLE)
+        if (node->level == LEVEL_VARIABLE && node->op != OP_INPUT && node->op != OP_ROAD_PART && node->op != OP_TABLE)
             node_evaluate(dag, node, dag->value + (size_t)e * (size_t)dag->samples, first, count);
     }
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Takes the members of a class through their sample paths by numeric Newton, so that every node of the class's graph carries values
- * of admissible configurations: that is what pivots are chosen from. Subsets must be followed in computational order. */
+ * Takes the members of a class through their sample paths by numeric Newton, so that every node of the class's graph
+ * carries values of admissible configurations: that is what pivots are chosen from. Subsets must be followed in
+ * computational order. */
 #include "subset.h"
 
 #include <math.h>
@@ -55,7 +56,8 @@ static bool solve_sample(const Work *w, int s, double *b)
     return linear_solve_numeric(w->n, A, b);
 }
 
-/* One Newton correction of q towards residuals `slack` [n] (NULL: 0); its relative size, or infinity where the matrix is singular. */
+/* One Newton correction of q towards residuals `slack` [n] (NULL: 0); its relative size, or infinity where the matrix
+ * is singular. */
 static double correct_sample(Work *w, double *q, int s, const double *slack)
 {
     double b[w->n], step = 0;

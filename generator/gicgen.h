@@ -24,16 +24,16 @@
 
 typedef struct Pool Pool;
 
-Pool *pool_new(void);                            /* an empty pool; exits with a message when memory is out */
-void pool_free(Pool *pool);                      /* frees the pool and all that came from it */
-void *pool_alloc(Pool *pool, size_t size);       /* zeroed, aligned for any type */
+Pool *pool_new(void);                      /* an empty pool; exits with a message when memory is out */
+void pool_free(Pool *pool);                /* frees the pool and all that came from it */
+void *pool_alloc(Pool *pool, size_t size); /* zeroed, aligned for any type */
 void *pool_grow(Pool *pool, void *old, size_t old_size, size_t size); /* copy into a larger block */
 char *pool_print(Pool *pool, const char *format, ...) __attribute__((format(printf, 2, 3)));
 char *pool_vprint(Pool *pool, const char *format, va_list args);
 
 /* Make room for one more element behind the first `count` of `array`; sizes double. */
 #define POOL_PUSH(pool, array, count) \
-    ((((count) & ((count) - 1)) == 0 \
+    ((((count) & ((count)-1)) == 0 \
           ? (void)((array) = pool_grow((pool), (array), (size_t)(count) * sizeof *(array), \
                                        (size_t)((count) ? 2 * (count) : 1) * sizeof *(array))) \
           : (void)0), \
@@ -60,9 +60,9 @@ double random_uniform(Random *random, double low, double high);
 double vec_dot(const double a[3], const double b[3]);
 void vec_cross(const double a[3], const double b[3], double out[3]); /* out may not alias */
 double vec_norm(const double a[3]);
-void mat_from_euler(const double p[4], double A[9]);            /* A(p) of method.md section 1 */
-void euler_relative(const double p0[4], const double p[4], double out[4]);     /* of A(p0)^T A(p) */
-void mat_apply(const double A[9], const double x[3], double out[3]);           /* A x */
+void mat_from_euler(const double p[4], double A[9]);                            /* A(p) of FORMAT.md section 1 */
+void euler_relative(const double p0[4], const double p[4], double out[4]);      /* of A(p0)^T A(p) */
+void mat_apply(const double A[9], const double x[3], double out[3]);            /* A x */
 void mat_apply_transposed(const double A[9], const double x[3], double out[3]); /* A^T x */
 
 /* Write a whole file under a temporary name beside it and rename it: readers see all of it or the old one.
@@ -87,7 +87,8 @@ typedef struct Source {
 } Source;
 
 /* Print `path:line:col: error: <message>`, the source line with a caret under the column, in a mirror image
- * `  note: mirrored from '<entry>'`, and `  remedy: <remedy>` (remedy may be NULL), all to stderr; exit with status 1. */
+ * `  note: mirrored from '<entry>'`, and `  remedy: <remedy>` (remedy may be NULL), all to stderr; exit with status 1.
+ */
 _Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* The same as a warning; returns. */
 void diag_warn(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
@@ -103,13 +104,13 @@ typedef enum ItemKind { ITEM_SCALAR, ITEM_LIST, ITEM_MAP } ItemKind;
 typedef struct Item {
     ItemKind kind;
     Place at;
-    const char *text;     /* scalar: its text (may hold any byte but is terminated) */
-    bool quoted;          /* scalar: quoted, so never a number */
-    bool negated;         /* scalar: of a mirror image; its number is -(written + shift) */
-    double shift;         /* scalar: of a moved file; its number is written + shift */
-    int count;            /* list: elements; map: pairs */
-    struct Item **value;  /* list: the elements; map: the values */
-    struct Item **key;    /* map: the keys, all scalars */
+    const char *text;    /* scalar: its text (may hold any byte but is terminated) */
+    bool quoted;         /* scalar: quoted, so never a number */
+    bool negated;        /* scalar: of a mirror image; its number is -(written + shift) */
+    double shift;        /* scalar: of a moved file; its number is written + shift */
+    int count;           /* list: elements; map: pairs */
+    struct Item **value; /* list: the elements; map: the values */
+    struct Item **key;   /* map: the keys, all scalars */
 } Item;
 
 /* Parse a file ("-": standard input) into a tree. YAML errors, aliases to ancestors, duplicate keys, nesting deeper
@@ -127,7 +128,7 @@ void doc_vector(const Item *item, const char *what, double *out, int size);
 /* Every key of `map` must be one of `allowed`; the message lists them and suggests the nearest. */
 void doc_check_keys(const Item *map, const char *what, const char *const *allowed, int count);
 
-/* ---- law.c: formulas of force laws, as FORMAT.md section 10 defines them -------------------------------------------- */
+/* ---- law.c: formulas of force laws, as FORMAT.md section 10 defines them ------------------------------------ */
 
 typedef enum LawOp {
     LAW_NUMBER,    /* number */
@@ -136,9 +137,9 @@ typedef enum LawOp {
     LAW_VALUE,     /* of coordinate index */
     LAW_RATE,
     LAW_TIME,
-    LAW_LOCAL,     /* index: what the place of the formula offers, such as `length` */
-    LAW_TABLE,     /* index, arg[0] */
-    LAW_CALL       /* op `call` of the expression graph with arguments */
+    LAW_LOCAL, /* index: what the place of the formula offers, such as `length` */
+    LAW_TABLE, /* index, arg[0] */
+    LAW_CALL   /* op `call` of the expression graph with arguments */
 } LawOp;
 
 typedef struct Law {
@@ -152,11 +153,11 @@ typedef struct Law {
 
 /* What the names in a formula mean. */
 typedef struct LawNames {
-    const struct Model *model;  /* coordinates, inputs, parameters, tables */
-    const char *const *local;   /* names of this place, or NULL */
+    const struct Model *model; /* coordinates, inputs, parameters, tables */
+    const char *const *local;  /* names of this place, or NULL */
     int locals;
-    bool constant;              /* nothing but numbers and parameters is allowed */
-    const char *remedy;         /* why, when that is broken */
+    bool constant;      /* nothing but numbers and parameters is allowed */
+    const char *remedy; /* why, when that is broken */
 } LawNames;
 
 /* Parse a scalar of the file as a formula; mistakes end in diag_fail at their place inside the text. */
@@ -199,9 +200,9 @@ typedef struct Joint {
     JointType type;
     int body[2];
     double point[2][3], axis[2][3]; /* each in the frame of its body; axes are unit vectors */
-    double side[2][3];              /* a direction perpendicular to the axis of body[0] in the drawing, in both bodies */
-    double length, offset;          /* as the equations have them, where the type does */
-    bool drawn;                     /* length and offset are those of the drawing: nothing to assemble */
+    double side[2][3];     /* a direction perpendicular to the axis of body[0] in the drawing, in both bodies */
+    double length, offset; /* as the equations have them, where the type does */
+    bool drawn;            /* length and offset are those of the drawing: nothing to assemble */
 } Joint;
 
 typedef enum CoordinateType {
@@ -306,11 +307,11 @@ typedef struct Output {
     const char *name;
     Place at;
     OutputType type;
-    int body;        /* where the type has one */
-    double point[3]; /* frame of body */
-    int in;          /* body in whose frame components are given, BODY_GROUND: world */
-    int index;       /* coordinate, force element or wheel */
-    int count;       /* components */
+    int body;                                     /* where the type has one */
+    double point[3];                              /* frame of body */
+    int in;                                       /* body in whose frame components are given, BODY_GROUND: world */
+    int index;                                    /* coordinate, force element or wheel */
+    int count;                                    /* components */
     const char *component[OUTPUT_MAX_COMPONENTS]; /* full names: "chassis.x" */
     const char *unit[OUTPUT_MAX_COMPONENTS];
 } Output;
@@ -334,12 +335,13 @@ typedef struct Model {
     Port *port;
 } Model;
 
-extern const char *const joint_type_name[JOINT_TYPES];           /* as in the file: "revolute" */
-extern const int joint_equations[JOINT_TYPES];                   /* FORMAT.md section 4 */
+extern const char *const joint_type_name[JOINT_TYPES]; /* as in the file: "revolute" */
+extern const int joint_equations[JOINT_TYPES];         /* FORMAT.md section 4 */
 extern const char *const coordinate_type_name[COORDINATE_TYPES];
 extern const char *const output_type_name[OUTPUT_TYPES];
 
-/* schema.c: a JSON Schema of `.veh` files for editors, and all their keys as a table for people; both from the reader's own tables. */
+/* schema.c: a JSON Schema of `.veh` files for editors, and all their keys as a table for people; both from the reader's
+ * own tables. */
 void schema_print(Text *out);
 void keys_print(Text *out);
 
@@ -348,21 +350,22 @@ const Model *model_read(Pool *pool, const char *path);
 
 /* ---- graph.c, sequence.c, draw.c: which subsets can be solved, and in which order ------------------ */
 
-/* A decoupled subset (method.md section 3): as many equations as unknowns once the bodies before it are known. */
+/* A decoupled subset (Serban and Haug 2000, section 4): as many equations as unknowns once the bodies before it are
+ * known. */
 typedef struct Subset {
-    int stage;                /* from 1 */
-    int bodies, *body;        /* unknown bodies, canonical order; the base alone in stage 1 of a free base */
-    int joints, *joint;       /* their joints, canonical order */
+    int stage;                    /* from 1 */
+    int bodies, *body;            /* unknown bodies, canonical order; the base alone in stage 1 of a free base */
+    int joints, *joint;           /* their joints, canonical order */
     int coordinates, *coordinate; /* dual coordinates whose definition is among the equations, canonical order */
-    int knowns, *known;       /* bodies other than the base, solved before, that a joint or coordinate refers to */
-    int deps, *dep;           /* coordinates that its bodies' motion relative to the base depends on: own ones first */
-    int class;                /* isomorphism class, index into Sequence.class; -1 for the base */
+    int knowns, *known;           /* bodies other than the base, solved before, that a joint or coordinate refers to */
+    int deps, *dep; /* coordinates that its bodies' motion relative to the base depends on: own ones first */
+    int class;      /* isomorphism class, index into Sequence.class; -1 for the base */
 } Subset;
 
 /* Subsets that are alike in topology and joint types: position i of every list of one member corresponds to
  * position i of every other member's. */
 typedef struct Class {
-    const char *name; /* identifier, from the first member's bodies */
+    const char *name;     /* identifier, from the first member's bodies */
     int members, *member; /* indices into Sequence.subset */
 } Class;
 
@@ -370,8 +373,8 @@ typedef struct Sequence {
     int stages, subsets, classes;
     Subset *subset; /* in computational order */
     Class *class;
-    int *body_subset; /* [bodies] subset that yields a body */
-    int unknowns, equations, dof; /* of the whole model: method.md section 1 (7 a body, normalizations counted) */
+    int *body_subset;             /* [bodies] subset that yields a body */
+    int unknowns, equations, dof; /* of the whole model in Euler parameters: 7 a body, normalizations counted */
 } Sequence;
 
 /* Find the finest sequence over whole bodies and joints. Over- and under-determined models end in diag_fail
@@ -382,7 +385,8 @@ void sequence_print(Text *out, const Model *model, const Sequence *sequence);
 /* Graphviz source of the weighted graph with its stages (the paper's Figs. 2 and 3). */
 void graph_draw(Text *out, const Model *model, const Sequence *sequence);
 
-/* picture.c: a Graphviz source as an SVG file, by Graphviz's `dot`. Exits with a message when that is missing or fails. */
+/* picture.c: a Graphviz source as an SVG file, by Graphviz's `dot`. Exits with a message when that is missing or fails.
+ */
 void picture_write(Pool *pool, const char *path, const Text *dot);
 
 /* dump.c: FORMAT.md section 11. */
@@ -427,7 +431,7 @@ typedef enum Op {
 #define OP_ENUM(name, arity, text, counted) name,
     OP_LIST(OP_ENUM)
 #undef OP_ENUM
-    OP_COUNT
+        OP_COUNT
 } Op;
 
 /* When a node's value is known: always the same; the same for one member of a class; at run time only. */
@@ -455,7 +459,7 @@ Dag *dag_new(Pool *pool, int members, int samples);
 Ex ex_literal(Dag *dag, double value);
 Ex ex_constant(Dag *dag, const double *value);                 /* [members] */
 Ex ex_input(Dag *dag, const char *name, const double *sample); /* [samples], or NULL: not needed */
-Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c);                    /* unused arguments: 0 */
+Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c);                   /* unused arguments: 0 */
 Ex ex_neg(Dag *dag, Ex a);
 Ex ex_add(Dag *dag, Ex a, Ex b);
 Ex ex_sub(Dag *dag, Ex a, Ex b);
@@ -493,8 +497,9 @@ const bool *dag_needed(const Dag *dag, const Ex *root, int roots);
 
 /* ---- linear.c: straight-line factorizations ------------------------------------------------------------ */
 
-/* P A Q = L U of a small matrix of expressions, n x n. entry[n k + j], in pivot order: left of the diagonal the multipliers of L, on it the
- * reciprocal of the pivot, right of it U. Symmetric: L D L^T, entry right of the diagonal is the transposed multiplier. */
+/* P A Q = L U of a small matrix of expressions, n x n. entry[n k + j], in pivot order: left of the diagonal the
+ * multipliers of L, on it the reciprocal of the pivot, right of it U. Symmetric: L D L^T, entry right of the diagonal
+ * is the transposed multiplier. */
 typedef struct Factors {
     int n;
     bool symmetric;
@@ -503,24 +508,26 @@ typedef struct Factors {
     Ex *pivot;         /* [n] */
 } Factors;
 
-/* Pivot order from the samples: cheapest at run time among the entries that are numerically good at every usable sample (Markowitz count
- * with threshold). column_scale [n] makes the unknowns comparable; usable [samples]. Returns NULL where no pivot of relative size
- * 1e-9 is left at some usable sample: *rank is the number of pivots found then, row_left [n] marks the rows without one. */
+/* Pivot order from the samples: cheapest at run time among the entries that are numerically good at every usable sample
+ * (Markowitz count with threshold). column_scale [n] makes the unknowns comparable; usable [samples]. Returns NULL
+ * where no pivot of relative size 1e-9 is left at some usable sample: *rank is the number of pivots found then,
+ * row_left [n] marks the rows without one. */
 Factors *linear_factor(Dag *dag, int n, const Ex *A, const double *column_scale, const bool *usable, int *rank,
                        bool *row_left);
 /* Symmetric positive definite: pivots on the diagonal, cheapest first. Uses the upper triangle of A. */
 Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A);
 /* x = A^-1 b; x may alias b. */
 void linear_solve(Dag *dag, const Factors *factors, const Ex *b, Ex *x);
-/* Dense numeric solve with row-scaled partial pivoting, in place: b [n] becomes x. False when singular. A is destroyed. */
+/* Dense numeric solve with row-scaled partial pivoting, in place: b [n] becomes x. False when singular. A is destroyed.
+ */
 bool linear_solve_numeric(int n, double *A, double *b);
 /* Determinant of A with its rows scaled to largest entries of 1; 0 when singular. A is destroyed. */
 double linear_determinant(int n, double *A);
 
 /* ---- motion.c: how bodies move relative to the base ------------------------------------------------------ */
 
-/* Motion of a body relative to the base, components in the base frame. c: position of the body's reference point, a body-fixed
- * point that makes the equations of its subset sparse; velocity and acceleration are that point's. alpha and
+/* Motion of a body relative to the base, components in the base frame. c: position of the body's reference point, a
+ * body-fixed point that makes the equations of its subset sparse; velocity and acceleration are that point's. alpha and
  * acceleration are those at w'' = 0. S: [deps][6] angular and linear velocity of unit rates of the coordinates. */
 typedef struct Motion {
     Ex c[3], A[9], omega[3], velocity[3], alpha[3], acceleration[3];
@@ -529,14 +536,23 @@ typedef struct Motion {
 } Motion;
 
 /* Place of a Motion in memory, as generated code keeps it: numbers per body before S, and offsets. */
-enum { MOTION_C = 0, MOTION_A = 3, MOTION_OMEGA = 12, MOTION_VELOCITY = 15, MOTION_ALPHA = 18, MOTION_ACCELERATION = 21, MOTION_S = 24 };
+enum {
+    MOTION_C = 0,
+    MOTION_A = 3,
+    MOTION_OMEGA = 12,
+    MOTION_VELOCITY = 15,
+    MOTION_ALPHA = 18,
+    MOTION_ACCELERATION = 21,
+    MOTION_S = 24
+};
 
 /* The base itself: at rest at the origin. */
 void motion_base(Dag *dag, Motion *motion);
 /* A motion read from memory at the C expression `array` ("m0"), numbers from `offset` on. */
 void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int deps);
 
-/* A body-fixed vector: a point's position (`point`, arm from the reference point) or an axis (arm is the vector itself). */
+/* A body-fixed vector: a point's position (`point`, arm from the reference point) or an axis (arm is the vector
+ * itself). */
 typedef struct Vector {
     Ex v[3], arm[3], rate[3], bias[3];
     bool point;
@@ -555,10 +571,11 @@ typedef struct Row {
     Ex guard; /* positive on the right branch, or 0: needs none */
 } Row;
 
-/* Numbers of a joint or dual coordinate as expressions; frames as in Joint and Coordinate, points from reference points. */
+/* Numbers of a joint or dual coordinate as expressions; frames as in Joint and Coordinate, points from reference
+ * points. */
 typedef struct Fixture {
     Ex point[2][3], axis[2][3];
-    Ex side[2][2][3]; /* the two directions perpendicular to the axis at design, each in both bodies */
+    Ex side[2][2][3];  /* the two directions perpendicular to the axis at design, each in both bodies */
     Ex square, offset; /* length at design squared; offset */
 } Fixture;
 
@@ -573,8 +590,8 @@ Row coordinate_row(Dag *dag, CoordinateType type, const Fixture *fixture, const 
 
 /* ---- sample.c: admissible configurations to choose pivots at ---------------------------------------------- */
 
-/* Configurations reached by continuation along straight lines of the coordinates, in `steps` steps from the design. Configuration 0 is
- * the design. Poses are relative to the base and of reference points. */
+/* Configurations reached by continuation along straight lines of the coordinates, in `steps` steps from the design.
+ * Configuration 0 is the design. Poses are relative to the base and of reference points. */
 typedef struct Sampling {
     int configurations, steps, bodies, coordinates;
     double *target; /* [configurations][coordinates] */
@@ -590,7 +607,8 @@ double *sampling_pose(const Sampling *sampling, int step, int configuration, int
 
 /* ---- block.c: straight-line code before it is text ------------------------------------------------------------ */
 
-/* `target` = value once everything is computed; or a status returned where value is not above `least` (of |value| with `magnitude`). */
+/* `target` = value once everything is computed; or a status returned where value is not above `least` (of |value| with
+ * `magnitude`). */
 typedef struct Store {
     const char *target;
     Ex value;
@@ -616,10 +634,11 @@ Count block_count(const Block *block);
 /* Does it read an input `array[...]`? */
 bool block_reads(const Block *block, const char *array);
 
-/* ---- subset.c, follow.c, inertia.c: recovery of one class of decoupled subsets ------------------------------------------------------- */
+/* ---- subset.c, follow.c, inertia.c: recovery of one class of decoupled subsets
+ * ------------------------------------------------------- */
 
-/* Where a subset keeps its numbers. start: what the next call begins from (pose 7 a body, S, factors); motion: one Motion a body;
- * inertia: what it adds to the equations of motion, see INERTIA_*. */
+/* Where a subset keeps its numbers. start: what the next call begins from (pose 7 a body, S, factors); motion: one
+ * Motion a body; inertia: what it adds to the equations of motion, see INERTIA_*. */
 typedef struct Layout {
     int bodies, deps, factors;
     int start_size, start_S, start_factors;
@@ -627,28 +646,29 @@ typedef struct Layout {
     int inertia_size;
 } Layout;
 
-/* inertia: first and second moments about the base origin in the base frame, force and moment of the quadratic-velocity terms, then 7
- * numbers a coordinate (force and moment of its unit acceleration, quadratic-velocity force along it), then the
- * upper triangle of the coordinates' mass matrix. */
+/* inertia: first and second moments about the base origin in the base frame, force and moment of the quadratic-velocity
+ * terms, then 7 numbers a coordinate (force and moment of its unit acceleration, quadratic-velocity force along it),
+ * then the upper triangle of the coordinates' mass matrix. */
 enum { INERTIA_FIRST = 0, INERTIA_SECOND = 3, INERTIA_FORCE = 9, INERTIA_MOMENT = 12, INERTIA_COORDINATE = 15 };
 
 int inertia_mass(int deps, int j, int k); /* place of M_jk, j <= k */
 
-/* The formulas of a class. C names: k constants of the member, m0, m1, ... motions of the knowns, x, rate, change: value, rate and
- * change since the start of the deps, turn: angular velocity of the base, q: pose, s and f: S and factors of the start. */
+/* The formulas of a class. C names: k constants of the member, m0, m1, ... motions of the knowns, x, rate, change:
+ * value, rate and change since the start of the deps, turn: angular velocity of the base, q: pose, s and f: S and
+ * factors of the start. */
 typedef struct Formula {
     Dag *dag;
     Layout layout;
-    double size;   /* largest distance between points of a subset, m */
+    double size;     /* largest distance between points of a subset, m */
     double distance; /* largest of its reference points from the base's origin at the design, relative to size */
-    Block predict; /* q from the start and `change`; reach: squared relative size of that move */
-    Block chord;   /* one correction of q with the start's factors; step: its squared relative size */
-    Block solve;   /* factors, S, last correction, motion and inertia */
-    Block residual; /* worst: largest constraint residual at q, relative to size */
+    Block predict;   /* q from the start and `change`; reach: squared relative size of that move */
+    Block chord;     /* one correction of q with the start's factors; step: its squared relative size */
+    Block solve;     /* factors, S, last correction, motion and inertia */
+    Block residual;  /* worst: largest constraint residual at q, relative to size */
 } Formula;
 
-/* All classes [classes]. Fills the sampling on the way. Members that need other pivots than their class's first one get a class of their
- * own: *sequence is replaced by one that says so. Singular subsets end in diag_fail. */
+/* All classes [classes]. Fills the sampling on the way. Members that need other pivots than their class's first one get
+ * a class of their own: *sequence is replaced by one that says so. Singular subsets end in diag_fail. */
 Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **sequence, const double (*origin)[3],
                             Sampling *sampling);
 /* Reference points of all bodies [bodies][3], body frames: where a joint to something known sits. */
@@ -656,8 +676,8 @@ double (*reference_points(Pool *pool, const Model *model, const Sequence *sequen
 
 /* ---- assemble.c: the design configuration that fits the given lengths ----------------------------------------- */
 
-/* The model with its bodies' design poses moved to where every joint fits (FORMAT.md section 4); the same model where nothing
- * moves. Ends in diag_fail when there is no way there. */
+/* The model with its bodies' design poses moved to where every joint fits (FORMAT.md section 4); the same model where
+ * nothing moves. Ends in diag_fail when there is no way there. */
 const Model *model_assemble(Pool *pool, const Model *drawn, const Sequence *sequence);
 
 /* ---- whole.c: the whole mechanism, once all subsets are recovered ---------------------------------------------- */
@@ -666,31 +686,31 @@ const Model *model_assemble(Pool *pool, const Model *drawn, const Sequence *sequ
 typedef struct Plan {
     const Model *model;
     const Sequence *sequence;
-    Formula **formula;       /* [classes] */
+    Formula **formula; /* [classes] */
     const double (*origin)[3];
     int *start_offset, *inertia_offset; /* [subsets] */
-    int *motion_offset;      /* [bodies] */
+    int *motion_offset;                 /* [bodies] */
     int start_size, inertia_size, motion_size;
     int free_coordinates;
     int *coordinate_state, *coordinate_rate; /* [coordinates] index in the state, -1: driven */
-    int states;              /* r e w v omega w', or w w' */
-    int unknowns;            /* accelerations: alpha and a of a free base, then the free coordinates */
-    int *coordinate_unknown; /* [coordinates] -1: driven */
+    int states;                              /* r e w v omega w', or w w' */
+    int unknowns;                            /* accelerations: alpha and a of a free base, then the free coordinates */
+    int *coordinate_unknown;                 /* [coordinates] -1: driven */
 } Plan;
 
 Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Formula **formula, const double (*origin)[3]);
 
-/* Inputs of every global block, as C names: y state, e recovered Euler parameters of the base, x and xd values and rates of all
- * coordinates, u inputs, m motions, n inertias. Fixed base: r, v, turn are 0 and R the identity. */
+/* Inputs of every global block, as C names: y state, e recovered Euler parameters of the base, x and xd values and
+ * rates of all coordinates, u inputs, m motions, n inertias. Fixed base: r, v, turn are 0 and R the identity. */
 typedef struct Whole {
     const Plan *plan;
     const Model *model;
     Dag *dag;
-    Motion *motion;              /* [bodies] relative to the base */
-    Ex r[3], e[4], R[9], v[3];   /* base: position, Euler parameters, rotation to the world, world velocity */
-    Ex turn[3];                  /* angular velocity of the base, base frame */
-    Ex gravity[3];               /* base frame */
-    Ex *x, *xd;                  /* [coordinates] */
+    Motion *motion;            /* [bodies] relative to the base */
+    Ex r[3], e[4], R[9], v[3]; /* base: position, Euler parameters, rotation to the world, world velocity */
+    Ex turn[3];                /* angular velocity of the base, base frame */
+    Ex gravity[3];             /* base frame */
+    Ex *x, *xd;                /* [coordinates] */
 } Whole;
 
 Whole *whole_new(Pool *pool, const Plan *plan);
@@ -708,20 +728,21 @@ void whole_unit_velocity(Whole *whole, int body, const Vector *point, int coordi
 /* Coordinates that a body's motion depends on. */
 const Subset *whole_subset(const Whole *whole, int body);
 
-/* ---- table.c: tables of FORMAT.md section 7 ------------------------------------------------------------------------ */
+/* ---- table.c: tables of FORMAT.md section 7 ----------------------------------------------------------------- */
 
 /* Slopes of the monotone cubic (Fritsch and Carlson), from x and y. */
 void table_slopes(Table *table);
 double table_value(const Table *table, double x);
 
-/* ---- loads.c: applied forces -------------------------------------------------------------------------------------- */
+/* ---- loads.c: applied forces -------------------------------------------------------------------------------- */
 
-/* Generalised forces: moment about the base origin and force on everything, base frame; force along every coordinate. */
+/* Generalised forces: moment about the base origin and force on everything, base frame; force along every coordinate.
+ */
 typedef struct Loads {
     Ex moment[3], force[3];
-    Ex *along;      /* [coordinates] */
-    Ex *element;    /* [forces] Q or T of FORMAT.md section 7 */
-    Ex (*wheel)[4]; /* [wheels] fz, deflection, deflection rate, road height */
+    Ex *along;                           /* [coordinates] */
+    Ex *element;                         /* [forces] Q or T of FORMAT.md section 7 */
+    Ex (*wheel)[4];                      /* [wheels] fz, deflection, deflection rate, road height */
     Ex potential, potential_rate, power; /* of springs; of dampers and tires, W */
 } Loads;
 
@@ -743,11 +764,14 @@ Block *energy_block(Whole *whole);
 void whole_accelerations(Whole *whole, Ex alpha[3], Ex a[3], Ex **w2);
 /* Force that drives a driven coordinate, at rate[]. */
 Ex whole_drive_force(Whole *whole, int coordinate);
-/* Absolute acceleration less gravity, base frame, of a point; alpha, a: of the base (a less gravity), w2: of all coordinates. */
-void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2, Ex out[3]);
+/* Absolute acceleration less gravity, base frame, of a point; alpha, a: of the base (a less gravity), w2: of all
+ * coordinates. */
+void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2,
+                        Ex out[3]);
 void whole_angular_acceleration(Whole *whole, int body, const Ex alpha[3], const Ex *w2, Ex out[3]);
 
-/* ---- emit.c: blocks as C text ------------------------------------------------------------------------------------------ */
+/* ---- emit.c: blocks as C text
+ * ------------------------------------------------------------------------------------------ */
 
 /* Constants of a class in the order of their slots in k[]. */
 typedef struct Constants {
@@ -755,13 +779,15 @@ typedef struct Constants {
     Ex *e;
 } Constants;
 
-/* The statements of a block, each line led by `indent` spaces: temporaries in depth-first order from the results, checks as soon
- * as their values are there, stores at the end (a target may be read before). Constants met on the way get slots. */
+/* The statements of a block, each line led by `indent` spaces: temporaries in depth-first order from the results,
+ * checks as soon as their values are there, stores at the end (a target may be read before). Constants met on the way
+ * get slots. */
 void block_emit(Text *out, const Block *block, Constants *constants, int indent);
 /* A number as C source that reads back bit-exactly: R(0.5). */
 const char *emit_number(Pool *pool, double value);
 
-/* ---- template.c: fixed text with insertion points -------------------------------------------------------------------------- */
+/* ---- template.c: fixed text with insertion points
+ * -------------------------------------------------------------------------- */
 
 /* Files built into the program: templates and the freestanding runtime. Ends with name NULL. */
 typedef struct Embedded {
@@ -771,18 +797,21 @@ typedef struct Embedded {
 
 extern const Embedded embedded[];
 
-/* Where a template's line is nothing but `@name@` in a comment, `insert` prints what belongs there, with that line's indent. */
+/* Where a template's line is nothing but `@name@` in a comment, `insert` prints what belongs there, with that line's
+ * indent. */
 typedef void Insert(void *context, const char *name, Text *out, int indent);
 
-/* Expand the template `name` (from the folder `templates`, or built in where that is NULL): every word PREFIX becomes `prefix`,
- * UPPER the same in capitals, CLASS becomes `class`. */
-void template_expand(Pool *pool, Text *out, const char *templates, const char *name, const char *prefix, const char *class,
-                     Insert *insert, void *context);
+/* Expand the template `name` (from the folder `templates`, or built in where that is NULL): every word PREFIX becomes
+ * `prefix`, UPPER the same in capitals, CLASS becomes `class`. */
+void template_expand(Pool *pool, Text *out, const char *templates, const char *name, const char *prefix,
+                     const char *class, Insert *insert, void *context);
 
-/* ---- generate.c: all of it ------------------------------------------------------------------------------------------------- */
+/* ---- generate.c: all of it
+ * ------------------------------------------------------------------------------------------------- */
 
-/* The generated C and its header. `header`: the name by which the C includes it, NULL: it doesn't. `templates` as above. */
-void generate(Pool *pool, const Model *model, const Sequence *sequence, const char *templates, const char *header, Text *c,
-              Text *h);
+/* The generated C and its header. `header`: the name by which the C includes it, NULL: it doesn't. `templates` as
+ * above. */
+void generate(Pool *pool, const Model *model, const Sequence *sequence, const char *templates, const char *header,
+              Text *c, Text *h);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The weighted graph of a model (method.md section 3), private to graph.c and sequence.c. Vertices are
+ * The weighted graph of a model (Serban and Haug 2000, section 4), private to graph.c and sequence.c. Vertices are
  * the bodies that move relative to the base; edges are first the joints, then the dual coordinates.
  *
  * A body counts 6 unknowns here: its normalization equation touches nothing else, so it always determines one
@@ -33,8 +33,8 @@ typedef struct Graph {
 Graph *graph_new(Pool *pool, const Model *model);
 /* Distribute the equations so that every body gets as many as it has unknowns. Where that is impossible, diag_fail. */
 void graph_match(Graph *graph);
-/* Strongly connected components of "is determined by equations that refer to". Fills component[bodies] with numbers from
- * 0 in computational order (base: -1) and returns how many there are. Needs a matched graph. */
+/* Strongly connected components of "is determined by equations that refer to". Fills component[bodies] with numbers
+ * from 0 in computational order (base: -1) and returns how many there are. Needs a matched graph. */
 int graph_components(const Graph *graph, int *component);
 
 #endif

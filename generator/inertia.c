@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What the bodies of a subset add to the equations of motion: moments of mass, forces of the quadratic-velocity terms, and the columns
- * and rows of the coordinates that move them. */
+ * What the bodies of a subset add to the equations of motion: moments of mass, forces of the quadratic-velocity terms,
+ * and the columns and rows of the coordinates that move them. */
 #include "subset.h"
 
 #include <string.h>
@@ -27,8 +27,9 @@ int inertia_mass(int deps, int j, int k)
     return INERTIA_COORDINATE + 7 * deps + j * deps - j * (j - 1) / 2 + (k - j);
 }
 
-/* A J A^T in base axes, upper triangle xx yy zz xy xz yz. One diagonal entry J0 is taken out as J0 I, which no rotation changes: the
- * entry shared with another one where there is such a pair (a wheel), so that one more column drops out. */
+/* A J A^T in base axes, upper triangle xx yy zz xy xz yz. One diagonal entry J0 is taken out as J0 I, which no rotation
+ * changes: the entry shared with another one where there is such a pair (a wheel), so that one more column drops out.
+ */
 static void rotated_inertia(Work *w, int b, const Ex A[9], Ex out[6])
 {
     Dag *dag = w->dag;
@@ -62,8 +63,9 @@ static void accumulate(Dag *dag, Ex *sum, const Ex *more, int count)
         sum[i] = ex_add(dag, sum[i], more[i]);
 }
 
-/* What one body adds to the subset's inertia numbers. Velocities are taken in the inertial frame that moves with the base's
- * origin, and the acceleration of the base enters as a = acceleration - gravity: both then appear in the global equations alone. */
+/* What one body adds to the subset's inertia numbers. Velocities are taken in the inertial frame that moves with the
+ * base's origin, and the acceleration of the base enters as a = acceleration - gravity: both then appear in the global
+ * equations alone. */
 static void add_body_inertia(Work *w, int b, const Motion *m, const Ex turn[3], Ex *sum)
 {
     Dag *dag = w->dag;
@@ -77,8 +79,8 @@ static void add_body_inertia(Work *w, int b, const Motion *m, const Ex turn[3], 
     ex_scale3(dag, mass, x, mx);
     accumulate(dag, sum + INERTIA_FIRST, mx, 3);
     Ex xx = ex_mul(dag, mx[0], x[0]), yy = ex_mul(dag, mx[1], x[1]), zz = ex_mul(dag, mx[2], x[2]);
-    const Ex second[6] = {ex_add(dag, J[0], ex_add(dag, yy, zz)), ex_add(dag, J[1], ex_add(dag, xx, zz)),
-                          ex_add(dag, J[2], ex_add(dag, xx, yy)), ex_sub(dag, J[3], ex_mul(dag, mx[0], x[1])),
+    const Ex second[6] = {ex_add(dag, J[0], ex_add(dag, yy, zz)),      ex_add(dag, J[1], ex_add(dag, xx, zz)),
+                          ex_add(dag, J[2], ex_add(dag, xx, yy)),      ex_sub(dag, J[3], ex_mul(dag, mx[0], x[1])),
                           ex_sub(dag, J[4], ex_mul(dag, mx[0], x[2])), ex_sub(dag, J[5], ex_mul(dag, mx[1], x[2]))};
     accumulate(dag, sum + INERTIA_SECOND, second, 6);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Formulas: a text like `-k * deflection - 40e3 * max(0, strut - 0.3)` into a tree, by recursive descent. Precedence, weakest first:
- * or, and, not, comparison, + -, * /, sign, ^ (from the right). A condition is a number too: true where it is positive. */
+ * Formulas: a text like `-k * deflection - 40e3 * max(0, strut - 0.3)` into a tree, by recursive descent. Precedence,
+ * weakest first: or, and, not, comparison, + -, * /, sign, ^ (from the right). A condition is a number too: true where
+ * it is positive. */
 #include "gicgen.h"
 
 #include <ctype.h>
@@ -24,9 +25,10 @@ static const struct {
     const char *name;
     Op op;
     int arguments;
-} function[] = {{"sqrt", OP_SQRT, 1},  {"abs", OP_ABS, 1},     {"sin", OP_SIN, 1},     {"cos", OP_COS, 1},  {"tan", OP_TAN, 1},
-                {"asin", OP_ASIN, 1},  {"acos", OP_ACOS, 1},   {"atan", OP_ATAN, 1},   {"exp", OP_EXP, 1},  {"log", OP_LOG, 1},
-                {"tanh", OP_TANH, 1},  {"atan2", OP_ATAN2, 2}, {"pow", OP_POW, 2},     {"min", OP_MIN, 2},  {"max", OP_MAX, 2}};
+} function[] = {{"sqrt", OP_SQRT, 1}, {"abs", OP_ABS, 1},   {"sin", OP_SIN, 1},   {"cos", OP_COS, 1},
+                {"tan", OP_TAN, 1},   {"asin", OP_ASIN, 1}, {"acos", OP_ACOS, 1}, {"atan", OP_ATAN, 1},
+                {"exp", OP_EXP, 1},   {"log", OP_LOG, 1},   {"tanh", OP_TANH, 1}, {"atan2", OP_ATAN2, 2},
+                {"pow", OP_POW, 2},   {"min", OP_MIN, 2},   {"max", OP_MAX, 2}};
 
 enum { FUNCTIONS = sizeof function / sizeof *function };
 
@@ -73,8 +75,8 @@ static bool take(Parser *p, const char *token)
 static void expect(Parser *p, const char *token)
 {
     if (!take(p, token))
-        fail(p, p->s, pool_print(p->pool, "write `%s` here", token), "`%s` is missing%s%s", token, *p->s ? " before " : " at the end",
-             *p->s ? pool_print(p->pool, "'%.12s'", p->s) : "");
+        fail(p, p->s, pool_print(p->pool, "write `%s` here", token), "`%s` is missing%s%s", token,
+             *p->s ? " before " : " at the end", *p->s ? pool_print(p->pool, "'%.12s'", p->s) : "");
 }
 
 static const Law *number(Parser *p, double value)
@@ -129,7 +131,8 @@ static int coordinate_named(const Model *model, const char *name)
 static void only_constants(Parser *p, const char *where, const char *name)
 {
     if (p->names->constant)
-        fail(p, where, p->names->remedy, "'%s' changes with time, but only numbers and parameters can stand here", name);
+        fail(p, where, p->names->remedy, "'%s' changes with time, but only numbers and parameters can stand here",
+             name);
 }
 
 static _Noreturn void unknown(Parser *p, const char *where, const char *name)
@@ -151,7 +154,9 @@ static _Noreturn void unknown(Parser *p, const char *where, const char *name)
     Text list = {.pool = p->pool};
     for (int i = 0; i < count && list.size < 200; ++i)
         text_print(&list, "%s%s", i ? ", " : "", known[i]);
-    fail(p, where, nearest ? pool_print(p->pool, "did you mean '%s'?", nearest) : pool_print(p->pool, "names known here: %s", list.s),
+    fail(p, where,
+         nearest ? pool_print(p->pool, "did you mean '%s'?", nearest)
+                 : pool_print(p->pool, "names known here: %s", list.s),
          "there is no '%s'", name);
 }
 
@@ -196,8 +201,8 @@ static const Law *parse_call(Parser *p, const char *where, const char *name)
             /* min and max of three are two of two */
             bool three = count == 3 && (function[i].op == OP_MIN || function[i].op == OP_MAX);
             if (count != function[i].arguments && !three)
-                fail(p, where, "separate arguments by commas", "'%s' takes %d argument%s, not %d", name, function[i].arguments,
-                     function[i].arguments > 1 ? "s" : "", count);
+                fail(p, where, "separate arguments by commas", "'%s' takes %d argument%s, not %d", name,
+                     function[i].arguments, function[i].arguments > 1 ? "s" : "", count);
             const Law *two = call(p, function[i].op, function[i].name, arg[0], arg[1], NULL);
             return three ? call(p, function[i].op, function[i].name, two, arg[2], NULL) : two;
         }
@@ -205,7 +210,8 @@ static const Law *parse_call(Parser *p, const char *where, const char *name)
     for (int i = 0; i < model->tables; ++i)
         if (!strcmp(model->table[i].name, name)) {
             if (count != 1)
-                fail(p, where, "a table is a function of one number", "table '%s' takes 1 argument, not %d", name, count);
+                fail(p, where, "a table is a function of one number", "table '%s' takes 1 argument, not %d", name,
+                     count);
             Law *law = pool_alloc(p->pool, sizeof *law);
             *law = (Law){.op = LAW_TABLE, .index = i, .arg = {arg[0]}, .name = model->table[i].name};
             return law;
@@ -221,7 +227,8 @@ static const Law *parse_call(Parser *p, const char *where, const char *name)
     const char *nearest = diag_nearest(name, known, names);
     fail(p, where,
          nearest ? pool_print(p->pool, "did you mean '%s'?", nearest)
-                 : "functions: sqrt abs sin cos tan asin acos atan atan2 exp log pow tanh min max if rate, and the model's tables",
+                 : "functions: sqrt abs sin cos tan asin acos atan atan2 exp log pow tanh min max if rate, and the "
+                   "model's tables",
          "there is no function or table '%s'", name);
 }
 
@@ -279,14 +286,15 @@ static const Law *parse_atom(Parser *p)
         if (!isfinite(value))
             fail(p, p->s, "numbers must be below 1.8e308 in magnitude", "the number is too large");
         if (isalpha((unsigned char)*end) || *end == '_')
-            fail(p, end, "put an operator between them, and leave units away: everything is SI", "a number runs into '%.12s'", end);
+            fail(p, end, "put an operator between them, and leave units away: everything is SI",
+                 "a number runs into '%.12s'", end);
         p->s = end;
         return number(p, value);
     }
     if (isalpha((unsigned char)*p->s))
         return parse_name(p);
-    fail(p, p->s, "a number, a name, a function or ( belongs here", *p->s ? "'%.12s' is unexpected" : "the formula ends too early%s",
-         *p->s ? p->s : "");
+    fail(p, p->s, "a number, a name, a function or ( belongs here",
+         *p->s ? "'%.12s' is unexpected" : "the formula ends too early%s", *p->s ? p->s : "");
 }
 
 static const Law *parse_sign(Parser *p);

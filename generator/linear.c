@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Straight-line factorizations of matrices of expressions. Pivots are chosen once, offline, so that the emitted code has
- * no search and no branch; each pivot's size is watched at run time instead. */
+ * Straight-line factorizations of matrices of expressions. Pivots are chosen once, offline, so that the emitted code
+ * has no search and no branch; each pivot's size is watched at run time instead. */
 #include "gicgen.h"
 
 #include <math.h>
@@ -28,13 +28,16 @@ static int pivot_cost(const Dag *dag, int n, const Ex *A, const bool *row_done, 
         for (int c = 0; c < n; ++c)
             if (!column_done[c] && c != j && !ex_is(dag, A[n * i + c], 0)) {
                 cost += multiplier_varies || varies(dag, A[n * i + c]) ? 2 : 0;
-                cost += varies(dag, A[n * r + c]) ? 2 : ex_is(dag, A[n * r + c], 0) ? 1 : 0; /* fill spreads variation */
+                cost += varies(dag, A[n * r + c])     ? 2
+                        : ex_is(dag, A[n * r + c], 0) ? 1
+                                                      : 0; /* fill spreads variation */
             }
     }
     return cost;
 }
 
-/* The smallest ratio over the usable samples of |A(i, j)| to the largest entry of its column in the rest, rows scaled. */
+/* The smallest ratio over the usable samples of |A(i, j)| to the largest entry of its column in the rest, rows scaled.
+ */
 static double pivot_quality(const Dag *dag, int n, const Ex *A, const bool *row_done, const double *row_scale,
                             const bool *usable, int i, int j)
 {
@@ -62,7 +65,8 @@ static bool pivot_vanishes(const Dag *dag, int n, const Ex *A, const double *row
     return false;
 }
 
-static void eliminate(Dag *dag, int n, Ex *A, const bool *row_done, const bool *column_done, int i, int j, Ex reciprocal)
+static void eliminate(Dag *dag, int n, Ex *A, const bool *row_done, const bool *column_done, int i, int j,
+                      Ex reciprocal)
 {
     for (int r = 0; r < n; ++r) {
         if (row_done[r] || r == i || ex_is(dag, A[n * r + j], 0))
@@ -182,8 +186,7 @@ Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A0)
             Ex multiplier = ex_mul(dag, A[n * r + best], reciprocal);
             for (int c = r; c < n; ++c)
                 if (!done[c])
-                    A[n * r + c] = A[n * c + r] =
-                        ex_sub(dag, A[n * r + c], ex_mul(dag, multiplier, A[n * best + c]));
+                    A[n * r + c] = A[n * c + r] = ex_sub(dag, A[n * r + c], ex_mul(dag, multiplier, A[n * best + c]));
             A[n * r + best] = multiplier;
         }
         for (int c = 0; c < n; ++c)
@@ -217,8 +220,8 @@ void linear_solve(Dag *dag, const Factors *f, const Ex *b, Ex *x)
         x[f->column[k]] = y[k];
 }
 
-/* Rows scaled to 1, then eliminated with partial pivoting; b (or NULL) goes along. The product of the pivots with the sign of the
- * exchanges, 0 where one is rounding. */
+/* Rows scaled to 1, then eliminated with partial pivoting; b (or NULL) goes along. The product of the pivots with the
+ * sign of the exchanges, 0 where one is rounding. */
 static double eliminate_numeric(int n, double *A, double *b)
 {
     double determinant = 1;

@@ -67,7 +67,8 @@ static Ex spring_damper(Whole *whole, Loads *loads, const Force *force, Ex value
     Ex extension = ex_sub(dag, value, law_value(whole, force->free, NULL));
     Ex elastic = ex_mul(dag, law_value(whole, force->stiffness, NULL), extension);
     Ex viscous = ex_mul(dag, law_value(whole, force->damping, NULL), rate);
-    loads->potential = ex_add(dag, loads->potential, ex_mul(dag, ex_literal(dag, 0.5), ex_mul(dag, elastic, extension)));
+    loads->potential =
+        ex_add(dag, loads->potential, ex_mul(dag, ex_literal(dag, 0.5), ex_mul(dag, elastic, extension)));
     loads->potential_rate = ex_add(dag, loads->potential_rate, ex_mul(dag, elastic, rate));
     loads->power = ex_sub(dag, loads->power, ex_mul(dag, viscous, rate));
     return ex_add(dag, elastic, viscous);
@@ -145,13 +146,9 @@ static void add_force(Whole *whole, Loads *loads, int index)
     Ex value[6] = {0};
     switch (force->type) {
     case FORCE_COORDINATE:
-    case FORCE_COORDINATE_LAW:
-        add_along(whole, loads, index);
-        break;
+    case FORCE_COORDINATE_LAW: add_along(whole, loads, index); break;
     case FORCE_POINTS:
-    case FORCE_POINTS_LAW:
-        add_between(whole, loads, index);
-        break;
+    case FORCE_POINTS_LAW: add_between(whole, loads, index); break;
     default:
         for (int i = 0; i < 6; ++i)
             value[i] = force->law[i] ? law_value(whole, force->law[i], NULL) : 0;

@@ -48,12 +48,14 @@ static void body_euler(Whole *whole, int body, const char *start, Ex p[4])
         ++local;
     Ex own[4], cross[3], product[4];
     for (int i = 0; i < 4; ++i)
-        own[i] = ex_input(dag, pool_print(dag->pool, "%s[%d]", start, whole->plan->start_offset[subset] + 7 * local + 3 + i), NULL);
+        own[i] = ex_input(
+            dag, pool_print(dag->pool, "%s[%d]", start, whole->plan->start_offset[subset] + 7 * local + 3 + i), NULL);
     const Ex *e = whole->e;
     product[0] = ex_sub(dag, ex_mul(dag, e[0], own[0]), ex_dot(dag, e + 1, own + 1));
     ex_cross(dag, e + 1, own + 1, cross);
     for (int i = 0; i < 3; ++i)
-        product[1 + i] = ex_add(dag, ex_add(dag, ex_mul(dag, e[0], own[1 + i]), ex_mul(dag, own[0], e[1 + i])), cross[i]);
+        product[1 + i] =
+            ex_add(dag, ex_add(dag, ex_mul(dag, e[0], own[1 + i]), ex_mul(dag, own[0], e[1 + i])), cross[i]);
     for (int i = 0; i < 4; ++i) /* -0 keeps e0 >= 0 */
         p[i] = ex_op(dag, OP_POSITIVE, product[0], product[i], ex_neg(dag, product[i]));
 }
@@ -67,9 +69,7 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
     if (output->type == OUTPUT_POSITION || output->type == OUTPUT_VELOCITY || output->type == OUTPUT_ACCELERATION)
         point = whole_point(whole, output->body, output->point);
     switch (output->type) {
-    case OUTPUT_POSITION:
-        whole_position(whole, &point, out);
-        break;
+    case OUTPUT_POSITION: whole_position(whole, &point, out); break;
     case OUTPUT_VELOCITY:
         if (output->in == BODY_GROUND) {
             whole_velocity(whole, &point, out);
@@ -83,12 +83,11 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         ex_add3(dag, t, whole->gravity, t);
         express(whole, output->in, t, out);
         break;
-    case OUTPUT_ORIENTATION:
-        body_euler(whole, output->body, "s", out);
-        break;
+    case OUTPUT_ORIENTATION: body_euler(whole, output->body, "s", out); break;
     case OUTPUT_ROLL_PITCH_YAW: {
         body_rotation(whole, output->body, A);
-        Ex one = ex_literal(dag, 1), sine = ex_op(dag, OP_MIN, ex_op(dag, OP_MAX, ex_neg(dag, A[6]), ex_literal(dag, -1), 0), one, 0);
+        Ex one = ex_literal(dag, 1),
+           sine = ex_op(dag, OP_MIN, ex_op(dag, OP_MAX, ex_neg(dag, A[6]), ex_literal(dag, -1), 0), one, 0);
         out[0] = ex_op(dag, OP_ATAN2, A[7], A[8], 0);
         out[1] = ex_op(dag, OP_ASIN, sine, 0, 0);
         out[2] = ex_op(dag, OP_ATAN2, A[3], A[0], 0);
@@ -105,15 +104,9 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         out[1] = whole->xd[output->index];
         out[2] = s->w2[output->index];
         break;
-    case OUTPUT_FORCE:
-        out[0] = s->loads->element[output->index];
-        break;
-    case OUTPUT_DRIVE_FORCE:
-        out[0] = whole_drive_force(whole, output->index);
-        break;
-    case OUTPUT_WHEEL:
-        memcpy(out, s->loads->wheel[output->index], 4 * sizeof *out);
-        break;
+    case OUTPUT_FORCE: out[0] = s->loads->element[output->index]; break;
+    case OUTPUT_DRIVE_FORCE: out[0] = whole_drive_force(whole, output->index); break;
+    case OUTPUT_WHEEL: memcpy(out, s->loads->wheel[output->index], 4 * sizeof *out); break;
     case OUTPUT_ENERGY: {
         out[0] = 0;
         out[1] = s->loads->potential;
@@ -135,8 +128,7 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         }
         break;
     }
-    default:
-        break;
+    default: break;
     }
 }
 

@@ -40,7 +40,8 @@ void picture_write(Pool *pool, const char *path, const Text *dot)
     rewind(input);
     int status = run_dot(input, output);
     if (status == 127)
-        picture_fail(path, "Graphviz's program `dot` is not installed", "install the package graphviz, or ask for a .dot file");
+        picture_fail(path, "Graphviz's program `dot` is not installed",
+                     "install the package graphviz, or ask for a .dot file");
     if (status)
         picture_fail(path, "Graphviz's program `dot` failed", "ask for a .dot file and see what `dot` says of it");
     Text svg = {.pool = pool};

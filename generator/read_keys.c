@@ -43,15 +43,18 @@ const char *const kind_example[KEY_KINDS] = {
 
 /* Keywords of C11 and C++20: the runtime compiles as either. */
 static const char *const keyword[] = {
-    "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case", "catch", "char",
-    "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl", "concept", "const",
-    "const_cast", "consteval", "constexpr", "constinit", "continue", "decltype", "default", "delete", "do", "double",
-    "dynamic_cast", "else", "enum", "explicit", "export", "extern", "false", "float", "for", "friend", "goto", "if",
-    "inline", "int", "long", "main", "mutable", "namespace", "new", "noexcept", "not", "not_eq", "nullptr", "operator",
-    "or", "or_eq", "private", "protected", "public", "register", "reinterpret_cast", "requires", "restrict", "return",
-    "short", "signed", "sizeof", "static", "static_assert", "static_cast", "struct", "switch", "template", "this",
-    "thread_local", "throw", "true", "try", "typedef", "typeid", "typename", "union", "unsigned", "using", "virtual",
-    "void", "volatile", "wchar_t", "while", "xor", "xor_eq",
+    "alignas",     "alignof",      "and",       "and_eq",   "asm",       "auto",         "bitand",   "bitor",
+    "bool",        "break",        "case",      "catch",    "char",      "char16_t",     "char32_t", "char8_t",
+    "class",       "co_await",     "co_return", "co_yield", "compl",     "concept",      "const",    "const_cast",
+    "consteval",   "constexpr",    "constinit", "continue", "decltype",  "default",      "delete",   "do",
+    "double",      "dynamic_cast", "else",      "enum",     "explicit",  "export",       "extern",   "false",
+    "float",       "for",          "friend",    "goto",     "if",        "inline",       "int",      "long",
+    "main",        "mutable",      "namespace", "new",      "noexcept",  "not",          "not_eq",   "nullptr",
+    "operator",    "or",           "or_eq",     "private",  "protected", "public",       "register", "reinterpret_cast",
+    "requires",    "restrict",     "return",    "short",    "signed",    "sizeof",       "static",   "static_assert",
+    "static_cast", "struct",       "switch",    "template", "this",      "thread_local", "throw",    "true",
+    "try",         "typedef",      "typeid",    "typename", "union",     "unsigned",     "using",    "virtual",
+    "void",        "volatile",     "wchar_t",   "while",    "xor",       "xor_eq",
 };
 
 void name_check(const char *name, const char *what, Place at)
@@ -149,8 +152,9 @@ static int find_body(Reader *reader, const Item *item, const char *what, bool gr
     const char *word = doc_word(item, what);
     if (model->free_base && !strcmp(word, "ground")) {
         if (!ground)
-            diag_fail(item->at, pool_print(reader->pool, "name a body (the base is '%s'), or write `base: ground`",
-                                           model->body[BODY_BASE].name),
+            diag_fail(item->at,
+                      pool_print(reader->pool, "name a body (the base is '%s'), or write `base: ground`",
+                                 model->body[BODY_BASE].name),
                       "%s: with a free base only force elements may refer to ground", what);
         return BODY_GROUND;
     }
@@ -186,14 +190,16 @@ double number_read(Reader *reader, const Item *item, const char *what)
 {
     if (!mentions_parameter(reader, item))
         return doc_number(item, what);
-    LawNames names = {.model = reader->model, .constant = true, .remedy = "put what changes with time into a force element"};
+    LawNames names = {
+        .model = reader->model, .constant = true, .remedy = "put what changes with time into a force element"};
     const Law *law = law_parse(reader->pool, item, what, &names);
     if (law_is_tunable(law, reader->model))
         diag_fail(item->at, "leave out `tunable: true` of that parameter, or use it in force elements only",
                   "%s is fixed when the code is generated, but '%s' has a tunable parameter", what, item->text);
     double number = law_number(law, reader->model);
     if (!isfinite(number))
-        diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number", what);
+        diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number",
+                  what);
     number += item->shift;
     return item->negated ? 0 - number : number;
 }
@@ -246,25 +252,17 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         text_check(value->text, what, item->at);
         break;
     case KEY_NUMBER:
-    case KEY_ODD:
-        read_number(reader, key, item, what, value->number);
-        break;
-    case KEY_FLAG:
-        value->flag = doc_bool(item, what);
-        break;
+    case KEY_ODD: read_number(reader, key, item, what, value->number); break;
+    case KEY_FLAG: value->flag = doc_bool(item, what); break;
     case KEY_RANGE:
         vector_read(reader, item, what, value->number, 2);
         if (!(value->number[0] < value->number[1]))
             diag_fail(item->at, "write [low, high]", "%s: the low end must be below the high end", what);
         break;
-    case KEY_VECTOR:
-        vector_read(reader, item, what, value->number, 3);
-        break;
+    case KEY_VECTOR: vector_read(reader, item, what, value->number, 3); break;
     case KEY_AXIS:
     case KEY_TURN:
-    case KEY_DUAL_AXIS:
-        read_axis(reader, item, what, value->number);
-        break;
+    case KEY_DUAL_AXIS: read_axis(reader, item, what, value->number); break;
     case KEY_AXES:
         if (item->kind != ITEM_LIST || item->count != 2)
             diag_fail(item->at, "write [u_a, u_b]; each is a direction [x, y, z]",
@@ -273,12 +271,8 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
             read_axis(reader, item->value[i], pool_print(reader->pool, "the %s of %s", i ? "second" : "first", what),
                       value->number + 3 * i);
         break;
-    case KEY_EULER:
-        vector_read(reader, item, what, value->number, 4);
-        break;
-    case KEY_POINT:
-        read_point(reader, item, what, value->number);
-        break;
+    case KEY_EULER: vector_read(reader, item, what, value->number, 4); break;
+    case KEY_POINT: read_point(reader, item, what, value->number); break;
     case KEY_POINTS:
         if (item->kind != ITEM_LIST || item->count != 2)
             diag_fail(item->at, "write [p_a, p_b]; each is [x, y, z] or the name of a point",
@@ -286,15 +280,9 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         read_point(reader, item->value[0], what, value->number);
         read_point(reader, item->value[1], what, value->number + 3);
         break;
-    case KEY_BODY:
-        value->index[0] = find_body(reader, item, what, false);
-        break;
-    case KEY_BODIES:
-        find_bodies(reader, item, what, false, value->index);
-        break;
-    case KEY_FORCE_BODIES:
-        find_bodies(reader, item, what, true, value->index);
-        break;
+    case KEY_BODY: value->index[0] = find_body(reader, item, what, false); break;
+    case KEY_BODIES: find_bodies(reader, item, what, false, value->index); break;
+    case KEY_FORCE_BODIES: find_bodies(reader, item, what, true, value->index); break;
     case KEY_FRAME:
         if (!strcmp(doc_word(item, what), "world") || !strcmp(item->text, "ground"))
             value->index[0] = BODY_GROUND;
@@ -318,8 +306,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     case KEY_TORQUE_VECTOR:
     case KEY_INERTIA:
     case KEY_ORIENTATION:
-    case KEY_KINDS:
-        break;
+    case KEY_KINDS: break;
     }
 }
 

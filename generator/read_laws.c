@@ -82,7 +82,8 @@ static bool second_word(const Value *value, const char *what, const char *first,
     if (!value->item || !strcmp(value->text, first))
         return false;
     if (strcmp(value->text, second))
-        diag_fail(value->item->at, "choose one of the two", "%s is `%s` or `%s`, not '%s'", what, first, second, value->text);
+        diag_fail(value->item->at, "choose one of the two", "%s is `%s` or `%s`, not '%s'", what, first, second,
+                  value->text);
     return true;
 }
 
@@ -100,12 +101,16 @@ void tables_read(Reader *reader, const Item *map)
         table->x = numbers(reader, &value[TABLE_X], pool_print(reader->pool, "x of %s", entry[i].what), &table->count);
         table->y = numbers(reader, &value[TABLE_Y], pool_print(reader->pool, "y of %s", entry[i].what), &count);
         if (count != table->count)
-            diag_fail(value[TABLE_Y].item->at, "give one y for every x", "%s has %d x but %d y", entry[i].what, table->count, count);
+            diag_fail(value[TABLE_Y].item->at, "give one y for every x", "%s has %d x but %d y", entry[i].what,
+                      table->count, count);
         for (int k = 1; k < count; ++k)
             if (!(table->x[k] > table->x[k - 1]))
-                diag_fail(value[TABLE_X].item->value[k]->at, "sort the table by x, without repetitions", "x of %s must rise", entry[i].what);
-        table->cubic = second_word(&value[TABLE_INTERPOLATION], pool_print(reader->pool, "interpolation of %s", entry[i].what), "linear", "cubic");
-        table->onward = second_word(&value[TABLE_BEYOND], pool_print(reader->pool, "beyond of %s", entry[i].what), "constant", "linear");
+                diag_fail(value[TABLE_X].item->value[k]->at, "sort the table by x, without repetitions",
+                          "x of %s must rise", entry[i].what);
+        table->cubic = second_word(&value[TABLE_INTERPOLATION],
+                                   pool_print(reader->pool, "interpolation of %s", entry[i].what), "linear", "cubic");
+        table->onward = second_word(&value[TABLE_BEYOND], pool_print(reader->pool, "beyond of %s", entry[i].what),
+                                    "constant", "linear");
         table->slope = pool_alloc(reader->pool, sizeof *table->slope * (size_t)count);
         table_slopes(table);
     }
@@ -125,7 +130,8 @@ void ports_read(Reader *reader, const Item *map)
                        .body = value[PORT_BODY].index[0],
                        .in = value[PORT_IN].item ? value[PORT_IN].index[0] : BODY_GROUND};
         if (!model->free_base && port->body == BODY_BASE)
-            diag_fail(value[PORT_BODY].item->at, "name a body that can move", "%s: a force on ground moves nothing", entry[i].what);
+            diag_fail(value[PORT_BODY].item->at, "name a body that can move", "%s: a force on ground moves nothing",
+                      entry[i].what);
         if (value[PORT_POINT].item)
             body_point(reader, port->body, value[PORT_POINT].number, value[PORT_POINT].item->at, port->point);
     }

@@ -7,33 +7,18 @@
 #include <string.h>
 
 const char *const joint_type_name[JOINT_TYPES] = {
-    [JOINT_REVOLUTE] = "revolute",
-    [JOINT_SPHERICAL] = "spherical",
-    [JOINT_PRISMATIC] = "prismatic",
-    [JOINT_CYLINDRICAL] = "cylindrical",
-    [JOINT_UNIVERSAL] = "universal",
-    [JOINT_FIXED] = "fixed",
-    [JOINT_DISTANCE] = "distance",
-    [JOINT_REVOLUTE_SPHERICAL] = "revolute_spherical",
-    [JOINT_POINT_ON_LINE] = "point_on_line",
-    [JOINT_POINT_IN_PLANE] = "point_in_plane",
-    [JOINT_PARALLEL] = "parallel",
-    [JOINT_PERPENDICULAR] = "perpendicular",
+    [JOINT_REVOLUTE] = "revolute",           [JOINT_SPHERICAL] = "spherical",
+    [JOINT_PRISMATIC] = "prismatic",         [JOINT_CYLINDRICAL] = "cylindrical",
+    [JOINT_UNIVERSAL] = "universal",         [JOINT_FIXED] = "fixed",
+    [JOINT_DISTANCE] = "distance",           [JOINT_REVOLUTE_SPHERICAL] = "revolute_spherical",
+    [JOINT_POINT_ON_LINE] = "point_on_line", [JOINT_POINT_IN_PLANE] = "point_in_plane",
+    [JOINT_PARALLEL] = "parallel",           [JOINT_PERPENDICULAR] = "perpendicular",
 };
 
 const int joint_equations[JOINT_TYPES] = {
-    [JOINT_REVOLUTE] = 5,
-    [JOINT_SPHERICAL] = 3,
-    [JOINT_PRISMATIC] = 5,
-    [JOINT_CYLINDRICAL] = 4,
-    [JOINT_UNIVERSAL] = 4,
-    [JOINT_FIXED] = 6,
-    [JOINT_DISTANCE] = 1,
-    [JOINT_REVOLUTE_SPHERICAL] = 2,
-    [JOINT_POINT_ON_LINE] = 2,
-    [JOINT_POINT_IN_PLANE] = 1,
-    [JOINT_PARALLEL] = 2,
-    [JOINT_PERPENDICULAR] = 1,
+    [JOINT_REVOLUTE] = 5,      [JOINT_SPHERICAL] = 3,      [JOINT_PRISMATIC] = 5, [JOINT_CYLINDRICAL] = 4,
+    [JOINT_UNIVERSAL] = 4,     [JOINT_FIXED] = 6,          [JOINT_DISTANCE] = 1,  [JOINT_REVOLUTE_SPHERICAL] = 2,
+    [JOINT_POINT_ON_LINE] = 2, [JOINT_POINT_IN_PLANE] = 1, [JOINT_PARALLEL] = 2,  [JOINT_PERPENDICULAR] = 1,
 };
 
 const char *const coordinate_type_name[COORDINATE_TYPES] = {
@@ -54,17 +39,7 @@ const char *const coordinate_type_name[COORDINATE_TYPES] = {
      FORM(JOINT_POINT_ON_LINE) | FORM(JOINT_POINT_IN_PLANE))
 #define MAYBE_POINT (FORM(JOINT_PRISMATIC) | FORM(JOINT_FIXED))
 
-enum {
-    LINK_TYPE,
-    LINK_BODIES,
-    LINK_POINT,
-    LINK_POINTS,
-    LINK_AXIS,
-    LINK_AXES,
-    LINK_LENGTH,
-    LINK_OFFSET,
-    LINK_KEYS
-};
+enum { LINK_TYPE, LINK_BODIES, LINK_POINT, LINK_POINTS, LINK_AXIS, LINK_AXES, LINK_LENGTH, LINK_OFFSET, LINK_KEYS };
 
 static const Key joint_key[LINK_KEYS] = {
     [LINK_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
@@ -84,17 +59,7 @@ static const double axes_tolerance = 10;
 
 const Section joint_section = {joint_key, LINK_KEYS, joint_type_name, JOINT_TYPES, joint_type_name, NULL};
 
-enum {
-    DUAL_TYPE,
-    DUAL_BODIES,
-    DUAL_POINTS,
-    DUAL_AXIS,
-    DUAL_DESIGN,
-    DUAL_RANGE,
-    DUAL_INITIAL,
-    DUAL_DRIVEN,
-    DUAL_KEYS
-};
+enum { DUAL_TYPE, DUAL_BODIES, DUAL_POINTS, DUAL_AXIS, DUAL_DESIGN, DUAL_RANGE, DUAL_INITIAL, DUAL_DRIVEN, DUAL_KEYS };
 
 #define DUAL_AXES (FORM(COORDINATE_TRANSLATION) | FORM(COORDINATE_ANGLE))
 #define DUAL_ENDS (FORM(COORDINATE_LENGTH) | FORM(COORDINATE_TRANSLATION))
@@ -110,7 +75,7 @@ static const Key coordinate_key[DUAL_KEYS] = {
     [DUAL_DRIVEN] = {"driven", KEY_FLAG, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-const Section coordinate_section = {coordinate_key, DUAL_KEYS, coordinate_type_name, COORDINATE_TYPES,
+const Section coordinate_section = {coordinate_key,       DUAL_KEYS, coordinate_type_name, COORDINATE_TYPES,
                                     coordinate_type_name, NULL};
 
 double points_distance(const Value *points, const char *what, double d[3])
@@ -198,7 +163,8 @@ static void link_set(const Reader *reader, const Value *value, const Entry *entr
     joint->length = link_number(given_length, drawn, drawn, joint);
     double square = joint->length * joint->length;
     if (!(square > 0 && isfinite(square)))
-        diag_fail(given_length->item->at, "lengths are in metres", "length of %s is out of all proportion", entry->what);
+        diag_fail(given_length->item->at, "lengths are in metres", "length of %s is out of all proportion",
+                  entry->what);
     if (joint->type != JOINT_REVOLUTE_SPHERICAL)
         return;
     joint->offset = link_number(given_offset, vec_dot(value[LINK_AXIS].number, d), drawn, joint);
@@ -282,8 +248,13 @@ static void coordinate_read(Reader *reader, const Entry *entry, Coordinate *coor
     const int *body = value[DUAL_BODIES].index;
     const double *axis = value[DUAL_AXIS].number;
     Value *points = value + DUAL_POINTS;
-    *coordinate = (Coordinate){.name = entry->name, .at = entry->at, .type = type, .body = {body[0], body[1]},
-                               .design = value[DUAL_DESIGN].number[0], .driven = value[DUAL_DRIVEN].flag, .input = -1};
+    *coordinate = (Coordinate){.name = entry->name,
+                               .at = entry->at,
+                               .type = type,
+                               .body = {body[0], body[1]},
+                               .design = value[DUAL_DESIGN].number[0],
+                               .driven = value[DUAL_DRIVEN].flag,
+                               .input = -1};
     if (FORM(type) & DUAL_AXES)
         body_direction(reader, body[0], axis, coordinate->axis);
     double d[3] = {0, 0, 0};

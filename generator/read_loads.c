@@ -150,12 +150,15 @@ static const Law *spring_law(Reader *reader, const Entry *entry, const Value *va
         return literal_law(reader, fallback);
     const Item *item = value[key].item;
     const char *what = pool_print(reader->pool, "%s of %s", force_key[key].name, entry->what);
-    LawNames names = {.model = reader->model, .constant = true, .remedy = "use the element type `force` for any other law"};
+    LawNames names = {
+        .model = reader->model, .constant = true, .remedy = "use the element type `force` for any other law"};
     bool formula = item->quoted || mentions_parameter(reader, item);
-    const Law *law = formula ? law_parse(reader->pool, item, what, &names) : literal_law(reader, doc_number(item, what));
+    const Law *law =
+        formula ? law_parse(reader->pool, item, what, &names) : literal_law(reader, doc_number(item, what));
     double number = law_number(law, reader->model);
     if (!isfinite(number))
-        diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number", what);
+        diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number",
+                  what);
     if (force_key[key].bound == BOUND_NOT_NEGATIVE && number < 0)
         diag_fail(item->at, "write zero or a positive number", "%s must not be negative (%s)", what, item->text);
     return law;
@@ -166,12 +169,13 @@ static void read_load(Reader *reader, const Entry *entry, const Value *value, Fo
     static const int key[2] = {ELEMENT_FORCE, ELEMENT_TORQUE};
     LawNames names = {.model = reader->model};
     if (!value[ELEMENT_FORCE].item && !value[ELEMENT_TORQUE].item)
-        diag_fail(entry->at, "add `force: [x, y, z]` or `torque: [x, y, z]`; each may be a formula", "%s has neither force nor torque",
-                  entry->what);
+        diag_fail(entry->at, "add `force: [x, y, z]` or `torque: [x, y, z]`; each may be a formula",
+                  "%s has neither force nor torque", entry->what);
     force->body[0] = value[ELEMENT_BODY].index[0];
     force->body[1] = value[ELEMENT_IN].item ? value[ELEMENT_IN].index[0] : BODY_GROUND;
     if (!reader->model->free_base && force->body[0] == BODY_BASE)
-        diag_fail(value[ELEMENT_BODY].item->at, "name a body that can move", "%s: a load on ground moves nothing", entry->what);
+        diag_fail(value[ELEMENT_BODY].item->at, "name a body that can move", "%s: a load on ground moves nothing",
+                  entry->what);
     if (value[ELEMENT_POINT].item)
         body_point(reader, force->body[0], value[ELEMENT_POINT].number, value[ELEMENT_POINT].item->at, force->point[0]);
     for (int part = 0; part < 2; ++part) {
@@ -180,7 +184,8 @@ static void read_load(Reader *reader, const Entry *entry, const Value *value, Fo
         if (!item)
             continue;
         if (item->kind != ITEM_LIST || item->count != 3)
-            diag_fail(item->at, "write [x, y, z]; each may be a formula", "%s must be a list of 3 numbers or formulas", what);
+            diag_fail(item->at, "write [x, y, z]; each may be a formula", "%s must be a list of 3 numbers or formulas",
+                      what);
         for (int i = 0; i < 3; ++i)
             force->law[3 * part + i] = law_parse(reader->pool, item->value[i], what, &names);
     }
@@ -199,7 +204,8 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
                      : type == TYPE_SPRING ? (along ? FORCE_COORDINATE : FORCE_POINTS)
                                            : (along ? FORCE_COORDINATE_LAW : FORCE_POINTS_LAW);
     section_read(reader, &force_section, (int)form, entry, value);
-    *force = (Force){.name = entry->name, .at = entry->at, .type = form, .coordinate = -1, .body = {BODY_GROUND, BODY_GROUND}};
+    *force = (Force){
+        .name = entry->name, .at = entry->at, .type = form, .coordinate = -1, .body = {BODY_GROUND, BODY_GROUND}};
     double fallback = 0;
     if (form == FORCE_LOAD) {
         read_load(reader, entry, value, force);
@@ -223,7 +229,8 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
         LawNames names = {.model = reader->model,
                           .local = form == FORCE_POINTS_LAW ? force_local : NULL,
                           .locals = form == FORCE_POINTS_LAW ? FORCE_LOCALS : 0};
-        force->law[0] = law_parse(reader->pool, value[ELEMENT_VALUE].item, pool_print(reader->pool, "value of %s", entry->what), &names);
+        force->law[0] = law_parse(reader->pool, value[ELEMENT_VALUE].item,
+                                  pool_print(reader->pool, "value of %s", entry->what), &names);
     }
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Constraint equations of joints and dual coordinates (FORMAT.md sections 4 and 5): value, Jacobian with respect to the
- * twists of both ends, and the quadratic-velocity term. Every equation is a sum of scalar products of body-fixed points and axes. */
+ * twists of both ends, and the quadratic-velocity term. Every equation is a sum of scalar products of body-fixed points
+ * and axes. */
 #include "gicgen.h"
 
 #include <math.h>
@@ -43,7 +44,7 @@ static const int joint_parts[JOINT_TYPES] = {
 };
 
 static void relative_points(const int body[2], const double point[2][3], const double (*origin)[3],
-                      double number[FIXTURE_NUMBERS])
+                            double number[FIXTURE_NUMBERS])
 {
     for (int end = 0; end < 2; ++end)
         for (int i = 0; i < 3; ++i)
@@ -64,8 +65,7 @@ void fixture_of_joint(const Joint *joint, const double (*origin)[3], double numb
     number[NUMBER_OFFSET] = joint->offset;
 }
 
-void fixture_of_coordinate(const Coordinate *coordinate, const double (*origin)[3],
-                      double number[FIXTURE_NUMBERS])
+void fixture_of_coordinate(const Coordinate *coordinate, const double (*origin)[3], double number[FIXTURE_NUMBERS])
 {
     memset(number, 0, FIXTURE_NUMBERS * sizeof number[0]);
     if (coordinate->type != COORDINATE_ANGLE)
@@ -128,7 +128,8 @@ static Row row_along(Dag *dag, const Link *link, int end, const Vector *u)
     add_rate(dag, &row, 0, &link->end[0], u->v, true);
     add_rate(dag, &row, end, u, link->d, false);
     Ex cross = ex_dot(dag, u->rate, link->rate);
-    row.bias = ex_add(dag, ex_add(dag, ex_dot(dag, u->v, link->bias), ex_dot(dag, u->bias, link->d)), ex_add(dag, cross, cross));
+    row.bias = ex_add(dag, ex_add(dag, ex_dot(dag, u->v, link->bias), ex_dot(dag, u->bias, link->d)),
+                      ex_add(dag, cross, cross));
     return row;
 }
 
@@ -139,7 +140,8 @@ static Row row_angle(Dag *dag, const Vector *a, const Vector *b)
     add_rate(dag, &row, 0, a, b->v, false);
     add_rate(dag, &row, 1, b, a->v, false);
     Ex cross = ex_dot(dag, a->rate, b->rate);
-    row.bias = ex_add(dag, ex_add(dag, ex_dot(dag, a->v, b->bias), ex_dot(dag, a->bias, b->v)), ex_add(dag, cross, cross));
+    row.bias =
+        ex_add(dag, ex_add(dag, ex_dot(dag, a->v, b->bias), ex_dot(dag, a->bias, b->v)), ex_add(dag, cross, cross));
     return row;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Where along its range does a coordinate stop being independent? Each coordinate is moved alone from its design value to both ends of
- * its range; a subset whose determinant changes its sign, or that can't be followed, marks the place. */
+ * Where along its range does a coordinate stop being independent? Each coordinate is moved alone from its design value
+ * to both ends of its range; a subset whose determinant changes its sign, or that can't be followed, marks the place.
+ */
 #include "subset.h"
 
 #include <math.h>
@@ -45,7 +46,8 @@ static bool scan_subset(Scan *scan, int s, double value, double *q)
     return determinant * scan->determinant[s] > 0;
 }
 
-/* All subsets that follow the coordinate, at `value`; q is updated where all of them are good. Returns the lost one, or -1. */
+/* All subsets that follow the coordinate, at `value`; q is updated where all of them are good. Returns the lost one, or
+ * -1. */
 static int scan_value(Scan *scan, double value)
 {
     const Sequence *sequence = scan->sequence;
@@ -91,16 +93,18 @@ static void warn(const Scan *scan, int lost, double value)
     for (int b = 0; b < subset->bodies; ++b)
         text_print(&bodies, "%s'%s'", b ? ", " : "", scan->model->body[subset->body[b]].name);
     diag_warn(c->at, "end the range before that value, or choose a coordinate that keeps determining these bodies",
-              "coordinate '%s' stops being independent at %.6g, inside its range [%g, %g]: beyond it the pose of %s is no longer "
+              "coordinate '%s' stops being independent at %.6g, inside its range [%g, %g]: beyond it the pose of %s is "
+              "no longer "
               "determined (the other coordinates at their design values)",
               c->name, value, c->range[0], c->range[1], bodies.s);
 }
 
-/* Towards one end of the range in steps that shrink where a subset is lost: a loss that no step is small enough to pass is real. */
+/* Towards one end of the range in steps that shrink where a subset is lost: a loss that no step is small enough to pass
+ * is real. */
 static void scan_end(Scan *scan, double end)
 {
     const int steps_least = 8, steps_most = 400;
-    const double turn = 0.1; /* of a body in one step, or move relative to the subset's size */
+    const double turn = 0.1;   /* of a body in one step, or move relative to the subset's size */
     const double least = 1e-7; /* of the way */
     const Coordinate *c = &scan->model->coordinate[scan->coordinate];
     double way = end - c->design, wanted = fabs(way) * scan->sampling->swing[scan->coordinate] / turn;

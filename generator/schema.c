@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The reader's tables of keys as a JSON Schema, which lets an editor complete and underline, and as a table for people: neither can
- * say anything else than what the reader reads. */
+ * The reader's tables of keys as a JSON Schema, which lets an editor complete and underline, and as a table for people:
+ * neither can say anything else than what the reader reads. */
 #include "read.h"
 
 #include <string.h>
@@ -12,11 +12,14 @@ static const char definitions[] =
     "  \"$defs\": {\n"
     "    \"number\": {\"type\": [\"number\", \"string\"]},\n"
     "    \"name\": {\"type\": \"string\", \"pattern\": \"^[A-Za-z][A-Za-z0-9_]{0,39}$\"},\n"
-    "    \"vector\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 3, \"maxItems\": 3},\n"
+    "    \"vector\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 3, \"maxItems\": "
+    "3},\n"
     "    \"point\": {\"anyOf\": [{\"$ref\": \"#/$defs/vector\"}, {\"$ref\": \"#/$defs/name\"}]},\n"
     "    \"numbers\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 2},\n"
-    "    \"include\": {\"anyOf\": [{\"type\": \"string\"}, {\"type\": \"object\", \"required\": [\"file\"], \"additionalProperties\": false,\n"
-    "      \"properties\": {\"file\": {\"type\": \"string\"}, \"at\": {\"$ref\": \"#/$defs/vector\"}, \"prefix\": {\"type\": \"string\"}}}]}\n"
+    "    \"include\": {\"anyOf\": [{\"type\": \"string\"}, {\"type\": \"object\", \"required\": [\"file\"], "
+    "\"additionalProperties\": false,\n"
+    "      \"properties\": {\"file\": {\"type\": \"string\"}, \"at\": {\"$ref\": \"#/$defs/vector\"}, \"prefix\": "
+    "{\"type\": \"string\"}}}]}\n"
     "  },\n";
 
 static void reference(Text *out, const char *name)
@@ -26,7 +29,8 @@ static void reference(Text *out, const char *name)
 
 static void pair(Text *out, const char *name)
 {
-    text_print(out, "{\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/%s\"}, \"minItems\": 2, \"maxItems\": 2}", name);
+    text_print(out, "{\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/%s\"}, \"minItems\": 2, \"maxItems\": 2}",
+               name);
 }
 
 static void object(Text *out, const Section *section, int indent);
@@ -53,7 +57,8 @@ static void value(Text *out, const Section *section, const Key *key, int indent)
     case KEY_TORQUE_VECTOR: reference(out, "vector"); break;
     case KEY_AXES: pair(out, "vector"); break;
     case KEY_EULER:
-        text_print(out, "{\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 4, \"maxItems\": 4}");
+        text_print(
+            out, "{\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 4, \"maxItems\": 4}");
         break;
     case KEY_POINT: reference(out, "point"); break;
     case KEY_POINTS: pair(out, "point"); break;
@@ -126,7 +131,9 @@ static void object(Text *out, const Section *section, int indent)
     }
     text_print(out, "{\"anyOf\": [");
     for (int t = 0; t == 0 || t < section->types; ++t) {
-        unsigned forms = !section->types ? forms_by_keys(section) : section->type_forms ? section->type_forms[t] : FORM(t);
+        unsigned forms = !section->types       ? forms_by_keys(section)
+                         : section->type_forms ? section->type_forms[t]
+                                               : FORM(t);
         for (int f = 0; f < forms_most; ++f)
             if (forms & FORM(f)) {
                 text_print(out, "%s\n%*s", separator, indent, "");
@@ -139,8 +146,13 @@ static void object(Text *out, const Section *section, int indent)
 
 void schema_print(Text *out)
 {
-    text_print(out, "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"gicgen model (.veh)\",\n%s", definitions);
-    text_print(out, "  \"type\": \"object\", \"required\": [\"gicgen\"], \"additionalProperties\": false,\n  \"properties\": {");
+    text_print(out,
+               "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"gicgen model "
+               "(.veh)\",\n%s",
+               definitions);
+    text_print(
+        out,
+        "  \"type\": \"object\", \"required\": [\"gicgen\"], \"additionalProperties\": false,\n  \"properties\": {");
     for (int k = 0; k < file_section.keys; ++k) {
         const Key *key = &file_section.key[k];
         const Section *section = group_section(key->name);
@@ -148,11 +160,15 @@ void schema_print(Text *out)
         if (!strcmp(key->name, "gicgen"))
             text_print(out, "{\"const\": 1}");
         else if (!strcmp(key->name, "include"))
-            text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/include\"}, {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/include\"}}]}");
+            text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/include\"}, {\"type\": \"array\", \"items\": {\"$ref\": "
+                            "\"#/$defs/include\"}}]}");
         else if (!section && strcmp(key->name, "points"))
             value(out, &file_section, key, 4);
         else {
-            text_print(out, "{\"type\": \"object\", \"propertyNames\": {\"pattern\": \"%s\"}, \"additionalProperties\":\n      ", name_pattern);
+            text_print(
+                out,
+                "{\"type\": \"object\", \"propertyNames\": {\"pattern\": \"%s\"}, \"additionalProperties\":\n      ",
+                name_pattern);
             if (section == &parameter_section)
                 text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, ");
             if (section)

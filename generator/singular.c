@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Why a subset whose equations are as many as its unknowns does not determine them: which equations repeat each other, which bodies stay
- * free, and whether that is so everywhere or at the design configuration only (method.md section 3). */
+ * Why a subset whose equations are as many as its unknowns does not determine them: which equations repeat each other,
+ * which bodies stay free, and whether that is so everywhere or at the design configuration only. */
 #include "subset.h"
 
 #include <math.h>
@@ -23,8 +23,8 @@ static void scaled_jacobian(const Work *w, int sample, bool transposed, double *
     }
 }
 
-/* Elimination with full pivoting of A [n][n]; combination [n][n]: the rows of A that every row of the rest came from. Returns the rank; rows
- * from there on vanish. */
+/* Elimination with full pivoting of A [n][n]; combination [n][n]: the rows of A that every row of the rest came from.
+ * Returns the rank; rows from there on vanish. */
 static int eliminate(int n, double *A, double *combination)
 {
     memset(combination, 0, (size_t)(n * n) * sizeof *combination);
@@ -113,7 +113,8 @@ static bool reassemble(Work *w, const Subset *member, int sample, double *q, dou
             const Connection *tie = &w->connection[w->row_of[r]];
             double largest = 0;
             for (int j = 0; j < n; ++j)
-                largest = fmax(largest, fabs(wide[r][j] = ex_value(w->dag, w->J[n * r + j], sample) / (j % 6 < 3 ? w->size : 1)));
+                largest = fmax(
+                    largest, fabs(wide[r][j] = ex_value(w->dag, w->J[n * r + j], sample) / (j % 6 < 3 ? w->size : 1)));
             for (int j = 0; j < member->deps; ++j)
                 largest = fmax(largest, fabs(wide[r][n + j] = tie->is_coordinate && tie->dep == j
                                                                   ? ex_value(w->dag, w->row[r].dual, sample)
@@ -215,7 +216,8 @@ void subset_explain_singular(Work *w, const Sampling *sampling, int subset)
     /* the one with the fewest equations is the likeliest to be misplaced */
     int worst = -1, fewest = 0;
     for (int i = 0; i < w->connections; ++i) {
-        int equations_of = w->connection[i].is_coordinate ? 1 : joint_equations[w->model->joint[w->connection[i].index].type];
+        int equations_of =
+            w->connection[i].is_coordinate ? 1 : joint_equations[w->model->joint[w->connection[i].index].type];
         bool any = false;
         for (int r = 0; r < w->n; ++r)
             any = any || (row[r] && w->row_of[r] == i);
@@ -224,18 +226,24 @@ void subset_explain_singular(Work *w, const Sampling *sampling, int subset)
     }
     const Connection *tie = &w->connection[worst];
     int place = tie->is_coordinate ? worst - member->joints : worst;
-    Place at = tie->is_coordinate ? w->model->coordinate[member->coordinate[place]].at : w->model->joint[member->joint[place]].at;
+    Place at = tie->is_coordinate ? w->model->coordinate[member->coordinate[place]].at
+                                  : w->model->joint[member->joint[place]].at;
     if (design_only)
         diag_fail(at,
-                  "draw the mechanism in another position, move one of the points, or choose a coordinate that is independent here",
-                  "the design configuration is singular: there, and only there, %s fix the same motion (%d of %d equations are "
+                  "draw the mechanism in another position, move one of the points, or choose a coordinate that is "
+                  "independent here",
+                  "the design configuration is singular: there, and only there, %s fix the same motion (%d of %d "
+                  "equations are "
                   "independent), and the pose of %s is not determined",
                   equations.s, rank, w->n, bodies.s);
     diag_fail(at,
-              joints > 1 ? "move its points or axes out of line with the others; or, where these joints close a loop that fixes a motion "
-                           "twice by its kind, take one with fewer equations (spherical, cylindrical, point_on_line, distance)"
-                         : "move its points or axes so that it acts on what is free, or choose another joint or coordinate",
-              "%s fix the same motion twice in every configuration (%d of %d equations are independent), while the pose of %s is not "
+              joints > 1
+                  ? "move its points or axes out of line with the others; or, where these joints close a loop that "
+                    "fixes a motion "
+                    "twice by its kind, take one with fewer equations (spherical, cylindrical, point_on_line, distance)"
+                  : "move its points or axes so that it acts on what is free, or choose another joint or coordinate",
+              "%s fix the same motion twice in every configuration (%d of %d equations are independent), while the "
+              "pose of %s is not "
               "determined",
               equations.s, rank, w->n, bodies.s);
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Recovery of one class of decoupled subsets: Newton in twists relative to the base, velocities and accelerations from the same
- * factorization, and what the bodies add to the equations of motion (design.md section 2 restated in subset_formulate).
+ * Recovery of one class of decoupled subsets: Newton in twists relative to the base, velocities and accelerations from
+ * the same factorization, and what the bodies add to the equations of motion.
  *
- * Unknowns of a body are the six components of its twist at its reference point. That point is put where a joint holds the body
- * to something known: the joint's equations are then unit rows, which the factorization folds away. */
+ * Unknowns of a body are the six components of its twist at its reference point. That point is put where a joint holds
+ * the body to something known: the joint's equations are then unit rows, which the factorization folds away. */
 #include "subset.h"
 
 #include <math.h>
@@ -27,16 +27,10 @@ static int place_of(const int *list, int count, int what)
 /* How much a joint simplifies its subset when the reference point of one end sits on it. */
 static int joint_merit(const Sequence *sequence, int subset, const Joint *joint, int end)
 {
-    static const int merit[JOINT_TYPES] = {[JOINT_REVOLUTE] = 4,
-                                           [JOINT_SPHERICAL] = 4,
-                                           [JOINT_UNIVERSAL] = 4,
-                                           [JOINT_FIXED] = 4,
-                                           [JOINT_PRISMATIC] = 2,
-                                           [JOINT_CYLINDRICAL] = 2,
-                                           [JOINT_POINT_ON_LINE] = 2,
-                                           [JOINT_DISTANCE] = 1,
-                                           [JOINT_POINT_IN_PLANE] = 1,
-                                           [JOINT_REVOLUTE_SPHERICAL] = 1};
+    static const int merit[JOINT_TYPES] = {
+        [JOINT_REVOLUTE] = 4,       [JOINT_SPHERICAL] = 4,         [JOINT_UNIVERSAL] = 4,     [JOINT_FIXED] = 4,
+        [JOINT_PRISMATIC] = 2,      [JOINT_CYLINDRICAL] = 2,       [JOINT_POINT_ON_LINE] = 2, [JOINT_DISTANCE] = 1,
+        [JOINT_POINT_IN_PLANE] = 1, [JOINT_REVOLUTE_SPHERICAL] = 1};
     int other = joint->body[1 - end];
     bool known = other == BODY_BASE || sequence->body_subset[other] != subset;
     return merit[joint->type] ? 2 * merit[joint->type] + known : 0;
@@ -110,8 +104,7 @@ static void make_connections(Work *w)
         tie->is_coordinate = i >= first->joints;
         int position = tie->is_coordinate ? i - first->joints : i;
         tie->index = tie->is_coordinate ? first->coordinate[position] : first->joint[position];
-        const int *body =
-            tie->is_coordinate ? w->model->coordinate[tie->index].body : w->model->joint[tie->index].body;
+        const int *body = tie->is_coordinate ? w->model->coordinate[tie->index].body : w->model->joint[tie->index].body;
         for (int end = 0; end < 2; ++end)
             tie->end[end] = end_of(w, body[end]);
         if (tie->is_coordinate)
@@ -228,7 +221,7 @@ static void make_jacobian(const Work *w, const Row *row, const int *row_of, Ex *
         }
 }
 
-/* ---- factorization ------------------------------------------------------------------------------------------------- */
+/* ---- factorization ------------------------------------------------------------------------------------------ */
 
 /* Pivots good at all samples, else at the design: where the others are lost, scan.c has warned. */
 static Factors *factor(Work *w)
@@ -247,13 +240,16 @@ static Factors *factor(Work *w)
     if (f)
         return f;
     Place at = w->model->body[w->first->body[0]].at;
-    diag_fail(at, "move the points or axes of its joints a little", "the equations of body '%s' are too near to singular (%d of %d pivots)",
+    diag_fail(at, "move the points or axes of its joints a little",
+              "the equations of body '%s' are too near to singular (%d of %d pivots)",
               w->model->body[w->first->body[0]].name, rank, w->n);
 }
 
-/* ---- blocks ---------------------------------------------------------------------------------------------------------- */
+/* ---- blocks
+ * ---------------------------------------------------------------------------------------------------------- */
 
-/* q moved by a twist: linear in the step and normalized to second order, so that repeated corrections converge to unit length. */
+/* q moved by a twist: linear in the step and normalized to second order, so that repeated corrections converge to unit
+ * length. */
 static void moved(Work *w, const Ex *q, const Ex twist[6], Ex out[7])
 {
     Dag *dag = w->dag;
@@ -297,7 +293,8 @@ static void make_predict(Work *w, Formula *formula)
     for (int i = 0; i < w->n; ++i) {
         twist[i] = 0;
         for (int j = 0; j < w->first->deps; ++j)
-            twist[i] = ex_add(w->dag, twist[i], ex_mul(w->dag, s[(i / 6 * w->first->deps + j) * 6 + i % 6], w->change[j]));
+            twist[i] =
+                ex_add(w->dag, twist[i], ex_mul(w->dag, s[(i / 6 * w->first->deps + j) * 6 + i % 6], w->change[j]));
     }
     store_moved(w, &formula->predict, twist, q);
     block_store(&formula->predict, relative_square(w, twist), "reach");
@@ -349,7 +346,8 @@ static void unit_rate(Work *w, int j, Ex *b)
         for (int end = 0; end < 2; ++end)
             if (tie->end[end].known >= 0)
                 for (int i = 0; i < 6; ++i)
-                    sum = ex_add(w->dag, sum, ex_mul(w->dag, w->row[r].J[end][i], w->known[tie->end[end].known].S[6 * j + i]));
+                    sum = ex_add(w->dag, sum,
+                                 ex_mul(w->dag, w->row[r].J[end][i], w->known[tie->end[end].known].S[6 * j + i]));
         b[r] = ex_neg(w->dag, sum);
     }
 }
@@ -390,8 +388,9 @@ static void store_motion(Block *block, const Motion *m, int offset)
     const struct {
         const Ex *e;
         int offset, count;
-    } part[] = {{m->c, MOTION_C, 3},         {m->A, MOTION_A, 9},         {m->omega, MOTION_OMEGA, 3},
-                {m->velocity, MOTION_VELOCITY, 3}, {m->alpha, MOTION_ALPHA, 3}, {m->acceleration, MOTION_ACCELERATION, 3},
+    } part[] = {{m->c, MOTION_C, 3},          {m->A, MOTION_A, 9},
+                {m->omega, MOTION_OMEGA, 3},  {m->velocity, MOTION_VELOCITY, 3},
+                {m->alpha, MOTION_ALPHA, 3},  {m->acceleration, MOTION_ACCELERATION, 3},
                 {m->S, MOTION_S, 6 * m->deps}};
     for (size_t p = 0; p < sizeof part / sizeof *part; ++p)
         for (int i = 0; i < part[p].count; ++i)
@@ -428,7 +427,8 @@ static void make_residual(Work *w, Formula *formula)
         for (int i = 0; i < w->class->members; ++i) {
             double largest = 0;
             for (int j = 0; j < w->n; ++j)
-                largest = fmax(largest, fabs(ex_value(dag, w->J[w->n * r + j], i * w->configurations)) / (j % 6 < 3 ? w->size : 1));
+                largest = fmax(largest, fabs(ex_value(dag, w->J[w->n * r + j], i * w->configurations)) /
+                                            (j % 6 < 3 ? w->size : 1));
             scale[i] = 1 / (largest * w->size);
         }
         Ex value = ex_op(dag, OP_ABS, ex_mul(dag, ex_constant(dag, scale), w->row[r].value), 0, 0);
@@ -437,8 +437,8 @@ static void make_residual(Work *w, Formula *formula)
     block_store(&formula->residual, worst, "worst");
 }
 
-Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, const Class *class, const double (*origin)[3],
-                  const Sampling *sampling)
+Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, const Class *class,
+                  const double (*origin)[3], const Sampling *sampling)
 {
     Work *w = pool_alloc(pool, sizeof *w);
     const Subset *first = &sequence->subset[class->member[0]];
@@ -492,7 +492,8 @@ static Formula *formulate_class(Work *w)
     formula->size = w->size;
     formula->distance = subset_distance(w) / w->size;
     Factors *factors = factor(w);
-    Ex *stored = pool_alloc(pool, (size_t)(w->n * w->n) * sizeof *stored), *q = pool_alloc(pool, (size_t)(7 * bodies) * sizeof *q);
+    Ex *stored = pool_alloc(pool, (size_t)(w->n * w->n) * sizeof *stored),
+       *q = pool_alloc(pool, (size_t)(7 * bodies) * sizeof *q);
     int count;
     Factors *remembered = factors_from_memory(w, factors, stored, &count);
     formula->layout = make_layout(w, count);
@@ -519,7 +520,8 @@ static Formula *formulate_class(Work *w)
     return formula;
 }
 
-/* ---- classes whose members need different pivots -------------------------------------------------------------------------- */
+/* ---- classes whose members need different pivots
+ * -------------------------------------------------------------------------- */
 
 /* Is there one pivot order for these members of a class, at the design? */
 static bool share_pivots(Work *w, const bool *with)
@@ -546,7 +548,8 @@ static const char *split_name(Pool *pool, const Sequence *sequence, const char *
     }
 }
 
-/* Leave in class c the members that share pivots with its first one, and make a class of the others. False when all of them do. */
+/* Leave in class c the members that share pivots with its first one, and make a class of the others. False when all of
+ * them do. */
 static bool split_class(Pool *pool, Sequence *sequence, int c, Work *w)
 {
     Class *class = &sequence->class[c];
@@ -562,8 +565,8 @@ static bool split_class(Pool *pool, Sequence *sequence, int c, Work *w)
     }
     Class *other = &sequence->class[sequence->classes];
     *other = (Class){.name = split_name(pool, sequence, class->name),
-                     .member = pool_alloc(pool, (size_t)class->members * sizeof(int))};
-    int kept = 0, *member = pool_alloc(pool, (size_t)class->members * sizeof *member);
+                     .member = pool_alloc(pool, (size_t) class->members * sizeof(int))};
+    int kept = 0, *member = pool_alloc(pool, (size_t) class->members * sizeof *member);
     for (int i = 0; i < class->members; ++i) {
         if (with[i]) {
             member[kept++] = class->member[i];

@@ -36,12 +36,12 @@ typedef struct Work {
     Motion *known;
     Motion base;
     Ex *x, *rate, *change;
-    double size;    /* see Formula */
-    Row *row;       /* [n] equations with the unknowns at q and at rest */
-    int *row_of;    /* [n] connection that a row belongs to */
-    Ex *J;          /* [n][n] Jacobian by the unknown twists */
+    double size; /* see Formula */
+    Row *row;    /* [n] equations with the unknowns at q and at rest */
+    int *row_of; /* [n] connection that a row belongs to */
+    Ex *J;       /* [n][n] Jacobian by the unknown twists */
     int configurations;
-    bool *alive;    /* [samples] reached the end of its path */
+    bool *alive; /* [samples] reached the end of its path */
 } Work;
 
 /* Subset of the i-th member. */
@@ -49,15 +49,17 @@ const Subset *subset_member(const Work *w, int i);
 /* A constant of the class from every member's number. */
 Ex subset_constant(Work *w, double (*get)(const Work *, int member, int a, int b), int a, int b);
 
-/* follow.c: take one member through its sample paths. Sets the graph's samples of that member to the ends of the paths, w->alive, and what
- * later subsets need of it in `sampling`. */
+/* follow.c: take one member through its sample paths. Sets the graph's samples of that member to the ends of the paths,
+ * w->alive, and what later subsets need of it in `sampling`. */
 void subset_follow(Work *w, Sampling *sampling, int member);
 
-/* follow.c: take one member, at the design values of its coordinates, from the drawing to where all equations hold. q [7 bodies]: its poses
- * then, relative to the base; they go into step 0 of the sampling. False when it can't be followed. */
+/* follow.c: take one member, at the design values of its coordinates, from the drawing to where all equations hold. q
+ * [7 bodies]: its poses then, relative to the base; they go into step 0 of the sampling. False when it can't be
+ * followed. */
 bool subset_assemble(Work *w, Sampling *sampling, int member, double *q);
 
-/* follow.c, pieces for scan.c and singular.c. s: a sample of the class's graph; q [7 bodies]; twists [6 bodies]; slack [n]. */
+/* follow.c, pieces for scan.c and singular.c. s: a sample of the class's graph; q [7 bodies]; twists [6 bodies]; slack
+ * [n]. */
 void subset_set_known(Work *w, int known, int s, const double pose[12]);
 void subset_set_poses(Work *w, const double *q, int s);
 void subset_move_pose(double q[7], const double twist[6]);
@@ -75,8 +77,8 @@ void subsets_scan(Pool *pool, const Model *model, const Sequence *sequence, Work
 void subset_explain_singular(Work *w, const Sampling *sampling, int subset);
 
 /* A class with its connections, inputs and equations, ready to be followed. */
-Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, const Class *class, const double (*origin)[3],
-                  const Sampling *sampling);
+Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, const Class *class,
+                  const double (*origin)[3], const Sampling *sampling);
 /* Which member of the class a subset is. */
 int subset_index(const Work *w, int subset);
 

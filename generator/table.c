@@ -38,5 +38,6 @@ double table_value(const Table *table, double x)
     if (!table->cubic)
         return y0 + t * (y1 - y0);
     double u = 1 - t;
-    return (1 + 2 * t) * u * u * y0 + t * u * u * h * table->slope[i] + t * t * (3 - 2 * t) * y1 - t * t * u * h * table->slope[i + 1];
+    return (1 + 2 * t) * u * u * y0 + t * u * u * h * table->slope[i] + t * t * (3 - 2 * t) * y1 -
+           t * t * u * h * table->slope[i + 1];
 }

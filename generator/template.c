@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Templates: readable C in which a line that is nothing but a comment with a name between two @ marks is replaced, and a line that
- * begins with a comment's opening and a minus sign is a remark that is not copied. */
+ * Templates: readable C in which a line that is nothing but a comment with a name between two @ marks is replaced, and
+ * a line that begins with a comment's opening and a minus sign is a remark that is not copied. */
 #include "gicgen.h"
 
 #include <ctype.h>
@@ -25,7 +25,8 @@ static bool word_character(char c)
     return isalnum((unsigned char)c) || c == '_';
 }
 
-/* A known word that is a whole part of an identifier: PREFIX in PREFIX_setup, but neither in MYPREFIX nor in PREFIXED. */
+/* A known word that is a whole part of an identifier: PREFIX in PREFIX_setup, but neither in MYPREFIX nor in PREFIXED.
+ */
 static size_t replace_word(const char *s, size_t left, const char *word, const char *by, Text *out)
 {
     size_t length = strlen(word);
@@ -36,7 +37,8 @@ static size_t replace_word(const char *s, size_t left, const char *word, const c
     return length;
 }
 
-static void expand_line(Text *out, const char *line, size_t size, const char *prefix, const char *upper, const char *class)
+static void expand_line(Text *out, const char *line, size_t size, const char *prefix, const char *upper,
+                        const char *class)
 {
     for (size_t i = 0; i < size;) {
         bool starts = i == 0 || !word_character(line[i - 1]) || line[i - 1] == '_';
@@ -68,8 +70,8 @@ static const char *insertion(Pool *pool, const char *line, size_t size, int *ind
     return pool_print(pool, "%.*s", (int)(left - 8), from + 4);
 }
 
-void template_expand(Pool *pool, Text *out, const char *templates, const char *name, const char *prefix, const char *class,
-                     Insert *insert, void *context)
+void template_expand(Pool *pool, Text *out, const char *templates, const char *name, const char *prefix,
+                     const char *class, Insert *insert, void *context)
 {
     size_t size;
     const char *text = template_text(pool, templates, name, &size);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The whole mechanism relative to the world, once every subset is recovered: what dynamics, outputs and checks share. */
+ * The whole mechanism relative to the world, once every subset is recovered: what dynamics, outputs and checks share.
+ */
 #include "gicgen.h"
 
 #include <string.h>
@@ -7,7 +8,8 @@
 Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Formula **formula, const double (*origin)[3])
 {
     Plan *plan = pool_alloc(pool, sizeof *plan);
-    size_t bodies = (size_t)model->bodies, coordinates = (size_t)model->coordinates + 1, subsets = (size_t)sequence->subsets + 1;
+    size_t bodies = (size_t)model->bodies, coordinates = (size_t)model->coordinates + 1,
+           subsets = (size_t)sequence->subsets + 1;
     *plan = (Plan){.model = model,
                    .sequence = sequence,
                    .formula = formula,
@@ -182,7 +184,8 @@ void whole_unit_velocity(Whole *whole, int body, const Vector *point, int coordi
         }
 }
 
-void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2, Ex out[3])
+void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2,
+                        Ex out[3])
 {
     Dag *dag = whole->dag;
     Ex t[3], u[3];

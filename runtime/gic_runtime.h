@@ -57,7 +57,7 @@ typedef enum gic_status {
 #define GIC_STATUS_ENUM(name, code, text) name = code,
     GIC_STATUS_LIST(GIC_STATUS_ENUM)
 #undef GIC_STATUS_ENUM
-    GIC_STATUS_LAST = -10
+        GIC_STATUS_LAST = -10
 } gic_status;
 
 /* What a status means, in one line; never NULL. */
@@ -80,21 +80,21 @@ typedef void gic_input_function(void *user, int32_t lane, gic_real time, gic_rea
 
 /* The head of every generated structure. */
 typedef struct gic_head {
-    gic_real start_time;      /* s */
-    gic_real step;            /* s, of the steps counted below */
-    int64_t steps;            /* time = start_time + steps * step, so that no error accumulates */
-    int32_t method;           /* of the last step; a change restarts the multistep history */
-    int32_t history;          /* rates kept for AB3: 0, 1 or 2 */
-    int32_t lane;             /* free for the caller: which vehicle of many this is */
-    int32_t flip;             /* which of the two Newton starts is the last good one */
-    int32_t status;           /* of the last call */
-    int32_t subset;           /* that the status is about, -1: none; see the descriptor's subset_name */
-    int64_t rhs_count;        /* right-hand sides evaluated */
-    int64_t newton_count;     /* subset solutions, and the corrections they took in total */
+    gic_real start_time;  /* s */
+    gic_real step;        /* s, of the steps counted below */
+    int64_t steps;        /* time = start_time + steps * step, so that no error accumulates */
+    int32_t method;       /* of the last step; a change restarts the multistep history */
+    int32_t history;      /* rates kept for AB3: 0, 1 or 2 */
+    int32_t lane;         /* free for the caller: which vehicle of many this is */
+    int32_t flip;         /* which of the two Newton starts is the last good one */
+    int32_t status;       /* of the last call */
+    int32_t subset;       /* that the status is about, -1: none; see the descriptor's subset_name */
+    int64_t rhs_count;    /* right-hand sides evaluated */
+    int64_t newton_count; /* subset solutions, and the corrections they took in total */
     int64_t correction_count;
-    int64_t switch_count;     /* changes of the dependent Euler parameter */
-    gic_real largest_step;    /* largest last Newton correction accepted, relative to the subset's size */
-    const gic_road *road;     /* NULL: flat at z = 0 */
+    int64_t switch_count;               /* changes of the dependent Euler parameter */
+    gic_real largest_step;              /* largest last Newton correction accepted, relative to the subset's size */
+    const gic_road *road;               /* NULL: flat at z = 0 */
     gic_input_function *input_function; /* NULL: input[] is what the caller puts there */
     void *user;
 } gic_head;
@@ -107,24 +107,24 @@ typedef struct gic_signal {
 
 /* What the emitted self-test measured at one state; all relative, rounding-size when the code is sound. */
 typedef struct gic_self_test {
-    gic_real constraint;   /* largest constraint residual, relative to the subset's size */
-    gic_real symmetry;     /* of the mass matrix built column by column by an independent path */
+    gic_real constraint;     /* largest constraint residual, relative to the subset's size */
+    gic_real symmetry;       /* of the mass matrix built column by column by an independent path */
     gic_real smallest_pivot; /* of its Cholesky factorization, relative to the diagonal: > 0 means definite */
-    gic_real balance;      /* residual of the equations of motion at the computed accelerations */
-    gic_real energy;       /* rate of kinetic and potential energy against the power of dampers, tires and drives */
+    gic_real balance;        /* residual of the equations of motion at the computed accelerations */
+    gic_real energy;         /* rate of kinetic and potential energy against the power of dampers, tires and drives */
 } gic_self_test;
 
 typedef struct gic_model {
-    uint32_t abi_version;      /* GIC_ABI_VERSION of the generated code */
-    uint32_t real_size;        /* sizeof(gic_real) of the generated code */
-    size_t size;               /* of the instance structure, bytes */
+    uint32_t abi_version; /* GIC_ABI_VERSION of the generated code */
+    uint32_t real_size;   /* sizeof(gic_real) of the generated code */
+    size_t size;          /* of the instance structure, bytes */
     const char *name, *description, *hash, *generator;
-    int32_t free_base;         /* 1: state begins with r, e and v, omega (FORMAT.md section 10) */
-    int32_t slow_count;        /* continuous states of the multibody system, first in state[] */
-    int32_t fast_count;        /* continuous fast states, behind them */
+    int32_t free_base;  /* 1: state begins with r, e and v, omega (FORMAT.md section 10) */
+    int32_t slow_count; /* continuous states of the multibody system, first in state[] */
+    int32_t fast_count; /* continuous fast states, behind them */
     int32_t discrete_count;
     int32_t input_count, parameter_count, output_count, port_count;
-    int32_t coordinate_count;  /* dual coordinates, free and driven, in the order of the file */
+    int32_t coordinate_count; /* dual coordinates, free and driven, in the order of the file */
     int32_t subset_count, body_count, wheel_count;
     /* offsets of the arrays in the instance structure, bytes */
     size_t state_offset, rate_offset, history_offset, scratch_offset, discrete_offset, input_offset, parameter_offset,
@@ -168,8 +168,9 @@ int gic_finite(const gic_real *x, int32_t count);
 
 /* ---- orientation ------------------------------------------------------------------------------------ */
 
-/* method.md section 2. e[4] from `given`, with the dependent parameter recovered from the other three. *dependent is
- * the index of the dependent one; it moves to the parameter of largest magnitude when that is more than a tenth larger
+/* No three Euler parameters stay independent over a full turn (Serban and Haug 2000, Proposition 3.1). e[4] from
+ * `given`, with the dependent parameter recovered from the other three. *dependent is the index of the dependent one;
+ * it moves to the parameter of largest magnitude when that is more than a tenth larger
  * (*switches counts it). Returns GIC_ERROR_ORIENTATION when `given` is not near unit length. */
 #define gic_orientation GIC_NAME(gic_orientation)
 int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switches, gic_real e[4]);
@@ -223,8 +224,8 @@ int gic_road_table_setup(gic_road_table *road);
 
 /* ---- tables -------------------------------------------------------------------------------------------- */
 
-/* y over rising x, `count` of them. cubic: with `slope`, monotone between the points; else straight lines. onward: beyond the ends on
- * along the end's slope; else constant. */
+/* y over rising x, `count` of them. cubic: with `slope`, monotone between the points; else straight lines. onward:
+ * beyond the ends on along the end's slope; else constant. */
 typedef struct gic_table {
     const gic_real *x, *y, *slope;
     int32_t count, cubic, onward;

@@ -80,8 +80,7 @@ static void read_time(Reader *reader, const Item *root)
 
     double steps = round(scene->output_step / scene->step);
     if (steps < 1 || fabs(steps * scene->step - scene->output_step) > 1e-9 * scene->output_step)
-        diag_fail(output->at, pool_print(reader->pool, "write %.15g, or change the step",
-                                         fmax(steps, 1) * scene->step),
+        diag_fail(output->at, pool_print(reader->pool, "write %.15g, or change the step", fmax(steps, 1) * scene->step),
                   "output_step must be a multiple of step (%.15g s)", scene->step);
     scene->per_output = (int64_t)steps;
     scene->outputs = (int64_t)floor(scene->duration / scene->output_step * (1 + 1e-12) + 1e-9);
@@ -282,8 +281,9 @@ static void read_inputs(Reader *reader, const Item *map)
         int i = name_index(reader, key, key->text, "input", name, model->inputs);
         const char *dot = strchr(name[i], '.');
         if (dot)
-            diag_fail(key->at, pool_print(reader->pool, "describe '%.*s'; rate and acceleration follow from it",
-                                          (int)(dot - name[i]), name[i]),
+            diag_fail(key->at,
+                      pool_print(reader->pool, "describe '%.*s'; rate and acceleration follow from it",
+                                 (int)(dot - name[i]), name[i]),
                       "'%s' is no input of its own", name[i]);
         const Coordinate *coordinate = driven_by(model, i);
         Profile *profile = POOL_PUSH(reader->pool, scene->profile, scene->profiles);
@@ -305,10 +305,13 @@ static void read_parameters(Reader *reader, const Item *map)
         diag_fail(map->at, "write {name: number}", "parameters must be a map");
     for (int k = 0; k < map->count; ++k) {
         const Item *key = map->key[k];
-        const Parameter *parameter = &model->parameter[name_index(reader, key, key->text, "parameter", name, model->parameters)];
+        const Parameter *parameter =
+            &model->parameter[name_index(reader, key, key->text, "parameter", name, model->parameters)];
         if (!parameter->tunable)
-            diag_fail(key->at, pool_print(reader->pool, "write `tunable: true` for it in %s, or change it there", model->source->path),
-                      "parameter '%s' is fixed when the code is generated", parameter->name);
+            diag_fail(
+                key->at,
+                pool_print(reader->pool, "write `tunable: true` for it in %s, or change it there", model->source->path),
+                "parameter '%s' is fixed when the code is generated", parameter->name);
         reader->scene->parameter[parameter->index] =
             doc_number(map->value[k], pool_print(reader->pool, "parameter '%s'", parameter->name));
     }
@@ -441,8 +444,8 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model)
             scene->parameter[model->parameter[i].index] = model->parameter[i].value;
     if (doc_find(root, "parameters"))
         read_parameters(&reader, doc_find(root, "parameters"));
-    scene->column = outputs ? read_names(&reader, outputs, "outputs", &scene->columns)
-                            : all_outputs(&reader, &scene->columns);
+    scene->column =
+        outputs ? read_names(&reader, outputs, "outputs", &scene->columns) : all_outputs(&reader, &scene->columns);
     scene->curve = plot ? read_names(&reader, plot, "plot", &scene->curves) : default_curves(&reader, &scene->curves);
     return scene;
 }

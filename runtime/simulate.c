@@ -42,7 +42,8 @@ static double seconds(clockid_t clock_id)
 static void set_state(const gic_model *model, const Scene *scene, gic_head *self)
 {
     double *state = instance_array(self, model->state_offset);
-    memcpy(instance_array(self, model->parameter_offset), scene->parameter, sizeof(double) * (size_t)model->parameter_count);
+    memcpy(instance_array(self, model->parameter_offset), scene->parameter,
+           sizeof(double) * (size_t)model->parameter_count);
     const int half = model->slow_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
     if (model->free_base) {
         memcpy(state, scene->position, sizeof scene->position);
@@ -142,7 +143,10 @@ static void summary(const Run *run, double total)
     const char *results = run->request->results;
     fprintf(stderr, "%s: %.6g s in %lld steps of %.6g s (%s), %lld rows%s%s\n", run->model->name, time,
             (long long)head->steps, scene->step, scene->method == GIC_AB3 ? "ab3" : "rk4", (long long)run->samples,
-            results ? " in " : "", !results ? "" : strcmp(results, "-") ? results : "standard output");
+            results ? " in " : "",
+            !results               ? ""
+            : strcmp(results, "-") ? results
+                                   : "standard output");
     fprintf(stderr, "  right-hand sides     %lld\n", (long long)head->rhs_count);
     fprintf(stderr, "  Newton corrections   %.3f a subset solution (%lld in %lld)\n",
             solutions > 0 ? (double)head->correction_count / solutions : 0.0, (long long)head->correction_count,
@@ -162,10 +166,8 @@ static const char *remedy_of(int status)
         return "the mechanism moves to where it can't be assembled: check coordinates, springs and road; the last "
                "rows of the results show how it got there";
     case GIC_ERROR_RESULT:
-    case GIC_ERROR_INPUT:
-        return "the run has probably become unstable: try a shorter step";
-    default:
-        return NULL;
+    case GIC_ERROR_INPUT: return "the run has probably become unstable: try a shorter step";
+    default: return NULL;
     }
 }
 

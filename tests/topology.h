@@ -81,7 +81,7 @@ static inline const char *corner_name(Builder *b, const char *part, const char *
     return pool_print(b->pool, "%s_%s", part, corner);
 }
 
-/* The HMMWV of method.md section 3. */
+/* The HMMWV of the paper (Serban and Haug 2000, section 4). */
 static inline Builder hmmwv(void)
 {
     static const char *const corner[] = {"fl", "fr", "rl", "rr"};
