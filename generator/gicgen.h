@@ -814,4 +814,9 @@ void template_expand(Pool *pool, Text *out, const char *templates, const char *n
 void generate(Pool *pool, const Model *model, const Sequence *sequence, const char *templates, const char *header,
               Text *c, Text *h);
 
+/* ---- example.c: a program to start from -------------------------------------------------------------------- */
+
+/* A C program of less than 60 lines that includes `header` and runs the model for two seconds. */
+void example_write(Pool *pool, const Model *model, const char *templates, const char *header, Text *out);
+
 #endif

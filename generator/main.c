@@ -7,6 +7,7 @@
 
 static const char usage[] =
     "usage: gicgen MODEL.veh [-o FILE.c]      write FILE.c and its header (default: <model>.c here)\n"
+    "       gicgen --main MODEL.veh           print a C program that calls <model>.h, to start from\n"
     "       gicgen --sequence MODEL.veh       print the computational sequence\n"
     "       gicgen --graph FILE MODEL.veh     draw bodies, joints and stages: FILE.svg (needs Graphviz) or FILE.dot\n"
     "       gicgen --dump-model MODEL.veh     print the resolved model as JSON\n"
@@ -21,7 +22,7 @@ static const char usage[] =
     "\n"
     "MODEL.veh is described in models/FORMAT.md; `-` reads standard input.\n";
 
-typedef enum Task { TASK_GENERATE, TASK_SEQUENCE, TASK_GRAPH, TASK_DUMP } Task;
+typedef enum Task { TASK_GENERATE, TASK_MAIN, TASK_SEQUENCE, TASK_GRAPH, TASK_DUMP } Task;
 
 typedef struct Options {
     Task task;
@@ -44,7 +45,7 @@ static const char *argument(int count, char **word, int *i)
 static void set_task(Options *options, Task task)
 {
     if (options->task != TASK_GENERATE)
-        usage_error("only one of --sequence, --graph and --dump-model can be asked for", NULL);
+        usage_error("only one of --main, --sequence, --graph and --dump-model can be asked for", NULL);
     options->task = task;
 }
 
@@ -76,6 +77,8 @@ static Options read_options(int count, char **word)
             options.output = argument(count, word, &i);
         } else if (!strcmp(w, "--templates")) {
             options.templates = argument(count, word, &i);
+        } else if (!strcmp(w, "--main")) {
+            set_task(&options, TASK_MAIN);
         } else if (!strcmp(w, "--sequence")) {
             set_task(&options, TASK_SEQUENCE);
         } else if (!strcmp(w, "--dump-model")) {
@@ -148,9 +151,12 @@ int main(int count, char **word)
     case TASK_GRAPH:
         write_graph(pool, model, sequence, &options);
         break;
+    case TASK_MAIN:
     case TASK_SEQUENCE:
     case TASK_DUMP:
-        if (options.task == TASK_DUMP)
+        if (options.task == TASK_MAIN)
+            example_write(pool, model, options.templates, pool_print(pool, "%s.h", model->name), &text);
+        else if (options.task == TASK_DUMP)
             model_dump(&text, model, sequence);
         else
             sequence_print(&text, model, sequence);

@@ -137,6 +137,30 @@ paste ride.double ride.float | awk '{ for (i = 1; i <= 4; ++i) if (($i - $(i + 4
     END { exit bad || NR != 3 }'
 check $? "two vehicles in single precision end elsewhere: $(cat ride.float)"
 
+# the example that gicgen writes for each model: short, without a warning in C and C++, for two seconds or, where the
+# model wants shorter steps than the example's, until a message says so
+for name in $names; do
+    "$gicgen" --main "$root/models/$name.veh" -o "main_$name.c"
+    [ "$(wc -l <"main_$name.c")" -lt 60 ]
+    check $? "the example of $name is too long"
+    cc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -I. "main_$name.c" "$name.double.o" \
+        gic_runtime.double.o -no-pie -lm -o example && ./example >results 2>messages
+    status=$?
+    if [ "$name" = andrews ]; then
+        [ $status -eq 1 ] && grep -q '^andrews at 0\.[0-9]* s: ' messages
+    else
+        [ $status -eq 0 ] && awk -F, 'NR == 1 { n = NF } NF != n || /nan|inf/ { bad = 1 }
+            END { exit bad || NR != 102 || $1 != 2 }' results
+    fi
+    check $? "the example of $name: $(cat messages)"
+    g++ -x c++ -std=c++11 -Wall -Wextra -Wpedantic -Wconversion -Werror -fsyntax-only -I. "main_$name.c"
+    check $? "the example of $name in C++"
+done
+# AB3 at 2 ms is right to 1e-6
+"$gicgen" --main "$root/models/pendulum.veh" -o main.c && cc -I. main.c pendulum.double.o gic_runtime.double.o -no-pie -lm \
+    -o example && ./example | awk -F, 'END { exit ($2 + 0.793566195343)^2 + ($4 + 0.608483930444)^2 > 1e-12 }'
+check $? "the example of the pendulum ends elsewhere"
+
 # ---- versions that do not fit -------------------------------------------------------------------------------
 
 cc -O0 -I. "$program" hmmwv.double.o pendulum.double.o gic_runtime.float.o -no-pie -lm -o mixed 2>messages
