@@ -770,6 +770,35 @@ void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex al
                         Ex out[3]);
 void whole_angular_acceleration(Whole *whole, int body, const Ex alpha[3], const Ex *w2, Ex out[3]);
 
+/* ---- formulation.c: all of the above for one model ----------------------------------------------------------- */
+
+typedef struct Formulation {
+    const Model *model;
+    const Sequence *sequence; /* its classes share pivots */
+    const Sampling *sampling;
+    const Plan *plan;
+    const char *hash; /* of the model, in hexadecimal digits */
+    const Block *dynamics, *outputs, *poses, *inverse, *energy;
+    int known_most, dependence_most; /* knowns and deps of a subset, at most */
+} Formulation;
+
+/* From an assembled model. Models that can't be formulated end in diag_fail. */
+const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence);
+
+/* One number of the state: FORMAT.md section 10. */
+typedef struct StateNumber {
+    const char *name, *unit;
+    double initial;
+} StateNumber;
+
+StateNumber state_number(Pool *pool, const Formulation *f, int index);
+/* Change of a coordinate that is followed in one piece: no body turns by more than about a tenth of a radian. */
+double coordinate_piece(const Formulation *f, int coordinate);
+/* Design pose of a body relative to the base, as a Newton start has it: reference point, Euler parameters. */
+void body_design(const Formulation *f, int body, double q[7]);
+/* "body" or "body + body". */
+const char *subset_title(Pool *pool, const Model *model, const Subset *subset);
+
 /* ---- emit.c: blocks as C text
  * ------------------------------------------------------------------------------------------ */
 

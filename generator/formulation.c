@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT
+ * All formulas of a model, and the numbers that go with them: what emission turns into text and what the tape runs. */
+#include "gicgen.h"
+
+#include <string.h>
+
+static const char *model_hash(Pool *pool, const Model *model, const Sequence *sequence)
+{
+    Text dump = {.pool = pool};
+    model_dump(&dump, model, sequence);
+    uint64_t hash = 0xcbf29ce484222325u; /* FNV-1a */
+    for (size_t i = 0; i < dump.size; ++i)
+        hash = (hash ^ (unsigned char)dump.s[i]) * 0x100000001b3u;
+    return pool_print(pool, "%016llx", (unsigned long long)hash);
+}
+
+const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence)
+{
+    double(*origin)[3] = reference_points(pool, model, sequence);
+    const double(*fixed)[3] = (const double(*)[3])origin;
+    Sampling *sampling = sampling_new(pool, model, sequence, fixed);
+    Formula **formula = subsets_formulate(pool, model, &sequence, fixed, sampling);
+    Plan *plan = plan_new(pool, model, sequence, formula, fixed);
+    Formulation *f = pool_alloc(pool, sizeof *f);
+    *f = (Formulation){.model = model,
+                       .sequence = sequence,
+                       .sampling = sampling,
+                       .plan = plan,
+                       .hash = model_hash(pool, model, sequence),
+                       .dynamics = dynamics_block(whole_new(pool, plan)),
+                       .outputs = outputs_block(whole_new(pool, plan)),
+                       .poses = poses_block(whole_new(pool, plan)),
+                       .inverse = inverse_block(whole_new(pool, plan)),
+                       .energy = energy_block(whole_new(pool, plan))};
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        f->known_most = subset->knowns > f->known_most ? subset->knowns : f->known_most;
+        f->dependence_most = subset->deps > f->dependence_most ? subset->deps : f->dependence_most;
+    }
+    return f;
+}
+
+StateNumber state_number(Pool *pool, const Formulation *f, int index)
+{
+    static const char *const base[13][2] = {
+        {"r.x", "m"},         {"r.y", "m"},         {"r.z", "m"},        {"e0", "1"},    {"e1", "1"},
+        {"e2", "1"},          {"e3", "1"},          {"v.x", "m/s"},      {"v.y", "m/s"}, {"v.z", "m/s"},
+        {"omega.x", "rad/s"}, {"omega.y", "rad/s"}, {"omega.z", "rad/s"}};
+    const Model *model = f->model;
+    for (int w = 0; w < model->coordinates; ++w) {
+        const Coordinate *c = &model->coordinate[w];
+        bool angle = c->type == COORDINATE_ANGLE;
+        if (f->plan->coordinate_state[w] == index)
+            return (StateNumber){c->name, angle ? "rad" : "m", c->initial};
+        if (f->plan->coordinate_rate[w] == index)
+            return (StateNumber){pool_print(pool, "%s.rate", c->name), angle ? "rad/s" : "m/s", 0};
+    }
+    const Body *body = &model->body[BODY_BASE];
+    int which = index < 7 ? index : index - f->plan->free_coordinates;
+    double initial = which < 3 ? body->position[which] : which < 7 ? body->euler[which - 3] : 0;
+    return (StateNumber){base[which][0], base[which][1], initial};
+}
+
+double coordinate_piece(const Formulation *f, int coordinate)
+{
+    const double swing = 0.1; /* rad, or of the subset's size */
+    const Coordinate *c = &f->model->coordinate[coordinate];
+    double most = f->sampling->swing[coordinate];
+    return most > 0 ? swing / most : c->range[1] - c->range[0];
+}
+
+void body_design(const Formulation *f, int body, double q[7])
+{
+    memcpy(q, sampling_pose(f->sampling, 0, 0, body), 3 * sizeof *q);
+    euler_relative(f->model->body[BODY_BASE].euler, f->model->body[body].euler, q + 3);
+}
+
+const char *subset_title(Pool *pool, const Model *model, const Subset *subset)
+{
+    Text title = {.pool = pool};
+    for (int b = 0; b < subset->bodies; ++b)
+        text_print(&title, "%s%s", b ? " + " : "", model->body[subset->body[b]].name);
+    return title.s;
+}
