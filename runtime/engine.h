@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Engines: the ways in which a host program can compute the same model. Each presents itself as the descriptor of
+ * gic_runtime.h, so that scenes, fixed steps, outputs and evaluation of states know no difference. */
+#ifndef ENGINE_H
+#define ENGINE_H
+
+#include "../generator/gicgen.h"
+#include "gic_runtime.h"
+
+/* Where the time goes, s, in the rows of Serban and Haug 2000, Table 3 (row letters in parentheses), and counts. An
+ * engine looks at the clock only while `on`; whoever sets it clears the rest. Generated code fills nothing. */
+typedef struct EngineProfile {
+    bool on;
+    double acceleration;           /* (A) all of the acceleration analysis */
+    double acceleration_functions; /* (B) forces, masses, right-hand sides */
+    double acceleration_solver;    /* (C) linear solver */
+    double recovery;               /* (D) all of the recovery of dependent coordinates and velocities */
+    double recovery_functions;     /* (E) constraints and their derivatives */
+    double recovery_solver;        /* (F) factorizations and solutions */
+    int64_t evaluations, newton, factorizations, repartitions;
+} EngineProfile;
+
+typedef struct Engine {
+    const char *name;
+    const gic_model *code;
+    const void *context;    /* interpreted: what every instance points to; NULL: generated code */
+    EngineProfile *profile; /* NULL: generated code */
+} Engine;
+
+/* The engines' names, ended by NULL; the first is the default. */
+extern const char *const engine_name[];
+bool engine_known(const char *name);
+/* Open an engine, one of engine_name, for a model. compiler: command, perhaps with options, for those that compile.
+ * Every failure ends in diag_fail. */
+const Engine *engine_open(Pool *pool, const char *name, const Model *model, const char *compiler);
+
+/* Memory for one instance, not set up. It may be copied byte by byte. */
+gic_head *instance_new(Pool *pool, const Engine *engine);
+/* "status text" or "status text: subset 'name'" of the last call. */
+const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status);
+/* An array of the instance at one of the descriptor's offsets. */
+double *instance_array(gic_head *self, size_t offset);
+
+/* ---- one function for each engine that is not in a file of its own name ------------------------------------------- */
+
+/* build.c: generated code, compiled and loaded. */
+const Engine *engine_cc(Pool *pool, const Model *model, const char *compiler);
+/* engine_gic.c: the method of Serban and Haug 2000, interpreted. */
+const Engine *engine_gic(Pool *pool, const Model *model, const char *compiler);
+
+#endif
