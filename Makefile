@@ -17,7 +17,8 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow $(WERROR)
 STANDARD := -std=c11 -D_POSIX_C_SOURCE=200809L
 # no contraction: results must not depend on which multiply-add the compiler fuses
 COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -Igenerator -Iruntime $(CFLAGS) -MMD -MP
-LIBRARIES := -lyaml -lm -ldl
+# of host programs; gicgen needs libyaml alone, what it emits nothing
+LIBRARIES := -lyaml -lgsl -lgslcblas -lm -ldl
 
 models := $(basename $(notdir $(wildcard models/*.veh)))
 generator := $(filter-out generator/main.c generator/embed.c,$(wildcard generator/*.c))

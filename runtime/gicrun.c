@@ -18,6 +18,11 @@ static const char help[] =
     "      --plot FILE    draw the scene's `plot` outputs over time with gnuplot\n"
     "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
     "                     a scene gives the road only\n"
+    "      --integrator NAME\n"
+    "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
+    "                     of the scene's\n"
+    "      --tolerance NUMBER\n"
+    "                     of variable steps instead of the scene's\n"
     "      --cc COMMAND   C compiler; default: $CC or cc\n"
     "  -q, --quiet        neither progress nor summary\n"
     "  -h, --help         this text\n"
@@ -39,14 +44,29 @@ static const char *default_compiler(void)
     return compiler && *compiler ? compiler : "cc";
 }
 
+static double read_tolerance(const char *word)
+{
+    char *end;
+    const double value = strtod(word, &end);
+    if (*end || !(value > 0 && value < 1))
+        usage_fail("--tolerance must be a number between 0 and 1, unlike", word);
+    return value;
+}
+
 static Request read_command_line(int count, char **word)
 {
-    enum { PLOT = 256, EVAL, COMPILER, VERSION };
+    enum { PLOT = 256, EVAL, COMPILER, INTEGRATOR, TOLERANCE, VERSION };
     static const struct option options[] = {
-        {"output", required_argument, NULL, 'o'}, {"plot", required_argument, NULL, PLOT},
-        {"eval", required_argument, NULL, EVAL},  {"cc", required_argument, NULL, COMPILER},
-        {"quiet", no_argument, NULL, 'q'},        {"help", no_argument, NULL, 'h'},
-        {"version", no_argument, NULL, VERSION},  {NULL, 0, NULL, 0},
+        {"output", required_argument, NULL, 'o'},
+        {"plot", required_argument, NULL, PLOT},
+        {"eval", required_argument, NULL, EVAL},
+        {"integrator", required_argument, NULL, INTEGRATOR},
+        {"tolerance", required_argument, NULL, TOLERANCE},
+        {"cc", required_argument, NULL, COMPILER},
+        {"quiet", no_argument, NULL, 'q'},
+        {"help", no_argument, NULL, 'h'},
+        {"version", no_argument, NULL, VERSION},
+        {NULL, 0, NULL, 0},
     };
     Request request = {.compiler = default_compiler()};
     for (int option; (option = getopt_long(count, word, "o:qh", options, NULL)) != -1;)
@@ -54,6 +74,8 @@ static Request read_command_line(int count, char **word)
         case 'o': request.results = optarg; break;
         case PLOT: request.picture = optarg; break;
         case EVAL: request.states = optarg; break;
+        case INTEGRATOR: request.integrator = optarg; break;
+        case TOLERANCE: request.tolerance = read_tolerance(optarg); break;
         case COMPILER: request.compiler = optarg; break;
         case 'q': request.quiet = true; break;
         case 'h': fputs(help, stdout); exit(0);
@@ -71,6 +93,8 @@ static Request read_command_line(int count, char **word)
     request.scene = files > 1 ? word[optind + 1] : NULL;
     if (!strcmp(request.model, "-"))
         usage_fail("the model must be a file", NULL);
+    if (request.integrator && integrator_method(request.integrator) < 0)
+        usage_fail("there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
     if (request.picture && request.states)
         usage_fail("--plot goes with a scene, not with --eval", NULL);
     if (request.picture && !plot_known(request.picture))
@@ -85,7 +109,8 @@ int main(int count, char **word)
     const Request request = read_command_line(count, word);
     Pool *pool = pool_new();
     const Model *model = model_read(pool, request.model);
-    const Scene *scene = request.scene ? scene_read(pool, request.scene, model) : NULL;
+    const Scene *scene =
+        request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
     const gic_model *code = build_model(pool, model, request.compiler);
     if (request.states)
         evaluate(pool, code, scene, &request);

@@ -7,6 +7,7 @@
 
 #include "../generator/gicgen.h"
 #include "gic_runtime.h"
+#include "variable.h"
 
 /* ---- gicrun.c: the command line ------------------------------------------------------------------------ */
 
@@ -17,6 +18,8 @@ typedef struct Request {
     const char *results;        /* "-": standard output; NULL: none */
     const char *picture;        /* NULL: none */
     const char *compiler;       /* command, perhaps with options */
+    const char *integrator;     /* instead of the scene's, or NULL */
+    double tolerance;           /* instead of the scene's, or 0 */
     bool quiet;
 } Request;
 
@@ -65,10 +68,11 @@ typedef struct Profile {
 
 typedef struct Scene {
     const Source *source;
-    double duration, step, output_step;
+    double duration, step, output_step; /* step is 0 where a scene of variable steps has none */
     int64_t outputs;    /* output times after the one at 0 */
-    int64_t per_output; /* steps from one output time to the next */
-    int32_t method;     /* gic_method */
+    int64_t per_output; /* constant steps from one output time to the next */
+    int32_t method;     /* gic_method, or one of variable.h */
+    double tolerance;   /* of variable steps */
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
     double *value, *rate; /* [coordinates] at time 0; not used where driven */
     const gic_road *road; /* NULL: flat at z = 0 */
@@ -78,12 +82,18 @@ typedef struct Scene {
     int *column, *curve; /* output components in results and picture, indices into output[] */
 } Scene;
 
-/* Read a scene for a model. Any mistake ends in diag_fail. */
-const Scene *scene_read(Pool *pool, const char *path, const Model *model);
+/* Read a scene for a model. Any mistake ends in diag_fail. integrator: instead of the scene's, or NULL; tolerance: the
+ * same, or 0. */
+const Scene *scene_read(Pool *pool, const char *path, const Model *model, const char *integrator, double tolerance);
+/* The method of a name, -1: there is none; the name of a method. */
+int32_t integrator_method(const char *name);
+const char *integrator_name(int32_t method);
 /* Value, rate and acceleration of a profile. */
 void profile_at(const Profile *profile, double time, double out[3]);
 /* A gic_input_function; `user` is the Scene. */
 void scene_inputs(void *user, int32_t lane, double time, double *input);
+/* The first time after `time` at which a profile is less smooth than elsewhere, or INFINITY. */
+double scene_next_kink(const Scene *scene, double time);
 /* scene_road.c: the road a `road:` item describes. */
 const gic_road *road_read(Pool *pool, const Item *item);
 
@@ -141,6 +151,10 @@ bool plot_known(const char *path); /* does `path` end in .svg or .png? */
 
 /* ---- simulate.c, eval.c --------------------------------------------------------------------------------- */
 
+/* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
+int scene_start(const gic_model *model, const Scene *scene, gic_head *self);
+/* One step of a scene: a constant one, or where `variable` is given one towards `end` that stops at kinks of inputs. */
+int scene_step(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end);
 /* Run a scene: results, picture, summary. A failure on the way keeps what was computed and ends in diag_fail. */
 void simulate(Pool *pool, const gic_model *model, const Scene *scene, const Request *request);
 /* Evaluate rows of states (--eval). scene may be NULL; only its road is used. */

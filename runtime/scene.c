@@ -66,32 +66,84 @@ static int name_index(Reader *reader, const Item *item, const char *word, const 
 
 /* ---- time ----------------------------------------------------------------------------------------------- */
 
-static void read_time(Reader *reader, const Item *root)
+static const struct {
+    const char *name;
+    int32_t method;
+} integrators[] = {{"ab3", GIC_AB3}, {"rk4", GIC_RK4}, {"adams", METHOD_ADAMS}, {"rkck", METHOD_RKCK}};
+
+enum { INTEGRATORS = sizeof integrators / sizeof *integrators };
+
+int32_t integrator_method(const char *name)
+{
+    for (int i = 0; i < INTEGRATORS; ++i)
+        if (!strcmp(integrators[i].name, name))
+            return integrators[i].method;
+    return -1;
+}
+
+const char *integrator_name(int32_t method)
+{
+    int i = 0;
+    while (integrators[i].method != method)
+        ++i;
+    return integrators[i].name;
+}
+
+/* integrator, tolerance: instead of the scene's, or NULL and 0 */
+static void read_integrator(Reader *reader, const Item *root, const char *integrator, double tolerance)
+{
+    Scene *scene = reader->scene;
+    const Item *method = doc_find(root, "integrator"), *limit = doc_find(root, "tolerance");
+    const char *word = method ? doc_word(method, "integrator") : "ab3";
+    if (integrator_method(word) < 0)
+        diag_fail(method->at, "write ab3, rk4, adams or rkck", "there is no integrator '%s'", word);
+    scene->method = integrator_method(integrator ? integrator : word);
+    scene->tolerance = limit ? doc_number(limit, "tolerance") : 1e-6;
+    if (!(scene->tolerance > 0 && scene->tolerance < 1))
+        diag_fail(limit->at, "write a small number, for example 1e-6", "tolerance must be between 0 and 1");
+    if (tolerance > 0)
+        scene->tolerance = tolerance;
+    const bool constant = scene->method < METHOD_ADAMS;
+    if (constant && limit && !integrator)
+        diag_fail(limit->at, "remove it, or write `integrator: adams`", "%s has constant steps and no tolerance", word);
+    if (constant && tolerance > 0)
+        diag_fail(root->at, "add --integrator adams", "--tolerance, but %s has constant steps",
+                  integrator_name(scene->method));
+}
+
+/* How many constant steps make an output step. */
+static void count_steps(Reader *reader, const Item *step, const Item *output)
 {
     const double most_steps = 1e12;
     Scene *scene = reader->scene;
-    const Item *duration = scene_need(root, "duration", "the scene"), *step = scene_need(root, "step", "the scene");
-    const Item *output = doc_find(root, "output_step"), *method = doc_find(root, "integrator");
-    scene->duration = scene_positive(duration, "duration");
-    scene->step = scene_positive(step, "step");
-    scene->output_step = output ? scene_positive(output, "output_step") : scene->step;
     if (scene->duration / scene->step > most_steps)
         diag_fail(step->at, "a longer step or a shorter duration", "the run would take more than %g steps", most_steps);
-
-    double steps = round(scene->output_step / scene->step);
+    const double steps = round(scene->output_step / scene->step);
     if (steps < 1 || fabs(steps * scene->step - scene->output_step) > 1e-9 * scene->output_step)
         diag_fail(output->at, pool_print(reader->pool, "write %.15g, or change the step", fmax(steps, 1) * scene->step),
                   "output_step must be a multiple of step (%.15g s)", scene->step);
     scene->per_output = (int64_t)steps;
+}
+
+static void read_time(Reader *reader, const Item *root)
+{
+    Scene *scene = reader->scene;
+    const bool constant = scene->method < METHOD_ADAMS;
+    const Item *duration = scene_need(root, "duration", "the scene"), *step = doc_find(root, "step");
+    const Item *output = doc_find(root, "output_step");
+    if (constant)
+        step = scene_need(root, "step", pool_print(reader->pool, "a scene with %s", integrator_name(scene->method)));
+    else if (!step)
+        output = scene_need(root, "output_step", "a scene without step");
+    scene->duration = scene_positive(duration, "duration");
+    scene->step = step ? scene_positive(step, "step") : 0;
+    scene->output_step = output ? scene_positive(output, "output_step") : scene->step;
+    if (constant)
+        count_steps(reader, step, output);
     scene->outputs = (int64_t)floor(scene->duration / scene->output_step * (1 + 1e-12) + 1e-9);
     if (!scene->outputs)
         diag_fail(duration->at, "a longer duration, or a shorter step or output_step",
                   "the scene ends before the first output at %.15g s", scene->output_step);
-
-    const char *word = method ? doc_word(method, "integrator") : "ab3";
-    if (strcmp(word, "ab3") && strcmp(word, "rk4"))
-        diag_fail(method->at, "write ab3 or rk4", "there is no integrator '%s'", word);
-    scene->method = strcmp(word, "ab3") ? GIC_RK4 : GIC_AB3;
 }
 
 /* ---- the initial state ---------------------------------------------------------------------------------- */
@@ -349,6 +401,23 @@ void scene_inputs(void *user, int32_t lane, double time, double *input)
     }
 }
 
+double scene_next_kink(const Scene *scene, double time)
+{
+    double next = INFINITY;
+    for (int i = 0; i < scene->profiles; ++i) {
+        const Profile *profile = &scene->profile[i];
+        for (int k = 0; k < profile->count; ++k)
+            if (profile->time[k] > time)
+                next = fmin(next, profile->time[k]);
+        /* a sine: where it fades in */
+        const double fade[2] = {profile->start, profile->start + 1 / profile->frequency};
+        for (int k = 0; !profile->count && k < 2; ++k)
+            if (fade[k] > time)
+                next = fmin(next, fade[k]);
+    }
+    return next;
+}
+
 /* ---- outputs -------------------------------------------------------------------------------------------- */
 
 /* Components named by a list of output or component names, each once, in the order of the list. */
@@ -409,19 +478,20 @@ static int *default_curves(Reader *reader, int *count)
 
 /* ---- the scene ------------------------------------------------------------------------------------------ */
 
-const Scene *scene_read(Pool *pool, const char *path, const Model *model)
+const Scene *scene_read(Pool *pool, const char *path, const Model *model, const char *integrator, double tolerance)
 {
     const Item *root = doc_read(pool, path);
     Scene *scene = pool_alloc(pool, sizeof *scene);
     Reader reader = {pool, model, scene};
-    CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "output_step", "initial",
-               "road", "inputs", "parameters", "outputs", "plot");
+    CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance",
+               "output_step", "initial", "road", "inputs", "parameters", "outputs", "plot");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
     if (doc_number(version, "gicscene") != 1)
         diag_fail(version->at, "write 1, or use a newer gicrun", "this gicrun reads version 1 of the scene format");
     if (doc_find(root, "description"))
         doc_word(doc_find(root, "description"), "description");
+    read_integrator(&reader, root, integrator, tolerance);
     read_time(&reader, root);
 
     memcpy(scene->position, model->body[BODY_BASE].position, sizeof scene->position);

@@ -22,6 +22,8 @@ typedef struct Run {
     const Scene *scene;
     const Request *request;
     gic_head *self, *copy;
+    Variable *variable; /* NULL: constant steps */
+    int64_t steps;
     Csv csv;
     Plot plot;
     int64_t samples, every; /* output times so far; one in `every` goes into the picture */
@@ -141,9 +143,11 @@ static void summary(const Run *run, double total)
     const Scene *scene = run->scene;
     const double time = gic_time(head), solutions = (double)head->newton_count;
     const char *results = run->request->results;
-    fprintf(stderr, "%s: %.6g s in %lld steps of %.6g s (%s), %lld rows%s%s\n", run->model->name, time,
-            (long long)head->steps, scene->step, scene->method == GIC_AB3 ? "ab3" : "rk4", (long long)run->samples,
-            results ? " in " : "",
+    const char *integrator = integrator_name(scene->method);
+    const char *how = run->variable ? pool_print(run->pool, "of %s, tolerance %.6g", integrator, scene->tolerance)
+                                    : pool_print(run->pool, "of %.6g s (%s)", scene->step, integrator);
+    fprintf(stderr, "%s: %.6g s in %lld steps %s, %lld rows%s%s\n", run->model->name, time, (long long)run->steps, how,
+            (long long)run->samples, results ? " in " : "",
             !results               ? ""
             : strcmp(results, "-") ? results
                                    : "standard output");
@@ -167,27 +171,24 @@ static const char *remedy_of(int status)
                "rows of the results show how it got there";
     case GIC_ERROR_RESULT:
     case GIC_ERROR_INPUT: return "the run has probably become unstable: try a shorter step";
+    case GIC_ERROR_ARGUMENT: return "the tolerance can't be reached in double precision: write a larger one";
     default: return NULL;
     }
 }
 
 /* ---- the run -------------------------------------------------------------------------------------------- */
 
-static gic_head *start(Run *run)
+int scene_start(const gic_model *model, const Scene *scene, gic_head *self)
 {
-    const gic_model *model = run->model;
-    const Scene *scene = run->scene;
-    const Place at = {scene->source, 0, 0};
-    gic_head *self = instance_new(run->pool, model);
-    int status = model->setup(self);
+    const int status = model->setup(self);
     if (status != GIC_OK)
-        diag_fail(at, NULL, "the model can't be set up: %s", instance_status(run->pool, model, self, status));
+        return status;
     set_state(model, scene, self);
     self->road = scene->road;
     self->input_function = scene_inputs;
     self->user = (void *)scene; /* only read */
     scene_inputs(self->user, 0, 0, instance_array(self, model->input_offset));
-    return self;
+    return GIC_OK;
 }
 
 /* Now and then: has someone asked to stop, and is someone watching? */
@@ -201,14 +202,29 @@ static void look_around(Run *run)
     show_progress(run);
 }
 
-/* Steps up to the next output time. Returns the status of the last one. */
-static int advance(Run *run)
+int scene_step(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end)
+{
+    if (!variable)
+        return gic_step(model, self, scene->step, scene->method);
+    const double kink = scene_next_kink(scene, gic_time(self));
+    const int status = variable_step(variable, self, fmin(kink, end));
+    if (status == GIC_OK && gic_time(self) >= kink)
+        variable_restart(variable);
+    return status;
+}
+
+/* Steps up to the output time `end`. Returns the status of the last one. */
+static int advance(Run *run, double end)
 {
     int status = GIC_OK;
-    for (int64_t left = run->scene->per_output; left && status == GIC_OK && !run->interrupted;) {
+    int64_t left = run->scene->per_output; /* of constant steps: their times are not `end` to the last bit */
+    while (status == GIC_OK && !run->interrupted && (run->variable ? gic_time(run->self) < end : left > 0)) {
         double before = seconds(CLOCK_PROCESS_CPUTIME_ID);
-        for (int i = 0; i < BATCH && left && status == GIC_OK; ++i, --left)
-            status = gic_step(run->model, run->self, run->scene->step, run->scene->method);
+        for (int i = 0; i < BATCH && status == GIC_OK && (run->variable ? gic_time(run->self) < end : left > 0); ++i) {
+            status = scene_step(run->model, run->scene, run->variable, run->self, end);
+            run->steps += status == GIC_OK;
+            --left;
+        }
         run->integrating += seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
         look_around(run);
     }
@@ -220,7 +236,7 @@ static int run_all(Run *run, const gic_head **failed)
 {
     record(run);
     for (int64_t k = 0; k < run->scene->outputs; ++k) {
-        int status = advance(run);
+        int status = advance(run, (double)(k + 1) * run->scene->output_step);
         *failed = run->self;
         if (status != GIC_OK || run->interrupted)
             return status;
@@ -237,9 +253,14 @@ void simulate(Pool *pool, const gic_model *model, const Scene *scene, const Requ
 {
     const Place at = {scene->source, 0, 0};
     Run run = {.pool = pool, .model = model, .scene = scene, .request = request};
-    run.self = start(&run);
+    run.self = instance_new(pool, model);
     run.copy = instance_new(pool, model);
-    int status = compute_outputs(&run);
+    int status = scene_start(model, scene, run.self);
+    if (status != GIC_OK)
+        diag_fail(at, NULL, "the model can't be set up: %s", instance_status(pool, model, run.self, status));
+    if (scene->method >= METHOD_ADAMS && !(run.variable = variable_open(model, scene->method, scene->tolerance)))
+        diag_fail(gicrun_place, NULL, "no memory for the integrator");
+    status = compute_outputs(&run);
     if (status != GIC_OK)
         diag_fail(at, "is the initial state one that the mechanism can reach from its design?",
                   "the run can't start: %s", instance_status(pool, model, run.copy, status));
@@ -259,6 +280,7 @@ void simulate(Pool *pool, const gic_model *model, const Scene *scene, const Requ
     if (run.interrupted)
         fprintf(stderr, "gicrun: interrupted at t = %.6g s; results up to there are kept\n", gic_time(run.self));
     interrupt_release();
+    variable_close(run.variable);
     if (!request->quiet)
         summary(&run, seconds(CLOCK_PROCESS_CPUTIME_ID) - before);
     if (request->picture)

@@ -48,7 +48,7 @@ static const Scene *scene_of(Pool *pool, const char *text)
 {
     char *model_path = write_temporary(pool, model_text);
     char *scene_path = write_temporary(pool, pool_print(pool, "%s%s", time_text, text));
-    const Scene *scene = scene_read(pool, scene_path, model_read(pool, model_path));
+    const Scene *scene = scene_read(pool, scene_path, model_read(pool, model_path), NULL, 0);
     unlink(model_path);
     unlink(scene_path);
     return scene;

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * variable: variable-step integration of any model, with the GNU Scientific Library (GPL). Host programs only. */
+#ifndef VARIABLE_H
+#define VARIABLE_H
+
+#include "gic_runtime.h"
+
+/* Beside the methods of gic_runtime.h (gic_method), which have constant steps. */
+enum {
+    METHOD_ADAMS = 100, /* Adams-Moulton, variable step and order 1 to 12: the stand-in for the paper's DDABM */
+    METHOD_RKCK         /* Runge-Kutta after Cash and Karp, order 5: cheaper where errors of 1e-8 or more will do */
+};
+
+/* An integration in progress of one instance, whose history is kept here and not in the instance. */
+typedef struct Variable Variable;
+
+/* `tolerance` bounds the estimated local error of each number of the state: tolerance (1 + its magnitude). NULL: no
+ * memory. Switches GSL's error handler off, which would end the program. */
+Variable *variable_open(const gic_model *model, int32_t method, double tolerance);
+void variable_close(Variable *variable);
+
+/* One step, as long as the tolerance allows, that ends at `end` exactly where it would pass it; end > time of `self`.
+ * On GIC_OK state, time and input[] have moved; otherwise they are untouched, and the status is that of the last
+ * evaluation that failed, or GIC_ERROR_ARGUMENT where rounding alone exceeds the tolerance. */
+int variable_step(Variable *variable, void *self, double end);
+
+/* Forget the history, because state, inputs or their derivatives jump here. */
+void variable_restart(Variable *variable);
+
+/* Steps made so far. */
+int64_t variable_steps(const Variable *variable);
+
+#endif
