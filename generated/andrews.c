@@ -73,8 +73,6 @@
 #define GIC_LOG(x) logf(x)
 #define GIC_TANH(x) tanhf(x)
 #define GIC_POW(x, y) powf(x, y)
-#define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far)) /* squares of corrections relative to a subset's size */
-#define GIC_ROUNDING_SQUARE R(1e-7)
 #else
 #define GIC_SQRT(x) sqrt(x)
 #define GIC_FABS(x) fabs(x)
@@ -89,14 +87,21 @@
 #define GIC_LOG(x) log(x)
 #define GIC_TANH(x) tanh(x)
 #define GIC_POW(x, y) pow(x, y)
-#define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far)) /* squares of corrections relative to a subset's size */
-#define GIC_ROUNDING_SQUARE R(1e-18)
 #endif
 #define GIC_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* far: square of a subset's distance from the base relative to its size; 16 epsilon of the distance is rounding */
+/* Squares of corrections relative to a subset's size: what is rounding, and what is rounding near a singular
+ * configuration. far: square of the subset's distance from the base relative to its size; 16 epsilon of the distance is
+ * rounding. */
+#ifdef GIC_FLOAT
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
+#define GIC_ROUNDING_SQUARE R(1e-7)
+#else
+#define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far))
+#define GIC_ROUNDING_SQUARE R(1e-18)
+#endif
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
  * pieces in which a change of the coordinates is followed. */

@@ -603,6 +603,8 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
     } else if (!strcmp(name, "include")) {
         if (g->header)
             line(out, 0, "#include %s\n", quoted(g->pool, g->header));
+    } else if (!strcmp(name, "bounds")) {
+        insert_template(g, out, "bounds.c.in");
     } else if (!strcmp(name, "classes")) {
         write_classes(g, out);
     } else if (!strcmp(name, "pieces")) {
