@@ -228,11 +228,11 @@ typedef struct Projection {
     Ex moment[3], force[3], *along;
 } Projection;
 
-static void project_body(Whole *whole, int b, const Ex alpha[3], const Ex a[3], const Ex *w2, Projection *out)
+void whole_inertial_wrench(Whole *whole, int b, const Ex alpha[3], const Ex a[3], const Ex *w2, Ex wrench[6])
 {
     Dag *dag = whole->dag;
     const Body *body = &whole->model->body[b];
-    Ex J[6], acceleration[3], angular[3], force[3], moment[3], total[3], t[3], u[3];
+    Ex J[6], acceleration[3], angular[3], total[3], t[3], *moment = wrench, *force = wrench + 3;
     Vector com = whole_point(whole, b, body->com);
     whole_inertia(whole, b, J);
     const Ex matrix[9] = {J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]};
@@ -244,14 +244,23 @@ static void project_body(Whole *whole, int b, const Ex alpha[3], const Ex a[3], 
     ex_cross(dag, total, t, moment);
     ex_apply(dag, matrix, angular, t);
     ex_add3(dag, moment, t, moment);
-    ex_cross(dag, com.v, force, t);
+    ex_cross(dag, com.arm, force, t);
+    ex_add3(dag, moment, t, moment);
+}
+
+static void project_body(Whole *whole, int b, const Ex alpha[3], const Ex a[3], const Ex *w2, Projection *out)
+{
+    Dag *dag = whole->dag;
+    Ex wrench[6], t[3], *moment = wrench, *force = wrench + 3;
+    whole_inertial_wrench(whole, b, alpha, a, w2, wrench);
+    ex_cross(dag, whole->motion[b].c, force, t);
     ex_add3(dag, t, moment, t);
     ex_add3(dag, out->moment, t, out->moment);
     ex_add3(dag, out->force, force, out->force);
     for (int j = 0; b != BODY_BASE && j < whole_subset(whole, b)->deps; ++j) {
-        int w = whole_subset(whole, b)->dep[j];
-        whole_unit_velocity(whole, b, &com, w, t, u);
-        out->along[w] = ex_add(dag, out->along[w], ex_add(dag, ex_dot(dag, t, force), ex_dot(dag, u, moment)));
+        const Ex *S = whole->motion[b].S + 6 * j;
+        Ex *along = &out->along[whole_subset(whole, b)->dep[j]];
+        *along = ex_add(dag, *along, ex_add(dag, ex_dot(dag, moment, S), ex_dot(dag, force, S + 3)));
     }
 }
 

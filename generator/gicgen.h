@@ -296,12 +296,13 @@ typedef enum OutputType {
     OUTPUT_COORDINATE,
     OUTPUT_FORCE,
     OUTPUT_DRIVE_FORCE,
+    OUTPUT_REACTION,
     OUTPUT_WHEEL,
     OUTPUT_ENERGY,
     OUTPUT_TYPES
 } OutputType;
 
-enum { OUTPUT_MAX_COMPONENTS = 4 };
+enum { OUTPUT_MAX_COMPONENTS = 6 };
 
 typedef struct Output {
     const char *name;
@@ -310,7 +311,7 @@ typedef struct Output {
     int body;                                     /* where the type has one */
     double point[3];                              /* frame of body */
     int in;                                       /* body in whose frame components are given, BODY_GROUND: world */
-    int index;                                    /* coordinate, force element or wheel */
+    int index;                                    /* coordinate, force element, joint or wheel */
     int count;                                    /* components */
     const char *component[OUTPUT_MAX_COMPONENTS]; /* full names: "chassis.x" */
     const char *unit[OUTPUT_MAX_COMPONENTS];
@@ -518,6 +519,8 @@ Factors *linear_factor(Dag *dag, int n, const Ex *A, const double *column_scale,
 Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A);
 /* x = A^-1 b; x may alias b. */
 void linear_solve(Dag *dag, const Factors *factors, const Ex *b, Ex *x);
+/* x = A^-T b of factors that are not symmetric; x may alias b. */
+void linear_solve_transposed(Dag *dag, const Factors *factors, const Ex *b, Ex *x);
 /* Dense numeric solve with row-scaled partial pivoting, in place: b [n] becomes x. False when singular. A is destroyed.
  */
 bool linear_solve_numeric(int n, double *A, double *b);
@@ -665,6 +668,8 @@ typedef struct Formula {
     Block chord;     /* one correction of q with the start's factors; step: its squared relative size */
     Block solve;     /* factors, S, last correction, motion and inertia */
     Block residual;  /* worst: largest constraint residual at q, relative to size */
+    Block react;     /* multipliers w from the wrenches w that the bodies need, f and q being those at their place; what
+                        the joints put on the knowns is taken from theirs, w0, w1, ...; only what outputs need */
 } Formula;
 
 /* All classes [classes]. Fills the sampling on the way. Members that need other pivots than their class's first one get
@@ -673,6 +678,14 @@ Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **seq
                             Sampling *sampling);
 /* Reference points of all bodies [bodies][3], body frames: where a joint to something known sits. */
 double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3];
+
+/* ---- reaction.c: which reaction forces are wanted, and where they come from ----------------------------------- */
+
+/* [subsets] whose multipliers some `reaction` output needs: of its joint's subset, and of those that put their weight
+ * on it. */
+const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *sequence);
+/* Does an output ask for the reaction of this joint? */
+bool reaction_wanted(const Model *model, int joint);
 
 /* ---- assemble.c: the design configuration that fits the given lengths ----------------------------------------- */
 
@@ -690,6 +703,7 @@ typedef struct Plan {
     const double (*origin)[3];
     int *start_offset, *inertia_offset; /* [subsets] */
     int *motion_offset;                 /* [bodies] */
+    int *multiplier_offset;             /* [bodies] six places a body; those of a subset's bodies are its equations' */
     int start_size, inertia_size, motion_size;
     int free_coordinates;
     int *coordinate_state, *coordinate_rate; /* [coordinates] index in the state, -1: driven */
@@ -723,8 +737,6 @@ void whole_velocity(Whole *whole, const Vector *point, Ex out[3]);
 void whole_velocity_in_base(Whole *whole, const Vector *point, Ex out[3]);
 /* A body's inertia matrix in base axes (xx yy zz xy xz yz). */
 void whole_inertia(Whole *whole, int body, Ex J[6]);
-/* Derivative by coordinate `j` of the point's velocity relative to the base, 0 where it does not depend on it. */
-void whole_unit_velocity(Whole *whole, int body, const Vector *point, int coordinate, Ex linear[3], Ex angular[3]);
 /* Coordinates that a body's motion depends on. */
 const Subset *whole_subset(const Whole *whole, int body);
 
@@ -736,11 +748,13 @@ double table_value(const Table *table, double x);
 
 /* ---- loads.c: applied forces -------------------------------------------------------------------------------- */
 
-/* Generalised forces: moment about the base origin and force on everything, base frame; force along every coordinate.
- */
+/* Applied forces body by body, and from them generalised forces: moment about the base origin and force on everything,
+ * base frame; force along every coordinate. */
 typedef struct Loads {
+    Ex (*wrench)[6];                     /* [bodies] moment about the reference point, force; base frame */
+    Ex *own;                             /* [coordinates] of the elements along a coordinate, not among the wrenches */
     Ex moment[3], force[3];
-    Ex *along;                           /* [coordinates] */
+    Ex *along;                           /* [coordinates] of all */
     Ex *element;                         /* [forces] Q or T of FORMAT.md section 7 */
     Ex (*wheel)[4];                      /* [wheels] fz, deflection, deflection rate, road height */
     Ex potential, potential_rate, power; /* of springs; of dampers and tires, W */
@@ -756,6 +770,11 @@ Block *dynamics_block(Whole *whole);
 Block *outputs_block(Whole *whole);
 /* pose[7 i]: world poses of all body frames. s: the Newton start. */
 Block *poses_block(Whole *whole);
+/* reaction.c: lambda[] of the subsets whose multipliers are needed: the wrenches that the joints of their bodies must add
+ * up to, moment about the reference point and force, base frame, at rate[]. */
+Block *wrenches_block(Whole *whole);
+/* reaction.c: force and torque of a joint on its second body at its point of that, base frame, from lambda[]. */
+void whole_reaction(Whole *whole, int joint, Ex force[3], Ex torque[3]);
 /* tau[]: residual of the equations of motion for accelerations acc[] (order of the unknowns), body by body. */
 Block *inverse_block(Whole *whole);
 /* energy[3]: both sides of the energy balance at rate[] and the sum of magnitudes; acc[]: the unknowns at rate[]. */
@@ -764,6 +783,8 @@ Block *energy_block(Whole *whole);
 void whole_accelerations(Whole *whole, Ex alpha[3], Ex a[3], Ex **w2);
 /* Force that drives a driven coordinate, at rate[]. */
 Ex whole_drive_force(Whole *whole, int coordinate);
+/* What moves a body as given: moment about its reference point, force; base frame. */
+void whole_inertial_wrench(Whole *whole, int body, const Ex alpha[3], const Ex a[3], const Ex *w2, Ex wrench[6]);
 /* Absolute acceleration less gravity, base frame, of a point; alpha, a: of the base (a less gravity), w2: of all
  * coordinates. */
 void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2,

@@ -220,6 +220,23 @@ void linear_solve(Dag *dag, const Factors *f, const Ex *b, Ex *x)
         x[f->column[k]] = y[k];
 }
 
+void linear_solve_transposed(Dag *dag, const Factors *f, const Ex *b, Ex *x)
+{
+    int n = f->n;
+    Ex y[n];
+    for (int k = 0; k < n; ++k) {
+        y[k] = b[f->column[k]];
+        for (int j = 0; j < k; ++j)
+            y[k] = ex_sub(dag, y[k], ex_mul(dag, f->entry[n * j + k], y[j]));
+        y[k] = ex_mul(dag, y[k], f->entry[n * k + k]);
+    }
+    for (int k = n - 1; k >= 0; --k)
+        for (int j = k + 1; j < n; ++j)
+            y[k] = ex_sub(dag, y[k], ex_mul(dag, f->entry[n * j + k], y[j]));
+    for (int k = 0; k < n; ++k)
+        x[f->row[k]] = y[k];
+}
+
 /* Rows scaled to 1, then eliminated with partial pivoting; b (or NULL) goes along. The product of the pivots with the
  * sign of the exchanges, 0 where one is rounding. */
 static double eliminate_numeric(int n, double *A, double *b)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Applied forces (FORMAT.md sections 7 and 8) as generalised forces. */
+ * Applied forces (FORMAT.md sections 7 and 8), body by body and as generalised forces. */
 #include "gicgen.h"
 
 /* A force F (base frame) on a point of a body. */
@@ -8,17 +8,30 @@ static void push(Whole *whole, Loads *loads, int body, const Vector *point, cons
     Dag *dag = whole->dag;
     if (body == BODY_GROUND)
         return;
-    Ex t[3], angular[3];
-    ex_cross(dag, point->v, F, t);
-    ex_add3(dag, loads->moment, t, loads->moment);
-    ex_add3(dag, loads->force, F, loads->force);
-    if (body == BODY_BASE)
-        return;
-    const Subset *subset = whole_subset(whole, body);
-    for (int j = 0; j < subset->deps; ++j) {
-        Ex *along = &loads->along[subset->dep[j]];
-        whole_unit_velocity(whole, body, point, subset->dep[j], t, angular);
-        *along = ex_add(dag, *along, ex_dot(dag, F, t));
+    Ex moment[3], *wrench = loads->wrench[body];
+    ex_cross(dag, point->arm, F, moment);
+    ex_add3(dag, wrench, moment, wrench);
+    ex_add3(dag, wrench + 3, F, wrench + 3);
+}
+
+/* What acts on the bodies as forces on everything and along the coordinates. */
+static void project(Whole *whole, Loads *loads)
+{
+    Dag *dag = whole->dag;
+    for (int w = 0; w < whole->model->coordinates; ++w)
+        loads->along[w] = loads->own[w];
+    for (int b = 0; b < whole->model->bodies; ++b) {
+        const Ex *moment = loads->wrench[b], *force = moment + 3;
+        Ex t[3];
+        ex_cross(dag, whole->motion[b].c, force, t);
+        ex_add3(dag, loads->moment, t, loads->moment);
+        ex_add3(dag, loads->moment, moment, loads->moment);
+        ex_add3(dag, loads->force, force, loads->force);
+        for (int j = 0; b != BODY_BASE && j < whole_subset(whole, b)->deps; ++j) {
+            const Ex *S = whole->motion[b].S + 6 * j;
+            Ex *along = &loads->along[whole_subset(whole, b)->dep[j]];
+            *along = ex_add(dag, *along, ex_add(dag, ex_dot(dag, moment, S), ex_dot(dag, force, S + 3)));
+        }
     }
 }
 
@@ -87,7 +100,7 @@ static void add_along(Whole *whole, Loads *loads, int index)
         loads->power = ex_add(dag, loads->power, ex_mul(dag, Q, whole->xd[w]));
     }
     loads->element[index] = Q;
-    loads->along[w] = ex_add(dag, loads->along[w], Q);
+    loads->own[w] = ex_add(dag, loads->own[w], Q);
 }
 
 static void add_between(Whole *whole, Loads *loads, int index)
@@ -130,11 +143,7 @@ static void add_load(Whole *whole, Loads *loads, int body, int in, const double 
         ex_apply(dag, whole->motion[in].A, T, torque);
     }
     push(whole, loads, body, &point, force);
-    ex_add3(dag, loads->moment, torque, loads->moment);
-    for (int j = 0; body != BODY_BASE && j < whole_subset(whole, body)->deps; ++j) {
-        Ex *along = &loads->along[whole_subset(whole, body)->dep[j]];
-        *along = ex_add(dag, *along, ex_dot(dag, torque, whole->motion[body].S + 6 * j));
-    }
+    ex_add3(dag, loads->wrench[body], torque, loads->wrench[body]);
     whole_velocity_in_base(whole, &point, v);
     ex_add3(dag, whole->turn, whole->motion[body].omega, total);
     loads->power = ex_add(dag, loads->power, ex_add(dag, ex_dot(dag, force, v), ex_dot(dag, torque, total)));
@@ -196,6 +205,8 @@ Loads *loads_make(Whole *whole)
     Pool *pool = whole->dag->pool;
     const Model *model = whole->model;
     Loads *loads = pool_alloc(pool, sizeof *loads);
+    loads->wrench = pool_alloc(pool, (size_t)model->bodies * sizeof *loads->wrench);
+    loads->own = pool_alloc(pool, (size_t)(model->coordinates + 1) * sizeof *loads->own);
     loads->along = pool_alloc(pool, (size_t)(model->coordinates + 1) * sizeof *loads->along);
     loads->element = pool_alloc(pool, (size_t)(model->forces + 1) * sizeof *loads->element);
     loads->wheel = pool_alloc(pool, (size_t)(model->wheels + 1) * sizeof *loads->wheel);
@@ -205,5 +216,6 @@ Loads *loads_make(Whole *whole)
         add_wheel(whole, loads, i);
     for (int i = 0; i < model->ports; ++i)
         add_port(whole, loads, i);
+    project(whole, loads);
     return loads;
 }

@@ -36,6 +36,7 @@ typedef enum KeyKind {
     KEY_FORCE_BODIES,  /* the same, ground always allowed */
     KEY_FRAME,         /* a body or `world`: index[0], BODY_GROUND for world */
     KEY_COORDINATE,    /* index[0] */
+    KEY_JOINT,         /* index[0] */
     KEY_FORCE,         /* index[0] */
     KEY_WHEEL,         /* index[0] */
     KEY_KINDS

@@ -37,6 +37,7 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_FORCE_BODIES] = "[a, b]",
     [KEY_FRAME] = "body",
     [KEY_COORDINATE] = "coordinate",
+    [KEY_JOINT] = "joint",
     [KEY_FORCE] = "force",
     [KEY_WHEEL] = "wheel",
 };
@@ -292,6 +293,9 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     case KEY_COORDINATE:
         value->index[0] =
             find(reader, item, what, "coordinate", model->coordinate, model->coordinates, sizeof *model->coordinate);
+        break;
+    case KEY_JOINT:
+        value->index[0] = find(reader, item, what, "joint", model->joint, model->joints, sizeof *model->joint);
         break;
     case KEY_FORCE:
         value->index[0] = find(reader, item, what, "force element", model->force, model->forces, sizeof *model->force);

@@ -14,13 +14,15 @@ const char *const output_type_name[OUTPUT_TYPES] = {
     [OUTPUT_COORDINATE] = "coordinate",
     [OUTPUT_FORCE] = "force",
     [OUTPUT_DRIVE_FORCE] = "drive_force",
+    [OUTPUT_REACTION] = "reaction",
     [OUTPUT_WHEEL] = "wheel",
     [OUTPUT_ENERGY] = "energy",
 };
 
-enum { WATCH_TYPE, WATCH_BODY, WATCH_POINT, WATCH_IN, WATCH_COORDINATE, WATCH_ELEMENT, WATCH_WHEEL, WATCH_KEYS };
+enum { WATCH_TYPE, WATCH_BODY, WATCH_POINT, WATCH_IN, WATCH_COORDINATE, WATCH_ELEMENT, WATCH_JOINT, WATCH_WHEEL, WATCH_KEYS };
 
 #define FRAMED_POINTS (FORM(OUTPUT_VELOCITY) | FORM(OUTPUT_ACCELERATION))
+#define FRAMED (FRAMED_POINTS | FORM(OUTPUT_ANGULAR_VELOCITY) | FORM(OUTPUT_REACTION))
 #define POINTS (FRAMED_POINTS | FORM(OUTPUT_POSITION))
 #define ROTATIONS (FORM(OUTPUT_ORIENTATION) | FORM(OUTPUT_ROLL_PITCH_YAW) | FORM(OUTPUT_ANGULAR_VELOCITY))
 #define OF_COORDINATES (FORM(OUTPUT_COORDINATE) | FORM(OUTPUT_DRIVE_FORCE))
@@ -29,9 +31,10 @@ static const Key output_key[WATCH_KEYS] = {
     [WATCH_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [WATCH_BODY] = {"body", KEY_BODY, POINTS | ROTATIONS, POINTS | ROTATIONS, BOUND_NONE, 0},
     [WATCH_POINT] = {"point", KEY_POINT, POINTS, 0, BOUND_NONE, 0},
-    [WATCH_IN] = {"in", KEY_FRAME, FRAMED_POINTS | FORM(OUTPUT_ANGULAR_VELOCITY), 0, BOUND_NONE, 0},
+    [WATCH_IN] = {"in", KEY_FRAME, FRAMED, 0, BOUND_NONE, 0},
     [WATCH_COORDINATE] = {"coordinate", KEY_COORDINATE, OF_COORDINATES, OF_COORDINATES, BOUND_NONE, 0},
     [WATCH_ELEMENT] = {"element", KEY_FORCE, FORM(OUTPUT_FORCE), FORM(OUTPUT_FORCE), BOUND_NONE, 0},
+    [WATCH_JOINT] = {"joint", KEY_JOINT, FORM(OUTPUT_REACTION), FORM(OUTPUT_REACTION), BOUND_NONE, 0},
     [WATCH_WHEEL] = {"wheel", KEY_WHEEL, FORM(OUTPUT_WHEEL), FORM(OUTPUT_WHEEL), BOUND_NONE, 0},
 };
 
@@ -51,6 +54,10 @@ static const OutputKind output_kind[OUTPUT_TYPES] = {
     [OUTPUT_COORDINATE] = {3, {"value", "rate", "acceleration"}, {"m", "m/s", "m/s^2"}, {"rad", "rad/s", "rad/s^2"}},
     [OUTPUT_FORCE] = {1, {""}, {"N"}, {"N m"}},
     [OUTPUT_DRIVE_FORCE] = {1, {""}, {"N"}, {"N m"}},
+    [OUTPUT_REACTION] = {6,
+                         {"force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z"},
+                         {"N", "N", "N", "N m", "N m", "N m"},
+                         {0}},
     [OUTPUT_WHEEL] = {4, {"fz", "deflection", "deflection_rate", "height"}, {"N", "m", "m/s", "m"}, {0}},
     [OUTPUT_ENERGY] = {2, {"kinetic", "potential"}, {"J", "J"}, {0}},
 };

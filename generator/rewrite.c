@@ -40,6 +40,7 @@ static const Rule rule[KEY_KINDS] = {
     [KEY_FORCE_BODIES] = {.pair = true, .words = WORDS_NAME, .group = "bodies"},
     [KEY_FRAME] = {.words = WORDS_NAME, .group = "bodies"},
     [KEY_COORDINATE] = {.words = WORDS_NAME, .group = "coordinates"},
+    [KEY_JOINT] = {.words = WORDS_NAME, .group = "joints"},
     [KEY_FORCE] = {.words = WORDS_NAME, .group = "forces"},
     [KEY_WHEEL] = {.words = WORDS_NAME, .group = "wheels"},
 };

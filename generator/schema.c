@@ -68,6 +68,7 @@ static void value(Text *out, const Section *section, const Key *key, int indent)
     case KEY_BODY:
     case KEY_FRAME:
     case KEY_COORDINATE:
+    case KEY_JOINT:
     case KEY_FORCE:
     case KEY_WHEEL: reference(out, "name"); break;
     case KEY_INERTIA:

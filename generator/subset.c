@@ -488,7 +488,8 @@ static Formula *formulate_class(Work *w)
     Dag *dag = w->dag;
     int bodies = w->first->bodies, deps = w->first->deps;
     Formula *formula = pool_alloc(pool, sizeof *formula);
-    formula->dag = formula->predict.dag = formula->chord.dag = formula->solve.dag = formula->residual.dag = dag;
+    formula->dag = formula->predict.dag = formula->chord.dag = formula->solve.dag = formula->residual.dag = formula->react.dag =
+        dag;
     formula->size = w->size;
     formula->distance = subset_distance(w) / w->size;
     Factors *factors = factor(w);
@@ -517,6 +518,7 @@ static Formula *formulate_class(Work *w)
     for (int i = 0; i < count; ++i)
         block_store(&formula->solve, stored[i], "start[%d]", layout->start_factors + i);
     subset_inertia(w, layout, motion, &formula->solve);
+    subset_react(w, remembered, &formula->react);
     return formula;
 }
 

@@ -85,4 +85,7 @@ int subset_index(const Work *w, int subset);
 /* inertia.c: store what the bodies, moving as given, add to the equations of motion. */
 void subset_inertia(Work *w, const Layout *layout, const Motion *motion, Block *block);
 
+/* react.c: the class's block `react`. factors: those that the last solution left in memory. */
+void subset_react(Work *w, const Factors *factors, Block *block);
+
 #endif

@@ -17,11 +17,13 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Formula
                    .start_offset = pool_alloc(pool, subsets * sizeof(int)),
                    .inertia_offset = pool_alloc(pool, subsets * sizeof(int)),
                    .motion_offset = pool_alloc(pool, bodies * sizeof(int)),
+                   .multiplier_offset = pool_alloc(pool, bodies * sizeof(int)),
                    .coordinate_state = pool_alloc(pool, coordinates * sizeof(int)),
                    .coordinate_rate = pool_alloc(pool, coordinates * sizeof(int)),
                    .coordinate_unknown = pool_alloc(pool, coordinates * sizeof(int))};
     /* the coordinates that a start belongs to stand in front of it */
     plan->start_size = model->coordinates;
+    int multipliers = 0;
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
         if (subset->class < 0)
@@ -34,6 +36,8 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Formula
         for (int b = 0; b < subset->bodies; ++b) {
             plan->motion_offset[subset->body[b]] = plan->motion_size;
             plan->motion_size += layout->motion_size;
+            plan->multiplier_offset[subset->body[b]] = multipliers;
+            multipliers += 6;
         }
     }
     for (int i = 0; i < model->coordinates; ++i)
@@ -167,28 +171,11 @@ void whole_inertia(Whole *whole, int body, Ex J[6])
             J[place[i][j]] = ex_dot(dag, AI[i], A + 3 * j);
 }
 
-void whole_unit_velocity(Whole *whole, int body, const Vector *point, int coordinate, Ex linear[3], Ex angular[3])
-{
-    ex_zero3(whole->dag, linear);
-    ex_zero3(whole->dag, angular);
-    if (body <= BODY_BASE)
-        return;
-    const Subset *subset = whole_subset(whole, body);
-    const Motion *m = &whole->motion[body];
-    for (int j = 0; j < subset->deps; ++j)
-        if (subset->dep[j] == coordinate) {
-            const Ex *S = m->S + 6 * j;
-            memcpy(angular, S, 3 * sizeof *S);
-            ex_cross(whole->dag, S, point->arm, linear);
-            ex_add3(whole->dag, linear, S + 3, linear);
-        }
-}
-
 void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2,
                         Ex out[3])
 {
     Dag *dag = whole->dag;
-    Ex t[3], u[3];
+    Ex t[3];
     ex_cross(dag, whole->turn, point->v, t);
     ex_add3(dag, t, point->rate, t);
     ex_add3(dag, t, point->rate, t);
@@ -201,7 +188,9 @@ void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex al
         return;
     const Subset *subset = whole_subset(whole, body);
     for (int j = 0; j < subset->deps; ++j) {
-        whole_unit_velocity(whole, body, point, subset->dep[j], t, u);
+        const Ex *S = whole->motion[body].S + 6 * j;
+        ex_cross(dag, S, point->arm, t);
+        ex_add3(dag, S + 3, t, t);
         ex_scale3(dag, w2[subset->dep[j]], t, t);
         ex_add3(dag, out, t, out);
     }

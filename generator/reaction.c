@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: MIT
+ * Reaction forces of joints (FORMAT.md section 9): which multipliers they need, the wrenches that these follow from in
+ * the reduced form, and force and torque from the multipliers in either form. */
+#include "gicgen.h"
+
+#include <string.h>
+
+bool reaction_wanted(const Model *model, int joint)
+{
+    bool wanted = false;
+    for (int i = 0; i < model->outputs; ++i)
+        wanted = wanted || (model->output[i].type == OUTPUT_REACTION && model->output[i].index == joint);
+    return wanted;
+}
+
+const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *sequence)
+{
+    bool *needed = pool_alloc(pool, (size_t)(sequence->subsets + 1) * sizeof *needed);
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        for (int i = 0; i < subset->joints; ++i)
+            needed[s] = needed[s] || reaction_wanted(model, subset->joint[i]);
+        for (int i = 0; i < subset->knowns; ++i) /* stand before it */
+            needed[s] = needed[s] || needed[sequence->body_subset[subset->known[i]]];
+    }
+    return needed;
+}
+
+Block *wrenches_block(Whole *whole)
+{
+    Dag *dag = whole->dag;
+    const Plan *plan = whole->plan;
+    const bool *needed = reactions_needed(dag->pool, whole->model, plan->sequence);
+    const Loads *loads = loads_make(whole);
+    Ex alpha[3], a[3], *w2;
+    Block *block = pool_alloc(dag->pool, sizeof *block);
+    block->dag = dag;
+    whole_accelerations(whole, alpha, a, &w2);
+    for (int b = 1; b < whole->model->bodies; ++b) {
+        Ex wrench[6];
+        if (!needed[plan->sequence->body_subset[b]])
+            continue;
+        whole_inertial_wrench(whole, b, alpha, a, w2, wrench);
+        for (int i = 0; i < 6; ++i)
+            block_store(block, ex_sub(dag, wrench[i], loads->wrench[b][i]), "lambda[%d]",
+                        plan->multiplier_offset[b] + i);
+    }
+    return block;
+}
+
+/* Place of a joint's first multiplier. */
+static int joint_multiplier(const Plan *plan, int joint)
+{
+    const Sequence *sequence = plan->sequence;
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        for (int i = 0, place = 0; i < subset->joints; ++i) {
+            if (subset->joint[i] == joint)
+                return plan->multiplier_offset[subset->body[0]] + place;
+            place += joint_equations[plan->model->joint[subset->joint[i]].type];
+        }
+    }
+    return -1;
+}
+
+void whole_reaction(Whole *whole, int index, Ex force[3], Ex torque[3])
+{
+    Dag *dag = whole->dag;
+    const Plan *plan = whole->plan;
+    const Joint *joint = &whole->model->joint[index];
+    /* with the joint's point as the second body's reference point, the torque is about that */
+    Motion second = whole->motion[joint->body[1]];
+    const Motion *const end[2] = {&whole->motion[joint->body[0]], &second};
+    Vector point = whole_point(whole, joint->body[1], joint->point[1]);
+    memcpy(second.c, point.v, sizeof second.c);
+    double(*origin)[3] = pool_alloc(dag->pool, (size_t)whole->model->bodies * sizeof *origin);
+    memcpy(origin, plan->origin, (size_t)whole->model->bodies * sizeof *origin);
+    memcpy(origin[joint->body[1]], joint->point[1], sizeof *origin);
+    Row row[ROWS_MAX];
+    Fixture fixture = fixture_from(dag, joint, origin);
+    int rows = joint_rows(dag, joint->type, &fixture, end, row), place = joint_multiplier(plan, index);
+    ex_zero3(dag, force);
+    ex_zero3(dag, torque);
+    for (int r = 0; r < rows; ++r) {
+        Ex t[3], lambda = ex_input(dag, pool_print(dag->pool, "lambda[%d]", place + r), NULL);
+        ex_scale3(dag, lambda, row[r].J[1], t);
+        ex_add3(dag, torque, t, torque);
+        ex_scale3(dag, lambda, row[r].J[1] + 3, t);
+        ex_add3(dag, force, t, force);
+    }
+}
