@@ -31,7 +31,8 @@ const Formulation *formulate(Pool *pool, const Model *model, const Sequence *seq
                        .outputs = outputs_block(whole_new(pool, plan)),
                        .poses = poses_block(whole_new(pool, plan)),
                        .inverse = inverse_block(whole_new(pool, plan)),
-                       .energy = energy_block(whole_new(pool, plan))};
+                       .energy = energy_block(whole_new(pool, plan)),
+                       .wrenches = wrenches_block(whole_new(pool, plan))};
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
         f->known_most = subset->knowns > f->known_most ? subset->knowns : f->known_most;

@@ -155,6 +155,7 @@ static void write_sizes(Generation *g, Text *out, int indent)
                 {"START_ROOM", room(plan->start_size)},
                 {"MOTION_ROOM", room(plan->motion_size)},
                 {"INERTIA_ROOM", room(plan->inertia_size)},
+                {"MULTIPLIER_ROOM", room(plan->multipliers)},
                 {"KNOWN_ROOM", room(g->formulation->known_most)},
                 {"DEPENDENCE_ROOM", room(g->formulation->dependence_most)}};
     size_t count = sizeof size / sizeof *size;
@@ -256,6 +257,16 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
             line(out, indent, "const gic_real *const f = old + %d; /* factors at the start */",
                  f->layout.start_factors);
         line(out, indent, "gic_real q[%d];", numbers);
+    } else if (!strcmp(name, "react arguments")) {
+        const Block *const block = &f->react;
+        write_arguments(g, out, indent, &block, 1);
+        for (int i = 0; i < first->knowns; ++i)
+            if (block_reads(block, pool_print(g->pool, "w%d", i)))
+                line(out, indent, "gic_real *const w%d = onto[%d];", i, i);
+        if (block_reads(block, "q"))
+            line(out, indent, "const gic_real *const q = start;");
+        if (block_reads(block, "f"))
+            line(out, indent, "const gic_real *const f = start + %d;", f->layout.start_factors);
     } else if (!strcmp(name, "residual arguments")) {
         write_arguments(g, out, indent, (const Block *const[]){&f->residual}, 1);
     } else if (!strcmp(name, "enough")) {
@@ -270,6 +281,7 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
         const Block *block = !strcmp(name, "predict") ? &f->predict
                              : !strcmp(name, "chord") ? &f->chord
                              : !strcmp(name, "solve") ? &f->solve
+                             : !strcmp(name, "react") ? &f->react
                                                       : &f->residual;
         block_emit(out, block, &g->constants[g->class], indent);
     }
@@ -303,6 +315,9 @@ static void write_classes(Generation *g, Text *out)
         Text body = {.pool = g->pool};
         template_expand(g->pool, &body, g->templates, "subset.c.in", g->model->name, g->sequence->class[g->class].name,
                         insert_class, g);
+        if (g->plan->formula[g->class]->react.stores)
+            template_expand(g->pool, &body, g->templates, "react.c.in", g->model->name,
+                            g->sequence->class[g->class].name, insert_class, g);
         write_constants(g, out); /* known now that all blocks are text */
         text_add(out, body.s, body.size);
     }
@@ -374,6 +389,32 @@ static void write_residuals(Generation *g, Text *out, int indent)
         line(out, indent, "one = %s_residual_%s(%s_k_%s[%d], &links, start + %d);", g->model->name, class->name,
              g->model->name, class->name, member_of(class, s), g->plan->start_offset[s]);
         line(out, indent, "largest = GIC_MAX(largest, one);");
+    }
+}
+
+/* Against the computational sequence: what a subset puts on others is known before they are asked. */
+static void write_react_calls(Generation *g, Text *out, int indent)
+{
+    const Sequence *sequence = g->sequence;
+    const Plan *plan = g->plan;
+    const bool *needed = reactions_needed(g->pool, g->model, sequence);
+    for (int s = sequence->subsets - 1; s >= 0; --s) {
+        const Subset *subset = &sequence->subset[s];
+        if (subset->class < 0 || !needed[s])
+            continue;
+        const Class *class = &sequence->class[subset->class];
+        line(out, indent, "/* %s */", subset_title(g->pool, g->model, subset));
+        write_knowns(g, out, indent, subset);
+        for (int i = 0; i < subset->knowns; ++i)
+            if (needed[sequence->body_subset[subset->known[i]]])
+                line(out, indent, "onto[%d] = lambda + %d;", i, plan->multiplier_offset[subset->known[i]]);
+            else
+                line(out, indent, "onto[%d] = spare;", i);
+        for (int j = 0; j < subset->deps; ++j)
+            line(out, indent, "links.x[%d] = start[%d];", j, subset->dep[j]);
+        line(out, indent, "%s_react_%s(%s_k_%s[%d], &links, start + %d, lambda + %d, onto);", g->model->name,
+             class->name, g->model->name, class->name, member_of(class, s), plan->start_offset[s],
+             plan->multiplier_offset[subset->body[0]]);
     }
 }
 
@@ -592,7 +633,8 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
                   {"outputs", g->formulation->outputs},
                   {"poses", g->formulation->poses},
                   {"inverse", g->formulation->inverse},
-                  {"energy", g->formulation->energy}};
+                  {"energy", g->formulation->energy},
+                  {"wrenches", g->formulation->wrenches}};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
         if (!strcmp(name, blocks[i].name)) {
             block_emit(out, blocks[i].block, &none, indent);
@@ -618,6 +660,17 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
     } else if (!strcmp(name, "road")) {
         if (g->model->wheels)
             insert_template(g, out, "road.c.in");
+    } else if (!strcmp(name, "reactions")) {
+        if (g->plan->multipliers)
+            template_expand(g->pool, out, g->templates, "reactions.c.in", g->model->name, NULL, insert_code, g);
+    } else if (!strcmp(name, "react calls")) {
+        write_react_calls(g, out, indent);
+    } else if (!strcmp(name, "react")) {
+        if (g->plan->multipliers) {
+            line(out, indent, "if (status == GIC_OK)");
+            line(out, indent + 4, "status = %s_react(self, %s_time(self), self->state, e, self->rate);", g->model->name,
+                 g->model->name);
+        }
     } else if (!strcmp(name, "dynamics comment")) {
         text_print(out,
                    "/* Applied forces, composite inertia, and elimination of %d accelerations: alpha and a of a free "

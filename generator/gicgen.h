@@ -584,6 +584,8 @@ typedef struct Fixture {
 
 enum { ROWS_MAX = 6, FIXTURE_NUMBERS = sizeof(Fixture) / sizeof(Ex) };
 
+/* A fixture of these numbers, in the order of its members. */
+Fixture fixture_literal(Dag *dag, const double number[FIXTURE_NUMBERS]);
 /* The same as numbers, in the order of Fixture's members; origin: reference points [bodies][3], body frames. */
 void fixture_of_joint(const Joint *joint, const double (*origin)[3], double number[FIXTURE_NUMBERS]);
 void fixture_of_coordinate(const Coordinate *coordinate, const double (*origin)[3], double number[FIXTURE_NUMBERS]);
@@ -703,6 +705,7 @@ typedef struct Plan {
     const double (*origin)[3];
     int *start_offset, *inertia_offset; /* [subsets] */
     int *motion_offset;                 /* [bodies] */
+    int multipliers; /* kept for outputs; 0: none needs them */
     int *multiplier_offset;             /* [bodies] six places a body; those of a subset's bodies are its equations' */
     int start_size, inertia_size, motion_size;
     int free_coordinates;
@@ -799,7 +802,7 @@ typedef struct Formulation {
     const Sampling *sampling;
     const Plan *plan;
     const char *hash; /* of the model, in hexadecimal digits */
-    const Block *dynamics, *outputs, *poses, *inverse, *energy;
+    const Block *dynamics, *outputs, *poses, *inverse, *energy, *wrenches;
     int known_most, dependence_most; /* knowns and deps of a subset, at most */
 } Formulation;
 

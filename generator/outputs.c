@@ -106,6 +106,13 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         break;
     case OUTPUT_FORCE: out[0] = s->loads->element[output->index]; break;
     case OUTPUT_DRIVE_FORCE: out[0] = whole_drive_force(whole, output->index); break;
+    case OUTPUT_REACTION: {
+        Ex force[3], torque[3];
+        whole_reaction(whole, output->index, force, torque);
+        express(whole, output->in, force, out);
+        express(whole, output->in, torque, out + 3);
+        break;
+    }
     case OUTPUT_WHEEL: memcpy(out, s->loads->wheel[output->index], 4 * sizeof *out); break;
     case OUTPUT_ENERGY: {
         out[0] = 0;

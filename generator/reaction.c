@@ -76,8 +76,10 @@ void whole_reaction(Whole *whole, int index, Ex force[3], Ex torque[3])
     double(*origin)[3] = pool_alloc(dag->pool, (size_t)whole->model->bodies * sizeof *origin);
     memcpy(origin, plan->origin, (size_t)whole->model->bodies * sizeof *origin);
     memcpy(origin[joint->body[1]], joint->point[1], sizeof *origin);
+    double number[FIXTURE_NUMBERS];
+    fixture_of_joint(joint, (const double(*)[3])origin, number);
+    Fixture fixture = fixture_literal(dag, number);
     Row row[ROWS_MAX];
-    Fixture fixture = fixture_from(dag, joint, origin);
     int rows = joint_rows(dag, joint->type, &fixture, end, row), place = joint_multiplier(plan, index);
     ex_zero3(dag, force);
     ex_zero3(dag, torque);

@@ -79,6 +79,14 @@ void fixture_of_coordinate(const Coordinate *coordinate, const double (*origin)[
     number[NUMBER_OFFSET] = coordinate->design - (coordinate->type == COORDINATE_TRANSLATION ? coordinate->offset : 0);
 }
 
+Fixture fixture_literal(Dag *dag, const double number[FIXTURE_NUMBERS])
+{
+    Fixture fixture;
+    for (int i = 0; i < FIXTURE_NUMBERS; ++i)
+        ((Ex *)&fixture)[i] = ex_literal(dag, number[i]);
+    return fixture;
+}
+
 /* Add f . (rate of the vector) to a row's derivative at one end. */
 static void add_rate(Dag *dag, Row *row, int end, const Vector *vector, const Ex f[3], bool negative)
 {

@@ -40,6 +40,9 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Formula
             multipliers += 6;
         }
     }
+    for (int i = 0; i < model->outputs; ++i)
+        if (model->output[i].type == OUTPUT_REACTION)
+            plan->multipliers = multipliers;
     for (int i = 0; i < model->coordinates; ++i)
         plan->free_coordinates += !model->coordinate[i].driven;
     int free_index = 0, base_pose = model->free_base ? 7 : 0, base_twist = model->free_base ? 6 : 0;

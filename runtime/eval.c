@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Rows of states to accelerations and poses (--eval), for comparison with programs of other people. */
+ * Rows of states to accelerations, poses and outputs (--eval), for comparison with programs of other people. */
 #include "gicrun.h"
 
 #include <string.h>
@@ -82,6 +82,11 @@ static void write_header(const gic_model *model, Csv *csv)
             snprintf(name, sizeof name, "%s.%s", model->body_name[i], pose[k][0]);
             csv_name(csv, name, pose[k][1]);
         }
+    for (int i = 0; i < model->output_count; ++i) {
+        /* an output may be called like a body */
+        snprintf(name, sizeof name, "output.%s", model->output[i].name);
+        csv_name(csv, name, model->output[i].unit);
+    }
     csv_name(csv, "constraint", NULL);
     csv_name(csv, "status", NULL);
     csv_name(csv, "message", NULL);
@@ -98,7 +103,7 @@ static void result(Csv *csv, int status, double value)
 }
 
 static void write_row(Pool *pool, const gic_model *model, Csv *csv, const gic_head *self, int status,
-                      const double *rate, const double *pose, double constraint)
+                      const double *rate, const double *pose, const double *output, double constraint)
 {
     const int half = model->slow_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
     for (int i = 0; i < 6 && model->free_base; ++i)
@@ -109,6 +114,8 @@ static void write_row(Pool *pool, const gic_model *model, Csv *csv, const gic_he
     for (int i = 0; i < model->body_count; ++i)
         for (int k = 0; k < 7 && !is_ground(model, i); ++k)
             result(csv, status, pose[7 * i + k]);
+    for (int i = 0; i < model->output_count; ++i)
+        result(csv, status, output[i]);
     result(csv, status, constraint);
     csv_number(csv, status);
     csv_text(csv, instance_status(pool, model, self, status));
@@ -121,6 +128,7 @@ void evaluate(Pool *pool, const gic_model *model, const Scene *scene, const Requ
     const Columns columns = find_columns(pool, model, table);
     gic_head *self = instance_new(pool, model);
     double *state = instance_array(self, model->state_offset), *input = instance_array(self, model->input_offset);
+    const double *output = instance_array(self, model->output_offset);
     double *rate = pool_alloc(pool, sizeof *rate * (size_t)(model->slow_count + model->fast_count + 1));
     double *pose = pool_alloc(pool, sizeof *pose * 7 * (size_t)(model->body_count + 1));
     int failures = 0;
@@ -141,9 +149,11 @@ void evaluate(Pool *pool, const gic_model *model, const Scene *scene, const Requ
         if (status == GIC_OK)
             status = model->poses(self, pose);
         if (status == GIC_OK)
+            status = model->outputs(self);
+        if (status == GIC_OK)
             status = model->self_test(self, &test);
         failures += status != GIC_OK;
-        write_row(pool, model, &csv, self, status, rate, pose, test.constraint);
+        write_row(pool, model, &csv, self, status, rate, pose, output, test.constraint);
     }
     csv_close(&csv);
     if (failures)

@@ -11,7 +11,7 @@ static const char help[] =
     "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
     "\n"
     "Generates C for a vehicle model, compiles it with the system's compiler and runs a\n"
-    "scene, or evaluates rows of states: accelerations and the poses of all bodies.\n"
+    "scene, or evaluates rows of states: accelerations, poses of all bodies, outputs.\n"
     "\n"
     "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
     "                     picture is asked for)\n"
