@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4]
+ * agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions]
  *
  * Compares what `gicrun --eval` wrote (EVAL) with what `reference` wrote (ACCEL) for the same states. Accelerations by
  * group, relative to the sum of magnitudes of the contributing terms; places relative to the model's length scale;
- * Euler parameters up to their common sign. A row counts where the reference reached it with a subset condition
+ * Euler parameters up to their common sign. With --reactions EVAL has a `reaction` output for each joint, which bears its
+ * name, and a `drive_force` output `drive_NAME` for each driven coordinate; they are compared like accelerations. A row counts where the reference reached it with a subset condition
  * within the limit; at least half of the rows must. Exit status 1 unless every counted row agrees. */
 #include "reference/dump.h"
 #include "reference/support.h"
@@ -14,11 +15,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char usage[] = "usage: agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4]\n";
+static const char usage[] = "usage: agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions]\n";
 
 /* Numbers that are compared as one vector. */
 typedef struct Group {
-    char label[64];
+    char label[160];
     int size, reference[4], eval[4]; /* columns */
     int scale_column;                /* in the reference, or -1: `scale` */
     double scale;
@@ -43,24 +44,55 @@ static Group *add_group(Groups *groups, const char *label, const char *kind)
 
 static void add_column(Group *group, const Table *reference, const Table *eval, const char *name, const char *suffix)
 {
-    char column[64];
+    char column[160];
     snprintf(column, sizeof column, "%s%s", name, suffix);
     group->reference[group->size] = table_want(reference, column);
     group->eval[group->size++] = table_want(eval, column);
 }
 
+static void add_output(Group *group, const Table *reference, const Table *eval, const char *name)
+{
+    char column[160];
+    snprintf(column, sizeof column, "output.%s", name);
+    group->reference[group->size] = table_want(reference, name);
+    group->eval[group->size++] = table_want(eval, column);
+}
+
 static void add_scale(Group *group, const Table *reference, const char *name)
 {
-    char column[64];
+    char column[160];
     snprintf(column, sizeof column, "scale.%s", name);
     group->scale_column = table_want(reference, column);
 }
 
-static Groups groups_find(const Model *model, const Table *reference, const Table *eval)
+static void find_reactions(Groups *groups, const Model *model, const Table *reference, const Table *eval)
+{
+    static const char *const kind[] = {"force", "torque"};
+    char name[128];
+    for (int c = 0; c < model->coordinates; ++c)
+        if (model->coordinate[c].driven) {
+            snprintf(name, sizeof name, "drive_%s", model->coordinate[c].name);
+            Group *group = add_group(groups, name, "");
+            add_output(group, reference, eval, name);
+            add_scale(group, reference, name);
+        }
+    for (int j = 0; j < model->joints; ++j)
+        for (int part = 0; part < 2; ++part) {
+            snprintf(name, sizeof name, "%s.%s", model->joint[j].name, kind[part]);
+            Group *group = add_group(groups, name, "");
+            add_scale(group, reference, name);
+            for (int i = 0; i < 3; ++i) {
+                snprintf(name, sizeof name, "%s.%s.%c", model->joint[j].name, kind[part], "xyz"[i]);
+                add_output(group, reference, eval, name);
+            }
+        }
+}
+
+static Groups groups_find(const Model *model, const Table *reference, const Table *eval, bool reactions)
 {
     static const char *const xyz[] = {".x", ".y", ".z"}, *const e[] = {".e0", ".e1", ".e2", ".e3"};
     static const char *const base[] = {"a", "alpha"};
-    Groups groups = {.group = grab((size_t)(2 + model->coordinates + 2 * model->bodies), sizeof *groups.group)};
+    Groups groups = {.group = grab((size_t)(2 + 2 * (model->coordinates + model->bodies + model->joints)), sizeof *groups.group)};
     for (int i = 0; i < 2 && model->free_base; ++i) {
         Group *group = add_group(&groups, base[i], "");
         for (int j = 0; j < 3; ++j)
@@ -83,6 +115,8 @@ static Groups groups_find(const Model *model, const Table *reference, const Tabl
             add_column(orientation, reference, eval, model->body[k].name, e[j]);
         orientation->either_sign = true;
     }
+    if (reactions)
+        find_reactions(&groups, model, reference, eval);
     return groups;
 }
 
@@ -120,11 +154,14 @@ int main(int argc, char **argv)
     const char *path[3] = {NULL};
     double tolerance = 1e-12, limit = 1e4;
     int paths = 0;
+    bool reactions = false;
     for (int i = 1; i < argc; ++i) {
         if (!strcmp(argv[i], "--tolerance") && i + 1 < argc) {
             tolerance = number_of(argv[++i], "--tolerance");
         } else if (!strcmp(argv[i], "--condition") && i + 1 < argc) {
             limit = number_of(argv[++i], "--condition");
+        } else if (!strcmp(argv[i], "--reactions")) {
+            reactions = true;
         } else if (argv[i][0] != '-' && paths < 3) {
             path[paths++] = argv[i];
         } else {
@@ -143,7 +180,7 @@ int main(int argc, char **argv)
     int status = table_want(reference, "status"), eval_status = table_want(eval, "status"),
         condition = table_want(reference, "condition");
     int unreached = 0, ill = 0, refused = 0, passed = 0, failed = 0;
-    Groups groups = groups_find(model, reference, eval);
+    Groups groups = groups_find(model, reference, eval, reactions);
     for (int row = 0; row < reference->rows; ++row) {
         if (table_number(reference, row, status) != 0) {
             ++unreached;

@@ -190,7 +190,8 @@ static quad *unknown_row(const Solver *solver, int row)
 /* The sum over all terms, as it grows; compared with the whole at the end. */
 typedef struct Sum {
     Groups groups;
-    quad *w;
+    quad *w, *drive;
+    Reaction *reaction;
 } Sum;
 
 /* How fast the two ends of a coordinate accelerate, added up: angular accelerations for an angle, else those of the
@@ -221,6 +222,32 @@ static quad ends(const Solver *solver, const Coordinate *coordinate)
     return sum;
 }
 
+/* The force that drives a coordinate: the row's multiplier acts as -dPsi/dq lambda; along w that is dPsi/dw lambda. */
+static quad drive_force(const Solver *solver, int coordinate)
+{
+    int row = solver->rows - solver->model->coordinates + coordinate;
+    return solver->model->coordinate[coordinate].driven ? *unknown_row(solver, row) * solver->row[row].w_slope : 0;
+}
+
+/* The same of drive forces and reactions. */
+static void contribution_forces(Solver *solver, Sum *sum)
+{
+    for (int c = 0; c < solver->model->coordinates; ++c) {
+        quad drive = drive_force(solver, c);
+        sum->drive[c] += drive;
+        solver->drive_scale[c] += fabsq(drive);
+    }
+    for (int j = 0; j < solver->model->joints; ++j) {
+        Reaction own = joint_reaction(solver, j), *total = &sum->reaction[j];
+        for (int i = 0; i < 3; ++i) {
+            total->force[i] += own.force[i];
+            total->torque[i] += own.torque[i];
+        }
+        total->force_scale += own.force_scale;
+        total->torque_scale += own.torque_scale;
+    }
+}
+
 /* Solve for what solver->force alone does, and add magnitudes to the scales. */
 static void contribution(Solver *solver, Sum *sum)
 {
@@ -243,15 +270,43 @@ static void contribution(Solver *solver, Sum *sum)
             sum->w[c] += w;
             solver->w_scale[c] += fabsq(w) + ends(solver, &model->coordinate[c]);
         }
+    contribution_forces(solver, sum);
     clear_force(solver);
+}
+
+/* Larger of the error so far and that of a sum, relative to its scale. */
+static quad worse(quad error, quad sum, quad whole, quad scale)
+{
+    return sum == whole ? error : fmaxq(error, fabsq(sum - whole) / scale);
+}
+
+/* Deviations of the sums of drive forces and reactions from the whole, which takes over the scales. */
+static void compare_forces(Solver *solver, const Sum *sum)
+{
+    for (int c = 0; c < solver->model->coordinates; ++c)
+        solver->sum_error = worse(solver->sum_error, sum->drive[c], solver->drive_force[c], solver->drive_scale[c]);
+    for (int j = 0; j < solver->model->joints; ++j) {
+        const Reaction *own = &sum->reaction[j];
+        Reaction *whole = &solver->reaction[j];
+        whole->force_scale = own->force_scale;
+        whole->torque_scale = own->torque_scale;
+        for (int i = 0; i < 3; ++i) {
+            solver->sum_error = worse(solver->sum_error, own->force[i], whole->force[i], own->force_scale);
+            solver->sum_error = worse(solver->sum_error, own->torque[i], whole->torque[i], own->torque_scale);
+        }
+    }
 }
 
 static void scales(Solver *solver, const Road *road)
 {
     const Model *model = solver->model;
-    Sum sum = {.w = grab((size_t)model->coordinates, sizeof *sum.w)};
+    size_t coordinates = (size_t)model->coordinates;
+    Sum sum = {.w = grab(coordinates, sizeof *sum.w),
+               .drive = grab(coordinates, sizeof *sum.drive),
+               .reaction = grab((size_t)model->joints, sizeof *sum.reaction)};
     solver->a_scale = solver->alpha_scale = solver->sum_error = 0;
-    memset(solver->w_scale, 0, (size_t)model->coordinates * sizeof *solver->w_scale);
+    memset(solver->w_scale, 0, coordinates * sizeof *solver->w_scale);
+    memset(solver->drive_scale, 0, coordinates * sizeof *solver->drive_scale);
     clear_force(solver);
     for (int k = solver->first; k < model->bodies; ++k) {
         add_gravity(solver, k);
@@ -277,7 +332,10 @@ static void scales(Solver *solver, const Road *road)
         if (!model->coordinate[c].driven && sum.w[c] != solver->w_second[c])
             solver->sum_error =
                 fmaxq(solver->sum_error, fabsq(sum.w[c] - solver->w_second[c]) / solver->w_scale[c]);
+    compare_forces(solver, &sum);
     free(sum.w);
+    free(sum.drive);
+    free(sum.reaction);
 }
 
 bool solve_accelerations(Solver *solver, const State *state, const Road *road)
@@ -307,9 +365,10 @@ bool solve_accelerations(Solver *solver, const State *state, const Road *road)
         int row = solver->rows - model->coordinates + c;
         bool driven = model->coordinate[c].driven;
         solver->w_second[c] = driven ? state->w_second[c] : *unknown_row(solver, row);
-        /* the row's multiplier acts as -dPsi/dq lambda; along w that is dPsi/dw lambda */
-        solver->drive_force[c] = driven ? *unknown_row(solver, row) * solver->row[row].w_slope : 0;
+        solver->drive_force[c] = drive_force(solver, c);
     }
+    for (int j = 0; j < model->joints; ++j)
+        solver->reaction[j] = joint_reaction(solver, j);
     if (model->free_base) {
         Groups groups = base_groups(solver, solver->second[0], true);
         memcpy(solver->a, groups.a, sizeof groups.a);

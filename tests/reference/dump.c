@@ -54,6 +54,7 @@ static void read_body(Body *body, const Json *json)
 
 static void read_joint(Joint *joint, const Json *json, int bodies)
 {
+    joint->name = strcpy(grab(strlen(json_text(json, "name")) + 1, 1), json_text(json, "name"));
     joint->type = (JointType)type_of(json, joint_name, JOINT_TYPES);
     joint->body[0] = index_of(json, "a", 0, bodies);
     joint->body[1] = index_of(json, "b", 0, bodies);
@@ -277,6 +278,8 @@ void model_free(Model *model)
 {
     for (int i = 0; i < model->bodies; ++i)
         free(model->body[i].name);
+    for (int i = 0; i < model->joints; ++i)
+        free(model->joint[i].name);
     for (int i = 0; i < model->coordinates; ++i)
         free(model->coordinate[i].name);
     for (int i = 0; i < model->subsets; ++i) {

@@ -34,6 +34,7 @@ typedef struct Joint {
     JointType type;
     int body[2];
     double point[2][3], axis[2][3], length, offset;
+    char *name;
 } Joint;
 
 typedef enum CoordinateType { LENGTH, TRANSLATION, ANGLE, COORDINATE_TYPES } CoordinateType;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * reference DUMP STATES [-o ACCEL] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]
  *
- * Accelerations, poses, subset condition and scales of a dumped model (`gicgen --dump-model`) at the states of a CSV
+ * Accelerations, poses, drive forces, reactions of joints, subset condition and scales of a dumped model (`gicgen --dump-model`) at the states of a CSV
  * file with the columns of `gicrun --eval`. A row's status is 0, or 1 where the state can't be reached from design or
  * is singular; its other cells are empty then. */
 #include "solve.h"
@@ -76,6 +76,14 @@ static void write_head(FILE *out, const Model *model)
         const char *body = model->body[k].name;
         fprintf(out, "%s.x,%s.y,%s.z,%s.e0,%s.e1,%s.e2,%s.e3,", body, body, body, body, body, body, body);
     }
+    for (int c = 0; c < model->coordinates; ++c)
+        if (model->coordinate[c].driven)
+            fprintf(out, "drive_%s,scale.drive_%s,", model->coordinate[c].name, model->coordinate[c].name);
+    for (int j = 0; j < model->joints; ++j)
+        for (int part = 0; part < 2; ++part) {
+            const char *joint = model->joint[j].name, *kind = part == 0 ? "force" : "torque";
+            fprintf(out, "%s.%s.x,%s.%s.y,%s.%s.z,scale.%s.%s,", joint, kind, joint, kind, joint, kind, joint, kind);
+        }
     fputs("condition,status\n", out);
 }
 
@@ -108,14 +116,25 @@ static void write_row(FILE *out, Solver *solver)
         write_numbers(out, r, 3);
         write_numbers(out, solver->configuration->q[k] + 3, 4);
     }
+    for (int c = 0; c < model->coordinates; ++c)
+        if (model->coordinate[c].driven) {
+            write_numbers(out, &solver->drive_force[c], 1);
+            write_numbers(out, &solver->drive_scale[c], 1);
+        }
+    for (int j = 0; j < model->joints; ++j) {
+        const Reaction *reaction = &solver->reaction[j];
+        write_numbers(out, reaction->force, 3);
+        write_numbers(out, &reaction->force_scale, 1);
+        write_numbers(out, reaction->torque, 3);
+        write_numbers(out, &reaction->torque_scale, 1);
+    }
     fprintf(out, "%.6g,0\n", worst_condition(solver));
 }
 
 static void write_unreached(FILE *out, const Model *model)
 {
     int cells = (model->free_base ? 8 : 0) + 7 * (model->bodies - (model->free_base ? 0 : 1)) + 1;
-    for (int c = 0; c < model->coordinates; ++c)
-        cells += model->coordinate[c].driven ? 0 : 2;
+    cells += 2 * model->coordinates + 8 * model->joints;
     while (cells--)
         fputc(',', out);
     fputs("1\n", out);

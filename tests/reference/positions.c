@@ -32,6 +32,8 @@ Solver *solver_new(const Model *model)
     solver->w_second = grab(coordinates, sizeof *solver->w_second);
     solver->drive_force = grab(coordinates, sizeof *solver->drive_force);
     solver->w_scale = grab(coordinates, sizeof *solver->w_scale);
+    solver->drive_scale = grab(coordinates, sizeof *solver->drive_scale);
+    solver->reaction = grab((size_t)model->joints, sizeof *solver->reaction);
     return solver;
 }
 
@@ -49,6 +51,8 @@ void solver_free(Solver *solver)
     free(solver->w_second);
     free(solver->drive_force);
     free(solver->w_scale);
+    free(solver->drive_scale);
+    free(solver->reaction);
     free(solver);
 }
 

@@ -13,6 +13,12 @@ typedef struct State {
     quad *w, *w_rate, *w_second;                /* [coordinates]; w_second is read where they are driven */
 } State;
 
+/* What a joint exerts on its second body at its point of that, world frame; scales: sums of magnitudes of the
+ * contributions of the single terms, of the torque with what the force's arm from the centre of mass adds. */
+typedef struct Reaction {
+    quad force[3], torque[3], force_scale, torque_scale;
+} Reaction;
+
 /* Work space and results for one model after another state. */
 typedef struct Solver {
     const Model *model;
@@ -32,6 +38,8 @@ typedef struct Solver {
      * of every body, every force element, every wheel; to w'' with those to the accelerations of both its ends, whose
      * difference it is */
     quad a_scale, alpha_scale, *w_scale;
+    quad *drive_scale;                          /* result: the same for drive_force */
+    Reaction *reaction;                         /* result: [joints] */
     quad sum_error;                             /* result: largest deviation of the contributions' sum from the whole,
                                                    relative to the scale */
 } Solver;
@@ -51,6 +59,9 @@ bool solve_positions(Solver *solver, const State *state);
 void solve_velocities(Solver *solver, const State *state);
 /* Everything marked "result". After solve_velocities. */
 bool solve_accelerations(Solver *solver, const State *state, const Road *road);
+
+/* A joint's share of what solver->unknown solves; its scales are those of this solution alone. reactions.c. */
+Reaction joint_reaction(const Solver *solver, int joint);
 
 /* World position of a body's frame origin. */
 void body_origin(const Model *model, const Configuration *configuration, int body, quad out[3]);
