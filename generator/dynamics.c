@@ -97,7 +97,7 @@ static Ex mass_entry(const Whole *whole, const Composite *c, int i, int j)
 }
 
 /* Accelerations of the driven coordinates, as inputs give them; 0 for the others. */
-static Ex *driven_accelerations(Whole *whole)
+Ex *whole_driven_accelerations(Whole *whole)
 {
     const Model *model = whole->model;
     Ex *w2 = pool_alloc(whole->dag->pool, (size_t)(model->coordinates + 1) * sizeof *w2);
@@ -188,6 +188,18 @@ static void store_base_rates(Whole *whole, Block *block, const Ex *z)
     }
 }
 
+void whole_store_rates(Whole *whole, Block *block, const Ex *z)
+{
+    const Plan *plan = whole->plan;
+    if (whole->model->free_base)
+        store_base_rates(whole, block, z);
+    for (int w = 0; w < whole->model->coordinates; ++w)
+        if (plan->coordinate_state[w] >= 0) {
+            block_store(block, whole->xd[w], "rate[%d]", plan->coordinate_state[w]);
+            block_store(block, z[plan->coordinate_unknown[w]], "rate[%d]", plan->coordinate_rate[w]);
+        }
+}
+
 Block *dynamics_block(Whole *whole)
 {
     /* A pivot this small against its diagonal entry is rounding: no inertia is left along that coordinate. */
@@ -201,8 +213,8 @@ Block *dynamics_block(Whole *whole)
     Ex *z = pool_alloc(dag->pool, (size_t)(n + 1) * sizeof *z);
     Composite c = compose(whole);
     mass_matrix(whole, &c, M, n);
-    right_hand_side(whole, &c, loads_make(whole), driven_accelerations(whole), z);
-    Factors *factors = linear_factor_symmetric(dag, n, M);
+    right_hand_side(whole, &c, loads_make(whole), whole_driven_accelerations(whole), z);
+    Factors *factors = linear_factor_symmetric(dag, n, M, NULL);
     for (int k = 0; k < n; ++k) {
         Ex diagonal = M[n * factors->row[k] + factors->row[k]];
         if (dag->node[factors->pivot[k]].level == LEVEL_VARIABLE)
@@ -210,13 +222,7 @@ Block *dynamics_block(Whole *whole)
                         0, "GIC_ERROR_MASS");
     }
     linear_solve(dag, factors, z, z);
-    if (whole->model->free_base)
-        store_base_rates(whole, block, z);
-    for (int w = 0; w < whole->model->coordinates; ++w)
-        if (plan->coordinate_state[w] >= 0) {
-            block_store(block, whole->xd[w], "rate[%d]", plan->coordinate_state[w]);
-            block_store(block, z[plan->coordinate_unknown[w]], "rate[%d]", plan->coordinate_rate[w]);
-        }
+    whole_store_rates(whole, block, z);
     return block;
 }
 
@@ -283,7 +289,7 @@ Block *inverse_block(Whole *whole)
     const Plan *plan = whole->plan;
     Block *block = pool_alloc(dag->pool, sizeof *block);
     block->dag = dag;
-    Ex alpha[3] = {0}, a[3], *w2 = driven_accelerations(whole);
+    Ex alpha[3] = {0}, a[3], *w2 = whole_driven_accelerations(whole);
     ex_sub3(dag, (Ex[3]){0}, whole->gravity, a);
     for (int i = 0; whole->model->free_base && i < 3; ++i) {
         alpha[i] = ex_input(dag, pool_print(dag->pool, "acc[%d]", i), NULL);
@@ -320,7 +326,7 @@ void whole_accelerations(Whole *whole, Ex alpha[3], Ex a[3], Ex **w2)
         }
         ex_apply_transposed(dag, whole->R, world, a);
     }
-    *w2 = driven_accelerations(whole);
+    *w2 = whole_driven_accelerations(whole);
     for (int w = 0; w < whole->model->coordinates; ++w)
         if (plan->coordinate_rate[w] >= 0)
             (*w2)[w] = ex_input(dag, pool_print(dag->pool, "rate[%d]", plan->coordinate_rate[w]), NULL);

@@ -14,25 +14,34 @@ static const char *model_hash(Pool *pool, const Model *model, const Sequence *se
     return pool_print(pool, "%016llx", (unsigned long long)hash);
 }
 
-const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence)
+Solve solve_of(const char *name)
+{
+    static const char *const solve_name[SOLVES] = {[SOLVE_REDUCED] = "reduced", [SOLVE_AUGMENTED] = "augmented"};
+    int i = 0;
+    while (i < SOLVES && strcmp(solve_name[i], name))
+        ++i;
+    return (Solve)i;
+}
+
+const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve)
 {
     double(*origin)[3] = reference_points(pool, model, sequence);
     const double(*fixed)[3] = (const double(*)[3])origin;
     Sampling *sampling = sampling_new(pool, model, sequence, fixed);
-    Formula **formula = subsets_formulate(pool, model, &sequence, fixed, sampling);
-    Plan *plan = plan_new(pool, model, sequence, formula, fixed);
+    Formula **formula = subsets_formulate(pool, model, &sequence, fixed, sampling, solve);
+    Plan *plan = plan_new(pool, model, sequence, solve, formula, fixed);
     Formulation *f = pool_alloc(pool, sizeof *f);
     *f = (Formulation){.model = model,
                        .sequence = sequence,
                        .sampling = sampling,
                        .plan = plan,
                        .hash = model_hash(pool, model, sequence),
-                       .dynamics = dynamics_block(whole_new(pool, plan)),
+                       .dynamics = (solve == SOLVE_AUGMENTED ? augmented_block : dynamics_block)(whole_new(pool, plan)),
                        .outputs = outputs_block(whole_new(pool, plan)),
                        .poses = poses_block(whole_new(pool, plan)),
                        .inverse = inverse_block(whole_new(pool, plan)),
                        .energy = energy_block(whole_new(pool, plan)),
-                       .wrenches = wrenches_block(whole_new(pool, plan))};
+                       .wrenches = solve == SOLVE_REDUCED ? wrenches_block(whole_new(pool, plan)) : NULL};
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
         f->known_most = subset->knowns > f->known_most ? subset->knowns : f->known_most;

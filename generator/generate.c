@@ -77,9 +77,32 @@ static Count class_count(const Generation *g, int class)
     return sum;
 }
 
+/* Are there reactions to find after the accelerations? The augmented form has them already. */
+static bool reacts(const Generation *g)
+{
+    return g->plan->solve == SOLVE_REDUCED && g->plan->multipliers;
+}
+
+/* Of all outputs, with the multipliers that only they need. */
+static Count outputs_count(const Generation *g)
+{
+    Count sum = block_count(g->formulation->outputs);
+    const bool *needed = reactions_needed(g->pool, g->model, g->sequence);
+    if (reacts(g))
+        add_count(&sum, block_count(g->formulation->wrenches));
+    for (int s = 0; reacts(g) && s < g->sequence->subsets; ++s)
+        if (needed[s])
+            add_count(&sum, block_count(&g->plan->formula[g->sequence->subset[s].class]->react));
+    return sum;
+}
+
 static void write_counts(Generation *g, Text *out)
 {
     Count all = {0};
+    text_print(out,
+               g->plan->solve == SOLVE_AUGMENTED
+                   ? " * Equations of motion in the augmented form (Serban and Haug 2000, eq. 16), bodies eliminated first.\n"
+                   : " * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).\n");
     text_print(out, " * Operations of one right-hand side, one Newton correction with old factors and one with new:\n");
     text_print(out, " *   %-40s %7s %9s %7s %6s %9s\n", "", "add", "multiply", "divide", "root", "function");
     for (int c = 0; c < g->sequence->classes; ++c) {
@@ -93,7 +116,7 @@ static void write_counts(Generation *g, Text *out)
     add_count(&all, dynamics);
     count_line(out, "forces and equations of motion", dynamics);
     count_line(out, "all together", all);
-    count_line(out, "outputs, when asked for", block_count(g->formulation->outputs));
+    count_line(out, "outputs, when asked for", outputs_count(g));
 }
 
 static void write_banner(Generation *g, Text *out)
@@ -661,22 +684,26 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
         if (g->model->wheels)
             insert_template(g, out, "road.c.in");
     } else if (!strcmp(name, "reactions")) {
-        if (g->plan->multipliers)
+        if (reacts(g))
             template_expand(g->pool, out, g->templates, "reactions.c.in", g->model->name, NULL, insert_code, g);
     } else if (!strcmp(name, "react calls")) {
         write_react_calls(g, out, indent);
     } else if (!strcmp(name, "react")) {
-        if (g->plan->multipliers) {
+        if (reacts(g)) {
             line(out, indent, "if (status == GIC_OK)");
             line(out, indent + 4, "status = %s_react(self, %s_time(self), self->state, e, self->rate);", g->model->name,
                  g->model->name);
         }
     } else if (!strcmp(name, "dynamics comment")) {
-        text_print(out,
-                   "/* Applied forces, composite inertia, and elimination of %d accelerations: alpha and a of a free "
-                   "base, then the\n"
-                   " * free coordinates'. rate = d state / dt. */\n",
-                   g->plan->unknowns);
+        if (g->plan->solve == SOLVE_AUGMENTED)
+            text_print(out, "/* Applied forces, multipliers of all constraints once the bodies are eliminated, "
+                            "accelerations.\n * rate = d state / dt; lambda: the multipliers that outputs need. */\n");
+        else
+            text_print(out,
+                       "/* Applied forces, composite inertia, and elimination of %d accelerations: alpha and a of a "
+                       "free base, then the\n"
+                       " * free coordinates'. rate = d state / dt. */\n",
+                       g->plan->unknowns);
     } else if (!strcmp(name, "design")) {
         write_design(g, out, indent);
     } else if (!strcmp(name, "initial")) {
@@ -707,10 +734,10 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
     }
 }
 
-void generate(Pool *pool, const Model *model, const Sequence *sequence, const char *templates, const char *header,
-              Text *c, Text *h)
+void generate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, const char *templates,
+              const char *header, Text *c, Text *h)
 {
-    const Formulation *formulation = formulate(pool, model, sequence);
+    const Formulation *formulation = formulate(pool, model, sequence, solve);
     Generation g = {.pool = pool,
                     .formulation = formulation,
                     .model = formulation->model,

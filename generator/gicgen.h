@@ -515,8 +515,9 @@ typedef struct Factors {
  * row_left [n] marks the rows without one. */
 Factors *linear_factor(Dag *dag, int n, const Ex *A, const double *column_scale, const bool *usable, int *rank,
                        bool *row_left);
-/* Symmetric positive definite: pivots on the diagonal, cheapest first. Uses the upper triangle of A. */
-Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A);
+/* Symmetric positive definite: pivots on the diagonal, in this order [n], or cheapest first where it is NULL. Uses the
+ * upper triangle of A. */
+Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A, const int *order);
 /* x = A^-1 b; x may alias b. */
 void linear_solve(Dag *dag, const Factors *factors, const Ex *b, Ex *x);
 /* x = A^-T b of factors that are not symmetric; x may alias b. */
@@ -642,6 +643,13 @@ bool block_reads(const Block *block, const char *array);
 /* ---- subset.c, follow.c, inertia.c: recovery of one class of decoupled subsets
  * ------------------------------------------------------- */
 
+/* How accelerations are found: in the reduced form of Proposition 2.1 of Serban and Haug 2000, or in the augmented form of
+ * their eq. 16. */
+typedef enum Solve { SOLVE_REDUCED, SOLVE_AUGMENTED, SOLVES } Solve;
+
+/* By its name on the command line, `reduced` or `augmented`; SOLVES: there is none of that name. */
+Solve solve_of(const char *name);
+
 /* Where a subset keeps its numbers. start: what the next call begins from (pose 7 a body, S, factors); motion: one
  * Motion a body; inertia: what it adds to the equations of motion, see INERTIA_*. */
 typedef struct Layout {
@@ -677,7 +685,7 @@ typedef struct Formula {
 /* All classes [classes]. Fills the sampling on the way. Members that need other pivots than their class's first one get
  * a class of their own: *sequence is replaced by one that says so. Singular subsets end in diag_fail. */
 Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **sequence, const double (*origin)[3],
-                            Sampling *sampling);
+                            Sampling *sampling, Solve solve);
 /* Reference points of all bodies [bodies][3], body frames: where a joint to something known sits. */
 double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3];
 
@@ -686,8 +694,9 @@ double (*reference_points(Pool *pool, const Model *model, const Sequence *sequen
 /* [subsets] whose multipliers some `reaction` output needs: of its joint's subset, and of those that put their weight
  * on it. */
 const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *sequence);
-/* Does an output ask for the reaction of this joint? */
+/* Does an output ask for the reaction of this joint; for the force that drives this coordinate? */
 bool reaction_wanted(const Model *model, int joint);
+bool drive_wanted(const Model *model, int coordinate);
 
 /* ---- assemble.c: the design configuration that fits the given lengths ----------------------------------------- */
 
@@ -701,6 +710,7 @@ const Model *model_assemble(Pool *pool, const Model *drawn, const Sequence *sequ
 typedef struct Plan {
     const Model *model;
     const Sequence *sequence;
+    Solve solve;
     Formula **formula; /* [classes] */
     const double (*origin)[3];
     int *start_offset, *inertia_offset; /* [subsets] */
@@ -715,7 +725,8 @@ typedef struct Plan {
     int *coordinate_unknown;                 /* [coordinates] -1: driven */
 } Plan;
 
-Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Formula **formula, const double (*origin)[3]);
+Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Formula **formula,
+               const double (*origin)[3]);
 
 /* Inputs of every global block, as C names: y state, e recovered Euler parameters of the base, x and xd values and
  * rates of all coordinates, u inputs, m motions, n inertias. Fixed base: r, v, turn are 0 and R the identity. */
@@ -738,7 +749,9 @@ void whole_position(Whole *whole, const Vector *point, Ex out[3]);
 void whole_velocity(Whole *whole, const Vector *point, Ex out[3]);
 /* Velocity in the base frame of a point moving with the base and relative to it. */
 void whole_velocity_in_base(Whole *whole, const Vector *point, Ex out[3]);
-/* A body's inertia matrix in base axes (xx yy zz xy xz yz). */
+/* A symmetric matrix given in the axes of a body, in base axes (xx yy zz xy xz yz). */
+void whole_rotate_inertia(Whole *whole, int body, const Ex own[6], Ex out[6]);
+/* A body's inertia matrix in base axes. */
 void whole_inertia(Whole *whole, int body, Ex J[6]);
 /* Coordinates that a body's motion depends on. */
 const Subset *whole_subset(const Whole *whole, int body);
@@ -767,8 +780,14 @@ Loads *loads_make(Whole *whole);
 
 /* ---- dynamics.c, outputs.c: the blocks that end the pipeline ----------------------------------------------- */
 
-/* rate[] of the whole state; checks the pivots of the mass matrix. */
+/* rate[] of the whole state, reduced form; checks the pivots of the mass matrix. */
 Block *dynamics_block(Whole *whole);
+/* Accelerations of the driven coordinates, as inputs give them; 0 for the others [coordinates]. */
+Ex *whole_driven_accelerations(Whole *whole);
+/* rate[] from the accelerations z [unknowns]. */
+void whole_store_rates(Whole *whole, Block *block, const Ex *z);
+/* augmented.c: the same in the augmented form, and lambda[] as far as outputs need them. */
+Block *augmented_block(Whole *whole);
 /* out[] of all outputs, from a Whole and rate[]. */
 Block *outputs_block(Whole *whole);
 /* pose[7 i]: world poses of all body frames. s: the Newton start. */
@@ -778,6 +797,8 @@ Block *poses_block(Whole *whole);
 Block *wrenches_block(Whole *whole);
 /* reaction.c: force and torque of a joint on its second body at its point of that, base frame, from lambda[]. */
 void whole_reaction(Whole *whole, int joint, Ex force[3], Ex torque[3]);
+/* reaction.c: force that drives a driven coordinate, from lambda[] of the augmented form. */
+Ex whole_drive_reaction(Whole *whole, int coordinate);
 /* tau[]: residual of the equations of motion for accelerations acc[] (order of the unknowns), body by body. */
 Block *inverse_block(Whole *whole);
 /* energy[3]: both sides of the energy balance at rate[] and the sum of magnitudes; acc[]: the unknowns at rate[]. */
@@ -802,12 +823,13 @@ typedef struct Formulation {
     const Sampling *sampling;
     const Plan *plan;
     const char *hash; /* of the model, in hexadecimal digits */
-    const Block *dynamics, *outputs, *poses, *inverse, *energy, *wrenches;
+    const Block *dynamics, *outputs, *poses, *inverse, *energy;
+    const Block *wrenches; /* of the reduced form */
     int known_most, dependence_most; /* knowns and deps of a subset, at most */
 } Formulation;
 
 /* From an assembled model. Models that can't be formulated end in diag_fail. */
-const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence);
+const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve);
 
 /* One number of the state: FORMAT.md section 10. */
 typedef struct StateNumber {
@@ -862,10 +884,10 @@ void template_expand(Pool *pool, Text *out, const char *templates, const char *n
 /* ---- generate.c: all of it
  * ------------------------------------------------------------------------------------------------- */
 
-/* The generated C and its header. `header`: the name by which the C includes it, NULL: it doesn't. `templates` as
+/* The generated C and its header, with equations of motion in the form `solve`. `header`: the name by which the C includes it, NULL: it doesn't. `templates` as
  * above. */
-void generate(Pool *pool, const Model *model, const Sequence *sequence, const char *templates, const char *header,
-              Text *c, Text *h);
+void generate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, const char *templates,
+              const char *header, Text *c, Text *h);
 
 /* ---- example.c: a program to start from -------------------------------------------------------------------- */
 

@@ -160,7 +160,7 @@ static int degree(const Dag *dag, int n, const Ex *A, const bool *done, int i)
     return count;
 }
 
-Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A0)
+Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A0, const int *order)
 {
     Factors *f = factors_new(dag, n, true);
     Ex *A = pool_alloc(dag->pool, (size_t)(n * n) * sizeof *A);
@@ -170,8 +170,8 @@ Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A0)
     bool done[n];
     memset(done, 0, sizeof done);
     for (int k = 0; k < n; ++k) {
-        int best = -1, best_cost = 0;
-        for (int i = 0; i < n; ++i) {
+        int best = order ? order[k] : -1, best_cost = 0;
+        for (int i = 0; i < n && !order; ++i) {
             int cost = done[i] ? 0 : degree(dag, n, A, done, i);
             if (!done[i] && (best < 0 || cost < best_cost))
                 best = i, best_cost = cost;

@@ -16,6 +16,7 @@ static const char usage[] =
     "\n"
     "options:\n"
     "  -o FILE          where to write; FILE.c gets a FILE.h beside it; `-` is standard output\n"
+    "  --solve FORM     of the equations of motion: reduced (default) or augmented, with all multipliers\n"
     "  --templates DIR  take templates from DIR instead of the built-in ones\n"
     "  -h, --help       this text\n"
     "  --version        the version\n"
@@ -26,6 +27,7 @@ typedef enum Task { TASK_GENERATE, TASK_MAIN, TASK_SEQUENCE, TASK_GRAPH, TASK_DU
 
 typedef struct Options {
     Task task;
+    Solve solve;
     const char *model, *output, *picture, *templates;
 } Options;
 
@@ -75,6 +77,11 @@ static Options read_options(int count, char **word)
             exit(0);
         } else if (!strcmp(w, "-o")) {
             options.output = argument(count, word, &i);
+        } else if (!strcmp(w, "--solve")) {
+            const char *form = argument(count, word, &i);
+            options.solve = solve_of(form);
+            if (options.solve == SOLVES)
+                usage_error("--solve takes reduced or augmented, not", form);
         } else if (!strcmp(w, "--templates")) {
             options.templates = argument(count, word, &i);
         } else if (!strcmp(w, "--main")) {
@@ -114,7 +121,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         usage_error("the generated file must end in .c", path);
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
-    generate(pool, model, sequence, options->templates, strcmp(path, "-") ? name : NULL, &c, &h);
+    generate(pool, model, sequence, options->solve, options->templates, strcmp(path, "-") ? name : NULL, &c, &h);
     if (!strcmp(path, "-")) {
         text_add(&h, c.s, c.size);
         file_write(path, h.s, h.size);

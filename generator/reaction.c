@@ -5,12 +5,22 @@
 
 #include <string.h>
 
-bool reaction_wanted(const Model *model, int joint)
+static bool is_wanted(const Model *model, OutputType type, int index)
 {
     bool wanted = false;
     for (int i = 0; i < model->outputs; ++i)
-        wanted = wanted || (model->output[i].type == OUTPUT_REACTION && model->output[i].index == joint);
+        wanted = wanted || (model->output[i].type == type && model->output[i].index == index);
     return wanted;
+}
+
+bool reaction_wanted(const Model *model, int joint)
+{
+    return is_wanted(model, OUTPUT_REACTION, joint);
+}
+
+bool drive_wanted(const Model *model, int coordinate)
+{
+    return is_wanted(model, OUTPUT_DRIVE_FORCE, coordinate);
 }
 
 const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *sequence)
@@ -48,19 +58,38 @@ Block *wrenches_block(Whole *whole)
     return block;
 }
 
-/* Place of a joint's first multiplier. */
-static int joint_multiplier(const Plan *plan, int joint)
+/* Place of the first multiplier of a joint or of a coordinate: a subset's joints come first. */
+static int multiplier_place(const Plan *plan, bool is_coordinate, int index)
 {
     const Sequence *sequence = plan->sequence;
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
-        for (int i = 0, place = 0; i < subset->joints; ++i) {
-            if (subset->joint[i] == joint)
-                return plan->multiplier_offset[subset->body[0]] + place;
+        int place = plan->multiplier_offset[subset->body[0]];
+        for (int i = 0; i < subset->joints; ++i) {
+            if (!is_coordinate && subset->joint[i] == index)
+                return place;
             place += joint_equations[plan->model->joint[subset->joint[i]].type];
         }
+        for (int i = 0; i < subset->coordinates; ++i)
+            if (is_coordinate && subset->coordinate[i] == index)
+                return place + i;
     }
     return -1;
+}
+
+Ex whole_drive_reaction(Whole *whole, int index)
+{
+    Dag *dag = whole->dag;
+    const Plan *plan = whole->plan;
+    const Coordinate *coordinate = &whole->model->coordinate[index];
+    const Motion *const end[2] = {&whole->motion[coordinate->body[0]], &whole->motion[coordinate->body[1]]};
+    double number[FIXTURE_NUMBERS];
+    fixture_of_coordinate(coordinate, plan->origin, number);
+    Fixture fixture = fixture_literal(dag, number);
+    Row row = coordinate_row(dag, coordinate->type, &fixture, end, whole->x[index], whole->xd[index]);
+    Ex lambda = ex_input(dag, pool_print(dag->pool, "lambda[%d]", multiplier_place(plan, true, index)), NULL);
+    /* J^T lambda acts on the bodies, which move by J twist = -dual w' */
+    return ex_neg(dag, ex_mul(dag, row.dual, lambda));
 }
 
 void whole_reaction(Whole *whole, int index, Ex force[3], Ex torque[3])
@@ -80,7 +109,7 @@ void whole_reaction(Whole *whole, int index, Ex force[3], Ex torque[3])
     fixture_of_joint(joint, (const double(*)[3])origin, number);
     Fixture fixture = fixture_literal(dag, number);
     Row row[ROWS_MAX];
-    int rows = joint_rows(dag, joint->type, &fixture, end, row), place = joint_multiplier(plan, index);
+    int rows = joint_rows(dag, joint->type, &fixture, end, row), place = multiplier_place(plan, false, index);
     ex_zero3(dag, force);
     ex_zero3(dag, torque);
     for (int r = 0; r < rows; ++r) {

@@ -469,7 +469,7 @@ int subset_index(const Work *w, int subset)
     return place_of(w->class->member, w->class->members, subset);
 }
 
-static Layout make_layout(const Work *w, int factors)
+static Layout make_layout(const Work *w, int factors, Solve solve)
 {
     int bodies = w->first->bodies, deps = w->first->deps;
     return (Layout){.bodies = bodies,
@@ -479,10 +479,10 @@ static Layout make_layout(const Work *w, int factors)
                     .start_factors = 7 * bodies + w->n * deps,
                     .start_size = 7 * bodies + w->n * deps + factors,
                     .motion_size = MOTION_S + 6 * deps,
-                    .inertia_size = inertia_mass(deps, deps, deps)};
+                    .inertia_size = solve == SOLVE_REDUCED ? inertia_mass(deps, deps, deps) : 0};
 }
 
-static Formula *formulate_class(Work *w)
+static Formula *formulate_class(Work *w, Solve solve)
 {
     Pool *pool = w->pool;
     Dag *dag = w->dag;
@@ -497,7 +497,7 @@ static Formula *formulate_class(Work *w)
        *q = pool_alloc(pool, (size_t)(7 * bodies) * sizeof *q);
     int count;
     Factors *remembered = factors_from_memory(w, factors, stored, &count);
-    formula->layout = make_layout(w, count);
+    formula->layout = make_layout(w, count, solve);
     const Layout *layout = &formula->layout;
 
     make_predict(w, formula);
@@ -517,8 +517,10 @@ static Formula *formulate_class(Work *w)
     }
     for (int i = 0; i < count; ++i)
         block_store(&formula->solve, stored[i], "start[%d]", layout->start_factors + i);
-    subset_inertia(w, layout, motion, &formula->solve);
-    subset_react(w, remembered, &formula->react);
+    if (solve == SOLVE_REDUCED) {
+        subset_inertia(w, layout, motion, &formula->solve);
+        subset_react(w, remembered, &formula->react);
+    }
     return formula;
 }
 
@@ -606,7 +608,7 @@ static void follow_all(const Sequence *sequence, Work **work, Sampling *sampling
 }
 
 Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **sequence, const double (*origin)[3],
-                            Sampling *sampling)
+                            Sampling *sampling, Solve solve)
 {
     Sequence *split = copy_sequence(pool, *sequence);
     Formula **formula = pool_alloc(pool, (size_t)(split->subsets + 1) * sizeof *formula);
@@ -628,7 +630,7 @@ Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **seq
         follow_all(split, work, sampling);
     subsets_scan(pool, model, split, work, sampling);
     for (int c = 0; c < split->classes; ++c)
-        formula[c] = formulate_class(work[c]);
+        formula[c] = formulate_class(work[c], solve);
     *sequence = split;
     return formula;
 }

@@ -5,13 +5,15 @@
 
 #include <string.h>
 
-Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Formula **formula, const double (*origin)[3])
+Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Formula **formula,
+               const double (*origin)[3])
 {
     Plan *plan = pool_alloc(pool, sizeof *plan);
     size_t bodies = (size_t)model->bodies, coordinates = (size_t)model->coordinates + 1,
            subsets = (size_t)sequence->subsets + 1;
     *plan = (Plan){.model = model,
                    .sequence = sequence,
+                   .solve = solve,
                    .formula = formula,
                    .origin = origin,
                    .start_offset = pool_alloc(pool, subsets * sizeof(int)),
@@ -41,7 +43,8 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Formula
         }
     }
     for (int i = 0; i < model->outputs; ++i)
-        if (model->output[i].type == OUTPUT_REACTION)
+        if (model->output[i].type == OUTPUT_REACTION ||
+            (model->output[i].type == OUTPUT_DRIVE_FORCE && solve == SOLVE_AUGMENTED))
             plan->multipliers = multipliers;
     for (int i = 0; i < model->coordinates; ++i)
         plan->free_coordinates += !model->coordinate[i].driven;
@@ -155,10 +158,9 @@ void whole_velocity(Whole *whole, const Vector *point, Ex out[3])
     ex_add3(whole->dag, whole->v, out, out);
 }
 
-void whole_inertia(Whole *whole, int body, Ex J[6])
+void whole_rotate_inertia(Whole *whole, int body, const Ex own[6], Ex J[6])
 {
     Dag *dag = whole->dag;
-    const double *I = whole->model->body[body].inertia;
     const int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
     const Ex *A = whole->motion[body].A;
     Ex AI[3][3];
@@ -166,12 +168,20 @@ void whole_inertia(Whole *whole, int body, Ex J[6])
         for (int j = 0; j < 3; ++j) {
             Ex column[3];
             for (int k = 0; k < 3; ++k)
-                column[k] = ex_literal(dag, I[place[k][j]]);
+                column[k] = own[place[k][j]];
             AI[i][j] = ex_dot(dag, A + 3 * i, column);
         }
     for (int i = 0; i < 3; ++i)
         for (int j = i; j < 3; ++j)
             J[place[i][j]] = ex_dot(dag, AI[i], A + 3 * j);
+}
+
+void whole_inertia(Whole *whole, int body, Ex J[6])
+{
+    Ex own[6];
+    for (int i = 0; i < 6; ++i)
+        own[i] = ex_literal(whole->dag, whole->model->body[body].inertia[i]);
+    whole_rotate_inertia(whole, body, own, J);
 }
 
 void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2,

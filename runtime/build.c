@@ -96,13 +96,13 @@ static void *compile_and_load(Pool *pool, const char *folder, const char *compil
     return library;
 }
 
-const gic_model *build_model(Pool *pool, const Model *model, const char *compiler)
+const gic_model *build_model(Pool *pool, const Model *model, Solve solve, const char *compiler)
 {
     Text c = {.pool = pool}, h = {.pool = pool};
     if (!compiler[strspn(compiler, " \t")])
         diag_fail(gicrun_place, "name it: --cc gcc, or set CC", "the compiler command is empty");
     const Sequence *sequence = sequence_find(pool, model);
-    generate(pool, model_assemble(pool, model, sequence), sequence, NULL, "model.h", &c, &h);
+    generate(pool, model_assemble(pool, model, sequence), sequence, solve, NULL, "model.h", &c, &h);
 
     interrupt_hold();
     char *folder = pool_print(pool, "%s/gicrun-XXXXXX", temporary_folder());

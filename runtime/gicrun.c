@@ -23,6 +23,7 @@ static const char help[] =
     "                     of the scene's\n"
     "      --tolerance NUMBER\n"
     "                     of variable steps instead of the scene's\n"
+    "      --solve FORM   of the equations of motion: reduced (default) or augmented\n"
     "      --cc COMMAND   C compiler; default: $CC or cc\n"
     "  -q, --quiet        neither progress nor summary\n"
     "  -h, --help         this text\n"
@@ -55,13 +56,14 @@ static double read_tolerance(const char *word)
 
 static Request read_command_line(int count, char **word)
 {
-    enum { PLOT = 256, EVAL, COMPILER, INTEGRATOR, TOLERANCE, VERSION };
+    enum { PLOT = 256, EVAL, SOLVE, COMPILER, INTEGRATOR, TOLERANCE, VERSION };
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
         {"plot", required_argument, NULL, PLOT},
         {"eval", required_argument, NULL, EVAL},
         {"integrator", required_argument, NULL, INTEGRATOR},
         {"tolerance", required_argument, NULL, TOLERANCE},
+        {"solve", required_argument, NULL, SOLVE},
         {"cc", required_argument, NULL, COMPILER},
         {"quiet", no_argument, NULL, 'q'},
         {"help", no_argument, NULL, 'h'},
@@ -76,6 +78,11 @@ static Request read_command_line(int count, char **word)
         case EVAL: request.states = optarg; break;
         case INTEGRATOR: request.integrator = optarg; break;
         case TOLERANCE: request.tolerance = read_tolerance(optarg); break;
+        case SOLVE:
+            request.solve = solve_of(optarg);
+            if (request.solve == SOLVES)
+                usage_fail("--solve takes reduced or augmented, not", optarg);
+            break;
         case COMPILER: request.compiler = optarg; break;
         case 'q': request.quiet = true; break;
         case 'h': fputs(help, stdout); exit(0);
@@ -111,7 +118,7 @@ int main(int count, char **word)
     const Model *model = model_read(pool, request.model);
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
-    const gic_model *code = build_model(pool, model, request.compiler);
+    const gic_model *code = build_model(pool, model, request.solve, request.compiler);
     if (request.states)
         evaluate(pool, code, scene, &request);
     else

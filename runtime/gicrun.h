@@ -17,6 +17,7 @@ typedef struct Request {
     const char *states;         /* --eval, or NULL */
     const char *results;        /* "-": standard output; NULL: none */
     const char *picture;        /* NULL: none */
+    Solve solve;
     const char *compiler;       /* command, perhaps with options */
     const char *integrator;     /* instead of the scene's, or NULL */
     double tolerance;           /* instead of the scene's, or 0 */
@@ -47,7 +48,7 @@ const char *temporary_folder(void);
 
 /* Generate, compile and load. Every failure ends in diag_fail; the temporary folder is gone in any case. The code stays
  * loaded until the program ends. */
-const gic_model *build_model(Pool *pool, const Model *model, const char *compiler);
+const gic_model *build_model(Pool *pool, const Model *model, Solve solve, const char *compiler);
 /* Memory for one instance, not set up. */
 gic_head *instance_new(Pool *pool, const gic_model *model);
 /* "status text" or "status text: subset 'name'" of the last call. */

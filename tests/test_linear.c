@@ -491,7 +491,7 @@ static void test_symmetric(void **state)
             for (int j = 0; j < i; ++j)
                 A[n * i + j] = 1e3;
         System sys = system_new(n, 1, A, b);
-        Factors *factors = linear_factor_symmetric(sys.dag, n, sys.A);
+        Factors *factors = linear_factor_symmetric(sys.dag, n, sys.A, NULL);
         linear_solve(sys.dag, factors, sys.b, sys.x);
         for (int i = 0; i < n; ++i)
             largest = fmaxl(largest, fabsl(x[i]));
@@ -520,7 +520,7 @@ static void test_arrow(void **state)
             A[i] = A[n * i] = i ? random_uniform(&random, 0.1, 0.5) : A[0];
         }
         System sys = system_new(n, 1, A, b);
-        Factors *factors = linear_factor_symmetric(sys.dag, n, sys.A);
+        Factors *factors = linear_factor_symmetric(sys.dag, n, sys.A, NULL);
         linear_solve(sys.dag, factors, sys.b, sys.x);
         assert_count(count_of(&sys), 3 * m, 5 * m + 1, n);
         long double x[N_MAX];

@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: MIT
+ * Equations of motion in the augmented form (Serban and Haug 2000, eq. 16, in twists): accelerations of all bodies and
+ * multipliers of all constraints,
+ *
+ *     [ M   -J^T ] [ acceleration ]   [ applied less gyroscopic forces ]
+ *     [ J    0   ] [ lambda       ] = [ -bias                          ]
+ *
+ * and w'' of the free coordinates behind them, each from its own equation: what acts along a free coordinate acts on
+ * the bodies, so that its multiplier vanishes. The equation of a driven coordinate is a constraint like the joints'.
+ * Elimination goes in the order of the topology: first the bodies, whose M is m I and J where the centre of mass is
+ * their point, then joint by joint the rest, H = J M^-1 J^T, which couples only joints that share a body.
+ *
+ * All accelerations are less gravity, components in the base frame. */
+#include "gicgen.h"
+
+#include <string.h>
+
+/* One equation of a joint or a dual coordinate. */
+typedef struct Equation {
+    Row row;
+    int body[2];
+    int coordinate; /* whose it is, or -1 */
+    int multiplier; /* its place in lambda[] */
+    bool wanted;    /* by an output */
+    Ex Z[2][6];     /* M^-1 J^T */
+} Equation;
+
+/* The equations of one joint or driven coordinate, eliminated together. */
+typedef struct Tie {
+    int first, count, body[2];
+} Tie;
+
+typedef struct System {
+    Whole *whole;
+    Dag *dag;
+    Motion *motion;      /* [bodies] of the centres of mass, in the inertial frame that moves with the base's origin */
+    Ex (*M)[7];          /* [bodies] 1 / m, then J^-1 */
+    Ex (*wrench)[6];     /* [bodies] applied less gyroscopic, moment about the centre of mass */
+    Ex (*acceleration)[6];
+    int equations, frees, ties;
+    Equation *equation; /* of joints and driven coordinates */
+    Equation *free;     /* of free coordinates */
+    Tie *tie;
+} System;
+
+static bool moves(const System *s, int body)
+{
+    return body != BODY_BASE || s->whole->model->free_base;
+}
+
+/* ---- bodies ---------------------------------------------------------------------------------------------- */
+
+/* J^-1 of a body, in base axes. */
+static void inverse_inertia(System *s, int body, Ex out[6])
+{
+    static const int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+    Dag *dag = s->dag;
+    Ex J[9], own[6], unit[3];
+    for (int i = 0; i < 9; ++i)
+        J[i] = ex_literal(dag, s->whole->model->body[body].inertia[place[i / 3][i % 3]]);
+    const Factors *factors = linear_factor_symmetric(dag, 3, J, NULL);
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j)
+            unit[j] = ex_literal(dag, i == j);
+        linear_solve(dag, factors, unit, unit);
+        for (int j = i; j < 3; ++j)
+            own[place[i][j]] = unit[j];
+    }
+    whole_rotate_inertia(s->whole, body, own, out);
+}
+
+static void symmetric_apply(Dag *dag, const Ex J[6], const Ex x[3], Ex out[3])
+{
+    ex_apply(dag, (const Ex[]){J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]}, x, out);
+}
+
+/* x = M^-1 x of a body: angular, linear. */
+static void solve_body(System *s, int body, Ex x[6])
+{
+    Ex angular[3];
+    symmetric_apply(s->dag, s->M[body] + 1, x, angular);
+    memcpy(x, angular, sizeof angular);
+    ex_scale3(s->dag, s->M[body][0], x + 3, x + 3);
+}
+
+static void open_body(System *s, int b, const Loads *loads)
+{
+    Whole *whole = s->whole;
+    Dag *dag = s->dag;
+    const Body *body = &whole->model->body[b];
+    const Motion *own = &whole->motion[b];
+    Motion *m = &s->motion[b];
+    Vector com = whole_point(whole, b, body->com);
+    Ex J[6], t[3], gyroscopic[3];
+    memcpy(m->A, own->A, sizeof m->A);
+    memcpy(m->c, com.v, sizeof m->c);
+    ex_add3(dag, whole->turn, own->omega, m->omega);
+    ex_cross(dag, whole->turn, com.v, m->velocity);
+    ex_add3(dag, m->velocity, com.rate, m->velocity);
+    if (!moves(s, b)) {
+        ex_sub3(dag, s->acceleration[b] + 3, whole->gravity, s->acceleration[b] + 3);
+        return;
+    }
+    s->M[b][0] = ex_div(dag, ex_literal(dag, 1), ex_literal(dag, body->mass));
+    inverse_inertia(s, b, s->M[b] + 1);
+    whole_inertia(whole, b, J);
+    symmetric_apply(dag, J, m->omega, t);
+    ex_cross(dag, m->omega, t, gyroscopic);
+    memcpy(s->wrench[b], loads->wrench[b], sizeof s->wrench[b]);
+    ex_cross(dag, com.arm, s->wrench[b] + 3, t);
+    ex_sub3(dag, s->wrench[b], t, s->wrench[b]);
+    ex_sub3(dag, s->wrench[b], gyroscopic, s->wrench[b]);
+}
+
+/* ---- equations ------------------------------------------------------------------------------------------- */
+
+static void open_equation(System *s, Equation *equation, const Row *row, const int body[2], int coordinate,
+                          int multiplier, bool wanted)
+{
+    *equation = (Equation){.row = *row, .coordinate = coordinate, .multiplier = multiplier, .wanted = wanted};
+    for (int end = 0; end < 2; ++end) {
+        equation->body[end] = body[end];
+        memcpy(equation->Z[end], row->J[end], sizeof equation->Z[end]);
+        if (moves(s, body[end]))
+            solve_body(s, body[end], equation->Z[end]);
+    }
+}
+
+static Tie *open_tie(System *s, const int body[2], int count)
+{
+    Tie *tie = &s->tie[s->ties++];
+    *tie = (Tie){.first = s->equations, .count = count, .body = {body[0], body[1]}};
+    s->equations += count;
+    return tie;
+}
+
+static int open_joint(System *s, int index, const double (*origin)[3], int multiplier)
+{
+    const Joint *joint = &s->whole->model->joint[index];
+    const Motion *const end[2] = {&s->motion[joint->body[0]], &s->motion[joint->body[1]]};
+    double number[FIXTURE_NUMBERS];
+    fixture_of_joint(joint, origin, number);
+    Fixture fixture = fixture_literal(s->dag, number);
+    Row row[ROWS_MAX];
+    int rows = joint_rows(s->dag, joint->type, &fixture, end, row);
+    const Tie *tie = open_tie(s, joint->body, rows);
+    for (int r = 0; r < rows; ++r)
+        open_equation(s, &s->equation[tie->first + r], &row[r], joint->body, -1, multiplier + r,
+                      reaction_wanted(s->whole->model, index));
+    return rows;
+}
+
+/* What elements exert along a coordinate, Q, they exert on the bodies: -J^T Q / dual. */
+static void push_along(System *s, const Row *row, const int body[2], Ex Q)
+{
+    Dag *dag = s->dag;
+    Ex share = ex_div(dag, Q, row->dual), t[3];
+    for (int end = 0; end < 2; ++end)
+        for (int part = 0; part < 6; part += 3) {
+            Ex *wrench = s->wrench[body[end]] + part;
+            ex_scale3(dag, share, row->J[end] + part, t);
+            ex_sub3(dag, wrench, t, wrench);
+        }
+}
+
+static void open_coordinate(System *s, int index, const double (*origin)[3], int multiplier, const Loads *loads)
+{
+    Whole *whole = s->whole;
+    const Coordinate *coordinate = &whole->model->coordinate[index];
+    const Motion *const end[2] = {&s->motion[coordinate->body[0]], &s->motion[coordinate->body[1]]};
+    double number[FIXTURE_NUMBERS];
+    fixture_of_coordinate(coordinate, origin, number);
+    Fixture fixture = fixture_literal(s->dag, number);
+    Row row = coordinate_row(s->dag, coordinate->type, &fixture, end, whole->x[index], whole->xd[index]);
+    push_along(s, &row, coordinate->body, loads->own[index]);
+    Equation *equation =
+        coordinate->driven ? &s->equation[open_tie(s, coordinate->body, 1)->first] : &s->free[s->frees++];
+    open_equation(s, equation, &row, coordinate->body, index, multiplier, drive_wanted(whole->model, index));
+}
+
+static System open_system(Whole *whole)
+{
+    const Model *model = whole->model;
+    const Plan *plan = whole->plan;
+    Pool *pool = whole->dag->pool;
+    size_t bodies = (size_t)model->bodies;
+    int most = ROWS_MAX * model->joints + model->coordinates + 1;
+    System s = {.whole = whole,
+                .dag = whole->dag,
+                .motion = pool_alloc(pool, bodies * sizeof *s.motion),
+                .M = pool_alloc(pool, bodies * sizeof *s.M),
+                .wrench = pool_alloc(pool, bodies * sizeof *s.wrench),
+                .acceleration = pool_alloc(pool, bodies * sizeof *s.acceleration),
+                .equation = pool_alloc(pool, (size_t)most * sizeof *s.equation),
+                .free = pool_alloc(pool, (size_t)(model->coordinates + 1) * sizeof *s.free),
+                .tie = pool_alloc(pool, (size_t)most * sizeof *s.tie)};
+    double(*origin)[3] = pool_alloc(pool, bodies * sizeof *origin);
+    const Loads *loads = loads_make(whole);
+    for (int b = 0; b < model->bodies; ++b) {
+        memcpy(origin[b], model->body[b].com, sizeof origin[b]);
+        open_body(&s, b, loads);
+    }
+    for (int k = 0; k < plan->sequence->subsets; ++k) {
+        const Subset *subset = &plan->sequence->subset[k];
+        int place = plan->multiplier_offset[subset->body[0]];
+        for (int i = 0; i < subset->joints; ++i)
+            place += open_joint(&s, subset->joint[i], (const double(*)[3])origin, place);
+        for (int i = 0; i < subset->coordinates; ++i)
+            open_coordinate(&s, subset->coordinate[i], (const double(*)[3])origin, place++, loads);
+    }
+    return s;
+}
+
+/* ---- elimination ----------------------------------------------------------------------------------------- */
+
+static bool share_body(const System *s, const Tie *a, const Tie *b)
+{
+    bool share = false;
+    for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j)
+            share = share || (a->body[i] == b->body[j] && moves(s, a->body[i]));
+    return share;
+}
+
+/* Order of the equations: next comes always the joint whose neighbours have the fewest equations left, of equals the
+ * last in the computational sequence. So leaves of the topology come first. */
+static int *topology_order(const System *s)
+{
+    size_t ties = (size_t)s->ties;
+    bool *near = pool_alloc(s->dag->pool, (ties * ties + 1) * sizeof *near),
+         *done = pool_alloc(s->dag->pool, (ties + 1) * sizeof *done);
+    int *order = pool_alloc(s->dag->pool, ((size_t)s->equations + 1) * sizeof *order), count = 0;
+    for (int i = 0; i < s->ties; ++i)
+        for (int j = 0; j < s->ties; ++j)
+            near[s->ties * i + j] = i != j && share_body(s, &s->tie[i], &s->tie[j]);
+    for (int step = 0; step < s->ties; ++step) {
+        int best = -1, best_degree = 0;
+        for (int i = s->ties - 1; i >= 0; --i) {
+            int degree = 0;
+            for (int j = 0; j < s->ties; ++j)
+                degree += near[s->ties * i + j] && !done[j] ? s->tie[j].count : 0;
+            if (!done[i] && (best < 0 || degree < best_degree)) {
+                best = i;
+                best_degree = degree;
+            }
+        }
+        done[best] = true;
+        for (int r = 0; r < s->tie[best].count; ++r)
+            order[count++] = s->tie[best].first + r;
+        /* its neighbours become neighbours of each other */
+        for (int i = 0; i < s->ties; ++i)
+            for (int j = 0; j < s->ties; ++j)
+                if (i != j && near[s->ties * best + i] && near[s->ties * best + j])
+                    near[s->ties * i + j] = true;
+    }
+    return order;
+}
+
+static Ex dot6(Dag *dag, const Ex *a, const Ex *b)
+{
+    return ex_add(dag, ex_dot(dag, a, b), ex_dot(dag, a + 3, b + 3));
+}
+
+/* Upper triangle of J M^-1 J^T. */
+static Ex *reduced_matrix(const System *s)
+{
+    int n = s->equations;
+    Ex *H = pool_alloc(s->dag->pool, ((size_t)n * (size_t)n + 1) * sizeof *H);
+    for (int i = 0; i < n; ++i)
+        for (int j = i; j < n; ++j)
+            for (int k = 0; k < 4; ++k) {
+                const Equation *a = &s->equation[i], *b = &s->equation[j];
+                if (a->body[k / 2] == b->body[k % 2] && moves(s, a->body[k / 2]))
+                    H[n * i + j] = ex_add(s->dag, H[n * i + j], dot6(s->dag, a->row.J[k / 2], b->Z[k % 2]));
+            }
+    return H;
+}
+
+/* What an equation lacks at the present accelerations, but for the acceleration of a free coordinate. */
+static Ex deviation(const System *s, const Equation *equation, const Ex *driven)
+{
+    Dag *dag = s->dag;
+    Ex sum = equation->row.bias;
+    for (int end = 0; end < 2; ++end)
+        sum = ex_add(dag, sum, dot6(dag, equation->row.J[end], s->acceleration[equation->body[end]]));
+    if (equation->coordinate >= 0)
+        sum = ex_add(dag, sum, ex_mul(dag, equation->row.dual, driven[equation->coordinate]));
+    return sum;
+}
+
+/* Accelerations of the bodies from multipliers. */
+static void accelerate(System *s, const Ex *lambda)
+{
+    Dag *dag = s->dag;
+    for (int i = 0; i < s->equations; ++i)
+        for (int end = 0; end < 2; ++end) {
+            const Equation *equation = &s->equation[i];
+            Ex *acceleration = s->acceleration[equation->body[end]], t[3];
+            for (int part = 0; part < 6 && moves(s, equation->body[end]); part += 3) {
+                ex_scale3(dag, lambda[i], equation->Z[end] + part, t);
+                ex_add3(dag, acceleration + part, t, acceleration + part);
+            }
+        }
+}
+
+/* The unknowns of the reduced form, from the accelerations of the centres of mass. */
+static void store_rates(System *s, Block *block, const Ex *driven)
+{
+    Whole *whole = s->whole;
+    Dag *dag = s->dag;
+    const Plan *plan = whole->plan;
+    Ex *z = pool_alloc(dag->pool, (size_t)(plan->unknowns + 1) * sizeof *z), t[3];
+    if (whole->model->free_base) {
+        /* a of the base's origin: that of the centre of mass less alpha x arm + turn x (turn x arm) */
+        const Motion *base = &s->motion[BODY_BASE];
+        const Ex *acceleration = s->acceleration[BODY_BASE];
+        memcpy(z, acceleration, 3 * sizeof *z);
+        ex_cross(dag, acceleration, base->c, t);
+        ex_sub3(dag, acceleration + 3, t, z + 3);
+        ex_cross(dag, base->omega, base->velocity, t);
+        ex_sub3(dag, z + 3, t, z + 3);
+    }
+    for (int i = 0; i < s->frees; ++i) {
+        const Equation *equation = &s->free[i];
+        z[plan->coordinate_unknown[equation->coordinate]] =
+            ex_neg(dag, ex_div(dag, deviation(s, equation, driven), equation->row.dual));
+    }
+    whole_store_rates(whole, block, z);
+}
+
+Block *augmented_block(Whole *whole)
+{
+    /* a pivot this small against its diagonal entry is rounding: the equation says nothing new */
+    const double independent = 1e-13;
+    Dag *dag = whole->dag;
+    Block *block = pool_alloc(dag->pool, sizeof *block);
+    block->dag = dag;
+    System s = open_system(whole);
+    const Ex *driven = whole_driven_accelerations(whole), *H = reduced_matrix(&s);
+    Ex *lambda = pool_alloc(dag->pool, (size_t)(s.equations + 1) * sizeof *lambda);
+    const Factors *factors = linear_factor_symmetric(dag, s.equations, H, topology_order(&s));
+    for (int k = 0; k < s.equations; ++k) {
+        Ex diagonal = H[s.equations * factors->row[k] + factors->row[k]];
+        if (dag->node[factors->pivot[k]].level == LEVEL_VARIABLE)
+            block_check(block, ex_sub(dag, factors->pivot[k], ex_mul(dag, ex_literal(dag, independent), diagonal)),
+                        false, 0, "GIC_ERROR_SINGULAR");
+    }
+    for (int b = 0; b < whole->model->bodies; ++b)
+        if (moves(&s, b)) {
+            memcpy(s.acceleration[b], s.wrench[b], sizeof s.acceleration[b]);
+            solve_body(&s, b, s.acceleration[b]);
+        }
+    for (int i = 0; i < s.equations; ++i)
+        lambda[i] = ex_neg(dag, deviation(&s, &s.equation[i], driven));
+    linear_solve(dag, factors, lambda, lambda);
+    accelerate(&s, lambda);
+    store_rates(&s, block, driven);
+    for (int i = 0; i < s.equations; ++i)
+        if (s.equation[i].wanted)
+            block_store(block, lambda[i], "lambda[%d]", s.equation[i].multiplier);
+    return block;
+}
