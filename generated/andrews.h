@@ -39,13 +39,14 @@
  *   K5_K4
  *         subsets        3, 4
  *
+ * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'K1' (1 times)                        187       268       3      0         4
  *   subset 'K2_K3' (1 times)                     686       863       6      0         0
  *   subset 'K5_K4' (2 times)                     736       921       6      0         0
- *   forces and equations of motion                28        25       2      1         0
- *   all together                                2373      2998      23      1         4
+ *   forces and equations of motion                28        28       2      1         0
+ *   all together                                2373      3001      23      1         4
  *   outputs, when asked for                      241       404       0      1        18
  */
 #ifndef ANDREWS_H
@@ -88,6 +89,7 @@ enum {
     ANDREWS_START_ROOM = 201,
     ANDREWS_MOTION_ROOM = 210,
     ANDREWS_INERTIA_ROOM = 92,
+    ANDREWS_MULTIPLIER_ROOM = 1,
     ANDREWS_KNOWN_ROOM = 1,
     ANDREWS_DEPENDENCE_ROOM = 1
 };
@@ -161,6 +163,7 @@ typedef struct andrews {
     gic_real start[2][ANDREWS_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[ANDREWS_MOTION_ROOM];            /* bodies relative to the base */
     gic_real inertia[ANDREWS_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
+    gic_real multiplier[ANDREWS_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } andrews;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

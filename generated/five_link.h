@@ -59,14 +59,15 @@
  *   wheel_fl
  *         subsets        7, 8
  *
+ * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'rack' (1 times)                      137       164       2      0         0
  *   subset 'lca_fl' (2 times)                    291       362       3      0         0
  *   subset 'wheel_rl' (2 times)                  594       673       6      0         0
  *   subset 'wheel_fl' (2 times)                  534       606       3      0         0
- *   forces and equations of motion               714       659      11      0         4
- *   all together                                3689      4105      37      0         4
+ *   forces and equations of motion               720       665      11      0         4
+ *   all together                                3695      4111      37      0         4
  *   outputs, when asked for                      663       772       0      0        10
  */
 #ifndef FIVE_LINK_H
@@ -109,6 +110,7 @@ enum {
     FIVE_LINK_START_ROOM = 229,
     FIVE_LINK_MOTION_ROOM = 222,
     FIVE_LINK_INERTIA_ROOM = 179,
+    FIVE_LINK_MULTIPLIER_ROOM = 1,
     FIVE_LINK_KNOWN_ROOM = 2,
     FIVE_LINK_DEPENDENCE_ROOM = 2
 };
@@ -230,6 +232,7 @@ typedef struct five_link {
     gic_real start[2][FIVE_LINK_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[FIVE_LINK_MOTION_ROOM];            /* bodies relative to the base */
     gic_real inertia[FIVE_LINK_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
+    gic_real multiplier[FIVE_LINK_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } five_link;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

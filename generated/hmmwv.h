@@ -65,14 +65,15 @@
  *   wheel_r_l
  *         subsets        9, 10
  *
+ * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'rack' (1 times)                      137       164       2      0         0
  *   subset 'lca_f_l' (4 times)                   291       362       3      0         0
  *   subset 'wheel_f_l' (2 times)                 534       606       3      0         0
  *   subset 'wheel_r_l' (2 times)                 447       538       3      0         0
- *   forces and equations of motion               754       653      11      0         4
- *   all together                                4017      4553      37      0         4
+ *   forces and equations of motion               760       659      11      0         4
+ *   all together                                4023      4559      37      0         4
  *   outputs, when asked for                      757       901       0      0         7
  */
 #ifndef HMMWV_H
@@ -115,6 +116,7 @@ enum {
     HMMWV_START_ROOM = 233,
     HMMWV_MOTION_ROOM = 282,
     HMMWV_INERTIA_ROOM = 225,
+    HMMWV_MULTIPLIER_ROOM = 1,
     HMMWV_KNOWN_ROOM = 2,
     HMMWV_DEPENDENCE_ROOM = 2
 };
@@ -233,6 +235,7 @@ typedef struct hmmwv {
     gic_real start[2][HMMWV_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_MOTION_ROOM];            /* bodies relative to the base */
     gic_real inertia[HMMWV_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
+    gic_real multiplier[HMMWV_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } hmmwv;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

@@ -67,14 +67,15 @@
  *   uca_rl_wheel_rl
  *         subsets        9, 10
  *
+ * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'rack' (1 times)                      137       164       2      0         0
  *   subset 'lca_fl' (4 times)                    291       362       3      0         0
  *   subset 'uca_fl_wheel_fl' (2 times)           931      1033       6      0         0
  *   subset 'uca_rl_wheel_rl' (2 times)           785       866       6      0         0
- *   forces and equations of motion               922       841      15      4         4
- *   all together                                5655      6251      53      4         4
+ *   forces and equations of motion               964       859      15      4         4
+ *   all together                                5697      6269      53      4         4
  *   outputs, when asked for                     1060      1284       2      2        13
  */
 #ifndef HMMWV14_H
@@ -117,6 +118,7 @@ enum {
     HMMWV14_START_ROOM = 351,
     HMMWV14_MOTION_ROOM = 414,
     HMMWV14_INERTIA_ROOM = 225,
+    HMMWV14_MULTIPLIER_ROOM = 1,
     HMMWV14_KNOWN_ROOM = 2,
     HMMWV14_DEPENDENCE_ROOM = 2
 };
@@ -242,6 +244,7 @@ typedef struct hmmwv14 {
     gic_real start[2][HMMWV14_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV14_MOTION_ROOM];            /* bodies relative to the base */
     gic_real inertia[HMMWV14_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
+    gic_real multiplier[HMMWV14_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } hmmwv14;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

@@ -19,6 +19,7 @@
  *   rod
  *         subsets        1
  *
+ * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'rod' (1 times)                       172       249       3      0         4
@@ -519,13 +520,15 @@ static int pendulum_settle(pendulum *self, gic_real *y)
 
 /* Applied forces, composite inertia, and elimination of 1 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
-static int pendulum_dynamics(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static int pendulum_dynamics(pendulum *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const n = self->inertia;
+    gic_real *const lambda = self->multiplier;
     /* not every model needs all of them */
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
+    (void)lambda;
     {
         if (!(n[22] - n[22] * R(1e-13) > R(0.0)))
             return GIC_ERROR_MASS;
@@ -542,8 +545,9 @@ static int pendulum_measure(const pendulum *self, gic_real time, const gic_real 
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    const gic_real *const s = self->start[self->head.flip];
+    const gic_real *const s = self->start[self->head.flip], *const lambda = self->multiplier;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)s, (void)rate, (void)out;
+    (void)lambda;
     {
         const gic_real t1 = m[11] * (m[11] * R(0.25)) + (m[10] * (m[10] * R(0.25)) + m[9] * (m[9] * R(0.25)));
         const gic_real t2 = m[8] * R(0.25);
@@ -843,42 +847,42 @@ static int pendulum_inverse(const pendulum *self, gic_real time, const gic_real 
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = m[8] * R(0.25);
-        const gic_real t2 = m[7] * R(0.25);
-        const gic_real t3 = m[6] * R(0.25);
-        const gic_real t4 = m[11] * t1 + (m[10] * t2 + m[9] * t3);
-        const gic_real t5 = m[8] * t1 + (m[7] * t2 + m[6] * t3);
-        const gic_real t6 = m[5] * R(0.25);
-        const gic_real t7 = m[4] * R(0.25);
-        const gic_real t8 = m[3] * R(0.25);
-        const gic_real t9 = m[8] * t6 + (m[7] * t7 + m[6] * t8);
-        const gic_real t10 = m[14] * t4 + (m[13] * t5 + m[12] * t9);
-        const gic_real t11 = m[11] * t6 + (m[10] * t7 + m[9] * t8);
-        const gic_real t12 = m[5] * t6 + (m[4] * t7 + m[3] * t8);
-        const gic_real t13 = m[14] * t11 + (m[13] * t9 + m[12] * t12);
-        const gic_real t14 = m[11] * (m[11] * R(0.25)) + (m[10] * (m[10] * R(0.25)) + m[9] * (m[9] * R(0.25)));
-        const gic_real t15 = m[20] + m[26] * acc[0];
-        const gic_real t16 = m[19] + m[25] * acc[0];
-        const gic_real t17 = m[18] + m[24] * acc[0];
-        const gic_real t18 = m[12] * t10 - m[13] * t13 + (t14 * t15 + (t4 * t16 + t11 * t17));
-        const gic_real t19 = m[14] * t14 + (m[13] * t4 + m[12] * t11);
-        const gic_real t20 = m[14] * t13 - m[12] * t19 + (t4 * t15 + (t5 * t16 + t9 * t17));
-        const gic_real t21 = m[13] * t19 - m[14] * t10 + (t11 * t15 + (t9 * t16 + t12 * t17));
-        const gic_real t22 = m[6] * R(-0.5);
-        const gic_real t23 = m[3] * R(-0.5);
-        const gic_real t24 = m[29] + (m[24] * t22 - m[25] * t23);
-        const gic_real t25 = m[9] * R(-0.5);
-        const gic_real t26 = m[14] * t23 - m[12] * t25;
-        const gic_real t27 = m[13] * t25 - m[14] * t22;
-        const gic_real t28 = m[12] * t26 - m[13] * t27 + (m[18] * t22 - m[19] * t23);
-        const gic_real t29 = m[28] + (m[26] * t23 - m[24] * t25);
-        const gic_real t30 = m[12] * t22 - m[13] * t23;
-        const gic_real t31 = m[14] * t27 - m[12] * t30 + (m[20] * t23 - m[18] * t25);
-        const gic_real t32 = m[27] + (m[25] * t25 - m[26] * t22);
-        const gic_real t33 = m[13] * t30 - m[14] * t26 + (m[19] * t25 - m[20] * t22);
-        const gic_real t34 = t29 * (m[22] + t31 + acc[0] * t29) + t32 * (m[21] + t33 + acc[0] * t32);
-        const gic_real t35 = t24 * (R(9.81) + (m[23] + t28) + acc[0] * t24) + t34;
-        const gic_real t36 = m[26] * t18 + (m[25] * t20 + m[24] * t21) + t35;
+        const gic_real t1 = m[3] * R(-0.5);
+        const gic_real t2 = m[9] * R(-0.5);
+        const gic_real t3 = m[14] * t1 - m[12] * t2;
+        const gic_real t4 = m[6] * R(-0.5);
+        const gic_real t5 = m[13] * t2 - m[14] * t4;
+        const gic_real t6 = m[12] * t3 - m[13] * t5 + (m[18] * t4 - m[19] * t1);
+        const gic_real t7 = R(9.81) + (m[23] + t6) + acc[0] * (m[29] + (m[24] * t4 - m[25] * t1));
+        const gic_real t8 = m[12] * t4 - m[13] * t1;
+        const gic_real t9 = m[14] * t5 - m[12] * t8 + (m[20] * t1 - m[18] * t2);
+        const gic_real t10 = m[22] + t9 + acc[0] * (m[28] + (m[26] * t1 - m[24] * t2));
+        const gic_real t11 = m[13] * t8 - m[14] * t3 + (m[19] * t2 - m[20] * t4);
+        const gic_real t12 = m[21] + t11 + acc[0] * (m[27] + (m[25] * t2 - m[26] * t4));
+        const gic_real t13 = m[8] * R(0.25);
+        const gic_real t14 = m[7] * R(0.25);
+        const gic_real t15 = m[6] * R(0.25);
+        const gic_real t16 = m[11] * t13 + (m[10] * t14 + m[9] * t15);
+        const gic_real t17 = m[8] * t13 + (m[7] * t14 + m[6] * t15);
+        const gic_real t18 = m[5] * R(0.25);
+        const gic_real t19 = m[4] * R(0.25);
+        const gic_real t20 = m[3] * R(0.25);
+        const gic_real t21 = m[8] * t18 + (m[7] * t19 + m[6] * t20);
+        const gic_real t22 = m[14] * t16 + (m[13] * t17 + m[12] * t21);
+        const gic_real t23 = m[11] * t18 + (m[10] * t19 + m[9] * t20);
+        const gic_real t24 = m[5] * t18 + (m[4] * t19 + m[3] * t20);
+        const gic_real t25 = m[14] * t23 + (m[13] * t21 + m[12] * t24);
+        const gic_real t26 = m[11] * (m[11] * R(0.25)) + (m[10] * (m[10] * R(0.25)) + m[9] * (m[9] * R(0.25)));
+        const gic_real t27 = m[20] + m[26] * acc[0];
+        const gic_real t28 = m[19] + m[25] * acc[0];
+        const gic_real t29 = m[18] + m[24] * acc[0];
+        const gic_real t30 = m[12] * t22 - m[13] * t25 + (t26 * t27 + (t16 * t28 + t23 * t29));
+        const gic_real t31 = m[14] * t26 + (m[13] * t16 + m[12] * t23);
+        const gic_real t32 = m[14] * t25 - m[12] * t31 + (t16 * t27 + (t17 * t28 + t21 * t29));
+        const gic_real t33 = m[13] * t31 - m[14] * t22 + (t23 * t27 + (t21 * t28 + t24 * t29));
+        const gic_real t34 = m[25] * (t32 + (t2 * t12 - t1 * t7)) + m[24] * (t33 + (t4 * t7 - t2 * t10));
+        const gic_real t35 = m[26] * (t30 + (t1 * t10 - t4 * t12)) + t34;
+        const gic_real t36 = m[29] * t7 + (m[28] * t10 + m[27] * t12) + t35;
         tau[0] = t36;
     }
     return GIC_OK;

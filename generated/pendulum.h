@@ -19,6 +19,7 @@
  *   rod
  *         subsets        1
  *
+ * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'rod' (1 times)                       172       249       3      0         4
@@ -66,6 +67,7 @@ enum {
     PENDULUM_START_ROOM = 21,
     PENDULUM_MOTION_ROOM = 30,
     PENDULUM_INERTIA_ROOM = 23,
+    PENDULUM_MULTIPLIER_ROOM = 1,
     PENDULUM_KNOWN_ROOM = 1,
     PENDULUM_DEPENDENCE_ROOM = 1
 };
@@ -105,6 +107,7 @@ typedef struct pendulum {
     gic_real start[2][PENDULUM_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[PENDULUM_MOTION_ROOM];            /* bodies relative to the base */
     gic_real inertia[PENDULUM_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
+    gic_real multiplier[PENDULUM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } pendulum;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

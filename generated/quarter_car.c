@@ -36,13 +36,14 @@
  *   wheel
  *         subsets        3
  *
+ * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'carriage' (1 times)                  113       134       3      0         0
  *   subset 'arm' (1 times)                       482       583       3      0         0
  *   subset 'wheel' (1 times)                     625       711       3      0         0
- *   forces and equations of motion                48        41       2      0         1
- *   all together                                1268      1469      11      0         1
+ *   forces and equations of motion                48        43       2      0         1
+ *   all together                                1268      1471      11      0         1
  *   outputs, when asked for                      126       186       0      0         1
  */
 #include "quarter_car.h"
@@ -1683,13 +1684,15 @@ static int road_height(const quarter_car *self, gic_real time, gic_real x, gic_r
 
 /* Applied forces, composite inertia, and elimination of 2 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
-static int quarter_car_dynamics(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static int quarter_car_dynamics(quarter_car *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const n = self->inertia;
+    gic_real *const lambda = self->multiplier;
     /* not every model needs all of them */
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
+    (void)lambda;
     {
         const gic_real t1 = n[22] + n[54] + n[84];
         if (!(t1 - t1 * R(1e-13) > R(0.0)))
@@ -1714,18 +1717,20 @@ static int quarter_car_dynamics(const quarter_car *self, gic_real time, const gi
         const gic_real t15 = GIC_MIN(GIC_MAX(t14 * R(100.0), R(0.0)), R(1.0));
         const gic_real t16 = t13 * ((R(3.0) - (t15 + t15)) * (t15 * t15) * R(500.0));
         const gic_real t17 = GIC_MAX(t16 + t14 * R(283000.0), R(0.0));
-        const gic_real t18 = t17 * (m[95] + (m[90] * t9 - m[91] * t7)) - (n[21] + n[51] + n[76]);
-        const gic_real t19 = t18 - (n[17] + n[47] + n[72]) * R(9.81);
-        const gic_real t20 = t17 * (m[101] + (m[96] * t9 - m[97] * t7)) - ((x[1] - R(0.31658)) * R(167070.9) + xd[1] * R(17490.8));
-        const gic_real t21 = t20 - (n[44] + n[83]) - (n[40] + n[79]) * R(9.81) - t19 * t5;
-        const gic_real t22 = R(1.0) / t6 * t21;
-        const gic_real t23 = xd[0];
-        const gic_real t24 = t19 * t4 - t5 * t22;
-        const gic_real t25 = xd[1];
-        rate[0] = t23;
-        rate[2] = t24;
-        rate[1] = t25;
-        rate[3] = t22;
+        const gic_real t18 = t9 * t17;
+        const gic_real t19 = t7 * t17;
+        const gic_real t20 = m[95] * t17 + (m[90] * t18 - m[91] * t19) - (n[21] + n[51] + n[76]);
+        const gic_real t21 = t20 - (n[17] + n[47] + n[72]) * R(9.81);
+        const gic_real t22 = m[101] * t17 + (m[96] * t18 - m[97] * t19) - ((x[1] - R(0.31658)) * R(167070.9) + xd[1] * R(17490.8));
+        const gic_real t23 = t22 - (n[44] + n[83]) - (n[40] + n[79]) * R(9.81) - t21 * t5;
+        const gic_real t24 = R(1.0) / t6 * t23;
+        const gic_real t25 = xd[0];
+        const gic_real t26 = t21 * t4 - t5 * t24;
+        const gic_real t27 = xd[1];
+        rate[0] = t25;
+        rate[2] = t26;
+        rate[1] = t27;
+        rate[3] = t24;
     }
     return GIC_OK;
 }
@@ -1735,8 +1740,9 @@ static int quarter_car_measure(const quarter_car *self, gic_real time, const gic
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    const gic_real *const s = self->start[self->head.flip];
+    const gic_real *const s = self->start[self->head.flip], *const lambda = self->multiplier;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)s, (void)rate, (void)out;
+    (void)lambda;
     {
         const gic_real t1 = m[71] * R(0.09182100000000004);
         const gic_real t2 = m[69] * R(-0.004825999999999997);
@@ -2169,138 +2175,144 @@ static int quarter_car_inverse(const quarter_car *self, gic_real time, const gic
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = m[8] * R(100.0);
-        const gic_real t2 = m[7] * R(100.0);
-        const gic_real t3 = m[6] * R(100.0);
-        const gic_real t4 = m[11] * t1 + (m[10] * t2 + m[9] * t3);
-        const gic_real t5 = m[8] * t1 + (m[7] * t2 + m[6] * t3);
-        const gic_real t6 = m[5] * R(100.0);
-        const gic_real t7 = m[4] * R(100.0);
-        const gic_real t8 = m[3] * R(100.0);
-        const gic_real t9 = m[8] * t6 + (m[7] * t7 + m[6] * t8);
-        const gic_real t10 = m[14] * t4 + (m[13] * t5 + m[12] * t9);
-        const gic_real t11 = m[11] * t6 + (m[10] * t7 + m[9] * t8);
-        const gic_real t12 = m[5] * t6 + (m[4] * t7 + m[3] * t8);
-        const gic_real t13 = m[14] * t11 + (m[13] * t9 + m[12] * t12);
-        const gic_real t14 = m[11] * (m[11] * R(100.0)) + (m[10] * (m[10] * R(100.0)) + m[9] * (m[9] * R(100.0)));
-        const gic_real t15 = m[20] + m[26] * acc[0];
-        const gic_real t16 = m[19] + m[25] * acc[0];
-        const gic_real t17 = m[18] + m[24] * acc[0];
-        const gic_real t18 = m[12] * t10 - m[13] * t13 + (t14 * t15 + (t4 * t16 + t11 * t17));
-        const gic_real t19 = m[14] * t14 + (m[13] * t4 + m[12] * t11);
-        const gic_real t20 = m[14] * t13 - m[12] * t19 + (t4 * t15 + (t5 * t16 + t9 * t17));
-        const gic_real t21 = m[13] * t19 - m[14] * t10 + (t11 * t15 + (t9 * t16 + t12 * t17));
-        const gic_real t22 = m[28] * ((m[22] + m[28] * acc[0]) * R(525.59)) + m[27] * ((m[21] + m[27] * acc[0]) * R(525.59));
-        const gic_real t23 = m[29] * ((m[23] + R(9.81) + m[29] * acc[0]) * R(525.59)) + t22;
-        const gic_real t24 = m[26] * t18 + (m[25] * t20 + m[24] * t21) + t23;
-        const gic_real t25 = m[38] * R(0.8938);
-        const gic_real t26 = m[37] * R(0.4469);
-        const gic_real t27 = m[36] * R(0.4469);
-        const gic_real t28 = m[41] * t25 + (m[40] * t26 + m[39] * t27);
-        const gic_real t29 = m[38] * t25 + (m[37] * t26 + m[36] * t27);
-        const gic_real t30 = m[35] * R(0.8938);
-        const gic_real t31 = m[34] * R(0.4469);
-        const gic_real t32 = m[33] * R(0.4469);
-        const gic_real t33 = m[38] * t30 + (m[37] * t31 + m[36] * t32);
-        const gic_real t34 = m[44] * t28 + (m[43] * t29 + m[42] * t33);
-        const gic_real t35 = m[41] * t30 + (m[40] * t31 + m[39] * t32);
-        const gic_real t36 = m[35] * t30 + (m[34] * t31 + m[33] * t32);
-        const gic_real t37 = m[44] * t35 + (m[43] * t33 + m[42] * t36);
-        const gic_real t38 = m[41] * (m[41] * R(0.8938)) + (m[40] * (m[40] * R(0.4469)) + m[39] * (m[39] * R(0.4469)));
-        const gic_real t39 = m[50] + m[56] * acc[1] + m[62] * acc[0];
-        const gic_real t40 = m[49] + m[55] * acc[1] + m[61] * acc[0];
-        const gic_real t41 = m[48] + m[54] * acc[1] + m[60] * acc[0];
-        const gic_real t42 = m[42] * t34 - m[43] * t37 + (t38 * t39 + (t28 * t40 + t35 * t41));
-        const gic_real t43 = m[44] * t38 + (m[43] * t28 + m[42] * t35);
-        const gic_real t44 = m[44] * t37 - m[42] * t43 + (t28 * t39 + (t29 * t40 + t33 * t41));
-        const gic_real t45 = m[43] * t43 - m[44] * t34 + (t35 * t39 + (t33 * t40 + t36 * t41));
-        const gic_real t46 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t47 = m[35] * R(3.0379110359107786e-06) + m[34] * R(0.24689200985615367);
-        const gic_real t48 = m[65] + (m[60] * t46 - m[61] * t47);
-        const gic_real t49 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t50 = m[44] * t47 - m[42] * t49;
-        const gic_real t51 = m[43] * t49 - m[44] * t46;
-        const gic_real t52 = m[42] * t50 - m[43] * t51 + (m[48] * t46 - m[49] * t47);
-        const gic_real t53 = m[59] + (m[54] * t46 - m[55] * t47);
-        const gic_real t54 = R(9.81) + (m[53] + t52) + acc[1] * t53 + acc[0] * t48;
-        const gic_real t55 = t54 * R(23.965);
-        const gic_real t56 = m[64] + (m[62] * t47 - m[60] * t49);
-        const gic_real t57 = m[42] * t46 - m[43] * t47;
-        const gic_real t58 = m[44] * t51 - m[42] * t57 + (m[50] * t47 - m[48] * t49);
-        const gic_real t59 = m[58] + (m[56] * t47 - m[54] * t49);
-        const gic_real t60 = (m[52] + t58 + acc[1] * t59 + acc[0] * t56) * R(23.965);
-        const gic_real t61 = m[63] + (m[61] * t49 - m[62] * t46);
-        const gic_real t62 = m[43] * t57 - m[44] * t50 + (m[49] * t49 - m[50] * t46);
-        const gic_real t63 = m[57] + (m[55] * t49 - m[56] * t46);
-        const gic_real t64 = (m[51] + t62 + acc[1] * t63 + acc[0] * t61) * R(23.965);
-        const gic_real t65 = m[62] * t42 + (m[61] * t44 + m[60] * t45) + (t48 * t55 + (t56 * t60 + t61 * t64));
-        const gic_real t66 = m[74] * R(4.7728205);
-        const gic_real t67 = m[73] * R(7.58122);
-        const gic_real t68 = m[72] * R(4.8947505);
-        const gic_real t69 = m[77] * t66 + (m[76] * t67 + m[75] * t68);
-        const gic_real t70 = m[74] * t66 + (m[73] * t67 + m[72] * t68);
-        const gic_real t71 = m[71] * R(4.7728205);
-        const gic_real t72 = m[70] * R(7.58122);
-        const gic_real t73 = m[69] * R(4.8947505);
-        const gic_real t74 = m[74] * t71 + (m[73] * t72 + m[72] * t73);
-        const gic_real t75 = m[80] * t69 + (m[79] * t70 + m[78] * t74);
-        const gic_real t76 = m[77] * t71 + (m[76] * t72 + m[75] * t73);
-        const gic_real t77 = m[71] * t71 + (m[70] * t72 + m[69] * t73);
-        const gic_real t78 = m[80] * t76 + (m[79] * t74 + m[78] * t77);
-        const gic_real t79 = m[77] * (m[77] * R(4.7728205)) + (m[76] * (m[76] * R(7.58122)) + m[75] * (m[75] * R(4.8947505)));
-        const gic_real t80 = m[86] + m[92] * acc[0] + m[98] * acc[1];
-        const gic_real t81 = m[85] + m[91] * acc[0] + m[97] * acc[1];
-        const gic_real t82 = m[84] + m[90] * acc[0] + m[96] * acc[1];
-        const gic_real t83 = m[78] * t75 - m[79] * t78 + (t79 * t80 + (t69 * t81 + t76 * t82));
-        const gic_real t84 = m[80] * t79 + (m[79] * t69 + m[78] * t76);
-        const gic_real t85 = m[80] * t78 - m[78] * t84 + (t69 * t80 + (t70 * t81 + t74 * t82));
-        const gic_real t86 = m[79] * t84 - m[80] * t75 + (t76 * t80 + (t74 * t81 + t77 * t82));
-        const gic_real t87 = m[74] * R(0.09182100000000004);
-        const gic_real t88 = m[72] * R(-0.004825999999999997);
-        const gic_real t89 = t87 + (t88 + m[73] * R(0.08910630000000008));
-        const gic_real t90 = m[71] * R(0.09182100000000004);
-        const gic_real t91 = m[69] * R(-0.004825999999999997);
-        const gic_real t92 = t90 + (t91 + m[70] * R(0.08910630000000008));
-        const gic_real t93 = m[95] + (m[90] * t89 - m[91] * t92);
-        const gic_real t94 = m[77] * R(0.09182100000000004);
-        const gic_real t95 = m[75] * R(-0.004825999999999997);
-        const gic_real t96 = t94 + (t95 + m[76] * R(0.08910630000000008));
-        const gic_real t97 = m[80] * t92 - m[78] * t96;
-        const gic_real t98 = m[79] * t96 - m[80] * t89;
-        const gic_real t99 = m[78] * t97 - m[79] * t98 + (m[84] * t89 - m[85] * t92);
-        const gic_real t100 = m[101] + (m[96] * t89 - m[97] * t92);
-        const gic_real t101 = R(9.81) + (m[89] + t99) + acc[0] * t93 + acc[1] * t100;
-        const gic_real t102 = t101 * R(90.555);
-        const gic_real t103 = m[94] + (m[92] * t92 - m[90] * t96);
-        const gic_real t104 = m[78] * t89 - m[79] * t92;
-        const gic_real t105 = m[80] * t98 - m[78] * t104 + (m[86] * t92 - m[84] * t96);
-        const gic_real t106 = m[100] + (m[98] * t92 - m[96] * t96);
-        const gic_real t107 = (m[88] + t105 + acc[0] * t103 + acc[1] * t106) * R(90.555);
-        const gic_real t108 = m[93] + (m[91] * t96 - m[92] * t89);
-        const gic_real t109 = m[79] * t104 - m[80] * t97 + (m[85] * t96 - m[86] * t89);
-        const gic_real t110 = m[99] + (m[97] * t96 - m[98] * t89);
-        const gic_real t111 = (m[87] + t109 + acc[0] * t108 + acc[1] * t110) * R(90.555);
-        const gic_real t112 = m[92] * t83 + (m[91] * t85 + m[90] * t86) + (t93 * t102 + (t103 * t107 + t108 * t111));
-        const gic_real t113 = t90 + (m[70] * R(0.12319000000000002) + t91);
-        const gic_real t114 = t94 + (m[76] * R(0.12319000000000002) + t95);
-        const gic_real t115 = t87 + (m[73] * R(0.12319000000000002) + t88);
-        gic_real road116[3];
-        if (!road_height(self, time, m[66] + t113, m[67] + t115, road116))
+        const gic_real t1 = m[28] * ((m[22] + m[28] * acc[0]) * R(525.59)) + m[27] * ((m[21] + m[27] * acc[0]) * R(525.59));
+        const gic_real t2 = m[29] * ((m[23] + R(9.81) + m[29] * acc[0]) * R(525.59)) + t1;
+        const gic_real t3 = m[8] * R(100.0);
+        const gic_real t4 = m[7] * R(100.0);
+        const gic_real t5 = m[6] * R(100.0);
+        const gic_real t6 = m[11] * t3 + (m[10] * t4 + m[9] * t5);
+        const gic_real t7 = m[8] * t3 + (m[7] * t4 + m[6] * t5);
+        const gic_real t8 = m[5] * R(100.0);
+        const gic_real t9 = m[4] * R(100.0);
+        const gic_real t10 = m[3] * R(100.0);
+        const gic_real t11 = m[8] * t8 + (m[7] * t9 + m[6] * t10);
+        const gic_real t12 = m[14] * t6 + (m[13] * t7 + m[12] * t11);
+        const gic_real t13 = m[11] * t8 + (m[10] * t9 + m[9] * t10);
+        const gic_real t14 = m[5] * t8 + (m[4] * t9 + m[3] * t10);
+        const gic_real t15 = m[14] * t13 + (m[13] * t11 + m[12] * t14);
+        const gic_real t16 = m[11] * (m[11] * R(100.0)) + (m[10] * (m[10] * R(100.0)) + m[9] * (m[9] * R(100.0)));
+        const gic_real t17 = m[20] + m[26] * acc[0];
+        const gic_real t18 = m[19] + m[25] * acc[0];
+        const gic_real t19 = m[18] + m[24] * acc[0];
+        const gic_real t20 = m[12] * t12 - m[13] * t15 + (t16 * t17 + (t6 * t18 + t13 * t19));
+        const gic_real t21 = m[14] * t16 + (m[13] * t6 + m[12] * t13);
+        const gic_real t22 = m[14] * t15 - m[12] * t21 + (t6 * t17 + (t7 * t18 + t11 * t19));
+        const gic_real t23 = m[13] * t21 - m[14] * t12 + (t13 * t17 + (t11 * t18 + t14 * t19));
+        const gic_real t24 = t2 + (m[26] * t20 + (m[25] * t22 + m[24] * t23));
+        const gic_real t25 = m[35] * R(3.0379110359107786e-06) + m[34] * R(0.24689200985615367);
+        const gic_real t26 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
+        const gic_real t27 = m[44] * t25 - m[42] * t26;
+        const gic_real t28 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t29 = m[43] * t26 - m[44] * t28;
+        const gic_real t30 = m[42] * t27 - m[43] * t29 + (m[48] * t28 - m[49] * t25);
+        const gic_real t31 = R(9.81) + (m[53] + t30) + acc[1] * (m[59] + (m[54] * t28 - m[55] * t25));
+        const gic_real t32 = t31 + acc[0] * (m[65] + (m[60] * t28 - m[61] * t25));
+        const gic_real t33 = t32 * R(23.965);
+        const gic_real t34 = m[42] * t28 - m[43] * t25;
+        const gic_real t35 = m[44] * t29 - m[42] * t34 + (m[50] * t25 - m[48] * t26);
+        const gic_real t36 = m[52] + t35 + acc[1] * (m[58] + (m[56] * t25 - m[54] * t26));
+        const gic_real t37 = t36 + acc[0] * (m[64] + (m[62] * t25 - m[60] * t26));
+        const gic_real t38 = t37 * R(23.965);
+        const gic_real t39 = m[43] * t34 - m[44] * t27 + (m[49] * t26 - m[50] * t28);
+        const gic_real t40 = m[51] + t39 + acc[1] * (m[57] + (m[55] * t26 - m[56] * t28));
+        const gic_real t41 = t40 + acc[0] * (m[63] + (m[61] * t26 - m[62] * t28));
+        const gic_real t42 = t41 * R(23.965);
+        const gic_real t43 = m[38] * R(0.8938);
+        const gic_real t44 = m[37] * R(0.4469);
+        const gic_real t45 = m[36] * R(0.4469);
+        const gic_real t46 = m[41] * t43 + (m[40] * t44 + m[39] * t45);
+        const gic_real t47 = m[38] * t43 + (m[37] * t44 + m[36] * t45);
+        const gic_real t48 = m[35] * R(0.8938);
+        const gic_real t49 = m[34] * R(0.4469);
+        const gic_real t50 = m[33] * R(0.4469);
+        const gic_real t51 = m[38] * t48 + (m[37] * t49 + m[36] * t50);
+        const gic_real t52 = m[44] * t46 + (m[43] * t47 + m[42] * t51);
+        const gic_real t53 = m[41] * t48 + (m[40] * t49 + m[39] * t50);
+        const gic_real t54 = m[35] * t48 + (m[34] * t49 + m[33] * t50);
+        const gic_real t55 = m[44] * t53 + (m[43] * t51 + m[42] * t54);
+        const gic_real t56 = m[41] * (m[41] * R(0.8938)) + (m[40] * (m[40] * R(0.4469)) + m[39] * (m[39] * R(0.4469)));
+        const gic_real t57 = m[50] + m[56] * acc[1] + m[62] * acc[0];
+        const gic_real t58 = m[49] + m[55] * acc[1] + m[61] * acc[0];
+        const gic_real t59 = m[48] + m[54] * acc[1] + m[60] * acc[0];
+        const gic_real t60 = m[42] * t52 - m[43] * t55 + (t56 * t57 + (t46 * t58 + t53 * t59));
+        const gic_real t61 = t60 + (t25 * t38 - t28 * t42);
+        const gic_real t62 = m[44] * t56 + (m[43] * t46 + m[42] * t53);
+        const gic_real t63 = m[44] * t55 - m[42] * t62 + (t46 * t57 + (t47 * t58 + t51 * t59));
+        const gic_real t64 = t63 + (t26 * t42 - t25 * t33);
+        const gic_real t65 = m[43] * t62 - m[44] * t52 + (t53 * t57 + (t51 * t58 + t54 * t59));
+        const gic_real t66 = t65 + (t28 * t33 - t26 * t38);
+        const gic_real t67 = m[65] * t33 + (m[64] * t38 + m[63] * t42) + (m[62] * t61 + (m[61] * t64 + m[60] * t66));
+        const gic_real t68 = m[71] * R(0.09182100000000004);
+        const gic_real t69 = m[69] * R(-0.004825999999999997);
+        const gic_real t70 = t68 + (t69 + m[70] * R(0.08910630000000008));
+        const gic_real t71 = m[77] * R(0.09182100000000004);
+        const gic_real t72 = m[75] * R(-0.004825999999999997);
+        const gic_real t73 = t71 + (t72 + m[76] * R(0.08910630000000008));
+        const gic_real t74 = m[80] * t70 - m[78] * t73;
+        const gic_real t75 = m[74] * R(0.09182100000000004);
+        const gic_real t76 = m[72] * R(-0.004825999999999997);
+        const gic_real t77 = t75 + (t76 + m[73] * R(0.08910630000000008));
+        const gic_real t78 = m[79] * t73 - m[80] * t77;
+        const gic_real t79 = m[78] * t74 - m[79] * t78 + (m[84] * t77 - m[85] * t70);
+        const gic_real t80 = R(9.81) + (m[89] + t79) + acc[0] * (m[95] + (m[90] * t77 - m[91] * t70));
+        const gic_real t81 = t80 + acc[1] * (m[101] + (m[96] * t77 - m[97] * t70));
+        const gic_real t82 = t81 * R(90.555);
+        const gic_real t83 = m[78] * t77 - m[79] * t70;
+        const gic_real t84 = m[80] * t78 - m[78] * t83 + (m[86] * t70 - m[84] * t73);
+        const gic_real t85 = m[88] + t84 + acc[0] * (m[94] + (m[92] * t70 - m[90] * t73));
+        const gic_real t86 = t85 + acc[1] * (m[100] + (m[98] * t70 - m[96] * t73));
+        const gic_real t87 = t86 * R(90.555);
+        const gic_real t88 = m[79] * t83 - m[80] * t74 + (m[85] * t73 - m[86] * t77);
+        const gic_real t89 = m[87] + t88 + acc[0] * (m[93] + (m[91] * t73 - m[92] * t77));
+        const gic_real t90 = t89 + acc[1] * (m[99] + (m[97] * t73 - m[98] * t77));
+        const gic_real t91 = t90 * R(90.555);
+        const gic_real t92 = m[74] * R(4.7728205);
+        const gic_real t93 = m[73] * R(7.58122);
+        const gic_real t94 = m[72] * R(4.8947505);
+        const gic_real t95 = m[77] * t92 + (m[76] * t93 + m[75] * t94);
+        const gic_real t96 = m[74] * t92 + (m[73] * t93 + m[72] * t94);
+        const gic_real t97 = m[71] * R(4.7728205);
+        const gic_real t98 = m[70] * R(7.58122);
+        const gic_real t99 = m[69] * R(4.8947505);
+        const gic_real t100 = m[74] * t97 + (m[73] * t98 + m[72] * t99);
+        const gic_real t101 = m[80] * t95 + (m[79] * t96 + m[78] * t100);
+        const gic_real t102 = m[77] * t97 + (m[76] * t98 + m[75] * t99);
+        const gic_real t103 = m[71] * t97 + (m[70] * t98 + m[69] * t99);
+        const gic_real t104 = m[80] * t102 + (m[79] * t100 + m[78] * t103);
+        const gic_real t105 = m[77] * (m[77] * R(4.7728205)) + (m[76] * (m[76] * R(7.58122)) + m[75] * (m[75] * R(4.8947505)));
+        const gic_real t106 = m[86] + m[92] * acc[0] + m[98] * acc[1];
+        const gic_real t107 = m[85] + m[91] * acc[0] + m[97] * acc[1];
+        const gic_real t108 = m[84] + m[90] * acc[0] + m[96] * acc[1];
+        const gic_real t109 = m[78] * t101 - m[79] * t104 + (t105 * t106 + (t95 * t107 + t102 * t108));
+        const gic_real t110 = t109 + (t70 * t87 - t77 * t91);
+        const gic_real t111 = m[80] * t105 + (m[79] * t95 + m[78] * t102);
+        const gic_real t112 = m[80] * t104 - m[78] * t111 + (t95 * t106 + (t96 * t107 + t100 * t108));
+        const gic_real t113 = t112 + (t73 * t91 - t70 * t82);
+        const gic_real t114 = m[79] * t111 - m[80] * t101 + (t102 * t106 + (t100 * t107 + t103 * t108));
+        const gic_real t115 = t114 + (t77 * t82 - t73 * t87);
+        const gic_real t116 = m[95] * t82 + (m[94] * t87 + m[93] * t91) + (m[92] * t110 + (m[91] * t113 + m[90] * t115));
+        const gic_real t117 = t68 + (m[70] * R(0.12319000000000002) + t69);
+        const gic_real t118 = t71 + (m[76] * R(0.12319000000000002) + t72);
+        const gic_real t119 = t75 + (m[73] * R(0.12319000000000002) + t76);
+        gic_real road120[3];
+        if (!road_height(self, time, m[66] + t117, m[67] + t119, road120))
             return GIC_ERROR_ROAD;
-        const gic_real t117 = (m[82] + (m[80] * t113 - m[78] * t114)) * road116[2];
-        const gic_real t118 = (m[81] + (m[79] * t114 - m[80] * t115)) * road116[1];
-        const gic_real t119 = t117 + t118 - (m[83] + (m[78] * t115 - m[79] * t113));
-        const gic_real t120 = road116[0] + R(0.4699) - (m[68] + t114);
-        const gic_real t121 = GIC_MIN(GIC_MAX(t120 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t122 = t119 * ((R(3.0) - (t121 + t121)) * (t121 * t121) * R(500.0));
-        const gic_real t123 = GIC_MAX(t122 + t120 * R(283000.0), R(0.0));
-        const gic_real t124 = t24 + t65 + t112 - t123 * (m[95] + (m[90] * t115 - m[91] * t113));
-        const gic_real t125 = m[56] * t42 + (m[55] * t44 + m[54] * t45) + (t53 * t55 + (t59 * t60 + t63 * t64));
-        const gic_real t126 = m[98] * t83 + (m[97] * t85 + m[96] * t86) + (t100 * t102 + (t106 * t107 + t110 * t111));
-        const gic_real t127 = t123 * (m[101] + (m[96] * t115 - m[97] * t113)) - ((x[1] - R(0.31658)) * R(167070.9) + xd[1] * R(17490.8));
-        const gic_real t128 = t125 + t126 - t127;
-        tau[0] = t124;
-        tau[1] = t128;
+        const gic_real t121 = (m[82] + (m[80] * t117 - m[78] * t118)) * road120[2];
+        const gic_real t122 = (m[81] + (m[79] * t118 - m[80] * t119)) * road120[1];
+        const gic_real t123 = t121 + t122 - (m[83] + (m[78] * t119 - m[79] * t117));
+        const gic_real t124 = road120[0] + R(0.4699) - (m[68] + t118);
+        const gic_real t125 = GIC_MIN(GIC_MAX(t124 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t126 = t123 * ((R(3.0) - (t125 + t125)) * (t125 * t125) * R(500.0));
+        const gic_real t127 = GIC_MAX(t126 + t124 * R(283000.0), R(0.0));
+        const gic_real t128 = t119 * t127;
+        const gic_real t129 = t117 * t127;
+        const gic_real t130 = t24 + t67 + t116 - (m[95] * t127 + (m[90] * t128 - m[91] * t129));
+        const gic_real t131 = m[59] * t33 + (m[58] * t38 + m[57] * t42) + (m[56] * t61 + (m[55] * t64 + m[54] * t66));
+        const gic_real t132 = m[101] * t82 + (m[100] * t87 + m[99] * t91) + (m[98] * t110 + (m[97] * t113 + m[96] * t115));
+        const gic_real t133 = m[101] * t127 + (m[96] * t128 - m[97] * t129) - ((x[1] - R(0.31658)) * R(167070.9) + xd[1] * R(17490.8));
+        const gic_real t134 = t131 + t132 - t133;
+        tau[0] = t130;
+        tau[1] = t134;
     }
     return GIC_OK;
 }

@@ -36,13 +36,14 @@
  *   wheel
  *         subsets        3
  *
+ * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'carriage' (1 times)                  113       134       3      0         0
  *   subset 'arm' (1 times)                       482       583       3      0         0
  *   subset 'wheel' (1 times)                     625       711       3      0         0
- *   forces and equations of motion                48        41       2      0         1
- *   all together                                1268      1469      11      0         1
+ *   forces and equations of motion                48        43       2      0         1
+ *   all together                                1268      1471      11      0         1
  *   outputs, when asked for                      126       186       0      0         1
  */
 #ifndef QUARTER_CAR_H
@@ -85,6 +86,7 @@ enum {
     QUARTER_CAR_START_ROOM = 89,
     QUARTER_CAR_MOTION_ROOM = 102,
     QUARTER_CAR_INERTIA_ROOM = 87,
+    QUARTER_CAR_MULTIPLIER_ROOM = 1,
     QUARTER_CAR_KNOWN_ROOM = 2,
     QUARTER_CAR_DEPENDENCE_ROOM = 2
 };
@@ -137,6 +139,7 @@ typedef struct quarter_car {
     gic_real start[2][QUARTER_CAR_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[QUARTER_CAR_MOTION_ROOM];            /* bodies relative to the base */
     gic_real inertia[QUARTER_CAR_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
+    gic_real multiplier[QUARTER_CAR_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } quarter_car;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

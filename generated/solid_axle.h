@@ -54,14 +54,15 @@
  *   wheel_fl
  *         subsets        6, 7
  *
+ * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'rack' (1 times)                      137       164       2      0         0
  *   subset 'lca_fl' (2 times)                    291       362       3      0         0
  *   subset 'axle' (1 times)                      658       737       6      0         0
  *   subset 'wheel_fl' (2 times)                  534       606       3      0         0
- *   forces and equations of motion               732       689       9      0         4
- *   all together                                3177      3526      29      0         4
+ *   forces and equations of motion               714       671       9      0         4
+ *   all together                                3159      3508      29      0         4
  *   outputs, when asked for                      602       694       0      0        10
  */
 #ifndef SOLID_AXLE_H
@@ -104,6 +105,7 @@ enum {
     SOLID_AXLE_START_ROOM = 189,
     SOLID_AXLE_MOTION_ROOM = 198,
     SOLID_AXLE_INERTIA_ROOM = 165,
+    SOLID_AXLE_MULTIPLIER_ROOM = 1,
     SOLID_AXLE_KNOWN_ROOM = 2,
     SOLID_AXLE_DEPENDENCE_ROOM = 2
 };
@@ -225,6 +227,7 @@ typedef struct solid_axle {
     gic_real start[2][SOLID_AXLE_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[SOLID_AXLE_MOTION_ROOM];            /* bodies relative to the base */
     gic_real inertia[SOLID_AXLE_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
+    gic_real multiplier[SOLID_AXLE_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } solid_axle;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

@@ -57,14 +57,15 @@
  *   lca_fl_2
  *         subsets        5, 6
  *
+ * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side, one Newton correction with old factors and one with new:
  *                                                add  multiply  divide   root  function
  *   subset 'rack' (1 times)                      137       164       2      0         0
  *   subset 'lca_fl' (2 times)                    254       341       3      0         4
  *   subset 'wheel_fl' (2 times)                  534       606       3      0         0
  *   subset 'lca_fl_2' (2 times)                  280       354       2      0         4
- *   forces and equations of motion               876       841      15      4         4
- *   all together                                3149      3607      33      4        20
+ *   forces and equations of motion               894       835      15      4         4
+ *   all together                                3167      3601      33      4        20
  *   outputs, when asked for                      777       902       4      4        10
  */
 #ifndef TRAILING_ARM_H
@@ -107,6 +108,7 @@ enum {
     TRAILING_ARM_START_ROOM = 169,
     TRAILING_ARM_MOTION_ROOM = 222,
     TRAILING_ARM_INERTIA_ROOM = 179,
+    TRAILING_ARM_MULTIPLIER_ROOM = 1,
     TRAILING_ARM_KNOWN_ROOM = 2,
     TRAILING_ARM_DEPENDENCE_ROOM = 2
 };
@@ -232,6 +234,7 @@ typedef struct trailing_arm {
     gic_real start[2][TRAILING_ARM_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[TRAILING_ARM_MOTION_ROOM];            /* bodies relative to the base */
     gic_real inertia[TRAILING_ARM_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
+    gic_real multiplier[TRAILING_ARM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } trailing_arm;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
