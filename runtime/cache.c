@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: MIT
+ * Compiled objects that are kept between runs: see cache.h. */
+#include "cache.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+/* ---- hashes -------------------------------------------------------------------------------------------------------
+ */
+
+/* Two FNV-1a hashes of 64 bits from different beginnings: chance never makes two contents equal. */
+typedef struct Hash {
+    uint64_t half[2];
+} Hash;
+
+static const Hash hash_start = {{UINT64_C(0xcbf29ce484222325), UINT64_C(0x6c62272e07bb0142)}};
+
+static void hash_add(Hash *hash, const char *bytes, size_t size)
+{
+    for (size_t i = 0; i < size; ++i) {
+        hash->half[0] = (hash->half[0] ^ (unsigned char)bytes[i]) * UINT64_C(0x100000001b3);
+        hash->half[1] = (hash->half[1] ^ (unsigned char)(bytes[i] + 1)) * UINT64_C(0x100000001b3);
+    }
+}
+
+const char *cache_key(Pool *pool, const char *const *text)
+{
+    Hash hash = hash_start;
+    for (; *text; ++text)
+        hash_add(&hash, *text, strlen(*text) + 1); /* with its end, so that "ab", "c" is not "a", "bc" */
+    return pool_print(pool, "%016llx%016llx", (unsigned long long)hash.half[0], (unsigned long long)hash.half[1]);
+}
+
+/* What stands behind the bytes of an object; loaders of objects ignore it. */
+typedef struct Seal {
+    char word[8];
+    uint64_t size;
+    Hash hash;
+} Seal;
+
+static Seal seal_of(const char *bytes, size_t size)
+{
+    Seal seal = {.word = "gicseal", .size = size, .hash = hash_start};
+    hash_add(&seal.hash, bytes, size);
+    return seal;
+}
+
+/* ---- files --------------------------------------------------------------------------------------------------------
+ */
+
+/* All bytes of a file, or NULL. */
+static char *read_bytes(Pool *pool, const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return NULL;
+    Text text = {.pool = pool};
+    char buffer[1 << 14];
+    for (size_t n; (n = fread(buffer, 1, sizeof buffer, file)) > 0;)
+        text_add(&text, buffer, n);
+    text_add(&text, "", 0); /* an empty file too has bytes */
+    const bool bad = ferror(file);
+    fclose(file);
+    *size = text.size;
+    return bad ? NULL : text.s;
+}
+
+static bool make_folders(Pool *pool, const char *path)
+{
+    char *part = pool_print(pool, "%s", path);
+    for (char *c = part + 1;; ++c) {
+        const char kept = *c;
+        if (kept && kept != '/')
+            continue;
+        *c = 0;
+        if (mkdir(part, 0700) && errno != EEXIST)
+            return false;
+        if (!(*c = kept))
+            return true;
+    }
+}
+
+const char *cache_folder(Pool *pool)
+{
+    const char *own = getenv("GICGEN_CACHE"), *base = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    const char *folder = NULL;
+    if (own)
+        folder = *own ? own : NULL;
+    else if (base && *base == '/')
+        folder = pool_print(pool, "%s/gicgen", base);
+    else if (home && *home == '/')
+        folder = pool_print(pool, "%s/.cache/gicgen", home);
+    return folder && make_folders(pool, folder) ? folder : NULL;
+}
+
+int64_t cache_limit(void)
+{
+    const char *text = getenv("GICGEN_CACHE_SIZE");
+    char *end = NULL;
+    const long long size = text ? strtoll(text, &end, 10) : 0;
+    return text && end != text && !*end && size >= 0 && size < 1 << 20 ? (int64_t)size << 20 : CACHE_MOST;
+}
+
+static const char *object_path(Pool *pool, const char *folder, const char *key)
+{
+    return pool_print(pool, "%s/%s.so", folder, key);
+}
+
+const char *cache_find(Pool *pool, const char *folder, const char *key)
+{
+    const char *path = object_path(pool, folder, key);
+    size_t size;
+    const char *bytes = read_bytes(pool, path, &size);
+    if (!bytes)
+        return NULL;
+    Seal found;
+    if (size > sizeof found) {
+        memcpy(&found, bytes + size - sizeof found, sizeof found);
+        const Seal right = seal_of(bytes, size - sizeof found);
+        if (!memcmp(&found, &right, sizeof found)) {
+            utimensat(AT_FDCWD, path, NULL, 0); /* used just now; where that can't be noted it goes a little earlier */
+            return path;
+        }
+    }
+    unlink(path);
+    return NULL;
+}
+
+/* ---- the limit ----------------------------------------------------------------------------------------------------
+ */
+
+typedef struct Kept {
+    const char *path;
+    int64_t size;
+    struct timespec used;
+    bool unfinished;
+} Kept;
+
+static int older_first(const void *a, const void *b)
+{
+    const struct timespec *s = &((const Kept *)a)->used, *t = &((const Kept *)b)->used;
+    if (s->tv_sec != t->tv_sec)
+        return s->tv_sec < t->tv_sec ? -1 : 1;
+    return (s->tv_nsec > t->tv_nsec) - (s->tv_nsec < t->tv_nsec);
+}
+
+static bool ends_with(const char *s, const char *end)
+{
+    const size_t length = strlen(s), tail = strlen(end);
+    return length >= tail && !strcmp(s + length - tail, end);
+}
+
+/* Drop the least recently used objects beyond the limit, and what killed processes left an hour ago. */
+static void trim(Pool *pool, const char *folder, int64_t most)
+{
+    DIR *listing = opendir(folder);
+    if (!listing)
+        return;
+    Kept *kept = NULL;
+    int count = 0;
+    int64_t total = 0;
+    for (struct dirent *entry; (entry = readdir(listing));) {
+        struct stat is;
+        Kept one = {.path = pool_print(pool, "%s/%s", folder, entry->d_name),
+                    .unfinished = strstr(entry->d_name, ".so.") != NULL};
+        if ((!one.unfinished && !ends_with(entry->d_name, ".so")) || stat(one.path, &is))
+            continue;
+        one.size = (int64_t)is.st_size;
+        one.used = is.st_mtim;
+        if (one.unfinished && time(NULL) - is.st_mtim.tv_sec > 3600)
+            unlink(one.path);
+        if (one.unfinished)
+            continue;
+        *POOL_PUSH(pool, kept, count) = one;
+        total += one.size;
+    }
+    closedir(listing);
+    if (count)
+        qsort(kept, (size_t)count, sizeof *kept, older_first);
+    for (int i = 0; i < count && total > most; ++i)
+        if (!unlink(kept[i].path))
+            total -= kept[i].size;
+}
+
+bool cache_keep(Pool *pool, const char *folder, const char *key, const char *path, int64_t most)
+{
+    size_t size;
+    const char *bytes = read_bytes(pool, path, &size), *place = object_path(pool, folder, key);
+    char *temporary = pool_print(pool, "%s.XXXXXX", place);
+    if (!bytes)
+        return false;
+    const int handle = mkstemp(temporary);
+    FILE *file = handle < 0 ? NULL : fdopen(handle, "wb");
+    if (!file)
+        return false;
+    const Seal seal = seal_of(bytes, size);
+    bool good = fwrite(bytes, 1, size, file) == size && fwrite(&seal, sizeof seal, 1, file) == 1;
+    good = !fclose(file) && good && !rename(temporary, place);
+    if (!good)
+        unlink(temporary);
+    trim(pool, folder, most);
+    return good;
+}

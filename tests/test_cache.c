@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: MIT
+ * The cache of compiled objects: what is kept is found again whole, damaged objects are not, limits hold, and several
+ * processes may write at once. */
+#include "../runtime/cache.h"
+
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+typedef struct Shelf {
+    Pool *pool;
+    const char *root, *folder, *object;
+} Shelf;
+
+static int set_up(void **state)
+{
+    static Shelf f;
+    f.pool = pool_new();
+    char *folder = pool_print(f.pool, "%s/gicgen-cache-XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
+    if (!mkdtemp(folder))
+        return -1;
+    f.root = folder;
+    f.object = pool_print(f.pool, "%s/object", folder);
+    f.folder = pool_print(f.pool, "%s/a/b", folder);
+    setenv("GICGEN_CACHE", f.folder, 1);
+    *state = &f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    Shelf *f = *state;
+    const int status = system(pool_print(f->pool, "rm -rf '%s'", f->root));
+    pool_free(f->pool);
+    return status;
+}
+
+static void put(Shelf *f, size_t size, char fill)
+{
+    char *bytes = pool_alloc(f->pool, size);
+    memset(bytes, fill, size);
+    file_write(f->object, bytes, size);
+}
+
+static int64_t size_of(const char *path)
+{
+    struct stat is;
+    return stat(path, &is) ? -1 : (int64_t)is.st_size;
+}
+
+static void test_keys(void **state)
+{
+    Shelf *f = *state;
+    const char *a = cache_key(f->pool, (const char *[]){"ab", "c", NULL});
+    assert_int_equal(strlen(a), 32);
+    assert_string_equal(a, cache_key(f->pool, (const char *[]){"ab", "c", NULL}));
+    assert_string_not_equal(a, cache_key(f->pool, (const char *[]){"a", "bc", NULL}));
+    assert_string_not_equal(a, cache_key(f->pool, (const char *[]){"ab", "d", NULL}));
+}
+
+static void test_kept_is_found(void **state)
+{
+    Shelf *f = *state;
+    const char *folder = cache_folder(f->pool);
+    assert_string_equal(folder, f->folder);
+    put(f, 1000, 'x');
+    assert_null(cache_find(f->pool, folder, "one"));
+    assert_true(cache_keep(f->pool, folder, "one", f->object, CACHE_MOST));
+    const char *path = cache_find(f->pool, folder, "one");
+    assert_non_null(path);
+    size_t size;
+    const char *bytes = file_read(f->pool, path, &size);
+    assert_true(size > 1000 && bytes[0] == 'x' && bytes[999] == 'x');
+    assert_null(cache_find(f->pool, folder, "two"));
+    assert_false(cache_keep(f->pool, folder, "two", "/nonexistent/object", CACHE_MOST));
+}
+
+/* Every truncation and every changed byte is noticed; a damaged object is gone afterwards. */
+static void test_damage(void **state)
+{
+    Shelf *f = *state;
+    const char *folder = cache_folder(f->pool);
+    put(f, 64, 'x');
+    assert_true(cache_keep(f->pool, folder, "one", f->object, CACHE_MOST));
+    const char *path = cache_find(f->pool, folder, "one");
+    size_t size;
+    char *bytes = file_read(f->pool, path, &size);
+    for (size_t kept = 0; kept < size; ++kept) {
+        file_write(path, bytes, kept);
+        assert_null(cache_find(f->pool, folder, "one"));
+        assert_int_equal(size_of(path), -1);
+    }
+    for (size_t i = 0; i < size; ++i) {
+        bytes[i] ^= 1;
+        file_write(path, bytes, size);
+        assert_null(cache_find(f->pool, folder, "one"));
+        bytes[i] ^= 1;
+    }
+    file_write(path, bytes, size);
+    assert_non_null(cache_find(f->pool, folder, "one"));
+}
+
+static void test_limit(void **state)
+{
+    Shelf *f = *state;
+    const char *folder = cache_folder(f->pool);
+    const struct timespec moment = {0, 20000000};
+    put(f, 1000, 'x');
+    for (int i = 0; i < 5; ++i) {
+        assert_true(cache_keep(f->pool, folder, pool_print(f->pool, "key%d", i), f->object, 3500));
+        nanosleep(&moment, NULL);
+        /* the first is used all along and so stays */
+        assert_non_null(cache_find(f->pool, folder, "key0"));
+        nanosleep(&moment, NULL);
+    }
+    assert_null(cache_find(f->pool, folder, "key1"));
+    assert_null(cache_find(f->pool, folder, "key2"));
+    assert_non_null(cache_find(f->pool, folder, "key3"));
+    assert_non_null(cache_find(f->pool, folder, "key4"));
+    setenv("GICGEN_CACHE_SIZE", "7", 1);
+    assert_int_equal(cache_limit(), 7 << 20);
+    setenv("GICGEN_CACHE_SIZE", "much", 1);
+    assert_int_equal(cache_limit(), CACHE_MOST);
+    unsetenv("GICGEN_CACHE_SIZE");
+}
+
+/* Processes that keep the same and other objects at once, some of them killed on the way: nothing half is ever found.
+ */
+static void test_processes(void **state)
+{
+    enum { PROCESSES = 8, ROUNDS = 40 };
+    Shelf *f = *state;
+    const char *folder = cache_folder(f->pool);
+    pid_t child[PROCESSES];
+    put(f, 200000, 'x');
+    for (int p = 0; p < PROCESSES; ++p)
+        if (!(child[p] = fork())) {
+            for (int i = 0; i < ROUNDS; ++i) {
+                const char *key = pool_print(f->pool, "key%d", i % 4);
+                cache_keep(f->pool, folder, key, f->object, 500000);
+                const char *path = cache_find(f->pool, folder, key);
+                size_t size = 0;
+                const char *bytes = path && !access(path, R_OK) ? file_read(f->pool, path, &size) : NULL;
+                if (bytes && (size < 200000 || bytes[0] != 'x' || bytes[199999] != 'x'))
+                    _exit(1);
+            }
+            _exit(0);
+        }
+    const struct timespec moment = {0, 30000000};
+    nanosleep(&moment, NULL);
+    kill(child[0], SIGKILL);
+    kill(child[1], SIGKILL);
+    for (int p = 0; p < PROCESSES; ++p) {
+        int status;
+        waitpid(child[p], &status, 0);
+        assert_true(p < 2 || (WIFEXITED(status) && WEXITSTATUS(status) == 0));
+    }
+    assert_true(cache_keep(f->pool, folder, "key0", f->object, 500000));
+    assert_non_null(cache_find(f->pool, folder, "key0"));
+}
+
+static void test_unwritable(void **state)
+{
+    Shelf *f = *state;
+    setenv("GICGEN_CACHE", "", 1);
+    assert_null(cache_folder(f->pool));
+    setenv("GICGEN_CACHE", "/proc/nowhere", 1);
+    assert_null(cache_folder(f->pool));
+    put(f, 100, 'x');
+    assert_false(cache_keep(f->pool, "/proc/nowhere", "one", f->object, CACHE_MOST));
+    unsetenv("GICGEN_CACHE");
+    setenv("XDG_CACHE_HOME", f->folder, 1);
+    assert_string_equal(cache_folder(f->pool), pool_print(f->pool, "%s/gicgen", f->folder));
+    unsetenv("XDG_CACHE_HOME");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_keys, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_kept_is_found, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_damage, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_limit, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_processes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_unwritable, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
