@@ -18,7 +18,7 @@ STANDARD := -std=c11 -D_POSIX_C_SOURCE=200809L
 # no contraction: results must not depend on which multiply-add the compiler fuses
 COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -Igenerator -Iruntime $(CFLAGS) -MMD -MP
 # of host programs; gicgen needs libyaml alone, what it emits nothing
-LIBRARIES := -lyaml -lgsl -lgslcblas -lm -ldl
+LIBRARIES := -lyaml -lgsl -lgslcblas -ldmumps_seq -lklu -lm -ldl
 
 models := $(basename $(notdir $(wildcard models/*.veh)))
 generator := $(filter-out generator/main.c generator/embed.c,$(wildcard generator/*.c))
@@ -75,6 +75,9 @@ $(tested): $(generator_objects) $(runtime_objects)
 $(BUILD)/check/test_%: $(BUILD)/tests/test_%.o $(tested)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBRARIES)
+
+# it counts allocations and calls of MUMPS
+$(BUILD)/check/test_topology: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=dmumps_c
 
 # what checks the generator shares no code with it
 $(BUILD)/check/test_reference $(BUILD)/check/test_reference_mechanisms: $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
