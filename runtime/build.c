@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * From model file to callable code: generate in this process, compile in a private folder, load, tidy up. */
+ * From model file to callable code: generate in this process, compile in a private folder, load, tidy up. The folder is
+ * gone in any case; the code stays loaded until the program ends. */
 #include "gicrun.h"
 
 #include <dirent.h>
@@ -96,20 +97,20 @@ static void *compile_and_load(Pool *pool, const char *folder, const char *compil
     return library;
 }
 
-const gic_model *build_model(Pool *pool, const Model *model, Solve solve, const char *compiler)
+const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options)
 {
     Text c = {.pool = pool}, h = {.pool = pool};
-    if (!compiler[strspn(compiler, " \t")])
+    if (!options->compiler[strspn(options->compiler, " \t")])
         diag_fail(gicrun_place, "name it: --cc gcc, or set CC", "the compiler command is empty");
     const Sequence *sequence = sequence_find(pool, model);
-    generate(pool, model_assemble(pool, model, sequence), sequence, solve, NULL, "model.h", &c, &h);
+    generate(pool, model_assemble(pool, model, sequence), sequence, options->solve, NULL, "model.h", &c, &h);
 
     interrupt_hold();
     char *folder = pool_print(pool, "%s/gicrun-XXXXXX", temporary_folder());
     Failure failure = {NULL, NULL};
     void *library = NULL;
     if (mkdtemp(folder)) {
-        library = compile_and_load(pool, folder, compiler, &c, &h, &failure);
+        library = compile_and_load(pool, folder, options->compiler, &c, &h, &failure);
         remove_folder(pool, folder);
     } else {
         failure = (Failure){pool_print(pool, "can't make a folder in %s: %s", temporary_folder(), strerror(errno)),
@@ -123,22 +124,7 @@ const gic_model *build_model(Pool *pool, const Model *model, Solve solve, const 
     if (!code || code->abi_version != GIC_ABI_VERSION || code->real_size != sizeof(gic_real))
         diag_fail(gicrun_place, "does the compiler command change the number type or the target machine?",
                   "the compiled model does not fit: %s", gic_status_text(GIC_ERROR_ABI));
-    return code;
-}
-
-gic_head *instance_new(Pool *pool, const gic_model *model)
-{
-    return pool_alloc(pool, model->size);
-}
-
-double *instance_array(gic_head *self, size_t offset)
-{
-    return (double *)(void *)((char *)self + offset);
-}
-
-const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status)
-{
-    if (self->subset < 0 || self->subset >= model->subset_count)
-        return gic_status_text(status);
-    return pool_print(pool, "%s: subset '%s'", gic_status_text(status), model->subset_name[self->subset]);
+    Engine *engine = pool_alloc(pool, sizeof *engine);
+    *engine = (Engine){.name = "cc", .code = code};
+    return engine;
 }

@@ -31,9 +31,15 @@ typedef struct Engine {
 /* The engines' names, ended by NULL; the first is the default. */
 extern const char *const engine_name[];
 bool engine_known(const char *name);
-/* Open an engine, one of engine_name, for a model. compiler: command, perhaps with options, for those that compile.
- * Every failure ends in diag_fail. */
-const Engine *engine_open(Pool *pool, const char *name, const Model *model, const char *compiler);
+
+/* For those engines that generate or compile. compiler: command, perhaps with options. */
+typedef struct EngineOptions {
+    Solve solve;
+    const char *compiler;
+} EngineOptions;
+
+/* Open an engine, one of engine_name, for a model. Every failure ends in diag_fail. */
+const Engine *engine_open(Pool *pool, const char *name, const Model *model, const EngineOptions *options);
 
 /* Memory for one instance, not set up. It may be copied byte by byte. */
 gic_head *instance_new(Pool *pool, const Engine *engine);
@@ -45,8 +51,8 @@ double *instance_array(gic_head *self, size_t offset);
 /* ---- one function for each engine that is not in a file of its own name ------------------------------------------- */
 
 /* build.c: generated code, compiled and loaded. */
-const Engine *engine_cc(Pool *pool, const Model *model, const char *compiler);
+const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
 /* engine_gic.c: the method of Serban and Haug 2000, interpreted. */
-const Engine *engine_gic(Pool *pool, const Model *model, const char *compiler);
+const Engine *engine_gic(Pool *pool, const Model *model, const EngineOptions *options);
 
 #endif

@@ -122,11 +122,12 @@ static void write_row(Pool *pool, const gic_model *model, Csv *csv, const gic_he
     csv_end_row(csv);
 }
 
-void evaluate(Pool *pool, const gic_model *model, const Scene *scene, const Request *request)
+void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request)
 {
+    const gic_model *model = engine->code;
     const States *table = csv_read(pool, request->states);
     const Columns columns = find_columns(pool, model, table);
-    gic_head *self = instance_new(pool, model);
+    gic_head *self = instance_new(pool, engine);
     double *state = instance_array(self, model->state_offset), *input = instance_array(self, model->input_offset);
     const double *output = instance_array(self, model->output_offset);
     double *rate = pool_alloc(pool, sizeof *rate * (size_t)(model->slow_count + model->fast_count + 1));

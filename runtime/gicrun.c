@@ -23,6 +23,8 @@ static const char help[] =
     "                     of the scene's\n"
     "      --tolerance NUMBER\n"
     "                     of variable steps instead of the scene's\n"
+    "      --engine NAME  how the model is computed: cc, generated code (default); gic, the\n"
+    "                     same method interpreted, which needs no compiler\n"
     "      --solve FORM   of the equations of motion: reduced (default) or augmented\n"
     "      --cc COMMAND   C compiler; default: $CC or cc\n"
     "  -q, --quiet        neither progress nor summary\n"
@@ -54,15 +56,27 @@ static double read_tolerance(const char *word)
     return value;
 }
 
+static const char *read_engine(const char *name)
+{
+    if (engine_known(name))
+        return name;
+    fprintf(stderr, "gicrun: error: there is no engine '%s'\n  remedy: one of", name);
+    for (int i = 0; engine_name[i]; ++i)
+        fprintf(stderr, "%s %s", i ? "," : "", engine_name[i]);
+    fputs("\n", stderr);
+    exit(2);
+}
+
 static Request read_command_line(int count, char **word)
 {
-    enum { PLOT = 256, EVAL, SOLVE, COMPILER, INTEGRATOR, TOLERANCE, VERSION };
+    enum { PLOT = 256, EVAL, ENGINE, SOLVE, COMPILER, INTEGRATOR, TOLERANCE, VERSION };
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
         {"plot", required_argument, NULL, PLOT},
         {"eval", required_argument, NULL, EVAL},
         {"integrator", required_argument, NULL, INTEGRATOR},
         {"tolerance", required_argument, NULL, TOLERANCE},
+        {"engine", required_argument, NULL, ENGINE},
         {"solve", required_argument, NULL, SOLVE},
         {"cc", required_argument, NULL, COMPILER},
         {"quiet", no_argument, NULL, 'q'},
@@ -70,7 +84,7 @@ static Request read_command_line(int count, char **word)
         {"version", no_argument, NULL, VERSION},
         {NULL, 0, NULL, 0},
     };
-    Request request = {.compiler = default_compiler()};
+    Request request = {.engine = engine_name[0], .compiler = default_compiler()};
     for (int option; (option = getopt_long(count, word, "o:qh", options, NULL)) != -1;)
         switch (option) {
         case 'o': request.results = optarg; break;
@@ -78,6 +92,7 @@ static Request read_command_line(int count, char **word)
         case EVAL: request.states = optarg; break;
         case INTEGRATOR: request.integrator = optarg; break;
         case TOLERANCE: request.tolerance = read_tolerance(optarg); break;
+        case ENGINE: request.engine = read_engine(optarg); break;
         case SOLVE:
             request.solve = solve_of(optarg);
             if (request.solve == SOLVES)
@@ -118,11 +133,13 @@ int main(int count, char **word)
     const Model *model = model_read(pool, request.model);
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
-    const gic_model *code = build_model(pool, model, request.solve, request.compiler);
+    const Engine *engine =
+        engine_open(pool, request.engine, model,
+                    &(EngineOptions){.solve = request.solve, .compiler = request.compiler});
     if (request.states)
-        evaluate(pool, code, scene, &request);
+        evaluate(pool, engine, scene, &request);
     else
-        simulate(pool, code, scene, &request);
+        simulate(pool, engine, scene, &request);
     pool_free(pool);
     return 0;
 }

@@ -5,8 +5,7 @@
 #ifndef GICRUN_H
 #define GICRUN_H
 
-#include "../generator/gicgen.h"
-#include "gic_runtime.h"
+#include "engine.h"
 #include "variable.h"
 
 /* ---- gicrun.c: the command line ------------------------------------------------------------------------ */
@@ -17,6 +16,7 @@ typedef struct Request {
     const char *states;         /* --eval, or NULL */
     const char *results;        /* "-": standard output; NULL: none */
     const char *picture;        /* NULL: none */
+    const char *engine;         /* one of engine_name */
     Solve solve;
     const char *compiler;       /* command, perhaps with options */
     const char *integrator;     /* instead of the scene's, or NULL */
@@ -43,18 +43,6 @@ int process_run(Pool *pool, char *const argv[], const char *input, const char **
 
 /* $TMPDIR or /tmp. */
 const char *temporary_folder(void);
-
-/* ---- build.c: from model file to callable code ---------------------------------------------------------- */
-
-/* Generate, compile and load. Every failure ends in diag_fail; the temporary folder is gone in any case. The code stays
- * loaded until the program ends. */
-const gic_model *build_model(Pool *pool, const Model *model, Solve solve, const char *compiler);
-/* Memory for one instance, not set up. */
-gic_head *instance_new(Pool *pool, const gic_model *model);
-/* "status text" or "status text: subset 'name'" of the last call. */
-const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status);
-/* An array of the instance at one of the descriptor's offsets. */
-double *instance_array(gic_head *self, size_t offset);
 
 /* ---- scene.c, scene_road.c: what the vehicle does and where; models/SCENE.md ---------------------------- */
 
@@ -157,8 +145,8 @@ int scene_start(const gic_model *model, const Scene *scene, gic_head *self);
 /* One step of a scene: a constant one, or where `variable` is given one towards `end` that stops at kinks of inputs. */
 int scene_step(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end);
 /* Run a scene: results, picture, summary. A failure on the way keeps what was computed and ends in diag_fail. */
-void simulate(Pool *pool, const gic_model *model, const Scene *scene, const Request *request);
+void simulate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);
 /* Evaluate rows of states (--eval). scene may be NULL; only its road is used. */
-void evaluate(Pool *pool, const gic_model *model, const Scene *scene, const Request *request);
+void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);
 
 #endif

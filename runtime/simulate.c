@@ -249,12 +249,13 @@ static int run_all(Run *run, const gic_head **failed)
     return GIC_OK;
 }
 
-void simulate(Pool *pool, const gic_model *model, const Scene *scene, const Request *request)
+void simulate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request)
 {
+    const gic_model *model = engine->code;
     const Place at = {scene->source, 0, 0};
     Run run = {.pool = pool, .model = model, .scene = scene, .request = request};
-    run.self = instance_new(pool, model);
-    run.copy = instance_new(pool, model);
+    run.self = instance_new(pool, engine);
+    run.copy = instance_new(pool, engine);
     int status = scene_start(model, scene, run.self);
     if (status != GIC_OK)
         diag_fail(at, NULL, "the model can't be set up: %s", instance_status(pool, model, run.self, status));

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: MIT
+ * Applied forces (FORMAT.md sections 6 to 8) as a force at the centre of mass and a torque about it, body by body. */
+#include "world.h"
+
+#include "small.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A point of a body, or of ground: arm from the centre of mass, place and velocity. */
+typedef struct Point {
+    int body;
+    double arm[3], r[3], v[3];
+} Point;
+
+static inline Point point_at(const World *world, int body, const double s[3])
+{
+    Point p = {.body = body};
+    if (body == BODY_GROUND) {
+        copy3(s, p.r);
+        return p;
+    }
+    const Pose *pose = &world->pose[body];
+    const Twist *twist = &world->twist[body];
+    double local[3], rate[3];
+    sub3(s, world->model->body[body].com, local);
+    apply3(pose->A, local, p.arm);
+    add3(pose->r, p.arm, p.r);
+    cross3(twist->omega, p.arm, rate);
+    add3(twist->v, rate, p.v);
+    return p;
+}
+
+static inline void push(World *world, const Point *point, const double F[3])
+{
+    if (point->body == BODY_GROUND)
+        return;
+    double torque[3], *wrench = world->wrench[point->body];
+    cross3(point->arm, F, torque);
+    add3(wrench, F, wrench);
+    add3(wrench + 3, torque, wrench + 3);
+}
+
+/* ---- laws --------------------------------------------------------------------------------------------------------- */
+
+static double law_at(const World *world, const Law *law, const double *local);
+
+static double call_at(const World *world, const Law *law, const double *local)
+{
+    const double a = law_at(world, law->arg[0], local), b = law->arg[1] ? law_at(world, law->arg[1], local) : 0;
+    switch ((Op)law->call) {
+    case OP_NEG: return -a;
+    case OP_ADD: return a + b;
+    case OP_SUB: return a - b;
+    case OP_MUL: return a * b;
+    case OP_DIV: return a / b;
+    case OP_SQRT: return sqrt(a);
+    case OP_ABS: return fabs(a);
+    case OP_SIN: return sin(a);
+    case OP_COS: return cos(a);
+    case OP_TAN: return tan(a);
+    case OP_ASIN: return asin(a);
+    case OP_ACOS: return acos(a);
+    case OP_ATAN: return atan(a);
+    case OP_EXP: return exp(a);
+    case OP_LOG: return log(a);
+    case OP_TANH: return tanh(a);
+    case OP_POW: return pow(a, b);
+    case OP_ATAN2: return atan2(a, b);
+    case OP_MIN: return a < b ? a : b;
+    case OP_MAX: return a > b ? a : b;
+    default: return a > 0 ? b : law_at(world, law->arg[2], local); /* OP_POSITIVE */
+    }
+}
+
+static double table_at(const Table *table, double x)
+{
+    const gic_table t = {table->x, table->y, table->slope, table->count, table->cubic, table->onward};
+    return gic_table_value(&t, x);
+}
+
+/* local: what the place of the formula offers. */
+static double law_at(const World *world, const Law *law, const double *local)
+{
+    switch (law->op) {
+    case LAW_NUMBER: return law->number;
+    case LAW_PARAMETER: {
+        const Parameter *parameter = &world->model->parameter[law->index];
+        return parameter->tunable ? world->parameter[parameter->index] : parameter->value;
+    }
+    case LAW_INPUT: return world->input[law->index];
+    case LAW_VALUE: return world->x[law->index];
+    case LAW_RATE: return world->xd[law->index];
+    case LAW_TIME: return world->time;
+    case LAW_LOCAL: return local[law->index];
+    case LAW_TABLE: return table_at(&world->model->table[law->index], law_at(world, law->arg[0], local));
+    default: return call_at(world, law, local);
+    }
+}
+
+/* ---- elements ----------------------------------------------------------------------------------------------------- */
+
+/* Tension of a spring and damper in parallel. */
+static double spring_damper(World *world, const Force *force, double value, double rate)
+{
+    const double extension = value - law_at(world, force->free, NULL);
+    const double elastic = law_at(world, force->stiffness, NULL) * extension;
+    world->potential += 0.5 * elastic * extension;
+    return elastic + law_at(world, force->damping, NULL) * rate;
+}
+
+static void add_along(World *world, int index)
+{
+    const Force *force = &world->model->force[index];
+    const int w = force->coordinate;
+    const double Q = force->type == FORCE_COORDINATE ? -spring_damper(world, force, world->x[w], world->xd[w])
+                                                     : law_at(world, force->law[0], NULL);
+    world->element[index] = Q;
+    world->along[w] += Q;
+}
+
+static void add_between(World *world, int index)
+{
+    const Force *force = &world->model->force[index];
+    const Point a = point_at(world, force->body[0], force->point[0]),
+                b = point_at(world, force->body[1], force->point[1]);
+    double d[3], rate[3], F[3];
+    sub3(b.r, a.r, d);
+    sub3(b.v, a.v, rate);
+    const double length = sqrt(dot3(d, d)), speed = dot3(d, rate) / length;
+    const double tension = force->type == FORCE_POINTS
+                               ? spring_damper(world, force, length, speed)
+                               : law_at(world, force->law[0], (const double[FORCE_LOCALS]){length, speed});
+    world->element[index] = tension;
+    for (int i = 0; i < 3; ++i)
+        F[i] = tension / length * d[i];
+    push(world, &a, F);
+    for (int i = 0; i < 3; ++i)
+        F[i] = -F[i];
+    push(world, &b, F);
+}
+
+/* Force and torque, components in the frame of body `in`. */
+static void add_load(World *world, int body, int in, const double at[3], const double load[6])
+{
+    const Point point = point_at(world, body, at);
+    double F[3], T[3], *wrench = world->wrench[body];
+    if (in == BODY_GROUND) {
+        copy3(load, F);
+        copy3(load + 3, T);
+    } else {
+        apply3(world->pose[in].A, load, F);
+        apply3(world->pose[in].A, load + 3, T);
+    }
+    push(world, &point, F);
+    add3(wrench + 3, T, wrench + 3);
+}
+
+static void add_force(World *world, int index)
+{
+    const Force *force = &world->model->force[index];
+    double load[6];
+    switch (force->type) {
+    case FORCE_COORDINATE:
+    case FORCE_COORDINATE_LAW: add_along(world, index); break;
+    case FORCE_POINTS:
+    case FORCE_POINTS_LAW: add_between(world, index); break;
+    default:
+        for (int i = 0; i < 6; ++i)
+            load[i] = force->law[i] ? law_at(world, force->law[i], NULL) : 0;
+        add_load(world, force->body[0], force->body[1], force->point[0], load);
+    }
+}
+
+static int add_wheel(World *world, int index)
+{
+    const Wheel *wheel = &world->model->wheel[index];
+    const Point center = point_at(world, wheel->body, wheel->center);
+    double road[3] = {0, 0, 0};
+    if (world->road)
+        world->road->height(world->road, world->lane, world->time, center.r[0], center.r[1], road);
+    if (!gic_finite(road, 3))
+        return GIC_ERROR_ROAD;
+    const double deflection = wheel->radius + road[0] - center.r[2];
+    const double rate = road[1] * center.v[0] + road[2] * center.v[1] - center.v[2];
+    double fz = 0;
+    if (deflection > 0) {
+        const double s = fmin(deflection / wheel->fade, 1);
+        fz = fmax(0, wheel->stiffness * deflection + wheel->damping * s * s * (3 - 2 * s) * rate);
+    }
+    push(world, &center, (const double[3]){0, 0, fz});
+    double *out = world->wheel[index];
+    out[0] = fz;
+    out[1] = deflection;
+    out[2] = rate;
+    out[3] = road[0];
+    return GIC_OK;
+}
+
+void world_inertia(const World *world, int body, double out[9])
+{
+    const double *A = world->pose[body].A, *J = world->model->body[body].inertia;
+    double AJ[9];
+    for (int i = 0; i < 9; i += 3) {
+        AJ[i] = A[i] * J[0] + A[i + 1] * J[3] + A[i + 2] * J[4];
+        AJ[i + 1] = A[i] * J[3] + A[i + 1] * J[1] + A[i + 2] * J[5];
+        AJ[i + 2] = A[i] * J[4] + A[i + 1] * J[5] + A[i + 2] * J[2];
+    }
+    for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j)
+            out[3 * i + j] = out[3 * j + i] = dot3(AJ + 3 * i, A + 3 * j);
+}
+
+/* Gravity, and the gyroscopic torque -omega x J omega. */
+static void start_wrench(World *world, int body)
+{
+    const Body *b = &world->model->body[body];
+    const double *J = b->inertia;
+    double *wrench = world->wrench[body], local[3], torque[3];
+    apply3_transposed(world->pose[body].A, world->twist[body].omega, local);
+    const double momentum[3] = {J[0] * local[0] + J[3] * local[1] + J[4] * local[2],
+                                J[3] * local[0] + J[1] * local[1] + J[5] * local[2],
+                                J[4] * local[0] + J[5] * local[1] + J[2] * local[2]};
+    cross3(momentum, local, torque);
+    apply3(world->pose[body].A, torque, wrench + 3);
+    for (int i = 0; i < 3; ++i)
+        wrench[i] = b->mass * world->model->gravity[i];
+}
+
+int world_forces(World *world)
+{
+    const Model *model = world->model;
+    for (int b = 0; b < world->bodies; ++b)
+        start_wrench(world, b);
+    memset(world->along, 0, (size_t)model->coordinates * sizeof *world->along);
+    world->potential = 0;
+    for (int i = 0; i < model->forces; ++i)
+        add_force(world, i);
+    for (int i = 0; i < model->ports; ++i) {
+        const Port *port = &model->port[i];
+        add_load(world, port->body, port->in, port->point, world->port + 6 * i);
+    }
+    for (int i = 0; i < model->wheels; ++i) {
+        const int status = add_wheel(world, i);
+        if (status != GIC_OK)
+            return status;
+    }
+    return GIC_OK;
+}
+
+void world_spread(World *world)
+{
+    for (int c = 0; c < world->model->coordinates; ++c) {
+        if (world->along[c] == 0)
+            continue;
+        /* the multiplier of Psi: Psi_w^T multiplier = along */
+        const Tie *tie = &world->tie[world->model->joints + c];
+        const double *J = world->J[tie->first], multiplier = world->along[c] / world->dual[c];
+        for (int end = 0; end < 2; ++end)
+            for (int i = 0; i < 6; ++i)
+                world->wrench[tie->body[end]][i] -= multiplier * J[6 * end + i];
+    }
+}

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT
+ * The engines by name, and instances of any of them. */
+#include "engine.h"
+
+#include "interpreted.h"
+
+#include <string.h>
+
+typedef const Engine *Open(Pool *pool, const Model *model, const EngineOptions *options);
+
+const char *const engine_name[] = {"cc", "gic", NULL};
+
+static Open *const engine_opener[] = {engine_cc, engine_gic};
+
+static int engine_index(const char *name)
+{
+    for (int i = 0; engine_name[i]; ++i)
+        if (!strcmp(engine_name[i], name))
+            return i;
+    return -1;
+}
+
+bool engine_known(const char *name)
+{
+    return engine_index(name) >= 0;
+}
+
+const Engine *engine_open(Pool *pool, const char *name, const Model *model, const EngineOptions *options)
+{
+    return engine_opener[engine_index(name)](pool, model, options);
+}
+
+gic_head *instance_new(Pool *pool, const Engine *engine)
+{
+    gic_head *self = pool_alloc(pool, engine->code->size);
+    if (engine->context)
+        ((Instance *)(void *)self)->context = engine->context;
+    return self;
+}
+
+double *instance_array(gic_head *self, size_t offset)
+{
+    return (double *)(void *)((char *)self + offset);
+}
+
+const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status)
+{
+    if (self->subset < 0 || self->subset >= model->subset_count)
+        return gic_status_text(status);
+    return pool_print(pool, "%s: subset '%s'", gic_status_text(status), model->subset_name[self->subset]);
+}
