@@ -20,14 +20,12 @@ static inline Point point_at(const World *world, int body, const double s[3])
         copy3(s, p.r);
         return p;
     }
-    const Pose *pose = &world->pose[body];
-    const Twist *twist = &world->twist[body];
     double local[3], rate[3];
     sub3(s, world->model->body[body].com, local);
-    apply3(pose->A, local, p.arm);
-    add3(pose->r, p.arm, p.r);
-    cross3(twist->omega, p.arm, rate);
-    add3(twist->v, rate, p.v);
+    apply3(world->A[body], local, p.arm);
+    add3(world->q[body], p.arm, p.r);
+    cross3(world->omega[body], p.arm, rate);
+    add3(world->qd[body], rate, p.v);
     return p;
 }
 
@@ -149,8 +147,8 @@ static void add_load(World *world, int body, int in, const double at[3], const d
         copy3(load, F);
         copy3(load + 3, T);
     } else {
-        apply3(world->pose[in].A, load, F);
-        apply3(world->pose[in].A, load + 3, T);
+        apply3(world->A[in], load, F);
+        apply3(world->A[in], load + 3, T);
     }
     push(world, &point, F);
     add3(wrench + 3, T, wrench + 3);
@@ -197,41 +195,15 @@ static int add_wheel(World *world, int index)
     return GIC_OK;
 }
 
-void world_inertia(const World *world, int body, double out[9])
-{
-    const double *A = world->pose[body].A, *J = world->model->body[body].inertia;
-    double AJ[9];
-    for (int i = 0; i < 9; i += 3) {
-        AJ[i] = A[i] * J[0] + A[i + 1] * J[3] + A[i + 2] * J[4];
-        AJ[i + 1] = A[i] * J[3] + A[i + 1] * J[1] + A[i + 2] * J[5];
-        AJ[i + 2] = A[i] * J[4] + A[i + 1] * J[5] + A[i + 2] * J[2];
-    }
-    for (int i = 0; i < 3; ++i)
-        for (int j = i; j < 3; ++j)
-            out[3 * i + j] = out[3 * j + i] = dot3(AJ + 3 * i, A + 3 * j);
-}
-
-/* Gravity, and the gyroscopic torque -omega x J omega. */
-static void start_wrench(World *world, int body)
-{
-    const Body *b = &world->model->body[body];
-    const double *J = b->inertia;
-    double *wrench = world->wrench[body], local[3], torque[3];
-    apply3_transposed(world->pose[body].A, world->twist[body].omega, local);
-    const double momentum[3] = {J[0] * local[0] + J[3] * local[1] + J[4] * local[2],
-                                J[3] * local[0] + J[1] * local[1] + J[5] * local[2],
-                                J[4] * local[0] + J[5] * local[1] + J[2] * local[2]};
-    cross3(momentum, local, torque);
-    apply3(world->pose[body].A, torque, wrench + 3);
-    for (int i = 0; i < 3; ++i)
-        wrench[i] = b->mass * world->model->gravity[i];
-}
-
 int world_forces(World *world)
 {
     const Model *model = world->model;
-    for (int b = 0; b < world->bodies; ++b)
-        start_wrench(world, b);
+    for (int b = 0; b < world->bodies; ++b) {
+        for (int i = 0; i < 3; ++i) {
+            world->wrench[b][i] = model->body[b].mass * model->gravity[i];
+            world->wrench[b][3 + i] = 0;
+        }
+    }
     memset(world->along, 0, (size_t)model->coordinates * sizeof *world->along);
     world->potential = 0;
     for (int i = 0; i < model->forces; ++i)
@@ -254,10 +226,13 @@ void world_spread(World *world)
         if (world->along[c] == 0)
             continue;
         /* the multiplier of Psi: Psi_w^T multiplier = along */
-        const Tie *tie = &world->tie[world->model->joints + c];
-        const double *J = world->J[tie->first], multiplier = world->along[c] / world->dual[c];
-        for (int end = 0; end < 2; ++end)
-            for (int i = 0; i < 6; ++i)
-                world->wrench[tie->body[end]][i] -= multiplier * J[6 * end + i];
+        const Tie *tie = &world->tie[world->coordinate_tie[c]];
+        const double *J = world->J + ROW_J * tie->first, multiplier = world->along[c] / world->dual[c];
+        for (int end = 0; end < 2; ++end, J += BODY_Q) {
+            double *wrench = world->wrench[tie->body[end]], torque[3];
+            add_scaled3(-multiplier, J, wrench);
+            euler_turn(world->q[tie->body[end]] + 3, J + 3, torque); /* the p part is 2 E^T torque */
+            add_scaled3(-0.5 * multiplier, torque, wrench + 3);
+        }
     }
 }

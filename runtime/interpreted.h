@@ -17,31 +17,33 @@ typedef struct Instance {
 typedef struct Interpreted {
     gic_model code; /* an engine may replace what differs */
     World *world;
-    EngineProfile profile;
-    size_t own_offset; /* bytes */
-    /* start: `own` after setup, the instance's state, inputs and parameters being at their defaults. evaluate: the
-     * World at a state (poses, twists, forces, accelerations, x, xd, xdd) and rate[] of the state; both return a status
-     * and may set head.subset. On another status than GIC_OK what the engine remembers is what it was before, or a step
-     * on the way to the new state. The World is loaded with the instance's inputs. */
+    EngineProfile *profile;
+    size_t own_offset;                            /* bytes */
+    int *coordinate_state;                        /* [coordinates] index of w in the state; -1: driven */
+    /* start: the engine's numbers at setup, where `state`, `input` and `parameter` of the instance have their initial
+     * values. evaluate: World and rate[] at a state, for which the instance's inputs are loaded. Both return a status and
+     * may set head.subset. What the engine remembers changes only to what is good at some configuration on the way. */
     int (*start)(const struct Interpreted *context, Instance *self);
-    int (*evaluate)(const struct Interpreted *context, Instance *self, double time, const double *state, double *rate);
+    int (*evaluate)(const struct Interpreted *context, Instance *self, const double *state, double *rate);
     void *engine; /* the engine's own constants and scratch */
 } Interpreted;
 
-/* A context with descriptor for an assembled model; `own`: how many numbers of its own an instance has. */
+/* A context with descriptor for an assembled model. own: how many numbers of its own an instance has. */
 Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *sequence, size_t own);
-const Engine *interpreted_engine(Pool *pool, const char *name, Interpreted *context);
-double *instance_own(Instance *self);
+const Engine *interpreted_engine(Pool *pool, const char *name, const Interpreted *context);
+double *instance_own(const Instance *self);
 
-/* For `evaluate`: Euler parameters of the base with the dependent one recovered; 1, 0, 0, 0 of a fixed base. */
+/* For `evaluate`. orient: Euler parameters of the base with the dependent one recovered; 1, 0, 0, 0 of a fixed base. */
 int interpreted_orient(const Instance *self, const double *state, double e[4]);
-/* x and xd of all coordinates (and xdd of driven ones) from state and inputs. */
+/* x, xd and, of driven coordinates, xdd from state and inputs. */
 void interpreted_gather(const Interpreted *context, const double *state);
-/* Forces, equations and accelerations at the World's configuration, J and vectors of all ties being there; then rate[].
- * Fills rows A to C of the profile. */
+/* Base of the World from the state. */
+void interpreted_place_base(const Interpreted *context, const double *state, const double e[4]);
+/* Forces and accelerations at the World's configuration, for which J, dual and vectors of all ties are there; then
+ * rate[]. Rows A to C of the profile. */
 int interpreted_accelerate(const Interpreted *context, const double *state, const double e[4], double *rate);
 
-/* s, CPU-independent; 0 while the profile is off. */
+/* The time, s; 0 while the profile is off. */
 double profile_clock(const EngineProfile *profile);
 
 #endif

@@ -54,7 +54,6 @@ static Tie tie_of_joint(const Model *model, int index)
                .coordinate = -1,
                .rows = joint_equations[joint->type],
                .parts = parts_of_joint[joint->type],
-               .constraint = true,
                .length = joint->length,
                .offset = joint->offset};
     if (tie.parts & (PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG))
@@ -75,7 +74,6 @@ static Tie tie_of_coordinate(const Model *model, int index)
                .coordinate = index,
                .rows = 1,
                .parts = parts_of_coordinate[coordinate->type],
-               .constraint = coordinate->driven,
                .offset = coordinate->design - (translation ? coordinate->offset : 0)};
     if (tie.parts != PART_TURN)
         set_arms(model, &tie, coordinate->point);
@@ -90,65 +88,87 @@ static void set_design(World *world)
 {
     for (int b = 0; b < world->bodies; ++b) {
         const Body *body = &world->model->body[b];
-        double A[9], *q = world->q_design + BODY_Q * b;
+        double A[9], *q = world->q_design[b];
         mat_from_euler(body->euler, A);
         apply3(A, body->com, q);
         add3(q, body->position, q);
         memcpy(q + 3, body->euler, sizeof body->euler);
-        pose_set(&world->pose[b], q);
+        world_set_q(world, b, q);
     }
+}
+
+static void add_tie(World *world, Tie *ties, Tie tie)
+{
+    tie.first = world->rows;
+    world->rows += tie.rows;
+    for (int end = 0; end < 2; ++end)
+        if (tie.body[end] >= world->first)
+            world->size = fmax(world->size, sqrt(dot3(tie.arm[end], tie.arm[end])));
+    if (tie.coordinate >= 0)
+        world->coordinate_tie[tie.coordinate] = world->ties;
+    ties[world->ties++] = tie;
+}
+
+/* Joints, driven coordinates, free ones. */
+static void make_ties(Pool *pool, World *world)
+{
+    const Model *model = world->model;
+    Tie *tie = pool_alloc(pool, (size_t)(model->joints + model->coordinates + 1) * sizeof *tie);
+    for (int i = 0; i < model->joints; ++i)
+        add_tie(world, tie, tie_of_joint(model, i));
+    for (int driven = 1; driven >= 0; --driven) {
+        for (int i = 0; i < model->coordinates; ++i)
+            if (model->coordinate[i].driven == driven)
+                add_tie(world, tie, tie_of_coordinate(model, i));
+        if (driven) {
+            world->constraints = world->ties;
+            world->constraint_rows = world->rows;
+        }
+    }
+    world->tie = tie;
 }
 
 World *world_new(Pool *pool, const Model *model, const Sequence *sequence)
 {
     World *world = pool_alloc(pool, sizeof *world);
-    const size_t bodies = (size_t)model->bodies, ties = (size_t)(model->joints + model->coordinates),
-                 coordinates = (size_t)model->coordinates + 1;
-    Tie *tie = pool_alloc(pool, (ties + 1) * sizeof *tie);
+    const size_t bodies = (size_t)model->bodies, coordinates = (size_t)model->coordinates + 1, number = sizeof(double);
     *world = (World){.model = model,
                      .sequence = sequence,
                      .bodies = model->bodies,
                      .first = model->free_base ? 0 : 1,
-                     .ties = (int)ties,
-                     .tie = tie,
-                     .size = 0.01};
-    for (int i = 0; i < world->ties; ++i) {
-        tie[i] = i < model->joints ? tie_of_joint(model, i) : tie_of_coordinate(model, i - model->joints);
-        tie[i].first = world->rows;
-        world->rows += tie[i].rows;
-        for (int end = 0; end < 2; ++end)
-            if (tie[i].body[end] >= world->first)
-                world->size = fmax(world->size, sqrt(dot3(tie[i].arm[end], tie[i].arm[end])));
-    }
+                     .size = 0.01,
+                     .coordinate_tie = pool_alloc(pool, coordinates * sizeof *world->coordinate_tie)};
+    make_ties(pool, world);
     const size_t rows = (size_t)world->rows + 1;
-    world->q_design = pool_alloc(pool, bodies * BODY_Q * sizeof(double));
-    world->pose = pool_alloc(pool, bodies * sizeof *world->pose);
-    world->twist = pool_alloc(pool, bodies * sizeof *world->twist);
-    world->x = pool_alloc(pool, coordinates * sizeof(double));
-    world->xd = pool_alloc(pool, coordinates * sizeof(double));
-    world->xdd = pool_alloc(pool, coordinates * sizeof(double));
-    world->value = pool_alloc(pool, rows * sizeof(double));
-    world->J = pool_alloc(pool, rows * sizeof *world->J);
-    world->dual = pool_alloc(pool, coordinates * sizeof(double));
-    world->gamma = pool_alloc(pool, rows * sizeof(double));
-    world->vectors = pool_alloc(pool, (ties + 1) * sizeof *world->vectors);
+    world->q_design = pool_alloc(pool, bodies * sizeof *world->q_design);
+    world->q = pool_alloc(pool, bodies * sizeof *world->q);
+    world->A = pool_alloc(pool, bodies * sizeof *world->A);
+    world->qd = pool_alloc(pool, bodies * sizeof *world->qd);
+    world->omega = pool_alloc(pool, bodies * sizeof *world->omega);
+    world->x = pool_alloc(pool, coordinates * number);
+    world->xd = pool_alloc(pool, coordinates * number);
+    world->xdd = pool_alloc(pool, coordinates * number);
+    world->value = pool_alloc(pool, rows * number);
+    world->J = pool_alloc(pool, rows * ROW_J * number);
+    world->dual = pool_alloc(pool, coordinates * number);
+    world->gamma = pool_alloc(pool, rows * number);
+    world->vectors = pool_alloc(pool, ((size_t)world->ties + 1) * sizeof *world->vectors);
     world->wrench = pool_alloc(pool, bodies * sizeof *world->wrench);
-    world->along = pool_alloc(pool, coordinates * sizeof(double));
-    world->element = pool_alloc(pool, ((size_t)model->forces + 1) * sizeof(double));
+    world->along = pool_alloc(pool, coordinates * number);
+    world->element = pool_alloc(pool, ((size_t)model->forces + 1) * number);
     world->wheel = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *world->wheel);
-    world->acceleration = pool_alloc(pool, bodies * sizeof *world->acceleration);
-    world->multiplier = pool_alloc(pool, rows * sizeof(double));
+    world->qdd = pool_alloc(pool, bodies * sizeof *world->qdd);
+    world->alpha = pool_alloc(pool, bodies * sizeof *world->alpha);
+    world->multiplier = pool_alloc(pool, rows * number);
     set_design(world);
-    world_open_accelerator(pool, world);
+    world_set_solver(pool, world, &topology_solver);
     return world;
 }
 
 /* ---- bodies ------------------------------------------------------------------------------------------------------- */
 
-static void pose_turn(Pose *pose)
+static inline void turn_body(const double p[4], double A[9])
 {
-    const double *p = pose->p;
-    double *A = pose->A;
     const double x = 2 * p[1], y = 2 * p[2], z = 2 * p[3];
     const double wx = p[0] * x, wy = p[0] * y, wz = p[0] * z, xx = p[1] * x, yy = p[2] * y, zz = p[3] * z;
     const double xy = p[1] * y, xz = p[1] * z, yz = p[2] * z;
@@ -163,92 +183,71 @@ static void pose_turn(Pose *pose)
     A[8] = 1 - (xx + yy);
 }
 
-void pose_set(Pose *pose, const double q[BODY_Q])
+void world_set_q(World *world, int body, const double q[BODY_Q])
 {
-    memcpy(pose->r, q, sizeof pose->r);
-    memcpy(pose->p, q + 3, sizeof pose->p);
-    pose_turn(pose);
+    memcpy(world->q[body], q, sizeof world->q[body]);
+    turn_body(q + 3, world->A[body]);
 }
 
-void pose_get(const Pose *pose, double q[BODY_Q])
+void world_set_rate(World *world, int body, const double qd[BODY_Q])
 {
-    memcpy(q, pose->r, sizeof pose->r);
-    memcpy(q + 3, pose->p, sizeof pose->p);
-}
-
-void pose_move(Pose *pose, const double dq[BODY_Q])
-{
-    double *p = pose->p, square = 0;
-    add3(pose->r, dq, pose->r);
-    for (int i = 0; i < 4; ++i) {
-        p[i] += dq[3 + i];
-        square += p[i] * p[i];
-    }
-    const double scale = 1 / sqrt(square);
-    for (int i = 0; i < 4; ++i)
-        p[i] *= scale;
-    pose_turn(pose);
-}
-
-void twist_set(Twist *twist, const double p[4], const double qd[BODY_Q])
-{
-    copy3(qd, twist->v);
-    euler_turn(p, qd + 3, twist->omega);
+    memcpy(world->qd[body], qd, sizeof world->qd[body]);
+    euler_turn(world->q[body] + 3, qd + 3, world->omega[body]);
     for (int i = 0; i < 3; ++i)
-        twist->omega[i] *= 2;
+        world->omega[body][i] *= 2;
 }
 
-void twist_get(const Twist *twist, const double p[4], double qd[BODY_Q])
+void world_move(World *world, int body, const double dq[BODY_Q])
 {
-    copy3(twist->v, qd);
-    euler_rate(p, twist->omega, qd + 3);
+    double *q = world->q[body], square = 0;
+    for (int i = 0; i < BODY_Q; ++i)
+        q[i] += dq[i];
+    for (int i = 3; i < BODY_Q; ++i)
+        square += q[i] * q[i];
+    const double scale = 1 / sqrt(square);
+    for (int i = 3; i < BODY_Q; ++i)
+        q[i] *= scale;
+    turn_body(q + 3, world->A[body]);
+}
+
+void world_set_base(World *world, const double r[3], const double e[4], const double v[3], const double omega_body[3])
+{
+    double q[BODY_Q], qd[BODY_Q], A[9], arm[3], omega[3];
+    memcpy(q + 3, e, 4 * sizeof *e);
+    turn_body(e, A);
+    apply3(A, world->model->body[BODY_BASE].com, arm);
+    add3(r, arm, q);
+    world_set_q(world, BODY_BASE, q);
+    apply3(A, omega_body, omega);
+    cross3(omega, arm, qd);
+    add3(v, qd, qd);
+    euler_rate(e, omega, qd + 3);
     for (int i = 3; i < BODY_Q; ++i)
         qd[i] *= 0.5;
-}
-
-void world_columns(const double J[6], const double p[4], double out[BODY_Q])
-{
-    copy3(J, out);
-    euler_rate(p, J + 3, out + 3);
-    for (int i = 3; i < BODY_Q; ++i)
-        out[i] *= 2;
-}
-
-void world_place_base(World *world, const double r[3], const double e[4], const double v[3],
-                      const double omega_body[3])
-{
-    Pose *pose = &world->pose[BODY_BASE];
-    Twist *twist = &world->twist[BODY_BASE];
-    double arm[3], rate[3];
-    memcpy(pose->p, e, sizeof pose->p);
-    pose_turn(pose);
-    apply3(pose->A, world->model->body[BODY_BASE].com, arm);
-    add3(r, arm, pose->r);
-    apply3(pose->A, omega_body, twist->omega);
-    cross3(twist->omega, arm, rate);
-    add3(v, rate, twist->v);
+    world_set_rate(world, BODY_BASE, qd);
 }
 
 /* ---- equations ---------------------------------------------------------------------------------------------------- */
 
 static inline void find_vectors(const World *world, const Tie *tie, TieVectors *v)
 {
-    const Pose *a = &world->pose[tie->body[0]], *b = &world->pose[tie->body[1]];
+    const double *a = world->q[tie->body[0]], *b = world->q[tie->body[1]];
+    const double *Aa = world->A[tie->body[0]], *Ab = world->A[tie->body[1]];
     if (tie->parts & (PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG)) {
-        apply3(a->A, tie->arm[0], v->arm[0]);
-        apply3(b->A, tie->arm[1], v->arm[1]);
+        apply3(Aa, tie->arm[0], v->arm[0]);
+        apply3(Ab, tie->arm[1], v->arm[1]);
         for (int i = 0; i < 3; ++i)
-            v->d[i] = (b->r[i] - a->r[i]) + (v->arm[1][i] - v->arm[0][i]);
+            v->d[i] = (b[i] - a[i]) + (v->arm[1][i] - v->arm[0][i]);
     }
     if (tie->parts & (PART_PARALLEL | PART_CROSS | PART_ALONG))
-        apply3(a->A, tie->axis[0], v->axis[0]);
+        apply3(Aa, tie->axis[0], v->axis[0]);
     if (tie->parts & (PART_PARALLEL | PART_CROSS))
-        apply3(b->A, tie->axis[1], v->axis[1]);
+        apply3(Ab, tie->axis[1], v->axis[1]);
     if (tie->parts & (PART_PARALLEL | PART_LOCK | PART_LINE | PART_TURN))
         for (int i = 0; i < 2; ++i)
-            apply3(a->A, tie->side[i], v->side[i]);
+            apply3(Aa, tie->side[i], v->side[i]);
     if (tie->parts & (PART_LOCK | PART_TURN))
-        apply3(b->A, tie->other, v->other);
+        apply3(Ab, tie->other, v->other);
 }
 
 /* Length that the row of PART_LENGTH holds, and what PART_ALONG takes away. */
@@ -312,6 +311,9 @@ void world_values(World *world, int index)
     find_values(world, tie, v, world->value + tie->first);
 }
 
+/* Rows are found as derivatives by the twists (r', omega) of both bodies. */
+enum { TWISTS = 12 };
+
 static inline void negated(const double a[3], double out[3])
 {
     for (int i = 0; i < 3; ++i)
@@ -319,7 +321,7 @@ static inline void negated(const double a[3], double out[3])
 }
 
 /* Derivative of a . b, a fixed in the first body, b in the second: omega_a x a . b + a . omega_b x b. */
-static inline void row_angle(const double a[3], const double b[3], double J[ROW_J])
+static inline void row_angle(const double a[3], const double b[3], double J[TWISTS])
 {
     for (int i = 0; i < 3; ++i)
         J[i] = J[6 + i] = 0;
@@ -328,7 +330,7 @@ static inline void row_angle(const double a[3], const double b[3], double J[ROW_
 }
 
 /* Derivative of u . d, u fixed in the first body. */
-static inline void row_along(const double u[3], const TieVectors *v, double J[ROW_J])
+static inline void row_along(const double u[3], const TieVectors *v, double J[TWISTS])
 {
     double reach[3];
     negated(u, J);
@@ -338,7 +340,7 @@ static inline void row_along(const double u[3], const TieVectors *v, double J[RO
     cross3(v->arm[1], u, J + 9);
 }
 
-static inline void row_length(const TieVectors *v, double J[ROW_J])
+static inline void row_length(const TieVectors *v, double J[TWISTS])
 {
     negated(v->d, J);
     cross3(v->d, v->arm[0], J + 3);
@@ -346,7 +348,7 @@ static inline void row_length(const TieVectors *v, double J[ROW_J])
     cross3(v->arm[1], v->d, J + 9);
 }
 
-static inline void rows_point(const TieVectors *v, double (*J)[ROW_J])
+static inline void rows_point(const TieVectors *v, double (*J)[TWISTS])
 {
     const double *a = v->arm[0], *b = v->arm[1];
     memset(J, 0, 3 * sizeof *J);
@@ -361,11 +363,26 @@ static inline void rows_point(const TieVectors *v, double (*J)[ROW_J])
     }
 }
 
+/* To derivatives by q': omega = 2 E p'. */
+static inline void by_q(World *world, const Tie *tie, const double (*twist)[TWISTS])
+{
+    double *J = world->J + ROW_J * tie->first;
+    for (int end = 0; end < 2; ++end) {
+        const double *p = world->q[tie->body[end]] + 3;
+        for (int r = 0; r < tie->rows; ++r, J += BODY_Q) {
+            copy3(twist[r] + 6 * end, J);
+            euler_rate(p, twist[r] + 6 * end + 3, J + 3);
+            for (int i = 3; i < BODY_Q; ++i)
+                J[i] *= 2;
+        }
+    }
+}
+
 bool world_rows(World *world, int index)
 {
     const Tie *tie = &world->tie[index];
     TieVectors *v = &world->vectors[index];
-    double(*J)[ROW_J] = world->J + tie->first;
+    double twist[TIE_ROWS][TWISTS], (*J)[TWISTS] = twist;
     bool right = true;
     find_vectors(world, tie, v);
     find_values(world, tie, v, world->value + tie->first);
@@ -400,6 +417,7 @@ bool world_rows(World *world, int index)
         dual = -dot3(along, v->other);
         right = dual < 0;
     }
+    by_q(world, tie, (const double(*)[TWISTS])twist);
     if (tie->coordinate >= 0)
         world->dual[tie->coordinate] = dual;
     return right;
@@ -428,30 +446,31 @@ void world_gamma(World *world, int index)
 {
     const Tie *tie = &world->tie[index];
     const TieVectors *v = &world->vectors[index];
-    const Twist *ta = &world->twist[tie->body[0]], *tb = &world->twist[tie->body[1]];
+    const double *va = world->qd[tie->body[0]], *vb = world->qd[tie->body[1]];
+    const double *wa = world->omega[tie->body[0]], *wb = world->omega[tie->body[1]];
     double *gamma = world->gamma + tie->first;
     Swing d = {{0}, {0}}, axis = d, other, side[2];
     if (tie->parts & (PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG)) {
-        const Swing a = swing(ta->omega, v->arm[0]), b = swing(tb->omega, v->arm[1]);
+        const Swing a = swing(wa, v->arm[0]), b = swing(wb, v->arm[1]);
         for (int i = 0; i < 3; ++i) {
-            d.rate[i] = (tb->v[i] - ta->v[i]) + (b.rate[i] - a.rate[i]);
+            d.rate[i] = (vb[i] - va[i]) + (b.rate[i] - a.rate[i]);
             d.bias[i] = b.bias[i] - a.bias[i];
         }
     }
     if (tie->parts & (PART_PARALLEL | PART_LOCK | PART_LINE))
         for (int i = 0; i < 2; ++i)
-            side[i] = swing(ta->omega, v->side[i]);
+            side[i] = swing(wa, v->side[i]);
     if (tie->parts & PART_POINT) {
         negated(d.bias, gamma);
         gamma += 3;
     }
     if (tie->parts & PART_PARALLEL) {
-        other = swing(tb->omega, v->axis[1]);
+        other = swing(wb, v->axis[1]);
         *gamma++ = -bias_of(v->side[0], &side[0], v->axis[1], &other);
         *gamma++ = -bias_of(v->side[1], &side[1], v->axis[1], &other);
     }
     if (tie->parts & PART_LOCK) {
-        other = swing(tb->omega, v->other);
+        other = swing(wb, v->other);
         *gamma++ = -bias_of(v->side[0], &side[0], v->other, &other);
     }
     if (tie->parts & PART_LINE) {
@@ -463,38 +482,37 @@ void world_gamma(World *world, int index)
         *gamma++ = rate * rate - dot3(v->d, d.bias) - dot3(d.rate, d.rate);
     }
     if (tie->parts & (PART_ALONG | PART_CROSS))
-        axis = swing(ta->omega, v->axis[0]);
+        axis = swing(wa, v->axis[0]);
     if (tie->parts & PART_ALONG)
         *gamma++ = -bias_of(v->axis[0], &axis, v->d, &d);
     if (tie->parts & PART_CROSS) {
-        other = swing(tb->omega, v->axis[1]);
+        other = swing(wb, v->axis[1]);
         *gamma++ = -bias_of(v->axis[0], &axis, v->axis[1], &other);
     }
     if (tie->parts & PART_TURN) {
         double along[3], across[3];
         turned(world, tie, v, along, across);
-        const Swing a = swing(ta->omega, along), c = swing(ta->omega, across);
-        other = swing(tb->omega, v->other);
+        const Swing a = swing(wa, along), c = swing(wa, across);
+        other = swing(wb, v->other);
         const double rate = dot3(a.rate, v->other) + dot3(along, other.rate);
         *gamma++ = 2 * world->xd[tie->coordinate] * rate - bias_of(across, &c, v->other, &other);
     }
 }
 
-double world_product(const World *world, int index, int row, const double (*a)[6])
+double world_product(const World *world, int index, int row, const double (*x)[BODY_Q])
 {
     const Tie *tie = &world->tie[index];
-    const double *J = world->J[tie->first + row];
+    const double *J = world->J + ROW_J * tie->first + BODY_Q * row;
     double sum = 0;
-    for (int end = 0; end < 2; ++end) {
-        const double *x = a[tie->body[end]];
-        sum += dot3(J + 6 * end, x) + dot3(J + 6 * end + 3, x + 3);
-    }
+    for (int end = 0; end < 2; ++end, J += BODY_Q * tie->rows)
+        for (int i = 0; i < BODY_Q; ++i)
+            sum += J[i] * x[tie->body[end]][i];
     return sum;
 }
 
 void world_coordinate(World *world, int coordinate, double near, double out[2])
 {
-    const int index = world->model->joints + coordinate;
+    const int index = world->coordinate_tie[coordinate];
     const Tie *tie = &world->tie[index];
     TieVectors *v = &world->vectors[index];
     find_vectors(world, tie, v);
@@ -511,7 +529,7 @@ void world_coordinate(World *world, int coordinate, double near, double out[2])
     world->x[coordinate] = out[0];
     world_rows(world, index);
     world->x[coordinate] = before;
-    const double rate = world_product(world, index, 0, (const double(*)[6])world->twist);
+    const double rate = world_product(world, index, 0, (const double(*)[BODY_Q])world->qd);
     out[1] = -rate / world->dual[coordinate];
 }
 

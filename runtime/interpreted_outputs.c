@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT
+ * Outputs by name (FORMAT.md section 9), poses and self-test of a World. */
+#include "world.h"
+
+#include "small.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Motion of a point of a body, or of ground. */
+typedef struct Track {
+    double r[3], v[3], a[3];
+} Track;
+
+static Track track(const World *world, int body, const double s[3])
+{
+    Track t = {{0}, {0}, {0}};
+    if (body == BODY_GROUND) {
+        copy3(s, t.r);
+        return t;
+    }
+    double local[3], arm[3], rate[3], turn[3], swing[3];
+    sub3(s, world->model->body[body].com, local);
+    apply3(world->A[body], local, arm);
+    cross3(world->omega[body], arm, rate);
+    cross3(world->alpha[body], arm, turn);
+    cross3(world->omega[body], rate, swing);
+    add3(world->q[body], arm, t.r);
+    add3(world->qd[body], rate, t.v);
+    add3(world->qdd[body], turn, t.a);
+    add3(t.a, swing, t.a);
+    return t;
+}
+
+/* Components of a world vector in the frame that an output asks for. */
+static void express(const World *world, int in, const double vector[3], double *out)
+{
+    if (in == BODY_GROUND)
+        copy3(vector, out);
+    else
+        apply3_transposed(world->A[in], vector, out);
+}
+
+/* Euler parameters of a body, e0 >= 0 but for the base. */
+static void orientation(const World *world, int body, double *out)
+{
+    static const double level[4] = {1, 0, 0, 0};
+    const double *p = body == BODY_GROUND ? level : world->q[body] + 3;
+    const double sign = body > BODY_BASE && p[0] < 0 ? -1 : 1;
+    for (int i = 0; i < 4; ++i)
+        out[i] = sign * p[i];
+}
+
+static void attitude(const World *world, int body, double *out)
+{
+    static const double level[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const double *A = body == BODY_GROUND ? level : world->A[body];
+    out[0] = atan2(A[7], A[8]);
+    out[1] = asin(fmin(fmax(-A[6], -1), 1));
+    out[2] = atan2(A[3], A[0]);
+}
+
+static void angular_momentum(const World *world, int body, const double rate[3], double out[3])
+{
+    const double *J = world->model->body[body].inertia;
+    double local[3];
+    apply3_transposed(world->A[body], rate, local);
+    apply3(world->A[body],
+           (const double[3]){J[0] * local[0] + J[3] * local[1] + J[4] * local[2],
+                             J[3] * local[0] + J[1] * local[1] + J[5] * local[2],
+                             J[4] * local[0] + J[5] * local[1] + J[2] * local[2]},
+           out);
+}
+
+static void energy(const World *world, double out[2])
+{
+    out[0] = 0;
+    out[1] = world->potential;
+    for (int b = world->first; b < world->bodies; ++b) {
+        const double mass = world->model->body[b].mass, *v = world->qd[b];
+        double momentum[3];
+        angular_momentum(world, b, world->omega[b], momentum);
+        out[0] += 0.5 * (mass * dot3(v, v) + dot3(world->omega[b], momentum));
+        out[1] -= mass * dot3(world->model->gravity, world->q[b]);
+    }
+}
+
+/* Multiplier of a driven coordinate's row as the force along the coordinate. */
+static double drive_force(const World *world, int coordinate)
+{
+    return world->multiplier[world->tie[world->coordinate_tie[coordinate]].first] * world->dual[coordinate];
+}
+
+static void one_output(const World *world, const Output *output, double *out)
+{
+    const int body = output->body, i = output->index;
+    const Track point = track(world, body, output->point);
+    switch (output->type) {
+    case OUTPUT_POSITION: copy3(point.r, out); break;
+    case OUTPUT_VELOCITY: express(world, output->in, point.v, out); break;
+    case OUTPUT_ACCELERATION: express(world, output->in, point.a, out); break;
+    case OUTPUT_ORIENTATION: orientation(world, body, out); break;
+    case OUTPUT_ROLL_PITCH_YAW: attitude(world, body, out); break;
+    case OUTPUT_ANGULAR_VELOCITY:
+        express(world, output->in, body == BODY_GROUND ? (const double[3]){0, 0, 0} : world->omega[body], out);
+        break;
+    case OUTPUT_COORDINATE:
+        out[0] = world->x[i];
+        out[1] = world->xd[i];
+        out[2] = world->xdd[i];
+        break;
+    case OUTPUT_FORCE: out[0] = world->element[i]; break;
+    case OUTPUT_DRIVE_FORCE: out[0] = drive_force(world, i); break;
+    case OUTPUT_WHEEL: memcpy(out, world->wheel[i], sizeof world->wheel[i]); break;
+    case OUTPUT_ENERGY: energy(world, out); break;
+    default: break;
+    }
+}
+
+void world_outputs(const World *world, double *out)
+{
+    for (int i = 0; i < world->model->outputs; ++i) {
+        one_output(world, &world->model->output[i], out);
+        out += world->model->output[i].count;
+    }
+}
+
+void world_poses(const World *world, double *pose)
+{
+    static const double origin[3] = {0, 0, 0};
+    for (int b = 0; b < world->bodies; ++b, pose += BODY_Q) {
+        const Track t = track(world, b, origin);
+        copy3(t.r, pose);
+        orientation(world, b, pose + 3);
+    }
+}
+
+/* Newton's and Euler's equations with the constraints' forces, and the power of all: what remains relative to the sum of
+ * magnitudes. */
+static void balance(const World *world, gic_self_test *result)
+{
+    double power = 0, scale = 0, worst = 0;
+    for (int b = world->first; b < world->bodies; ++b) {
+        const double mass = world->model->body[b].mass, *omega = world->omega[b];
+        double momentum[3], gyro[3], inertial[6], rest[6], size[6];
+        angular_momentum(world, b, omega, momentum);
+        cross3(omega, momentum, gyro);
+        angular_momentum(world, b, world->alpha[b], inertial + 3);
+        add3(inertial + 3, gyro, inertial + 3);
+        for (int i = 0; i < 3; ++i)
+            inertial[i] = mass * world->qdd[b][i];
+        for (int i = 0; i < 6; ++i) {
+            rest[i] = inertial[i] - world->wrench[b][i];
+            size[i] = fabs(inertial[i]) + fabs(world->wrench[b][i]);
+        }
+        for (int t = 0; t < world->constraints; ++t) {
+            const Tie *tie = &world->tie[t];
+            const double *J = world->J + ROW_J * tie->first;
+            for (int end = 0; end < 2; ++end)
+                for (int r = 0; r < tie->rows; ++r, J += BODY_Q) {
+                    if (tie->body[end] != b)
+                        continue;
+                    const double multiplier = world->multiplier[tie->first + r];
+                    double torque[3];
+                    euler_turn(world->q[b] + 3, J + 3, torque);
+                    for (int i = 0; i < 6; ++i) {
+                        const double force = multiplier * (i < 3 ? J[i] : 0.5 * torque[i - 3]);
+                        rest[i] += force;
+                        size[i] += fabs(force);
+                    }
+                }
+        }
+        const double most[2] = {fmax(size[0], fmax(size[1], size[2])), fmax(size[3], fmax(size[4], size[5]))};
+        for (int i = 0; i < 6; ++i) {
+            const double rate = i < 3 ? world->qd[b][i] : omega[i - 3];
+            worst = fmax(worst, rest[i] == 0 ? 0 : fabs(rest[i]) / most[i / 3]);
+            power += (inertial[i] - world->wrench[b][i]) * rate;
+            scale += size[i] * fabs(rate);
+        }
+    }
+    for (int c = 0; c < world->model->coordinates; ++c)
+        if (world->model->coordinate[c].driven)
+            power -= drive_force(world, c) * world->xd[c];
+    result->balance = worst;
+    result->energy = fabs(power) / (scale > 0 ? scale : 1);
+}
+
+void world_self_test(World *world, gic_self_test *result)
+{
+    *result = (gic_self_test){.smallest_pivot = 1};
+    balance(world, result);
+    result->constraint = world_residual(world);
+}
