@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT
+ * LU factorization of small matrices. One body is 7 x 7: for that size the loops have constant bounds, which makes them
+ * several times as fast as a library's. */
+#include "dense.h"
+
+#include <math.h>
+
+static inline bool factor(const int n, double *A, int *swap, double least)
+{
+    for (int k = 0; k < n; ++k) {
+        int best = k;
+        double largest = fabs(A[n * k + k]);
+        for (int i = k + 1; i < n; ++i)
+            if (fabs(A[n * i + k]) > largest) {
+                largest = fabs(A[n * i + k]);
+                best = i;
+            }
+        if (!(largest > least))
+            return false;
+        swap[k] = best;
+        double *row = A + n * k, *other = A + n * best;
+        if (best != k)
+            for (int j = 0; j < n; ++j) {
+                const double x = row[j];
+                row[j] = other[j];
+                other[j] = x;
+            }
+        const double reciprocal = 1 / row[k];
+        row[k] = reciprocal;
+        for (int i = k + 1; i < n; ++i) {
+            double *below = A + n * i;
+            if (below[k] == 0)
+                continue;
+            const double multiplier = below[k] *= reciprocal;
+            for (int j = k + 1; j < n; ++j)
+                below[j] -= multiplier * row[j];
+        }
+    }
+    return true;
+}
+
+static inline void solve(const int n, const double *A, const int *swap, double *x)
+{
+    for (int k = 0; k < n; ++k) {
+        const double value = x[swap[k]];
+        x[swap[k]] = x[k];
+        x[k] = value;
+    }
+    for (int i = 1; i < n; ++i)
+        for (int j = 0; j < i; ++j)
+            x[i] -= A[n * i + j] * x[j];
+    for (int i = n - 1; i >= 0; --i) {
+        for (int j = i + 1; j < n; ++j)
+            x[i] -= A[n * i + j] * x[j];
+        x[i] *= A[n * i + i];
+    }
+}
+
+bool dense_factor(int n, double *A, int *swap, double least)
+{
+    return n == 7 ? factor(7, A, swap, least) : factor(n, A, swap, least);
+}
+
+void dense_solve(int n, const double *A, const int *swap, double *x)
+{
+    if (n == 7)
+        solve(7, A, swap, x);
+    else
+        solve(n, A, swap, x);
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Small dense systems, row-major, for inner loops that can't afford a library's call. */
+#ifndef DENSE_H
+#define DENSE_H
+
+#include <stdbool.h>
+
+/* P A = L U in place with partial pivoting: multipliers below the diagonal, reciprocal pivots on it. swap: [n]. False
+ * where no pivot above `least` is left. */
+bool dense_factor(int n, double *A, int *swap, double least);
+/* x = A^-1 x from the factors. */
+void dense_solve(int n, const double *A, const int *swap, double *x);
+
+#endif
