@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static inline bool factor(const int n, double *A, int *swap, double least)
+static inline bool factor(const int n, double *A, int *swap)
 {
     for (int k = 0; k < n; ++k) {
         int best = k;
@@ -15,7 +15,7 @@ static inline bool factor(const int n, double *A, int *swap, double least)
                 largest = fabs(A[n * i + k]);
                 best = i;
             }
-        if (!(largest > least))
+        if (!(largest > 0))
             return false;
         swap[k] = best;
         double *row = A + n * k, *other = A + n * best;
@@ -56,9 +56,17 @@ static inline void solve(const int n, const double *A, const int *swap, double *
     }
 }
 
-bool dense_factor(int n, double *A, int *swap, double least)
+bool dense_factor(int n, double *A, int *swap)
 {
-    return n == 7 ? factor(7, A, swap, least) : factor(n, A, swap, least);
+    return n == 7 ? factor(7, A, swap) : factor(n, A, swap);
+}
+
+double dense_determinant(int n, const double *A, const int *swap)
+{
+    double product = 1;
+    for (int k = 0; k < n; ++k)
+        product *= swap[k] == k ? A[n * k + k] : -A[n * k + k];
+    return 1 / product;
 }
 
 void dense_solve(int n, const double *A, const int *swap, double *x)

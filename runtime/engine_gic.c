@@ -14,7 +14,10 @@
  * a correction that may lead astray, and pieces in which a change of the coordinates is followed. */
 enum { CHORDS = 6, PASSES = 10, PIECES = 1000 };
 
-static const double leap = 0.5, singular = 1e-10;
+static const double leap = 0.5;
+/* A determinant this small relative to that at the design, or of the other sign: coordinates cease to be independent
+ * (Serban and Haug 2000, equation 6). No rigid motion changes it. */
+static const double singular = 1e-3;
 /* a correction below this that no longer shrinks is rounding, near a singular configuration a larger one */
 static const double rounding = 1e-9;
 /* rad or relative to a subset's size: how far a body may move in one piece */
@@ -27,6 +30,7 @@ typedef struct Part {
     int *tie, (*end)[2]; /* [ties] which of its bodies either end is, -1: solved before */
     int factors;         /* place in a start: matrix [n][n], then n row exchanges as integers */
     double size;         /* m */
+    double design;       /* reciprocal of the determinant there; 0 before it is known */
 } Part;
 
 /* A start is what the next recovery begins from: x [coordinates], q [bodies][7], factors. */
@@ -140,7 +144,7 @@ static int converge(const Interpreted *context, Instance *self, const Part *part
         residuals(world, part, b);
         matrix(world, part, A);
         const double ready = profile_clock(profile);
-        if (!dense_factor(part->n, A, part_swap(part, start), singular))
+        if (!dense_factor(part->n, A, part_swap(part, start)))
             return GIC_ERROR_SINGULAR;
         dense_solve(part->n, A, part_swap(part, start), b);
         const double solved = profile_clock(profile);
@@ -155,7 +159,9 @@ static int converge(const Interpreted *context, Instance *self, const Part *part
         if (step <= enough || (step <= rounding && step > before / 4)) {
             ++self->head.newton_count;
             self->head.largest_step = fmax(self->head.largest_step, step);
-            return GIC_OK;
+            return dense_determinant(part->n, A, part_swap(part, start)) * part->design > singular || part->design == 0
+                       ? GIC_OK
+                       : GIC_ERROR_SINGULAR;
         }
         before = step;
     }
@@ -382,6 +388,11 @@ static void find_design(const Interpreted *context, Instance *self)
     int status = recover_piece(context, self, start, start, true);
     if (status != GIC_OK)
         design_fail(model, &world->sequence->subset[self->head.subset], status);
+    for (int s = 0; s < gic->parts; ++s) {
+        Part *part = &gic->part[s];
+        if (part->n)
+            part->design = 1 / dense_determinant(part->n, start + part->factors, part_swap(part, start));
+    }
     for (int c = 0; c < model->coordinates; ++c) {
         double most = 0;
         memset(world->xd, 0, sizeof *world->xd * (size_t)model->coordinates);
