@@ -1,0 +1,185 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_engines.sh GICGEN GICRUN STATES REFERENCE AGREE RANDOM_VEHICLE: the interpreted engines. Accelerations and poses
+# against the independent reference in quad precision at ROWS (default 10) random states of every model, of one with every
+# kind of force law and of VEHICLES (default 5) random vehicles; all outputs along scenes against generated code; failures.
+#
+# Tolerances. States: 1e-10. Engines work in world coordinates, where a place 100 m away is known to 1e-14 m, and a tire of
+# 3e5 N/m makes 1e-12 of an acceleration from that. Scenes: 1e-9 of the largest value of an output (or of 1, where that is
+# larger): such differences, amplified by the motion over a run; the rest would be a different model.
+gicgen=$(realpath "$1")
+gicrun=$(realpath "$2")
+states=$(realpath "$3")
+reference=$(realpath "$4")
+agree=$(realpath "$5")
+random_vehicle=$(realpath "$6")
+root=$(cd "$(dirname "$0")/.." && pwd)
+engines=${ENGINES:-gic}
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+passed=0
+failed=0
+
+# check STATUS LABEL: counts, and shows $work/said where it failed
+check() {
+    if [ "$1" -eq 0 ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAIL $2"
+        cat said
+    fi
+}
+
+# what is on trial is not the compiler
+echo "exec ${CC:-cc} \"\$@\" -O0" >cc
+cc="sh $work/cc"
+
+# ---- states ---------------------------------------------------------------------------------------------------------------
+
+# the largest of the column `constraint` of results.csv is rounding
+closed() {
+    awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^constraint/) column = i; next }
+        $column == "" || !($column <= 1e-12) { print "constraint residual " $column; bad = 1 }
+        END { exit bad || NR < 2 }' results.csv
+}
+
+# at_states MODEL SEED: all engines; no compiler is needed
+at_states() {
+    "$gicgen" --dump-model "$1" >dump && "$states" dump --count "${ROWS:-10}" --seed "$2" -o states.csv &&
+        "$reference" dump states.csv -o accelerations.csv 2>said || return 1
+    for engine in $engines; do
+        "$gicrun" --engine "$engine" --cc false --eval states.csv "$1" -o results.csv >said 2>&1 &&
+            "$agree" dump accelerations.csv results.csv --tolerance 1e-10 >said && closed >said
+        check $? "$engine at states of $1"
+    done
+}
+
+# a driven rack, and outputs of every type in every kind of frame
+outputs='  drive: {type: drive_force, coordinate: rack}
+  spin: {type: angular_velocity, body: wheel_f_l}
+  spin_own: {type: angular_velocity, body: wheel_f_l, in: chassis}
+  hub: {type: velocity, body: wheel_r_r, point: centre_r_r, in: wheel_r_r}
+  jerked: {type: acceleration, body: wheel_r_r, point: centre_r_r, in: chassis}
+  ball: {type: acceleration, body: lca_f_l, point: ball_f_l}
+  upright: {type: orientation, body: wheel_f_r}
+  camber: {type: roll_pitch_yaw, body: wheel_f_r}'
+sed 's/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/' "$root/models/hmmwv.veh" >steered.veh
+echo "$outputs" >>steered.veh
+
+for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" steered.veh; do
+    at_states "$model" 1
+done
+for seed in $(seq 1 "${VEHICLES:-5}"); do
+    "$random_vehicle" --seed "$seed" >"random$seed.veh" && at_states "random$seed.veh" "$seed"
+done
+
+# ---- scenes ---------------------------------------------------------------------------------------------------------------
+
+# near A B: two results files, column by column
+near() {
+    awk -F, 'function abs(x) { return x < 0 ? -x : x }
+        NR == FNR { rows = FNR; for (i = 1; i <= NF; ++i) { value[FNR, i] = $i; if (FNR > 1 && abs($i) > size[i]) size[i] = abs($i) } next }
+        FNR == 1 { for (i = 1; i <= NF; ++i) { name[i] = $i; if ($i != value[1, i]) bad = 1; if (size[i] < 1) size[i] = 1 } next }
+        { for (i = 1; i <= NF; ++i) { d = abs($i - value[FNR, i]) / size[i]; if (!(d <= 1e-9)) { print name[i], "row", FNR, "differs by", d; bad = 1 } } }
+        END { exit bad || FNR != rows || rows < 3 }' "$1" "$2"
+}
+
+# along MODEL SCENE [OPTION...]: all engines
+along() {
+    model=$1
+    scene=$2
+    shift 2
+    "$gicrun" --quiet --cc "$cc" "$@" "$model" "$scene" -o generated.csv >said 2>&1
+    check $? "$scene with generated code"
+    for engine in $engines; do
+        "$gicrun" --quiet --engine "$engine" "$@" "$model" "$scene" -o interpreted.csv >said 2>&1 &&
+            near generated.csv interpreted.csv >said
+        check $? "$engine along $scene"
+    done
+}
+
+sed 's/^duration: .*/duration: 1.5/' "$root/models/scenes/paper_run.scene" >paper_run.scene
+along "$root/models/hmmwv.veh" paper_run.scene
+for name in andrews five_link solid_axle quarter_car; do
+    sed 's/^duration: .*/duration: 0.02/; s/^output_step: .*//' "$root/models/scenes/$name.scene" >"$name.scene"
+    along "$root/models/$name.veh" "$name.scene"
+done
+# turning over more than a turn, so that every Euler parameter is the dependent one at some time; steering by knots
+cat >spin.scene <<'END'
+gicscene: 1
+duration: 1.5
+step: 0.002
+integrator: rk4
+output_step: 0.01
+initial:
+  position: [200, 50, 1.5]
+  orientation: {yaw: 0.5, pitch: 0.3, roll: -0.4}
+  velocity: [10, 2, 1]
+  angular_velocity: [1, 2, 6]
+  coordinates: {spring_f_l: 0.26}
+  rates: {spring_r_r: 0.2}
+road: {type: sine, amplitude: 0.03, wavelength: 5}
+inputs:
+  rack: {knots: {times: [0, 0.5, 1], values: [0, 0.03, -0.02]}}
+END
+along steered.veh spin.scene
+cat >cart.scene <<'END'
+gicscene: 1
+duration: 0.5
+step: 0.005
+integrator: rk4
+initial: {velocity: [3, 1, 0], rates: {sway: 1}}
+parameters: {k: 5500}
+inputs: {gust: {sine: {amplitude: 20, frequency: 3}}}
+END
+along "$root/tests/laws/cart.veh" cart.scene
+along "$root/models/hmmwv.veh" paper_run.scene --integrator rkck --tolerance 1e-6
+
+# copies of an instance go their own ways: how often outputs are written leaves no trace
+sed 's/^output_step: .*/output_step: 0.5/' paper_run.scene >seldom.scene
+for engine in $engines; do
+    "$gicrun" --quiet --engine "$engine" "$root/models/hmmwv.veh" paper_run.scene -o often.csv >said 2>&1 &&
+        "$gicrun" --quiet --engine "$engine" "$root/models/hmmwv.veh" seldom.scene -o seldom.csv >said 2>&1 &&
+        [ "$(tail -n 1 often.csv)" = "$(tail -n 1 seldom.csv)" ]
+    check $? "$engine: outputs leave no trace"
+done
+
+# ---- failures --------------------------------------------------------------------------------------------------------------
+
+# a crank and its spring's line: at w = 1.75 they are in line, and the length ceases to be a coordinate
+cat >crank.veh <<'END'
+gicgen: 1
+model: crank
+base: ground
+gravity: [0, 0, 0]
+bodies:
+  arm: {mass: 1, com: [0.5, 0, 0], inertia: [1, 1, 1]}
+joints:
+  hinge: {type: revolute, bodies: [ground, arm], point: [0, 0, 0], axis: [0, 0, 1]}
+coordinates:
+  w: {type: length, bodies: [ground, arm], points: [[0, 0.75, 0], [1, 0, 0]]}
+END
+cat >crank.scene <<'END'
+gicscene: 1
+duration: 10
+step: 0.001
+initial: {rates: {w: 0.3}}
+END
+printf 'w,w.rate\n1.25,0\n1.8,0\n1.4,-1\n1e9,0\n' >crank.csv
+for engine in $engines; do
+    "$gicrun" --quiet --engine "$engine" crank.veh crank.scene -o crank.out 2>said
+    [ $? -eq 1 ] && grep -q "error: the run ends at t = .*: .*: subset 'arm'" said &&
+        [ "$(wc -l <crank.out)" -gt 100 ] && ! grep -qi nan crank.out
+    check $? "$engine: a run ends where coordinates cease to be independent"
+    "$gicrun" --engine "$engine" --eval crank.csv crank.veh -o crank.eval 2>said
+    [ "$(grep -c ',0,"ok"$' crank.eval)" -eq 2 ] && grep -q ',-5,.*arm' crank.eval && grep -q ',-4,' crank.eval
+    check $? "$engine: states out of reach"
+done
+"$gicrun" --engine nothing crank.veh crank.scene >said 2>&1
+[ $? -eq 2 ] && grep -q "no engine 'nothing'" said && grep -q 'remedy: one of cc, ' said
+check $? "an engine that is not there"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
