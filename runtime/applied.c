@@ -39,7 +39,8 @@ static inline void push(World *world, const Point *point, const double F[3])
     add3(wrench + 3, torque, wrench + 3);
 }
 
-/* ---- laws --------------------------------------------------------------------------------------------------------- */
+/* ---- laws ---------------------------------------------------------------------------------------------------------
+ */
 
 static double law_at(const World *world, const Law *law, const double *local);
 
@@ -96,7 +97,8 @@ static double law_at(const World *world, const Law *law, const double *local)
     }
 }
 
-/* ---- elements ----------------------------------------------------------------------------------------------------- */
+/* ---- elements -----------------------------------------------------------------------------------------------------
+ */
 
 /* Tension of a spring and damper in parallel. */
 static double spring_damper(World *world, const Force *force, double value, double rate)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * The engine gic: globally independent coordinates interpreted, Serban and Haug 2000. Dependent coordinates are recovered
- * subset by subset in the computational sequence, each by Newton on its 7 equations a body; velocities with the same
- * factors; accelerations from equation 16. */
+ * The engine gic: globally independent coordinates interpreted, Serban and Haug 2000. Dependent coordinates are
+ * recovered subset by subset in the computational sequence, each by Newton on its 7 equations a body; velocities with
+ * the same factors; accelerations from equation 16. */
 #include "dense.h"
 #include "interpreted.h"
 #include "small.h"
@@ -36,10 +36,10 @@ typedef struct Part {
 /* A start is what the next recovery begins from: x [coordinates], q [bodies][7], factors. */
 typedef struct Gic {
     int parts, start_size;
-    Part *part;      /* [subsets], n = 0 for the base's */
-    double *piece;   /* [coordinates] change that is followed in one piece */
-    double *b;       /* [largest n] */
-    double *design;  /* a start at the design */
+    Part *part;     /* [subsets], n = 0 for the base's */
+    double *piece;  /* [coordinates] change that is followed in one piece */
+    double *b;      /* [largest n] */
+    double *design; /* a start at the design */
 } Gic;
 
 static double *start_q(const World *world, double *start)
@@ -52,7 +52,8 @@ static int *part_swap(const Part *part, double *start)
     return (int *)(void *)(start + part->factors + part->n * part->n);
 }
 
-/* ---- one subset --------------------------------------------------------------------------------------------------- */
+/* ---- one subset ---------------------------------------------------------------------------------------------------
+ */
 
 /* Right-hand side of a correction; the normalizations hold at all times. */
 static void residuals(World *world, const Part *part, double *b)
@@ -98,10 +99,9 @@ static double correct(World *world, const Part *part, const double *b)
     return fmax(linear / part->size, angular);
 }
 
-/* Corrections with the old factors until what a further one would change is below `enough`. turn: how far these factors'
- * directions are from the present ones. */
-static int follow(const Interpreted *context, Instance *self, const Part *part, double *old, double turn,
-                  double enough)
+/* Corrections with the old factors until what a further one would change is below `enough`. turn: how far these
+ * factors' directions are from the present ones. */
+static int follow(const Interpreted *context, Instance *self, const Part *part, double *old, double turn, double enough)
 {
     World *world = context->world;
     EngineProfile *profile = context->profile;
@@ -201,7 +201,8 @@ static void velocities(const Interpreted *context, const Part *part, double *sta
     profile->recovery_functions += ready - begun + (profile_clock(profile) - solved);
 }
 
-/* ---- all subsets -------------------------------------------------------------------------------------------------- */
+/* ---- all subsets --------------------------------------------------------------------------------------------------
+ */
 
 /* A rigid motion that takes the base from its old pose to the present one. */
 typedef struct Carry {
@@ -287,8 +288,8 @@ static int recover(const Interpreted *context, Instance *self, bool cold)
         const int flip = self->head.flip;
         for (int c = 0; c < count; ++c)
             world->x[c] = piece == pieces ? last[c] : first[c] + (last[c] - first[c]) * piece / pieces;
-        const int status = recover_piece(context, self, start_of(context, self, flip),
-                                         start_of(context, self, 1 - flip), cold);
+        const int status =
+            recover_piece(context, self, start_of(context, self, flip), start_of(context, self, 1 - flip), cold);
         if (status != GIC_OK)
             return status;
         self->head.flip = 1 - flip;
@@ -325,7 +326,8 @@ static int start(const Interpreted *context, Instance *self)
     return recover(context, self, false);
 }
 
-/* ---- opening ------------------------------------------------------------------------------------------------------ */
+/* ---- opening ------------------------------------------------------------------------------------------------------
+ */
 
 static int local_of(const Subset *subset, int body)
 {

@@ -16,7 +16,8 @@ double profile_clock(const EngineProfile *profile)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* ---- for the engines ---------------------------------------------------------------------------------------------- */
+/* ---- for the engines ----------------------------------------------------------------------------------------------
+ */
 
 static double *array_of(const Instance *self, size_t offset)
 {
@@ -119,7 +120,8 @@ int interpreted_accelerate(const Interpreted *context, const double *state, cons
     return GIC_OK;
 }
 
-/* ---- descriptor functions ----------------------------------------------------------------------------------------- */
+/* ---- descriptor functions -----------------------------------------------------------------------------------------
+ */
 
 static int finite(const Instance *self, size_t offset, int32_t count)
 {
@@ -242,8 +244,8 @@ static int any_setup(void *instance)
     return self->head.status = context->start(context, self);
 }
 
-/* ---- the descriptor ----------------------------------------------------------------------------------------------- */
-
+/* ---- the descriptor -----------------------------------------------------------------------------------------------
+ */
 
 static gic_signal *signals(Pool *pool, int count)
 {
@@ -279,8 +281,8 @@ static const gic_signal *port_signals(Pool *pool, const Model *model)
     static const char *const part[6] = {"force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z"};
     gic_signal *signal = signals(pool, 6 * model->ports);
     for (int i = 0; i < 6 * model->ports; ++i)
-        signal[i] = (gic_signal){pool_print(pool, "%s.%s", model->port[i / 6].name, part[i % 6]),
-                                 i % 6 < 3 ? "N" : "N m"};
+        signal[i] =
+            (gic_signal){pool_print(pool, "%s.%s", model->port[i / 6].name, part[i % 6]), i % 6 < 3 ? "N" : "N m"};
     return signal;
 }
 

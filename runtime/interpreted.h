@@ -18,11 +18,12 @@ typedef struct Interpreted {
     gic_model code; /* an engine may replace what differs */
     World *world;
     EngineProfile *profile;
-    size_t own_offset;                            /* bytes */
-    int *coordinate_state;                        /* [coordinates] index of w in the state; -1: driven */
+    size_t own_offset;     /* bytes */
+    int *coordinate_state; /* [coordinates] index of w in the state; -1: driven */
     /* start: the engine's numbers at setup, where `state`, `input` and `parameter` of the instance have their initial
-     * values. evaluate: World and rate[] at a state, for which the instance's inputs are loaded. Both return a status and
-     * may set head.subset. What the engine remembers changes only to what is good at some configuration on the way. */
+     * values. evaluate: World and rate[] at a state, for which the instance's inputs are loaded. Both return a status
+     * and may set head.subset. What the engine remembers changes only to what is good at some configuration on the way.
+     */
     int (*start)(const struct Interpreted *context, Instance *self);
     int (*evaluate)(const struct Interpreted *context, Instance *self, const double *state, double *rate);
     void *engine; /* the engine's own constants and scratch */

@@ -135,8 +135,8 @@ void world_poses(const World *world, double *pose)
     }
 }
 
-/* Newton's and Euler's equations with the constraints' forces, and the power of all: what remains relative to the sum of
- * magnitudes. */
+/* Newton's and Euler's equations with the constraints' forces, and the power of all: what remains relative to the sum
+ * of magnitudes. */
 static void balance(const World *world, gic_self_test *result)
 {
     double power = 0, scale = 0, worst = 0;

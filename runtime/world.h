@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * What interpreted engines share: a mechanism in the world frame with Euler parameters, Serban and Haug 2000, section 2.
- * Generalized coordinates of a body are q = (r, p), 7 numbers: its centre of mass in the world and its Euler parameters,
- * always of unit length; generalized velocities q' = (r', p'), accelerations q''. omega = 2 E(p) p', omega' = 2 E(p) p''.
- * Vectors are world components unless said otherwise. No formula here comes from the generator.
+ * What interpreted engines share: a mechanism in the world frame with Euler parameters, Serban and Haug 2000,
+ * section 2. Generalized coordinates of a body are q = (r, p), 7 numbers: its centre of mass in the world and its Euler
+ * parameters, always of unit length; generalized velocities q' = (r', p'), accelerations q''. omega = 2 E(p) p', omega'
+ * = 2 E(p) p''. Vectors are world components unless said otherwise. No formula here comes from the generator.
  *
  * Everything that an evaluation writes belongs to the World and is free between calls; what an instance must remember
  * belongs to the instance (interpreted.h). */
@@ -34,12 +34,12 @@ typedef struct TieVectors {
 typedef struct World {
     const Model *model; /* assembled */
     const Sequence *sequence;
-    int bodies, first;   /* first: 0 where the base moves, 1 where it is ground */
-    int ties, rows;      /* joints in the order of the file, driven coordinates, free coordinates */
+    int bodies, first;                /* first: 0 where the base moves, 1 where it is ground */
+    int ties, rows;                   /* joints in the order of the file, driven coordinates, free coordinates */
     int constraints, constraint_rows; /* how many of them, from the first, are joints and driven coordinates */
     const Tie *tie;
-    int *coordinate_tie; /* [coordinates] */
-    double size;         /* largest distance of a tie's point from its body's centre of mass, at least 0.01 m */
+    int *coordinate_tie;        /* [coordinates] */
+    double size;                /* largest distance of a tie's point from its body's centre of mass, at least 0.01 m */
     double (*q_design)[BODY_Q]; /* [bodies] at the assembled design */
 
     /* what an evaluation starts from */
@@ -55,11 +55,11 @@ typedef struct World {
     double *x, *xd, *xdd;              /* [coordinates] */
 
     /* equations: world_rows(), world_gamma() */
-    double *value;       /* [rows] Phi, Psi; m, m^2 / 2 of lengths, or 1 */
-    double *J;           /* derivatives by q; a tie: two blocks [its rows][7], one a body, from ROW_J x its first row on.
-                          * The derivative along p itself is 0, as if p were brought to unit length */
-    double *dual;        /* [coordinates] Psi_w */
-    double *gamma;       /* [rows] J q'' + Psi_w w'' = gamma */
+    double *value; /* [rows] Phi, Psi; m, m^2 / 2 of lengths, or 1 */
+    double *J;     /* derivatives by q; a tie: two blocks [its rows][7], one a body, from ROW_J x its first row on.
+                    * The derivative along p itself is 0, as if p were brought to unit length */
+    double *dual;  /* [coordinates] Psi_w */
+    double *gamma; /* [rows] J q'' + Psi_w w'' = gamma */
     TieVectors *vectors; /* [ties] */
 
     /* applied forces: world_forces() */
@@ -105,8 +105,8 @@ double world_residual(World *world);
 
 /* ---- applied.c: forces ------------------------------------------------------------------------------------------- */
 
-/* wrench, along, element, wheel at the present configuration. Forces along coordinates are not among the wrenches before
- * world_spread(). GIC_ERROR_ROAD where the road has no finite height. */
+/* wrench, along, element, wheel at the present configuration. Forces along coordinates are not among the wrenches
+ * before world_spread(). GIC_ERROR_ROAD where the road has no finite height. */
 int world_forces(World *world);
 /* Forces along coordinates as wrenches on the bodies; needs J and dual of the coordinates' ties. */
 void world_spread(World *world);
@@ -117,8 +117,8 @@ void world_spread(World *world);
  * one. */
 void world_set_solver(Pool *pool, World *world, const Solver *solver);
 /* q'' and multipliers, alpha, and w'' of free coordinates (Serban and Haug 2000, equation 16; multipliers of free
- * coordinates' rows are known beforehand and among the wrenches). Needs wrench, J, dual and gamma of all ties, and xdd of
- * driven coordinates. GIC_ERROR_MASS where the constraints are not independent. */
+ * coordinates' rows are known beforehand and among the wrenches). Needs wrench, J, dual and gamma of all ties, and xdd
+ * of driven coordinates. GIC_ERROR_MASS where the constraints are not independent. */
 int world_accelerate(World *world);
 
 /* ---- interpreted_outputs.c --------------------------------------------------------------------------------------- */

@@ -1,12 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_engines.sh GICGEN GICRUN STATES REFERENCE AGREE RANDOM_VEHICLE: the interpreted engines. Accelerations and poses
-# against the independent reference in quad precision at ROWS (default 10) random states of every model, of one with every
-# kind of force law and of VEHICLES (default 5) random vehicles; all outputs along scenes against generated code; failures.
+# against the independent reference in quad precision at ROWS (default 10) random states of every model, of one with
+# every kind of force law and of VEHICLES (default 5) random vehicles; all outputs along scenes against generated code;
+# failures.
 #
-# Tolerances. States: 1e-10. Engines work in world coordinates, where a place 100 m away is known to 1e-14 m, and a tire of
-# 3e5 N/m makes 1e-12 of an acceleration from that. Scenes: 1e-9 of the largest value of an output (or of 1, where that is
-# larger): such differences, amplified by the motion over a run; the rest would be a different model.
+# Tolerances. States: 1e-10. Engines work in world coordinates, where a place 100 m away is known to 1e-14 m, and a tire
+# of 3e5 N/m makes 1e-12 of an acceleration from that. Scenes: 1e-9 of the largest value of an output (or of 1, where
+# that is larger): such differences, amplified by the motion over a run; another formula would differ by more.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 states=$(realpath "$3")
@@ -36,7 +37,7 @@ check() {
 echo "exec ${CC:-cc} \"\$@\" -O0" >cc
 cc="sh $work/cc"
 
-# ---- states ---------------------------------------------------------------------------------------------------------------
+# ---- states -----------------------------------------------------------------------------------------------------
 
 # the largest of the column `constraint` of results.csv is rounding
 closed() {
@@ -65,7 +66,8 @@ outputs='  drive: {type: drive_force, coordinate: rack}
   ball: {type: acceleration, body: lca_f_l, point: ball_f_l}
   upright: {type: orientation, body: wheel_f_r}
   camber: {type: roll_pitch_yaw, body: wheel_f_r}'
-sed 's/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/' "$root/models/hmmwv.veh" >steered.veh
+sed 's/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/' "$root/models/hmmwv.veh" \
+    >steered.veh
 echo "$outputs" >>steered.veh
 
 for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" steered.veh; do
@@ -75,14 +77,26 @@ for seed in $(seq 1 "${VEHICLES:-5}"); do
     "$random_vehicle" --seed "$seed" >"random$seed.veh" && at_states "random$seed.veh" "$seed"
 done
 
-# ---- scenes ---------------------------------------------------------------------------------------------------------------
+# ---- scenes -----------------------------------------------------------------------------------------------------
 
 # near A B: two results files, column by column
 near() {
     awk -F, 'function abs(x) { return x < 0 ? -x : x }
-        NR == FNR { rows = FNR; for (i = 1; i <= NF; ++i) { value[FNR, i] = $i; if (FNR > 1 && abs($i) > size[i]) size[i] = abs($i) } next }
-        FNR == 1 { for (i = 1; i <= NF; ++i) { name[i] = $i; if ($i != value[1, i]) bad = 1; if (size[i] < 1) size[i] = 1 } next }
-        { for (i = 1; i <= NF; ++i) { d = abs($i - value[FNR, i]) / size[i]; if (!(d <= 1e-9)) { print name[i], "row", FNR, "differs by", d; bad = 1 } } }
+        NR == FNR {
+            rows = FNR
+            for (i = 1; i <= NF; ++i) {
+                value[FNR, i] = $i
+                size[i] = FNR == 1 ? 1 : abs($i) > size[i] ? abs($i) : size[i]
+            }
+            next
+        }
+        {
+            for (i = 1; i <= NF; ++i)
+                if (FNR == 1 ? $i != value[1, i] : !(abs($i - value[FNR, i]) <= 1e-9 * size[i])) {
+                    print value[1, i], "in row", FNR ":", value[FNR, i], $i
+                    bad = 1
+                }
+        }
         END { exit bad || FNR != rows || rows < 3 }' "$1" "$2"
 }
 
@@ -146,7 +160,7 @@ for engine in $engines; do
     check $? "$engine: outputs leave no trace"
 done
 
-# ---- failures --------------------------------------------------------------------------------------------------------------
+# ---- failures ---------------------------------------------------------------------------------------------------
 
 # a crank and its spring's line: at w = 1.75 they are in line, and the length ceases to be a coordinate
 cat >crank.veh <<'END'
