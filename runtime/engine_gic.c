@@ -414,9 +414,9 @@ static void find_design(const Interpreted *context, Instance *self)
     }
 }
 
-const Engine *engine_gic(Pool *pool, const Model *drawn, const char *compiler)
+const Engine *engine_gic(Pool *pool, const Model *drawn, const EngineOptions *options)
 {
-    (void)compiler;
+    (void)options;
     const Sequence *sequence = sequence_find(pool, drawn);
     const Model *model = model_assemble(pool, drawn, sequence);
     Gic *gic = pool_alloc(pool, sizeof *gic);
