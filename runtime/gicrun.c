@@ -51,8 +51,8 @@ static double read_tolerance(const char *word)
 {
     char *end;
     const double value = strtod(word, &end);
-    if (*end || !(value > 0 && value < 1))
-        usage_fail("--tolerance must be a number between 0 and 1, unlike", word);
+    if (*end || !tolerance_known(value))
+        usage_fail("--tolerance must be a number between 1e-13 and 0.1, unlike", word);
     return value;
 }
 

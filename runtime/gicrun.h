@@ -77,6 +77,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
 /* The method of a name, -1: there is none; the name of a method. */
 int32_t integrator_method(const char *name);
 const char *integrator_name(int32_t method);
+bool tolerance_known(double tolerance); /* can variable steps respect it? */
 /* Value, rate and acceleration of a profile. */
 void profile_at(const Profile *profile, double time, double out[3]);
 /* A gic_input_function; `user` is the Scene. */

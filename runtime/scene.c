@@ -89,6 +89,12 @@ const char *integrator_name(int32_t method)
     return integrators[i].name;
 }
 
+/* Below lies rounding, above no error is small. */
+bool tolerance_known(double tolerance)
+{
+    return tolerance >= 1e-13 && tolerance <= 0.1;
+}
+
 /* integrator, tolerance: instead of the scene's, or NULL and 0 */
 static void read_integrator(Reader *reader, const Item *root, const char *integrator, double tolerance)
 {
@@ -99,8 +105,9 @@ static void read_integrator(Reader *reader, const Item *root, const char *integr
         diag_fail(method->at, "write ab3, rk4, adams or rkck", "there is no integrator '%s'", word);
     scene->method = integrator_method(integrator ? integrator : word);
     scene->tolerance = limit ? doc_number(limit, "tolerance") : 1e-6;
-    if (!(scene->tolerance > 0 && scene->tolerance < 1))
-        diag_fail(limit->at, "write a small number, for example 1e-6", "tolerance must be between 0 and 1");
+    if (!tolerance_known(scene->tolerance))
+        diag_fail(limit->at, "write a larger or smaller one, for example 1e-6",
+                  "tolerance must be between 1e-13 and 0.1");
     if (tolerance > 0)
         scene->tolerance = tolerance;
     const bool constant = scene->method < METHOD_ADAMS;

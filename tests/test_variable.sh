@@ -1,0 +1,175 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_variable.sh GICRUN: integration with variable steps: against published and closed solutions, against constant
+# steps, at kinks of inputs, over changes of the dependent Euler parameter, and what users are told.
+gicrun=$1
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+passed=0
+failed=0
+
+# check NAME CONDITION...: the command must succeed
+check() {
+    name=$1
+    shift
+    if "$@"; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAILED: $name"
+        sed 's/^/    /' "$work/err"
+    fi
+}
+
+# run ARGUMENT...: gicrun with its messages in $work/err, its exit status in $status
+run() {
+    "$gicrun" "$@" >"$work/out" 2>"$work/err"
+    status=$?
+}
+exits() { [ "$status" -eq "$1" ]; }
+says() { grep -q -- "$1" "$work/err"; }
+# near A B TOLERANCE
+near() { awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN {d = a - b; exit !(d * d <= t * t && a != "" && b != "")}' || {
+    echo "$1 is not $2 within $3" >>"$work/err"
+    false
+}; }
+# at FILE COLUMN TIME: a number of a results file
+at() { awk -F, -v column="$2" -v time="$3" 'NR == 1 {for (i = 1; i <= NF; ++i) if ($i ~ "^" column " ") c = i}
+    $1 == time {print $c}' "$1"; }
+# apart A B COLUMNS: the largest difference of columns 2 to COLUMNS between two results files with the same times
+apart() { paste -d, "$1" "$2" | awk -F, -v n="$3" 'NR > 1 {
+    if ($1 != $(NF / 2 + 1)) bad = 1
+    for (i = 2; i <= n; ++i) {d = $i - $(NF / 2 + i); if (d < 0) d = -d; if (d > most) most = d}
+} END {print bad || NR < 3 ? "nan" : most}'; }
+below() { awk -v a="$1" -v b="$2" 'BEGIN {exit !(a != "nan" && a <= b)}' || {
+    echo "$1 is not below $2" >>"$work/err"
+    false
+}; }
+
+# The pendulum of 1 m from the horizontal; published: IFToMM benchmark A01. Nothing damps it: errors of 1e-11 a step
+# change its energy with the number of steps, some thousand, and its place with the square of that.
+for integrator in adams rkck; do
+    run models/pendulum.veh models/scenes/pendulum.scene --integrator $integrator --tolerance 1e-11 -o "$work/a.csv"
+    check "$integrator: the pendulum runs" exits 0
+    check "$integrator: output times are exact" [ "$(sed 1d "$work/a.csv" | cut -d, -f1)" = \
+        "$(awk 'BEGIN {for (i = 0; i <= 1000; ++i) printf "%.15g\n", i / 100}')" ]
+    check "$integrator: x at 2 s" near "$(at "$work/a.csv" bob.x 2)" -0.793566195343 1e-9
+    check "$integrator: z at 2 s" near "$(at "$work/a.csv" bob.z 2)" -0.608483930444 1e-9
+    check "$integrator: x at 10 s" near "$(at "$work/a.csv" bob.x 10)" -0.275087462576 1e-7
+    check "$integrator: z at 10 s" near "$(at "$work/a.csv" bob.z 10)" -0.961419205099 1e-7
+done
+
+# Andrews' mechanism against converged values (two independent integrations; Test Set for IVP Solvers), 0.03 s with
+# beta turning more than twice: errors of 1e-11 in the rates grow a hundredfold on the way
+sed 's/^duration:.*/duration: 0.03/; s/^step:.*/step: 0.001/; s/^output_step:.*//; s/^integrator:.*/integrator: adams\ntolerance: 1e-12/' \
+    models/scenes/andrews.scene >"$work/andrews.scene"
+run models/andrews.veh "$work/andrews.scene" -o "$work/a.csv"
+check "Andrews' mechanism" near "$(at "$work/a.csv" beta.value 0.03)" 15.8107711951537 1e-7
+
+# The HMMWV over a bump, against RK4 with steps of 0.1 ms, whose own error is below 1e-9 (C1 ends of the bump included).
+# Each step adds an error below the tolerance (1 + |x|); damping takes care that they don't pile up: ten times the
+# tolerance. Fewer digits must cost less.
+scene() {
+    cat <<'XXX'
+gicscene: 1
+duration: 1.6
+output_step: 0.04
+initial: {position: [0, 0, 0.4740625], velocity: [5, 0, 0]}
+road: {type: bumps, bumps: [{x: 4, length: 2, height: 0.06, tracks: left}]}
+outputs: [chassis, wheel_f_l, wheel_r_l]
+XXX
+}
+{ scene; echo 'step: 0.0001'; echo 'integrator: rk4'; } >"$work/fine.scene"
+{ scene; echo 'integrator: adams'; } >"$work/variable.scene"
+run models/hmmwv.veh "$work/fine.scene" -o "$work/fine.csv"
+check 'the vehicle with constant steps' exits 0
+for integrator in adams rkck; do
+    before=1000000
+    for digits in 8 4; do
+        run models/hmmwv.veh "$work/variable.scene" --integrator $integrator --tolerance 1e-$digits -o "$work/a.csv"
+        check "$integrator: error with a tolerance of 1e-$digits" \
+            below "$(apart "$work/fine.csv" "$work/a.csv" 10)" "1e-$((digits - 1))"
+        count=$(sed -n 's/.* right-hand sides *//p' "$work/err")
+        check "$integrator: a tolerance of 1e-$digits costs less than a tighter one" [ "$count" -lt "$before" ]
+        before=$count
+    done
+done
+
+# Turning freely on flat ground, the vehicle changes its dependent Euler parameter; nothing may come of it
+{ scene | sed '/^road/d; s/velocity/angular_velocity: [0, 0, 3], velocity/'; echo 'step: 0.0001'; echo 'integrator: rk4'; } \
+    >"$work/fine.scene"
+run models/hmmwv.veh "$work/fine.scene" -o "$work/fine.csv"
+sed 's/rk4/adams/' "$work/fine.scene" >"$work/variable.scene"
+run models/hmmwv.veh "$work/variable.scene" --tolerance 1e-8 -o "$work/a.csv"
+check 'turning: the dependent parameter changes' says 'parameter switches *[1-9]'
+check 'turning: the error stays small' below "$(apart "$work/fine.csv" "$work/a.csv" 10)" 1e-7
+
+# A cart at rest and a push that lasts 2 ms in the middle of an output step of 1 s: without a stop at the knots a step
+# would pass over it. Quintics from 0 to 3000 N and back have the mean 1500 N: 3 N s, 1.5 m/s for 2 kg.
+cat >"$work/cart.veh" <<'XXX'
+gicgen: 1
+model: cart
+gravity: [0, 0, 0]
+base: ground
+bodies:
+  cart: {mass: 2, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  rail: {type: prismatic, bodies: [ground, cart], axis: [1, 0, 0]}
+coordinates:
+  x: {type: translation, bodies: [ground, cart], axis: [1, 0, 0], range: [-9, 9]}
+inputs:
+  push: {unit: N}
+forces:
+  push: {type: force, coordinate: x, value: push}
+outputs:
+  x: {type: coordinate, coordinate: x}
+XXX
+cat >"$work/cart.scene" <<'XXX'
+gicscene: 1
+duration: 2
+output_step: 1
+integrator: adams
+tolerance: 1e-9
+inputs: {push: {knots: {times: [0.412, 0.413, 0.414], values: [0, 3000, 0]}}}
+XXX
+for integrator in adams rkck; do
+    run "$work/cart.veh" "$work/cart.scene" --integrator $integrator -o "$work/a.csv"
+    check "$integrator: a short push is not missed" near "$(at "$work/a.csv" x.rate 2)" 1.5 1e-7
+    # from the middle of the push on at constant speed, for it is symmetric
+    check "$integrator: nor is its place" near "$(at "$work/a.csv" x.value 2)" 2.3805 1e-7
+done
+
+# A failure is told with its status, and what was computed is kept: the force ceases to be a number at x = 1, where the
+# cart arrives before 0.5 s (it is never slower than 2 m/s) and after 0.47 s (it is never pushed by more than 1 N)
+sed 's/value: push/value: sqrt(1 - x)/; /^inputs/d; /^  push: {unit/d' "$work/cart.veh" >"$work/wall.veh"
+sed 's/^inputs.*/initial: {rates: {x: 2}}/; s/^output_step.*/output_step: 0.1/' "$work/cart.scene" >"$work/wall.scene"
+for integrator in adams rkck; do
+    run "$work/wall.veh" "$work/wall.scene" --integrator $integrator -o "$work/a.csv"
+    check "$integrator: a run that can go no further fails" exits 1
+    check "$integrator: it is told when and why" says "the run ends at t = 0\.4[789][0-9]* s: a result is not a finite"
+    check "$integrator: its results are kept" [ "$(wc -l <"$work/a.csv")" -eq 6 ]
+done
+
+# refuse TEXT REMEDY SED: the scene changed by SED brings a message with a place, and a remedy
+refuse() {
+    sed "$3" "$work/cart.scene" >"$work/bad.scene"
+    run "$work/cart.veh" "$work/bad.scene"
+    check "refused: $1" exits 1
+    check "message: $1" says "^$work/bad.scene:[0-9]*:[0-9]*: error: .*$1"
+    check "remedy of: $1" says "remedy: .*$2"
+}
+refuse "no integrator 'adam'" 'write ab3, rk4, adams or rkck' 's/adams/adam/'
+refuse 'tolerance must be between 1e-13 and 0.1' 'for example 1e-6' 's/^tolerance.*/tolerance: 1e-14/'
+refuse 'tolerance must be between 1e-13 and 0.1' 'for example 1e-6' 's/^tolerance.*/tolerance: 1/'
+refuse 'ab3 has constant steps' 'integrator: adams' 's/adams/ab3/'
+refuse "with rk4 needs the key 'step'" 'step: ' 's/adams/rk4/; /^tolerance/d'
+refuse "without step needs the key 'output_step'" 'output_step: ' '/^output_step/d'
+run "$work/cart.veh" "$work/cart.scene" --integrator dassl
+check 'an unknown integrator is a usage error' exits 2
+run "$work/cart.veh" "$work/cart.scene" --tolerance 1e-6x
+check 'a tolerance that is no number is a usage error' exits 2
+run models/pendulum.veh models/scenes/pendulum.scene --tolerance 1e-6
+check 'a tolerance for constant steps is refused' says 'remedy: .*--integrator adams'
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
