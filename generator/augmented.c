@@ -8,7 +8,13 @@
  * and w'' of the free coordinates behind them, each from its own equation: what acts along a free coordinate acts on
  * the bodies, so that its multiplier vanishes. The equation of a driven coordinate is a constraint like the joints'.
  * Elimination goes in the order of the topology: first the bodies, whose M is m I and J where the centre of mass is
- * their point, then joint by joint the rest, H = J M^-1 J^T, which couples only joints that share a body.
+ * their point; then joint by joint, which couple where they share a body; last a free base, which all of them would
+ * couple by. What is left after the bodies is, with the index 0 for the base,
+ *
+ *     [ J M^-1 J^T   J_0  ] [ lambda         ]   [ -bias - J M^-1 (applied less gyroscopic forces) ]
+ *     [ J_0^T       -M_0  ] [ acceleration_0 ] = [ -(applied less gyroscopic forces)_0             ]
+ *
+ * the upper block positive, what becomes of the lower one negative definite: every order has pivots.
  *
  * All accelerations are less gravity, components in the base frame. */
 #include "gicgen.h"
@@ -22,7 +28,7 @@ typedef struct Equation {
     int coordinate; /* whose it is, or -1 */
     int multiplier; /* its place in lambda[] */
     bool wanted;    /* by an output */
-    Ex Z[2][6];     /* M^-1 J^T */
+    Ex Z[2][6];     /* M^-1 J^T, but for the base */
 } Equation;
 
 /* The equations of one joint or driven coordinate, eliminated together. */
@@ -34,19 +40,16 @@ typedef struct System {
     Whole *whole;
     Dag *dag;
     Motion *motion;      /* [bodies] of the centres of mass, in the inertial frame that moves with the base's origin */
-    Ex (*M)[7];          /* [bodies] 1 / m, then J^-1 */
+    Ex (*inverse)[7];    /* [bodies] of m and J, but for the base */
+    Ex base_inertia[6];
     Ex (*wrench)[6];     /* [bodies] applied less gyroscopic, moment about the centre of mass */
     Ex (*acceleration)[6];
     int equations, frees, ties;
+    int unknowns; /* multipliers, then the acceleration of a free base */
     Equation *equation; /* of joints and driven coordinates */
     Equation *free;     /* of free coordinates */
     Tie *tie;
 } System;
-
-static bool moves(const System *s, int body)
-{
-    return body != BODY_BASE || s->whole->model->free_base;
-}
 
 /* ---- bodies ---------------------------------------------------------------------------------------------- */
 
@@ -78,9 +81,9 @@ static void symmetric_apply(Dag *dag, const Ex J[6], const Ex x[3], Ex out[3])
 static void solve_body(System *s, int body, Ex x[6])
 {
     Ex angular[3];
-    symmetric_apply(s->dag, s->M[body] + 1, x, angular);
+    symmetric_apply(s->dag, s->inverse[body] + 1, x, angular);
     memcpy(x, angular, sizeof angular);
-    ex_scale3(s->dag, s->M[body][0], x + 3, x + 3);
+    ex_scale3(s->dag, s->inverse[body][0], x + 3, x + 3);
 }
 
 static void open_body(System *s, int b, const Loads *loads)
@@ -97,13 +100,13 @@ static void open_body(System *s, int b, const Loads *loads)
     ex_add3(dag, whole->turn, own->omega, m->omega);
     ex_cross(dag, whole->turn, com.v, m->velocity);
     ex_add3(dag, m->velocity, com.rate, m->velocity);
-    if (!moves(s, b)) {
-        ex_sub3(dag, s->acceleration[b] + 3, whole->gravity, s->acceleration[b] + 3);
-        return;
-    }
-    s->M[b][0] = ex_div(dag, ex_literal(dag, 1), ex_literal(dag, body->mass));
-    inverse_inertia(s, b, s->M[b] + 1);
     whole_inertia(whole, b, J);
+    if (b == BODY_BASE) {
+        memcpy(s->base_inertia, J, sizeof s->base_inertia);
+    } else {
+        s->inverse[b][0] = ex_div(dag, ex_literal(dag, 1), ex_literal(dag, body->mass));
+        inverse_inertia(s, b, s->inverse[b] + 1);
+    }
     symmetric_apply(dag, J, m->omega, t);
     ex_cross(dag, m->omega, t, gyroscopic);
     memcpy(s->wrench[b], loads->wrench[b], sizeof s->wrench[b]);
@@ -121,7 +124,7 @@ static void open_equation(System *s, Equation *equation, const Row *row, const i
     for (int end = 0; end < 2; ++end) {
         equation->body[end] = body[end];
         memcpy(equation->Z[end], row->J[end], sizeof equation->Z[end]);
-        if (moves(s, body[end]))
+        if (body[end] != BODY_BASE)
             solve_body(s, body[end], equation->Z[end]);
     }
 }
@@ -188,7 +191,7 @@ static System open_system(Whole *whole)
     System s = {.whole = whole,
                 .dag = whole->dag,
                 .motion = pool_alloc(pool, bodies * sizeof *s.motion),
-                .M = pool_alloc(pool, bodies * sizeof *s.M),
+                .inverse = pool_alloc(pool, bodies * sizeof *s.inverse),
                 .wrench = pool_alloc(pool, bodies * sizeof *s.wrench),
                 .acceleration = pool_alloc(pool, bodies * sizeof *s.acceleration),
                 .equation = pool_alloc(pool, (size_t)most * sizeof *s.equation),
@@ -208,31 +211,34 @@ static System open_system(Whole *whole)
         for (int i = 0; i < subset->coordinates; ++i)
             open_coordinate(&s, subset->coordinate[i], (const double(*)[3])origin, place++, loads);
     }
+    if (!model->free_base) /* it accelerates against gravity */
+        ex_sub3(s.dag, s.acceleration[BODY_BASE] + 3, whole->gravity, s.acceleration[BODY_BASE] + 3);
+    s.unknowns = s.equations + (model->free_base ? 6 : 0);
     return s;
 }
 
 /* ---- elimination ----------------------------------------------------------------------------------------- */
 
-static bool share_body(const System *s, const Tie *a, const Tie *b)
+static bool share_body(const Tie *a, const Tie *b)
 {
     bool share = false;
     for (int i = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j)
-            share = share || (a->body[i] == b->body[j] && moves(s, a->body[i]));
+            share = share || (a->body[i] == b->body[j] && a->body[i] != BODY_BASE);
     return share;
 }
 
-/* Order of the equations: next comes always the joint whose neighbours have the fewest equations left, of equals the
+/* Order of the equations, then of the base: next comes always the joint whose neighbours have the fewest equations left, of equals the
  * last in the computational sequence. So leaves of the topology come first. */
 static int *topology_order(const System *s)
 {
     size_t ties = (size_t)s->ties;
     bool *near = pool_alloc(s->dag->pool, (ties * ties + 1) * sizeof *near),
          *done = pool_alloc(s->dag->pool, (ties + 1) * sizeof *done);
-    int *order = pool_alloc(s->dag->pool, ((size_t)s->equations + 1) * sizeof *order), count = 0;
+    int *order = pool_alloc(s->dag->pool, ((size_t)s->unknowns + 1) * sizeof *order), count = 0;
     for (int i = 0; i < s->ties; ++i)
         for (int j = 0; j < s->ties; ++j)
-            near[s->ties * i + j] = i != j && share_body(s, &s->tie[i], &s->tie[j]);
+            near[s->ties * i + j] = i != j && share_body(&s->tie[i], &s->tie[j]);
     for (int step = 0; step < s->ties; ++step) {
         int best = -1, best_degree = 0;
         for (int i = s->ties - 1; i >= 0; --i) {
@@ -253,6 +259,8 @@ static int *topology_order(const System *s)
                 if (i != j && near[s->ties * best + i] && near[s->ties * best + j])
                     near[s->ties * i + j] = true;
     }
+    for (int i = s->equations; i < s->unknowns; ++i)
+        order[i] = i;
     return order;
 }
 
@@ -261,18 +269,31 @@ static Ex dot6(Dag *dag, const Ex *a, const Ex *b)
     return ex_add(dag, ex_dot(dag, a, b), ex_dot(dag, a + 3, b + 3));
 }
 
-/* Upper triangle of J M^-1 J^T. */
+/* Upper triangle of what is left after the bodies. */
 static Ex *reduced_matrix(const System *s)
 {
-    int n = s->equations;
-    Ex *H = pool_alloc(s->dag->pool, ((size_t)n * (size_t)n + 1) * sizeof *H);
-    for (int i = 0; i < n; ++i)
-        for (int j = i; j < n; ++j)
+    static const int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+    Dag *dag = s->dag;
+    int n = s->unknowns, base = s->equations;
+    Ex *H = pool_alloc(dag->pool, ((size_t)n * (size_t)n + 1) * sizeof *H);
+    for (int i = 0; i < s->equations; ++i) {
+        const Equation *a = &s->equation[i];
+        for (int j = i; j < s->equations; ++j)
             for (int k = 0; k < 4; ++k) {
-                const Equation *a = &s->equation[i], *b = &s->equation[j];
-                if (a->body[k / 2] == b->body[k % 2] && moves(s, a->body[k / 2]))
-                    H[n * i + j] = ex_add(s->dag, H[n * i + j], dot6(s->dag, a->row.J[k / 2], b->Z[k % 2]));
+                const Equation *b = &s->equation[j];
+                if (a->body[k / 2] == b->body[k % 2] && a->body[k / 2] != BODY_BASE)
+                    H[n * i + j] = ex_add(dag, H[n * i + j], dot6(dag, a->row.J[k / 2], b->Z[k % 2]));
             }
+        for (int end = 0; end < 2; ++end)
+            if (a->body[end] == BODY_BASE)
+                for (int j = base; j < n; ++j)
+                    H[n * i + j] = a->row.J[end][j - base];
+    }
+    for (int i = base; i < n; ++i)
+        for (int j = i; j < base + 3; ++j)
+            H[n * i + j] = ex_neg(dag, s->base_inertia[place[i - base][j - base]]);
+    for (int i = base + 3; i < n; ++i)
+        H[n * i + i] = ex_literal(dag, -s->whole->model->body[BODY_BASE].mass);
     return H;
 }
 
@@ -296,7 +317,7 @@ static void accelerate(System *s, const Ex *lambda)
         for (int end = 0; end < 2; ++end) {
             const Equation *equation = &s->equation[i];
             Ex *acceleration = s->acceleration[equation->body[end]], t[3];
-            for (int part = 0; part < 6 && moves(s, equation->body[end]); part += 3) {
+            for (int part = 0; part < 6 && equation->body[end] != BODY_BASE; part += 3) {
                 ex_scale3(dag, lambda[i], equation->Z[end] + part, t);
                 ex_add3(dag, acceleration + part, t, acceleration + part);
             }
@@ -337,26 +358,29 @@ Block *augmented_block(Whole *whole)
     block->dag = dag;
     System s = open_system(whole);
     const Ex *driven = whole_driven_accelerations(whole), *H = reduced_matrix(&s);
-    Ex *lambda = pool_alloc(dag->pool, (size_t)(s.equations + 1) * sizeof *lambda);
-    const Factors *factors = linear_factor_symmetric(dag, s.equations, H, topology_order(&s));
+    Ex *x = pool_alloc(dag->pool, (size_t)(s.unknowns + 1) * sizeof *x), *base = x + s.equations;
+    const Factors *factors = linear_factor_symmetric(dag, s.unknowns, H, topology_order(&s));
     for (int k = 0; k < s.equations; ++k) {
-        Ex diagonal = H[s.equations * factors->row[k] + factors->row[k]];
+        Ex diagonal = H[s.unknowns * factors->row[k] + factors->row[k]];
         if (dag->node[factors->pivot[k]].level == LEVEL_VARIABLE)
             block_check(block, ex_sub(dag, factors->pivot[k], ex_mul(dag, ex_literal(dag, independent), diagonal)),
                         false, 0, "GIC_ERROR_SINGULAR");
     }
-    for (int b = 0; b < whole->model->bodies; ++b)
-        if (moves(&s, b)) {
-            memcpy(s.acceleration[b], s.wrench[b], sizeof s.acceleration[b]);
-            solve_body(&s, b, s.acceleration[b]);
-        }
+    for (int b = 1; b < whole->model->bodies; ++b) {
+        memcpy(s.acceleration[b], s.wrench[b], sizeof s.acceleration[b]);
+        solve_body(&s, b, s.acceleration[b]);
+    }
     for (int i = 0; i < s.equations; ++i)
-        lambda[i] = ex_neg(dag, deviation(&s, &s.equation[i], driven));
-    linear_solve(dag, factors, lambda, lambda);
-    accelerate(&s, lambda);
+        x[i] = ex_neg(dag, deviation(&s, &s.equation[i], driven));
+    for (int i = s.equations; i < s.unknowns; ++i)
+        x[i] = ex_neg(dag, s.wrench[BODY_BASE][i - s.equations]);
+    linear_solve(dag, factors, x, x);
+    accelerate(&s, x);
+    if (whole->model->free_base)
+        memcpy(s.acceleration[BODY_BASE], base, sizeof s.acceleration[BODY_BASE]);
     store_rates(&s, block, driven);
     for (int i = 0; i < s.equations; ++i)
         if (s.equation[i].wanted)
-            block_store(block, lambda[i], "lambda[%d]", s.equation[i].multiplier);
+            block_store(block, x[i], "lambda[%d]", s.equation[i].multiplier);
     return block;
 }
