@@ -59,7 +59,7 @@ typedef struct Solver {
     /* All that depends on the mechanism alone. Exits with a message when memory is out. */
     void *(*open)(Pool *pool, const Equations *equations);
     /* Accelerations and multipliers. Returns -1, or the constraint that is not independent of the others; then there is
-     * no result. Numbers that aren't finite give results that aren't. */
+     * no result. Numbers that aren't finite give results that aren't, or are refused. */
     int (*solve)(void *solver, const Numbers *numbers);
     /* Give back what doesn't come from the pool. */
     void (*close)(void *solver);
