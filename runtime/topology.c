@@ -451,13 +451,19 @@ static void topology_close(void *solver)
 
 const Solver topology_solver = {"topology", topology_open, topology_solve, topology_close};
 
-void topology_pattern(const void *solver, int *order, bool *factor)
+void topology_pattern(const void *solver, int *order, bool *stored)
 {
     const Topology *topology = solver;
     const int n = topology->equations->constraints;
-    for (int a = 0; a < n; ++a) {
-        order[a] = topology->order[a];
-        for (int b = 0; b < n; ++b)
-            factor[a * n + b] = topology->factor[a * (n + 1) + b];
+    const Panel *panel = topology->panel + topology->bodies;
+    for (int b = 0; b < n; ++b) {
+        order[b] = topology->order[b];
+        const int *unknown = topology->row_unknown + panel[b].row;
+        int others = panel[b].rows - panel[b].own - 1;
+        for (int a = 0; a < n; ++a) {
+            stored[a * n + b] = a == b;
+            for (int i = 0; i < others && a != b; ++i)
+                stored[a * n + b] |= unknown[i] >= panel[a].unknown && unknown[i] < panel[a].unknown + panel[a].width;
+        }
     }
 }

@@ -6,9 +6,9 @@
 
 #include "equations.h"
 
-/* `solver` comes from topology_solver.open. order: [constraints] place of each constraint in the elimination. factor:
- * [constraints][constraints] whether the factor holds a block in row a and column b, both in the order of
- * elimination; only b <= a can. */
-void topology_pattern(const void *solver, int *order, bool *factor);
+/* `solver` comes from topology_solver.open. order: [constraints] place of each constraint in the elimination. stored:
+ * [constraints][constraints] whether the columns of b have numbers in the rows of a, both in that order; there is no
+ * other storage. */
+void topology_pattern(const void *solver, int *order, bool *stored);
 
 #endif

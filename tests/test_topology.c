@@ -301,7 +301,8 @@ static int fill_in(const Equations *e, const int *place, Random *random, bool *n
     return fill;
 }
 
-/* Prediction and numbers have the same blocks; a tree fills in nothing, whatever the order of the file. */
+/* The solver has room for the blocks that the numbers need and no others; a tree fills in nothing, whatever the order
+ * of the file. */
 static void no_fill_but_the_predicted(void **state)
 {
     (void)state;
@@ -313,11 +314,11 @@ static void no_fill_but_the_predicted(void **state)
         Case c = mechanism(pool, &random, m % 3, bodies, 3, loops);
         int n = c.equations->constraints;
         int *place = pool_alloc(pool, (size_t)n * sizeof *place);
-        bool *predicted = pool_alloc(pool, (size_t)(n * n)), *actual = pool_alloc(pool, (size_t)(n * n));
+        bool *stored = pool_alloc(pool, (size_t)(n * n)), *actual = pool_alloc(pool, (size_t)(n * n));
         void *opened = topology_solver.open(pool, c.equations);
-        topology_pattern(opened, place, predicted);
+        topology_pattern(opened, place, stored);
         int fill = fill_in(c.equations, place, &random, actual);
-        assert_memory_equal(predicted, actual, (size_t)(n * n));
+        assert_memory_equal(stored, actual, (size_t)(n * n));
         assert_true(loops || fill == 0);
         closed_fill += fill;
         pool_free(pool);
