@@ -342,12 +342,8 @@ static void set_names(Pool *pool, const Model *model, const Sequence *sequence, 
 {
     const char **subset = pool_alloc(pool, ((size_t)sequence->subsets + 1) * sizeof *subset),
                **body = pool_alloc(pool, (size_t)model->bodies * sizeof *body);
-    for (int s = 0; s < sequence->subsets; ++s) {
-        Text title = {.pool = pool};
-        for (int b = 0; b < sequence->subset[s].bodies; ++b)
-            text_print(&title, "%s%s", b ? " + " : "", model->body[sequence->subset[s].body[b]].name);
-        subset[s] = title.s;
-    }
+    for (int s = 0; s < sequence->subsets; ++s)
+        subset[s] = subset_title(pool, model, &sequence->subset[s]);
     for (int b = 0; b < model->bodies; ++b)
         body[b] = model->body[b].name;
     code->subset_name = subset;

@@ -91,6 +91,35 @@ static double drive_force(const World *world, int coordinate)
     return world->multiplier[world->tie[world->coordinate_tie[coordinate]].first] * world->dual[coordinate];
 }
 
+/* Of a row, what its multiplier puts on the body at one end as force and torque about the centre of mass: -J^T multiplier. */
+static void add_row_force(const World *world, const Tie *tie, int row, int end, double out[6])
+{
+    const int body = tie->body[end];
+    const double *J = world->J + ROW_J * tie->first + BODY_Q * (tie->rows * end + row);
+    const double multiplier = world->multiplier[tie->first + row];
+    double torque[3];
+    euler_turn(world->q[body] + 3, J + 3, torque); /* the p part is 2 E^T torque */
+    add_scaled3(-multiplier, J, out);
+    add_scaled3(-0.5 * multiplier, torque, out + 3);
+}
+
+/* Force and torque of a joint on its second body, at its point of that. */
+static void reaction(const World *world, const Output *output, double *out)
+{
+    const Tie *tie = &world->tie[output->index]; /* joints come first */
+    const Joint *joint = &world->model->joint[output->index];
+    const int body = tie->body[1];
+    double wrench[6] = {0}, local[3], arm[3], moment[3];
+    for (int r = 0; r < tie->rows; ++r)
+        add_row_force(world, tie, r, 1, wrench);
+    sub3(joint->point[1], world->model->body[body].com, local);
+    apply3(world->A[body], local, arm);
+    cross3(arm, wrench, moment);
+    sub3(wrench + 3, moment, wrench + 3);
+    express(world, output->in, wrench, out);
+    express(world, output->in, wrench + 3, out + 3);
+}
+
 static void one_output(const World *world, const Output *output, double *out)
 {
     const int body = output->body, i = output->index;
@@ -111,6 +140,7 @@ static void one_output(const World *world, const Output *output, double *out)
         break;
     case OUTPUT_FORCE: out[0] = world->element[i]; break;
     case OUTPUT_DRIVE_FORCE: out[0] = drive_force(world, i); break;
+    case OUTPUT_REACTION: reaction(world, output, out); break;
     case OUTPUT_WHEEL: memcpy(out, world->wheel[i], sizeof world->wheel[i]); break;
     case OUTPUT_ENERGY: energy(world, out); break;
     default: break;
@@ -155,18 +185,13 @@ static void balance(const World *world, gic_self_test *result)
         }
         for (int t = 0; t < world->constraints; ++t) {
             const Tie *tie = &world->tie[t];
-            const double *J = world->J + ROW_J * tie->first;
             for (int end = 0; end < 2; ++end)
-                for (int r = 0; r < tie->rows; ++r, J += BODY_Q) {
-                    if (tie->body[end] != b)
-                        continue;
-                    const double multiplier = world->multiplier[tie->first + r];
-                    double torque[3];
-                    euler_turn(world->q[b] + 3, J + 3, torque);
+                for (int r = 0; tie->body[end] == b && r < tie->rows; ++r) {
+                    double force[6] = {0};
+                    add_row_force(world, tie, r, end, force);
                     for (int i = 0; i < 6; ++i) {
-                        const double force = multiplier * (i < 3 ? J[i] : 0.5 * torque[i - 3]);
-                        rest[i] += force;
-                        size[i] += fabs(force);
+                        rest[i] -= force[i];
+                        size[i] += fabs(force[i]);
                     }
                 }
         }

@@ -6,8 +6,8 @@
 # failures.
 #
 # Tolerances. States: 1e-10. Engines work in world coordinates, where a place 100 m away is known to 1e-14 m, and a tire
-# of 3e5 N/m makes 1e-12 of an acceleration from that. Scenes: 1e-9 of the largest value of an output (or of 1, where
-# that is larger): such differences, amplified by the motion over a run; another formula would differ by more.
+# of 3e5 N/m makes 1e-12 of an acceleration from that. Scenes: 1e-9 of the largest value of an output, or of 1 (a
+# force or torque: 1000) where that is larger: such differences, amplified by the motion over a run.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 states=$(realpath "$3")
@@ -65,7 +65,11 @@ outputs='  drive: {type: drive_force, coordinate: rack}
   jerked: {type: acceleration, body: wheel_r_r, point: centre_r_r, in: chassis}
   ball: {type: acceleration, body: lca_f_l, point: ball_f_l}
   upright: {type: orientation, body: wheel_f_r}
-  camber: {type: roll_pitch_yaw, body: wheel_f_r}'
+  camber: {type: roll_pitch_yaw, body: wheel_f_r}
+  push: {type: reaction, joint: ball_f_l}
+  hold: {type: reaction, joint: arm_r_l, in: chassis}
+  rail: {type: reaction, joint: rack_guide, in: rack}
+  tie: {type: reaction, joint: tierod_f_r}'
 sed 's/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/' "$root/models/hmmwv.veh" \
     >steered.veh
 echo "$outputs" >>steered.veh
@@ -86,7 +90,10 @@ near() {
             rows = FNR
             for (i = 1; i <= NF; ++i) {
                 value[FNR, i] = $i
-                size[i] = FNR == 1 ? 1 : abs($i) > size[i] ? abs($i) : size[i]
+                if (FNR == 1)
+                    size[i] = $i ~ /\[N/ ? 1000 : 1
+                else if (abs($i) > size[i])
+                    size[i] = abs($i)
             }
             next
         }
