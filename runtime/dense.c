@@ -46,13 +46,14 @@ static inline void solve(const int n, const double *A, const int *swap, double *
         x[swap[k]] = x[k];
         x[k] = value;
     }
-    for (int i = 1; i < n; ++i)
-        for (int j = 0; j < i; ++j)
-            x[i] -= A[n * i + j] * x[j];
-    for (int i = n - 1; i >= 0; --i) {
-        for (int j = i + 1; j < n; ++j)
-            x[i] -= A[n * i + j] * x[j];
-        x[i] *= A[n * i + i];
+    /* by columns: the sums of different rows don't wait for each other */
+    for (int k = 0; k < n; ++k)
+        for (int i = k + 1; i < n; ++i)
+            x[i] -= A[n * i + k] * x[k];
+    for (int k = n - 1; k >= 0; --k) {
+        x[k] *= A[n * k + k];
+        for (int i = 0; i < k; ++i)
+            x[i] -= A[n * i + k] * x[k];
     }
 }
 
