@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_engines.sh GICGEN GICRUN STATES REFERENCE AGREE RANDOM_VEHICLE: the interpreted engines. Accelerations and poses
-# against the independent reference in quad precision at ROWS (default 10) random states of every model, of one with
-# every kind of force law and of VEHICLES (default 5) random vehicles; all outputs along scenes against generated code;
+# against the independent reference in quad precision at ROWS (default 5) random states of every model, of one with
+# every kind of force law and of VEHICLES (default 3) random vehicles; all outputs along scenes against generated code;
 # failures.
 #
 # Tolerances. States: 1e-10. Engines work in world coordinates, where a place 100 m away is known to 1e-14 m, and a tire
@@ -48,7 +48,7 @@ closed() {
 
 # at_states MODEL SEED: all engines; no compiler is needed
 at_states() {
-    "$gicgen" --dump-model "$1" >dump && "$states" dump --count "${ROWS:-10}" --seed "$2" -o states.csv &&
+    "$gicgen" --dump-model "$1" >dump && "$states" dump --count "${ROWS:-5}" --seed "$2" -o states.csv &&
         "$reference" dump states.csv -o accelerations.csv 2>said || return 1
     for engine in $engines; do
         "$gicrun" --engine "$engine" --cc false --eval states.csv "$1" -o results.csv >said 2>&1 &&
@@ -77,7 +77,7 @@ echo "$outputs" >>steered.veh
 for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" steered.veh; do
     at_states "$model" 1
 done
-for seed in $(seq 1 "${VEHICLES:-5}"); do
+for seed in $(seq 1 "${VEHICLES:-3}"); do
     "$random_vehicle" --seed "$seed" >"random$seed.veh" && at_states "random$seed.veh" "$seed"
 done
 
