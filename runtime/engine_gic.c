@@ -245,7 +245,8 @@ static int recover_piece(const Interpreted *context, Instance *self, double *old
         const Part *part = &gic->part[s];
         if (!part->n)
             continue;
-        const double enough = 64 * DBL_EPSILON * (1 + far / part->size);
+        /* rounding of places that far away; velocities are as far off as the pose that the factors belong to */
+        const double enough = 4 * DBL_EPSILON * (1 + far / part->size);
         for (int i = 0; i < part->bodies; ++i)
             carry_body(world, part->body[i], &carry, q + BODY_Q * part->body[i]);
         int status = cold || carry.turn > 0.1 ? GIC_OK : follow(context, self, part, old, carry.turn, enough);
