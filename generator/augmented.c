@@ -43,7 +43,7 @@ typedef struct System {
     Ex (*inverse)[7];    /* [bodies] of m and J, but for the base */
     Ex base_inertia[6];
     Ex (*wrench)[6];     /* [bodies] applied less gyroscopic, moment about the centre of mass */
-    Ex (*acceleration)[6];
+    Ex (*acceleration)[6], *lambda; /* the solution */
     int equations, frees, ties;
     int unknowns; /* multipliers, then the acceleration of a free base */
     Equation *equation; /* of joints and driven coordinates */
@@ -213,6 +213,7 @@ static System open_system(Whole *whole)
     }
     if (!model->free_base) /* it accelerates against gravity */
         ex_sub3(s.dag, s.acceleration[BODY_BASE] + 3, whole->gravity, s.acceleration[BODY_BASE] + 3);
+    s.lambda = pool_alloc(pool, (size_t)(s.equations + 1) * sizeof *s.lambda);
     s.unknowns = s.equations + (model->free_base ? 6 : 0);
     return s;
 }
@@ -309,19 +310,48 @@ static Ex deviation(const System *s, const Equation *equation, const Ex *driven)
     return sum;
 }
 
-/* Accelerations of the bodies from multipliers. */
-static void accelerate(System *s, const Ex *lambda)
+/* What the equations lack at multipliers and accelerations as they are now. */
+static void shortfall(const System *s, const Ex *driven, Ex *out)
 {
     Dag *dag = s->dag;
     for (int i = 0; i < s->equations; ++i)
+        out[i] = ex_neg(dag, deviation(s, &s->equation[i], driven));
+    if (s->unknowns == s->equations)
+        return;
+    Ex *base = out + s->equations, t[3];
+    const Ex *acceleration = s->acceleration[BODY_BASE];
+    symmetric_apply(dag, s->base_inertia, acceleration, base);
+    ex_scale3(dag, ex_literal(dag, s->whole->model->body[BODY_BASE].mass), acceleration + 3, base + 3);
+    for (int part = 0; part < 6; part += 3)
+        ex_sub3(dag, base + part, s->wrench[BODY_BASE] + part, base + part);
+    for (int i = 0; i < s->equations; ++i)
+        for (int end = 0; end < 2; ++end)
+            for (int part = 0; part < 6 && s->equation[i].body[end] == BODY_BASE; part += 3) {
+                ex_scale3(dag, s->lambda[i], s->equation[i].row.J[end] + part, t);
+                ex_sub3(dag, base + part, t, base + part);
+            }
+}
+
+/* Add to the multipliers and to the acceleration of a free base, and to all other accelerations what follows. */
+static void add_solution(System *s, const Ex *x)
+{
+    Dag *dag = s->dag;
+    Ex t[3];
+    for (int i = 0; i < s->equations; ++i) {
+        s->lambda[i] = ex_add(dag, s->lambda[i], x[i]);
         for (int end = 0; end < 2; ++end) {
             const Equation *equation = &s->equation[i];
-            Ex *acceleration = s->acceleration[equation->body[end]], t[3];
+            Ex *acceleration = s->acceleration[equation->body[end]];
             for (int part = 0; part < 6 && equation->body[end] != BODY_BASE; part += 3) {
-                ex_scale3(dag, lambda[i], equation->Z[end] + part, t);
+                ex_scale3(dag, x[i], equation->Z[end] + part, t);
                 ex_add3(dag, acceleration + part, t, acceleration + part);
             }
         }
+    }
+    for (int i = s->equations; i < s->unknowns; ++i) {
+        Ex *acceleration = &s->acceleration[BODY_BASE][i - s->equations];
+        *acceleration = ex_add(dag, *acceleration, x[i]);
+    }
 }
 
 /* The unknowns of the reduced form, from the accelerations of the centres of mass. */
@@ -351,14 +381,17 @@ static void store_rates(System *s, Block *block, const Ex *driven)
 
 Block *augmented_block(Whole *whole)
 {
-    /* a pivot this small against its diagonal entry is rounding: the equation says nothing new */
-    const double independent = 1e-13;
+    /* a pivot this small against its diagonal entry: the equation says next to nothing new, and the digits that
+     * are left would not be enough for the second pass */
+    const double independent = 1e-11;
+    /* the second pass takes back what J M^-1 J^T, with the square of J's condition, has lost of the digits */
+    const int passes = 2;
     Dag *dag = whole->dag;
     Block *block = pool_alloc(dag->pool, sizeof *block);
     block->dag = dag;
     System s = open_system(whole);
     const Ex *driven = whole_driven_accelerations(whole), *H = reduced_matrix(&s);
-    Ex *x = pool_alloc(dag->pool, (size_t)(s.unknowns + 1) * sizeof *x), *base = x + s.equations;
+    Ex *x = pool_alloc(dag->pool, (size_t)(s.unknowns + 1) * sizeof *x);
     const Factors *factors = linear_factor_symmetric(dag, s.unknowns, H, topology_order(&s));
     for (int k = 0; k < s.equations; ++k) {
         Ex diagonal = H[s.unknowns * factors->row[k] + factors->row[k]];
@@ -370,17 +403,14 @@ Block *augmented_block(Whole *whole)
         memcpy(s.acceleration[b], s.wrench[b], sizeof s.acceleration[b]);
         solve_body(&s, b, s.acceleration[b]);
     }
-    for (int i = 0; i < s.equations; ++i)
-        x[i] = ex_neg(dag, deviation(&s, &s.equation[i], driven));
-    for (int i = s.equations; i < s.unknowns; ++i)
-        x[i] = ex_neg(dag, s.wrench[BODY_BASE][i - s.equations]);
-    linear_solve(dag, factors, x, x);
-    accelerate(&s, x);
-    if (whole->model->free_base)
-        memcpy(s.acceleration[BODY_BASE], base, sizeof s.acceleration[BODY_BASE]);
+    for (int pass = 0; pass < passes; ++pass) {
+        shortfall(&s, driven, x);
+        linear_solve(dag, factors, x, x);
+        add_solution(&s, x);
+    }
     store_rates(&s, block, driven);
     for (int i = 0; i < s.equations; ++i)
         if (s.equation[i].wanted)
-            block_store(block, x[i], "lambda[%d]", s.equation[i].multiplier);
+            block_store(block, s.lambda[i], "lambda[%d]", s.equation[i].multiplier);
     return block;
 }

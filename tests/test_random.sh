@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_random.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE: accelerations and poses of random vehicles against
-# the independent reference in quad precision at random states, and the diagnosis of random mistakes: one error, which
+# test_random.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE: accelerations, poses, reactions of all joints and
+# drive forces of random vehicles against the independent reference in quad precision at random states, with the
+# equations of motion in either form, and the diagnosis of random mistakes: one error, which
 # names a culprit. VEHICLES (default 20) of either kind at ROWS (default 10) states, or those of SEEDS alone (SEEDS="12
 # 40"); a full run is VEHICLES=300 ROWS=20. KEEP=folder: what they made is left there.
 random_vehicle=$1
@@ -41,8 +42,13 @@ agrees() {
         "$gicgen" --dump-model "$work/$1.veh" >"$work/$1.dump" &&
         "$states" "$work/$1.dump" --count "$rows" --seed "$1" -o "$work/$1.states" &&
         "$reference" "$work/$1.dump" "$work/$1.states" -o "$work/$1.accelerations" &&
-        "$gicrun" --cc "sh $work/cc" --eval "$work/$1.states" "$work/$1.veh" -o "$work/$1.results" &&
-        "$agree" "$work/$1.dump" "$work/$1.accelerations" "$work/$1.results"
+        sh "$(dirname "$0")/reactions.sh" "$work/$1.dump" "$(realpath "$work/$1.veh")" >"$work/$1.variant.veh" || return 1
+    for solve in reduced augmented; do
+        echo "$solve:"
+        "$gicrun" --solve $solve --cc "sh $work/cc" --eval "$work/$1.states" "$work/$1.variant.veh" \
+            -o "$work/$1.results" && "$agree" "$work/$1.dump" "$work/$1.accelerations" "$work/$1.results" --reactions ||
+            return 1
+    done
 }
 
 # refused SEED: exit status 1, one error, and among the names in its message or remedy a culprit's. The line of the file
