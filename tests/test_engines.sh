@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_engines.sh GICGEN GICRUN STATES REFERENCE AGREE RANDOM_VEHICLE: the interpreted engines. Accelerations and poses
-# against the independent reference in quad precision at ROWS (default 5) random states of every model, of one with
+# test_engines.sh GICGEN GICRUN STATES REFERENCE AGREE RANDOM_VEHICLE: the interpreted engines. Accelerations, poses and
+# reactions against the independent reference in quad precision at ROWS (default 5) random states of every model, of one with
 # every kind of force law and of VEHICLES (default 3) random vehicles; all outputs along scenes against generated code;
 # failures.
 #
@@ -49,10 +49,11 @@ closed() {
 # at_states MODEL SEED: all engines; no compiler is needed
 at_states() {
     "$gicgen" --dump-model "$1" >dump && "$states" dump --count "${ROWS:-5}" --seed "$2" -o states.csv &&
+        sh "$root/tests/reactions.sh" dump "$(realpath "$1")" >variant.veh &&
         "$reference" dump states.csv -o accelerations.csv 2>said || return 1
     for engine in $engines; do
-        "$gicrun" --engine "$engine" --cc false --eval states.csv "$1" -o results.csv >said 2>&1 &&
-            "$agree" dump accelerations.csv results.csv --tolerance 1e-10 >said && closed >said
+        "$gicrun" --engine "$engine" --cc false --eval states.csv variant.veh -o results.csv >said 2>&1 &&
+            "$agree" dump accelerations.csv results.csv --reactions --tolerance 1e-10 >said && closed >said
         check $? "$engine at states of $1"
     done
 }
