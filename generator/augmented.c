@@ -39,13 +39,13 @@ typedef struct Tie {
 typedef struct System {
     Whole *whole;
     Dag *dag;
-    Motion *motion;      /* [bodies] of the centres of mass, in the inertial frame that moves with the base's origin */
-    Ex (*inverse)[7];    /* [bodies] of m and J, but for the base */
+    Motion *motion;   /* [bodies] of the centres of mass, in the inertial frame that moves with the base's origin */
+    Ex (*inverse)[7]; /* [bodies] of m and J, but for the base */
     Ex base_inertia[6];
-    Ex (*wrench)[6];     /* [bodies] applied less gyroscopic, moment about the centre of mass */
+    Ex (*wrench)[6];                /* [bodies] applied less gyroscopic, moment about the centre of mass */
     Ex (*acceleration)[6], *lambda; /* the solution */
     int equations, frees, ties;
-    int unknowns; /* multipliers, then the acceleration of a free base */
+    int unknowns;       /* multipliers, then the acceleration of a free base */
     Equation *equation; /* of joints and driven coordinates */
     Equation *free;     /* of free coordinates */
     Tie *tie;
@@ -229,8 +229,8 @@ static bool share_body(const Tie *a, const Tie *b)
     return share;
 }
 
-/* Order of the equations, then of the base: next comes always the joint whose neighbours have the fewest equations left, of equals the
- * last in the computational sequence. So leaves of the topology come first. */
+/* Order of the equations, then of the base: next comes always the joint whose neighbours have the fewest equations
+ * left, of equals the last in the computational sequence. So leaves of the topology come first. */
 static int *topology_order(const System *s)
 {
     size_t ties = (size_t)s->ties;

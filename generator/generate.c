@@ -99,10 +99,11 @@ static Count outputs_count(const Generation *g)
 static void write_counts(Generation *g, Text *out)
 {
     Count all = {0};
-    text_print(out,
-               g->plan->solve == SOLVE_AUGMENTED
-                   ? " * Equations of motion in the augmented form (Serban and Haug 2000, eq. 16), bodies eliminated first.\n"
-                   : " * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).\n");
+    text_print(
+        out,
+        g->plan->solve == SOLVE_AUGMENTED
+            ? " * Equations of motion in the augmented form (Serban and Haug 2000, eq. 16), bodies eliminated first.\n"
+            : " * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).\n");
     text_print(out, " * Operations of one right-hand side, one Newton correction with old factors and one with new:\n");
     text_print(out, " *   %-40s %7s %9s %7s %6s %9s\n", "", "add", "multiply", "divide", "root", "function");
     for (int c = 0; c < g->sequence->classes; ++c) {
@@ -652,12 +653,9 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
     const struct {
         const char *name;
         const Block *block;
-    } blocks[] = {{"dynamics", g->formulation->dynamics},
-                  {"outputs", g->formulation->outputs},
-                  {"poses", g->formulation->poses},
-                  {"inverse", g->formulation->inverse},
-                  {"energy", g->formulation->energy},
-                  {"wrenches", g->formulation->wrenches}};
+    } blocks[] = {{"dynamics", g->formulation->dynamics}, {"outputs", g->formulation->outputs},
+                  {"poses", g->formulation->poses},       {"inverse", g->formulation->inverse},
+                  {"energy", g->formulation->energy},     {"wrenches", g->formulation->wrenches}};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
         if (!strcmp(name, blocks[i].name)) {
             block_emit(out, blocks[i].block, &none, indent);

@@ -152,12 +152,8 @@ int main(int count, char **word)
     model = model_assemble(pool, model, sequence);
     Text text = {.pool = pool};
     switch (options.task) {
-    case TASK_GENERATE:
-        write_code(pool, model, sequence, &options);
-        break;
-    case TASK_GRAPH:
-        write_graph(pool, model, sequence, &options);
-        break;
+    case TASK_GENERATE: write_code(pool, model, sequence, &options); break;
+    case TASK_GRAPH: write_graph(pool, model, sequence, &options); break;
     case TASK_MAIN:
     case TASK_SEQUENCE:
     case TASK_DUMP:

@@ -105,7 +105,7 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         out[2] = s->w2[output->index];
         break;
     case OUTPUT_FORCE: out[0] = s->loads->element[output->index]; break;
-    case OUTPUT_DRIVE_FORCE: 
+    case OUTPUT_DRIVE_FORCE:
         out[0] = whole->plan->solve == SOLVE_AUGMENTED ? whole_drive_reaction(whole, output->index)
                                                        : whole_drive_force(whole, output->index);
         break;

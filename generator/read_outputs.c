@@ -19,7 +19,17 @@ const char *const output_type_name[OUTPUT_TYPES] = {
     [OUTPUT_ENERGY] = "energy",
 };
 
-enum { WATCH_TYPE, WATCH_BODY, WATCH_POINT, WATCH_IN, WATCH_COORDINATE, WATCH_ELEMENT, WATCH_JOINT, WATCH_WHEEL, WATCH_KEYS };
+enum {
+    WATCH_TYPE,
+    WATCH_BODY,
+    WATCH_POINT,
+    WATCH_IN,
+    WATCH_COORDINATE,
+    WATCH_ELEMENT,
+    WATCH_JOINT,
+    WATCH_WHEEL,
+    WATCH_KEYS
+};
 
 #define FRAMED_POINTS (FORM(OUTPUT_VELOCITY) | FORM(OUTPUT_ACCELERATION))
 #define FRAMED (FRAMED_POINTS | FORM(OUTPUT_ANGULAR_VELOCITY) | FORM(OUTPUT_REACTION))
@@ -92,8 +102,8 @@ static void output_read(Reader *reader, const Entry *entry, Output *output)
     Value value[WATCH_KEYS];
     OutputType type = (OutputType)section_type(reader, &output_section, entry);
     section_read(reader, &output_section, (int)type, entry, value);
-    *output = (Output){.name = entry->name, .at = entry->at, .type = type, .body = BODY_GROUND, .in = BODY_GROUND,
-                       .index = -1};
+    *output = (Output){
+        .name = entry->name, .at = entry->at, .type = type, .body = BODY_GROUND, .in = BODY_GROUND, .index = -1};
     if (value[WATCH_BODY].item)
         output->body = value[WATCH_BODY].index[0];
     if (value[WATCH_POINT].item)

@@ -488,8 +488,8 @@ static Formula *formulate_class(Work *w, Solve solve)
     Dag *dag = w->dag;
     int bodies = w->first->bodies, deps = w->first->deps;
     Formula *formula = pool_alloc(pool, sizeof *formula);
-    formula->dag = formula->predict.dag = formula->chord.dag = formula->solve.dag = formula->residual.dag = formula->react.dag =
-        dag;
+    formula->dag = formula->predict.dag = formula->chord.dag = formula->solve.dag = formula->residual.dag =
+        formula->react.dag = dag;
     formula->size = w->size;
     formula->distance = subset_distance(w) / w->size;
     Factors *factors = factor(w);

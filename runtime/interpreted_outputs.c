@@ -124,7 +124,6 @@ static void one_output(const World *world, const Output *output, double *out)
 {
     const int body = output->body, i = output->index;
     const Track point = track(world, body, output->point);
-    double force[3], torque[3];
     switch (output->type) {
     case OUTPUT_POSITION: copy3(point.r, out); break;
     case OUTPUT_VELOCITY: express(world, output->in, point.v, out); break;

@@ -56,6 +56,10 @@ run 2 "$model" -o code.txt
 says err "must end in .c: code.txt"
 run 2 --graph picture.jpeg "$model"
 says err "must end in .svg or .dot"
+run 2 "$model" --solve
+says err "an argument is missing after: --solve"
+run 2 "$model" --solve quickly
+says err "--solve takes reduced or augmented, not: quickly"
 run 1 missing.veh
 says err "missing.veh: error: can't open"
 run 1 "$root/models"

@@ -203,6 +203,8 @@ static void test_dense(void **state)
         assert_true(system_solve(&sys));
         assert_int_equal(sys.rank, n);
         assert_solution(&sys, A, b, 2e-11);
+        Ex transposed[8];
+        linear_solve_transposed(sys.dag, sys.factors, sys.b, transposed);
         /* where the answer goes to the place of the right-hand side */
         linear_solve(sys.dag, sys.factors, sys.b, sys.b);
         assert_memory_equal(sys.b, sys.x, (size_t)n * sizeof(Ex));
@@ -215,6 +217,13 @@ static void test_dense(void **state)
         solve_long(n, A, b, x);
         for (int i = 0; i < n; ++i)
             assert_true(fabsl(right[i] - x[i]) < 1e-12L * (1 + fabsl(x[i])) / 0.02L);
+        /* the same factors solve the transposed system */
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j)
+                dense[n * j + i] = A[n * i + j];
+        solve_long(n, dense, b, x);
+        for (int i = 0; i < n; ++i)
+            assert_true(fabsl(ex_value(sys.dag, transposed[i], 0) - x[i]) < 2e-11L * (1 + fabsl(x[i])) / 0.02L);
         pool_free(sys.pool);
         ++tried;
     }
@@ -504,6 +513,32 @@ static void test_symmetric(void **state)
     }
 }
 
+/* In an order of one's own: the same solution, and pivots in that order. */
+static void test_order(void **state)
+{
+    (void)state;
+    enum { N = 6 };
+    static const int order[N] = {4, 0, 5, 2, 1, 3};
+    Random random = {11};
+    double A[N_MAX * N_MAX] = {0}, b[N_MAX], G[N * N];
+    fill(&random, N * N, G);
+    fill(&random, N, b);
+    for (int i = 0; i < N; ++i)
+        for (int j = 0; j < N; ++j)
+            for (int k = 0; k < N; ++k)
+                A[N * i + j] += G[N * i + k] * G[N * j + k] + (i == j);
+    System sys = system_new(N, 1, A, b);
+    Factors *factors = linear_factor_symmetric(sys.dag, N, sys.A, order);
+    linear_solve(sys.dag, factors, sys.b, sys.x);
+    long double x[N_MAX];
+    solve_cholesky(N, A, b, x);
+    for (int i = 0; i < N; ++i) {
+        assert_int_equal(factors->row[i], order[i]);
+        assert_true(fabsl(ex_value(sys.dag, sys.x[i], 0) - x[i]) < 1e-14L);
+    }
+    pool_free(sys.pool);
+}
+
 /* The arrow, its head first: taken in the given order it would fill up. Leaves first: for each of the m leaves a
  * reciprocal, a multiplier, the update of the head; forward one update, backward two products and one update; the head
  * a reciprocal and a product. */
@@ -581,7 +616,8 @@ int main(void)
         cmocka_unit_test(test_permuted_triangular), cmocka_unit_test(test_badly_scaled),
         cmocka_unit_test(test_pivot_for_all_samples), cmocka_unit_test(test_rank),
         cmocka_unit_test(test_nearly_singular), cmocka_unit_test(test_unit_rows),
-        cmocka_unit_test(test_symmetric),     cmocka_unit_test(test_arrow),
+        cmocka_unit_test(test_symmetric),     cmocka_unit_test(test_order),
+        cmocka_unit_test(test_arrow),
         cmocka_unit_test(test_determinant),   cmocka_unit_test(test_numeric_singular),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -330,8 +330,7 @@ static void scales(Solver *solver, const Road *road)
     }
     for (int c = 0; c < model->coordinates; ++c)
         if (!model->coordinate[c].driven && sum.w[c] != solver->w_second[c])
-            solver->sum_error =
-                fmaxq(solver->sum_error, fabsq(sum.w[c] - solver->w_second[c]) / solver->w_scale[c]);
+            solver->sum_error = fmaxq(solver->sum_error, fabsq(sum.w[c] - solver->w_second[c]) / solver->w_scale[c]);
     compare_forces(solver, &sum);
     free(sum.w);
     free(sum.drive);

@@ -29,8 +29,7 @@ Reaction joint_reaction(const Solver *solver, int index)
     quad_cross(arm, reaction.force, turn);
     quad force = sqrtq(quad_dot(reaction.force, reaction.force, 3));
     reaction.force_scale = force;
-    reaction.torque_scale =
-        sqrtq(quad_dot(reaction.torque, reaction.torque, 3)) + force * sqrtq(quad_dot(arm, arm, 3));
+    reaction.torque_scale = sqrtq(quad_dot(reaction.torque, reaction.torque, 3)) + force * sqrtq(quad_dot(arm, arm, 3));
     for (int i = 0; i < 3; ++i)
         reaction.torque[i] -= turn[i];
     return reaction;
