@@ -143,7 +143,7 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(1.1800861256301873e-38));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -489,7 +489,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(1.9531227755102036));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 14; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -1309,7 +1309,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(3.0082428125000003));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 14; ++i)
         q[i] = old[i];
     if (!links->cold) {

@@ -165,7 +165,7 @@ static int five_link_solve_rack(five_link *self, const gic_real *GIC_RESTRICT k,
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(2.072648852345));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -481,7 +481,7 @@ static int five_link_solve_lca_fl(five_link *self, const gic_real *GIC_RESTRICT 
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(43.74775795073613));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -918,7 +918,7 @@ static int five_link_solve_wheel_rl(five_link *self, const gic_real *GIC_RESTRIC
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(27.187356821586203));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -1611,7 +1611,7 @@ static int five_link_solve_wheel_fl(five_link *self, const gic_real *GIC_RESTRIC
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(28.861380328376388));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {

@@ -173,7 +173,7 @@ static int hmmwv14_solve_rack(hmmwv14 *self, const gic_real *GIC_RESTRICT k, con
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(2.072648852345));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -503,7 +503,7 @@ static int hmmwv14_solve_lca_fl(hmmwv14 *self, const gic_real *GIC_RESTRICT k, c
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(43.74775795073611));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -943,7 +943,7 @@ static int hmmwv14_solve_uca_fl_wheel_fl(hmmwv14 *self, const gic_real *GIC_REST
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(28.861380328376388));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 14; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -1933,7 +1933,7 @@ static int hmmwv14_solve_uca_rl_wheel_rl(hmmwv14 *self, const gic_real *GIC_REST
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(28.869811926497114));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 14; ++i)
         q[i] = old[i];
     if (!links->cold) {

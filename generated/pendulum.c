@@ -121,7 +121,7 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(0.0));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {

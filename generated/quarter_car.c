@@ -140,7 +140,7 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(0.4719690000000001));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -409,7 +409,7 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(4.735329459563454));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -955,7 +955,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(6.400399145209049));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {

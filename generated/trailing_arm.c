@@ -163,7 +163,7 @@ static int trailing_arm_solve_rack(trailing_arm *self, const gic_real *GIC_RESTR
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(2.072648852345));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -479,7 +479,7 @@ static int trailing_arm_solve_lca_fl(trailing_arm *self, const gic_real *GIC_RES
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(2.9469045826210003));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -884,7 +884,7 @@ static int trailing_arm_solve_wheel_fl(trailing_arm *self, const gic_real *GIC_R
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(28.861380328376388));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -1487,7 +1487,7 @@ static int trailing_arm_solve_lca_fl_2(trailing_arm *self, const gic_real *GIC_R
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(1.7456759999999998));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
