@@ -121,13 +121,15 @@ undamped := s/damping: [0-9.]*/damping: 0/
 # springs at ease at design, so that the suspension stays within reach in the air
 glider := $(undamped); s/, free: [0-9.]*//
 
-$(code)/%.c: models/%.veh $(BUILD)/gicgen
+parts := $(wildcard models/parts/*.veh)
+
+$(code)/%.c: models/%.veh $(parts) $(BUILD)/gicgen
 	@mkdir -p $(@D)
 	$(BUILD)/gicgen $< -o $@
 
-$(code)/%.c: models/hmmwv.veh $(BUILD)/gicgen
+$(code)/%.c: models/hmmwv.veh $(parts) $(BUILD)/gicgen
 	@mkdir -p $(@D)
-	sed 's/^model: .*/model: $*/; $($*)' $< > $(@:.c=.veh)
+	sed 's|parts/|$(abspath models/parts)/|g; s/^model: .*/model: $*/; $($*)' $< > $(@:.c=.veh)
 	$(BUILD)/gicgen $(@:.c=.veh) -o $@
 
 $(code)/%.o: $(code)/%.c

@@ -9,14 +9,14 @@ gicrun=$2
 states=$3
 reference=$4
 agree=$5
-root=$(dirname "$0")/..
+root=$(cd "$(dirname "$0")/.." && pwd)
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 passed=0
 failed=0
 
-sed 's/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/' "$root/models/hmmwv.veh" \
-    >"$work/steered.veh"
+sed "s|parts/|$root/models/parts/|g; s/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/" \
+    "$root/models/hmmwv.veh" >"$work/steered.veh"
 
 # the largest of the column `constraint`; nothing when a row has none
 residual() {

@@ -78,13 +78,13 @@ run 0 "$model" -o -
 cat hmmwv.h hmmwv.c | grep -v '^#include "hmmwv.h"$' >together
 grep -v '^$' together >a && grep -v '^$' out >b && cmp -s a b
 check $? "standard output is not header and code"
-"$gicgen" - -o stdin.c <"$model" && sed 's/"stdin.h"/"hmmwv.h"/' stdin.c | cmp -s - hmmwv.c
+(cd "$root/models" && "$gicgen" - -o "$work/stdin.c") <"$model" && sed 's/"stdin.h"/"hmmwv.h"/' stdin.c | cmp -s - hmmwv.c
 check $? "a model from standard input gives other code"
 
 # an old file survives whatever goes wrong, and nothing else is left
 echo old >kept.c
 echo old >kept.h
-sed 's/mass: 2086.52/mass: minus/' "$model" >broken.veh
+sed "s/damping: 500/damping: minus/; s|parts/|$root/models/parts/|g" "$model" >broken.veh
 run 1 broken.veh -o kept.c
 [ "$(cat kept.c kept.h)" = "old
 old" ]

@@ -71,8 +71,8 @@ outputs='  drive: {type: drive_force, coordinate: rack}
   hold: {type: reaction, joint: arm_r_l, in: chassis}
   rail: {type: reaction, joint: rack_guide, in: rack}
   tie: {type: reaction, joint: tierod_f_r}'
-sed 's/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/' "$root/models/hmmwv.veh" \
-    >steered.veh
+sed "s|parts/|$root/models/parts/|g; s/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/" \
+    "$root/models/hmmwv.veh" >steered.veh
 echo "$outputs" >>steered.veh
 
 for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" steered.veh; do

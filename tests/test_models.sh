@@ -146,11 +146,7 @@ near "$(at end bounce.value)" 0 1e-4 "rest of the quarter car"
 rest() {
     scene "duration: 2" "step: 0.005" "output_step: 0.1" "initial: {position: [0, 0, $2], orientation: {pitch: $3}}"
     run "$1"
-    case $4 in
-    *_l) corners="f_l f_r r_l r_r" ;;
-    *) corners="fl fr rl rr" ;;
-    esac
-    load=$(for wheel in $corners; do at 0 tire_$wheel.fz; done | awk '{ sum += $1 } END { printf "%.9g\n", sum }')
+    load=$(for wheel in f_l f_r r_l r_r; do at 0 tire_$wheel.fz; done | awk '{ sum += $1 } END { printf "%.9g\n", sum }')
     near "$load" "$(awk -v mass="$5" 'BEGIN { print 9.81 * mass }')" 10 "load on the tires of $1"
     value=$(at 0 "$4.value")
     for time in 0 1 2; do
@@ -163,10 +159,10 @@ rest() {
 # masses: chassis and rack, then arms, wheel assemblies, axle
 rest hmmwv 0.4740625 0.0004326 spring_f_l "$(awk 'BEGIN { print 2095.592 + 4 * (23.965 + 90.555) }')"
 near "$(at 0 spring_f_l.value)" 0.246463 1e-6 "front spring at its design length"
-rest hmmwv14 0.473856 0.0004314 spring_rl "$(awk 'BEGIN { print 2095.592 + 4 * (23.965 + 5.813 + 90.555) }')"
-rest five_link 0.474472 0.0006879 spring_rl "$(awk 'BEGIN { print 2095.592 + 2 * 23.965 + 4 * 90.555 }')"
-rest solid_axle 0.473694 0.0002147 spring_rl "$(awk 'BEGIN { print 2095.592 + 2 * (23.965 + 90.555) + 271.11 }')"
-rest trailing_arm 0.474126 0.0005099 bar_rl "$(awk 'BEGIN { print 2095.592 + 2 * (23.965 + 90.555 + 110.555) }')"
+rest hmmwv14 0.473856 0.0004314 spring_r_l "$(awk 'BEGIN { print 2095.592 + 4 * (23.965 + 5.813 + 90.555) }')"
+rest five_link 0.474472 0.0006879 spring_r_l "$(awk 'BEGIN { print 2095.592 + 2 * 23.965 + 4 * 90.555 }')"
+rest solid_axle 0.473694 0.0002147 spring_r_l "$(awk 'BEGIN { print 2095.592 + 2 * (23.965 + 90.555) + 271.11 }')"
+rest trailing_arm 0.474126 0.0005099 bar_r_l "$(awk 'BEGIN { print 2095.592 + 2 * (23.965 + 90.555 + 110.555) }')"
 
 # ---- the paper's run at the largest step, against RK4 at a tenth of it ------------------------------------------
 
@@ -190,10 +186,10 @@ done
 for name in hmmwv14 five_link solid_axle trailing_arm; do
     file=$models/scenes/$name.scene
     run $name "$file"
-    for column in chassis.z wheel_fl.z wheel_rl.z; do at end $column; done >"$work/coarse"
+    for column in chassis.z wheel_f_l.z wheel_r_l.z; do at end $column; done >"$work/coarse"
     sed 's/^step:.*/step: 0.0005/; s/^integrator:.*/integrator: rk4/' "$file" >"$work/scene"
     run $name
-    for column in chassis.z wheel_fl.z wheel_rl.z; do
+    for column in chassis.z wheel_f_l.z wheel_r_l.z; do
         near "$(sed -n 1p "$work/coarse")" "$(at end $column)" 2e-4 "$column at the end of $name.scene, step 5 ms"
         sed -i 1d "$work/coarse"
     done

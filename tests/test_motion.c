@@ -152,8 +152,8 @@ static void test_energy(void **unused)
 /* Centre of mass of the HMMWV from poses and the masses of models/hmmwv.veh. */
 static void centre_of_mass(Vehicle *car, double centre[3])
 {
-    /* in the order of the file; body frames have their origin there, but for the chassis */
-    static const double mass[] = {2086.52, 9.072, 23.965, 23.965, 23.965, 23.965, 90.555, 90.555, 90.555, 90.555};
+    /* in the order of the model: front axle, rear axle; body frames have their origin there, but for the chassis */
+    static const double mass[] = {2086.52, 9.072, 23.965, 23.965, 90.555, 90.555, 23.965, 23.965, 90.555, 90.555};
     static const double of_chassis[] = {0.056, 0, 0.213};
     double pose[10][7], sum = 0;
     assert_int_equal(car->model->body_count, 10);
