@@ -161,22 +161,28 @@ static void formula(Text *out, const Law *law, const Model *model)
     add(out, "]");
 }
 
+/* A law of numbers and parameters as its value; NULL: does not apply. */
+static void law_pair(Text *out, const char *name, const Law *law, const Model *model)
+{
+    double number = law ? law_number(law, model) : 0;
+    number_pair(out, name, &number, 0, law);
+}
+
 static void forces(Text *out, const Model *model)
 {
     static const char *const type[FORCE_TYPES] = {[FORCE_COORDINATE] = "coordinate",
                                                   [FORCE_POINTS] = "points",
+                                                  [FORCE_AXIS] = "axis",
                                                   [FORCE_COORDINATE_LAW] = "coordinate_law",
                                                   [FORCE_POINTS_LAW] = "points_law",
+                                                  [FORCE_AXIS_LAW] = "axis_law",
+                                                  [FORCE_COORDINATE_STOP] = "coordinate_stop",
+                                                  [FORCE_POINTS_STOP] = "points_stop",
+                                                  [FORCE_AXIS_STOP] = "axis_stop",
                                                   [FORCE_LOAD] = "load"};
     for (int i = 0; i < model->forces; ++i) {
         const Force *force = model->force + i;
-        bool spring = force->stiffness, along = force->coordinate >= 0;
-        double number[3] = {0};
-        if (spring) {
-            number[0] = law_number(force->stiffness, model);
-            number[1] = law_number(force->damping, model);
-            number[2] = law_number(force->free, model);
-        }
+        bool along = force->coordinate >= 0, about = force_is_torque(force), load = force->type == FORCE_LOAD;
         begin(out, i, force->name);
         text_pair(out, "type", type[force->type]);
         integer_pair(out, "coordinate", force->coordinate);
@@ -185,14 +191,24 @@ static void forces(Text *out, const Model *model)
                 integer_pair(out, k ? "b" : "a", force->body[k]);
             else
                 number_pair(out, k ? "b" : "a", NULL, 0, false);
-        number_pair(out, "point_a", force->point[0], 3, !along);
-        number_pair(out, "point_b", force->point[1], 3, !along && force->type != FORCE_LOAD);
-        number_pair(out, "stiffness", &number[0], 0, spring);
-        number_pair(out, "damping", &number[1], 0, spring);
-        number_pair(out, "free", &number[2], 0, spring);
+        number_pair(out, "point_a", force->point[0], 3, !along && !about);
+        number_pair(out, "point_b", force->point[1], 3, !along && !about && !load);
+        number_pair(out, "axis_a", force->axis, 3, about);
+        number_pair(out, "reference_a", force->reference[0], 3, about);
+        number_pair(out, "reference_b", force->reference[1], 3, about);
+        law_pair(out, "stiffness", force->table < 0 ? force->stiffness : NULL, model);
+        law_pair(out, "damping", force->damping, model);
+        law_pair(out, "free", force->free, model);
+        law_pair(out, "low", force->low, model);
+        law_pair(out, "high", force->high, model);
+        law_pair(out, "fade", force->fade, model);
+        if (force->table < 0)
+            number_pair(out, "table", NULL, 0, false);
+        else
+            integer_pair(out, "table", force->table);
         key(out, "law");
         add(out, "[");
-        for (int k = 0; k < (force->type == FORCE_LOAD ? 6 : !spring); ++k) {
+        for (int k = 0; k < (load ? 6 : force_is_law(force)); ++k) {
             add(out, k ? ", " : "");
             if (force->law[k])
                 formula(out, force->law[k], model);

@@ -255,12 +255,18 @@ typedef struct Port {
     double point[3];
 } Port;
 
+/* Three laws in three places: along a coordinate, between points, about an axis. */
 typedef enum ForceType {
-    FORCE_COORDINATE,     /* spring and damper along a coordinate */
-    FORCE_POINTS,         /* spring and damper between points */
-    FORCE_COORDINATE_LAW, /* any law along a coordinate */
-    FORCE_POINTS_LAW,     /* any law between points */
-    FORCE_LOAD,           /* force and torque on a body */
+    FORCE_COORDINATE, /* spring and damper */
+    FORCE_POINTS,
+    FORCE_AXIS,
+    FORCE_COORDINATE_LAW, /* a formula */
+    FORCE_POINTS_LAW,
+    FORCE_AXIS_LAW,
+    FORCE_COORDINATE_STOP, /* one-sided contact */
+    FORCE_POINTS_STOP,
+    FORCE_AXIS_STOP,
+    FORCE_LOAD, /* force and torque on a body */
     FORCE_TYPES
 } ForceType;
 
@@ -269,14 +275,22 @@ typedef struct Force {
     Place at;
     ForceType type;
     int coordinate; /* along a coordinate, else -1 */
-    int body[2];    /* between points, BODY_GROUND possible; FORCE_LOAD: body, and in whose frame */
+    int body[2];    /* of points or axis, BODY_GROUND possible; FORCE_LOAD: body, and in whose frame */
     double point[2][3];
+    double axis[3], reference[2][3];              /* as in Coordinate */
     const struct Law *stiffness, *damping, *free; /* of numbers and parameters */
-    const struct Law *law[6]; /* [0]: generalised force or tension; FORCE_LOAD: force, torque, NULL: 0 */
+    const struct Law *low, *high, *fade;          /* the same, of a stop; without one end NULL */
+    int table;                                    /* takes the place of stiffness, else -1 */
+    const struct Law *law[6]; /* [0]: generalised force, tension or torque; FORCE_LOAD: force, torque, NULL: 0 */
 } Force;
 
-enum { FORCE_LOCALS = 2 }; /* of FORCE_POINTS_LAW: length, speed */
-extern const char *const force_local[FORCE_LOCALS];
+bool force_is_spring(const Force *force);
+bool force_is_stop(const Force *force);
+bool force_is_law(const Force *force);
+/* About an axis of its own. */
+bool force_is_torque(const Force *force);
+
+enum { FORCE_LOCALS = 2 }; /* of FORCE_POINTS_LAW: length, speed; of FORCE_AXIS_LAW: angle, speed */
 
 typedef struct Wheel {
     const char *name;

@@ -35,6 +35,21 @@ static void project(Whole *whole, Loads *loads)
     }
 }
 
+/* A torque (base frame) on a body. */
+static void twist(Whole *whole, Loads *loads, int body, const Ex torque[3])
+{
+    if (body != BODY_GROUND)
+        ex_add3(whole->dag, loads->wrench[body], torque, loads->wrench[body]);
+}
+
+static Ex table_lookup(Whole *whole, int table, Ex x)
+{
+    Dag *dag = whole->dag;
+    if (dag->node[x].op == OP_LITERAL)
+        return ex_literal(dag, table_value(&whole->model->table[table], ex_value(dag, x, 0)));
+    return ex_op(dag, OP_TABLE, x, (Ex)table, 0);
+}
+
 /* A formula as an expression; local: what its place offers. */
 static Ex law_value(Whole *whole, const Law *law, const Ex *local)
 {
@@ -56,10 +71,7 @@ static Ex law_value(Whole *whole, const Law *law, const Ex *local)
     case LAW_RATE: return whole->xd[law->index];
     case LAW_TIME: return ex_input(dag, "time", NULL);
     case LAW_LOCAL: return local[law->index];
-    case LAW_TABLE:
-        if (dag->node[arg[0]].op == OP_LITERAL)
-            return ex_literal(dag, table_value(&model->table[law->index], ex_value(dag, arg[0], 0)));
-        return ex_op(dag, OP_TABLE, arg[0], (Ex)law->index, 0);
+    case LAW_TABLE: return table_lookup(whole, law->index, arg[0]);
     default: break;
     }
     switch ((Op)law->call) {
@@ -73,18 +85,81 @@ static Ex law_value(Whole *whole, const Law *law, const Ex *local)
     }
 }
 
-/* Spring and damper in parallel: tension at extension and rate; adds to the energy sums. */
+/* 0 at s = 0, 1 from s = 1 on, smooth between. */
+static Ex fade_in(Dag *dag, Ex s)
+{
+    s = ex_op(dag, OP_MIN, s, ex_literal(dag, 1), 0);
+    return ex_mul(dag, ex_mul(dag, s, s), ex_sub(dag, ex_literal(dag, 3), ex_add(dag, s, s)));
+}
+
+/* Force of the spring of an element, by its stiffness or table, at extension and rate; adds to the energy sums. Of a
+ * table no integral is at hand, so its power counts instead of its potential. */
+static Ex elastic_force(Whole *whole, Loads *loads, const Force *force, Ex extension, Ex rate)
+{
+    Dag *dag = whole->dag;
+    Ex elastic = force->table < 0 ? ex_mul(dag, law_value(whole, force->stiffness, NULL), extension)
+                                  : table_lookup(whole, force->table, extension);
+    Ex power = ex_mul(dag, elastic, rate);
+    if (force->table < 0) {
+        loads->potential =
+            ex_add(dag, loads->potential, ex_mul(dag, ex_literal(dag, 0.5), ex_mul(dag, elastic, extension)));
+        loads->potential_rate = ex_add(dag, loads->potential_rate, power);
+    } else {
+        loads->power = ex_sub(dag, loads->power, power);
+    }
+    return elastic;
+}
+
+/* Spring and damper in parallel: tension at value and rate. */
 static Ex spring_damper(Whole *whole, Loads *loads, const Force *force, Ex value, Ex rate)
 {
     Dag *dag = whole->dag;
     Ex extension = ex_sub(dag, value, law_value(whole, force->free, NULL));
-    Ex elastic = ex_mul(dag, law_value(whole, force->stiffness, NULL), extension);
+    Ex elastic = elastic_force(whole, loads, force, extension, rate);
     Ex viscous = ex_mul(dag, law_value(whole, force->damping, NULL), rate);
-    loads->potential =
-        ex_add(dag, loads->potential, ex_mul(dag, ex_literal(dag, 0.5), ex_mul(dag, elastic, extension)));
-    loads->potential_rate = ex_add(dag, loads->potential_rate, ex_mul(dag, elastic, rate));
     loads->power = ex_sub(dag, loads->power, ex_mul(dag, viscous, rate));
     return ex_add(dag, elastic, viscous);
+}
+
+/* What one end of a stop pushes at a distance beyond it, and rate of that. */
+static Ex contact(Whole *whole, Loads *loads, const Force *force, Ex beyond, Ex rate)
+{
+    Dag *dag = whole->dag;
+    Ex depth = ex_op(dag, OP_MAX, beyond, 0, 0), fade = law_value(whole, force->fade, NULL);
+    Ex elastic = elastic_force(whole, loads, force, depth, rate);
+    Ex damping = ex_mul(dag, law_value(whole, force->damping, NULL), fade_in(dag, ex_div(dag, depth, fade)));
+    Ex push = ex_op(dag, OP_MAX, ex_add(dag, elastic, ex_mul(dag, damping, rate)), 0, 0);
+    loads->power = ex_sub(dag, loads->power, ex_mul(dag, ex_sub(dag, push, elastic), rate));
+    return push;
+}
+
+/* Both ends of a stop: tension at value and rate. */
+static Ex stop(Whole *whole, Loads *loads, const Force *force, Ex value, Ex rate)
+{
+    Dag *dag = whole->dag;
+    Ex tension = 0;
+    if (force->high) {
+        Ex beyond = ex_sub(dag, value, law_value(whole, force->high, NULL));
+        tension = contact(whole, loads, force, beyond, rate);
+    }
+    if (force->low) {
+        Ex beyond = ex_sub(dag, law_value(whole, force->low, NULL), value);
+        tension = ex_sub(dag, tension, contact(whole, loads, force, beyond, ex_neg(dag, rate)));
+    }
+    return tension;
+}
+
+/* What an element between points or about an axis does against a growing length or angle. */
+static Ex resistance(Whole *whole, Loads *loads, const Force *force, Ex value, Ex rate)
+{
+    Dag *dag = whole->dag;
+    if (force_is_spring(force))
+        return spring_damper(whole, loads, force, value, rate);
+    if (force_is_stop(force))
+        return stop(whole, loads, force, value, rate);
+    Ex tension = law_value(whole, force->law[0], (const Ex[FORCE_LOCALS]){value, rate});
+    loads->power = ex_sub(dag, loads->power, ex_mul(dag, tension, rate));
+    return tension;
 }
 
 static void add_along(Whole *whole, Loads *loads, int index)
@@ -93,11 +168,11 @@ static void add_along(Whole *whole, Loads *loads, int index)
     const Force *force = &whole->model->force[index];
     int w = force->coordinate;
     Ex Q;
-    if (force->type == FORCE_COORDINATE) {
-        Q = ex_neg(dag, spring_damper(whole, loads, force, whole->x[w], whole->xd[w]));
-    } else {
+    if (force_is_law(force)) {
         Q = law_value(whole, force->law[0], NULL);
         loads->power = ex_add(dag, loads->power, ex_mul(dag, Q, whole->xd[w]));
+    } else {
+        Q = ex_neg(dag, resistance(whole, loads, force, whole->x[w], whole->xd[w]));
     }
     loads->element[index] = Q;
     loads->own[w] = ex_add(dag, loads->own[w], Q);
@@ -108,25 +183,69 @@ static void add_between(Whole *whole, Loads *loads, int index)
     Dag *dag = whole->dag;
     const Force *force = &whole->model->force[index];
     Vector end[2];
-    Ex d[3], rate[3], F[3], tension;
+    Ex d[3], rate[3], F[3];
     for (int i = 0; i < 2; ++i)
         end[i] = whole_point(whole, force->body[i], force->point[i]);
     ex_sub3(dag, end[1].v, end[0].v, d);
     ex_sub3(dag, end[1].rate, end[0].rate, rate);
     Ex length = ex_sqrt(dag, ex_dot(dag, d, d)), scale = ex_div(dag, ex_literal(dag, 1), length);
     Ex speed = ex_mul(dag, scale, ex_dot(dag, d, rate));
-    if (force->type == FORCE_POINTS) {
-        tension = spring_damper(whole, loads, force, length, speed);
-    } else {
-        tension = law_value(whole, force->law[0], (const Ex[FORCE_LOCALS]){length, speed});
-        loads->power = ex_sub(dag, loads->power, ex_mul(dag, tension, speed));
-    }
+    Ex tension = resistance(whole, loads, force, length, speed);
     loads->element[index] = tension;
     ex_scale3(dag, ex_mul(dag, tension, scale), d, F);
     push(whole, loads, force->body[0], &end[0], F);
     for (int i = 0; i < 3; ++i)
         F[i] = ex_neg(dag, F[i]);
     push(whole, loads, force->body[1], &end[1], F);
+}
+
+/* A direction fixed in a body, or in the ground, in the base frame. */
+static void direction(Whole *whole, int body, const double u[3], Ex out[3])
+{
+    Dag *dag = whole->dag;
+    Ex local[3];
+    for (int i = 0; i < 3; ++i)
+        local[i] = ex_literal(dag, u[i]);
+    if (body == BODY_GROUND)
+        ex_apply_transposed(dag, whole->R, local, out);
+    else
+        ex_apply(dag, whole->motion[body].A, local, out);
+}
+
+/* A pair of torques T n on the first body and -T n on the second, whose power is -T angle'. With x = e_1 . f_1,
+ * y = e_2 . f_1 the derivative of atan2(y, x) is n . (omega_b - omega_a), n = (u - (u . f_1) f_1) / (x^2 + y^2), which
+ * is u where f_1 stays perpendicular to it. */
+static void add_about(Whole *whole, Loads *loads, int index)
+{
+    Dag *dag = whole->dag;
+    const Force *force = &whole->model->force[index];
+    double third[3];
+    Ex u[3], e1[3], e2[3], f1[3], n[3], turn[2][3], speed[3];
+    vec_cross(force->axis, force->reference[0], third);
+    direction(whole, force->body[0], force->axis, u);
+    direction(whole, force->body[0], force->reference[0], e1);
+    direction(whole, force->body[0], third, e2);
+    direction(whole, force->body[1], force->reference[1], f1);
+    for (int i = 0; i < 2; ++i) {
+        ex_zero3(dag, turn[i]);
+        if (force->body[i] == BODY_GROUND)
+            ex_sub3(dag, turn[i], whole->turn, turn[i]);
+        else
+            ex_add3(dag, turn[i], whole->motion[force->body[i]].omega, turn[i]);
+    }
+    Ex x = ex_dot(dag, e1, f1), y = ex_dot(dag, e2, f1);
+    Ex square = ex_add(dag, ex_mul(dag, x, x), ex_mul(dag, y, y));
+    ex_scale3(dag, ex_dot(dag, u, f1), f1, n);
+    ex_sub3(dag, u, n, n);
+    ex_scale3(dag, ex_div(dag, ex_literal(dag, 1), square), n, n);
+    ex_sub3(dag, turn[1], turn[0], speed);
+    Ex torque = resistance(whole, loads, force, ex_op(dag, OP_ATAN2, y, x, 0), ex_dot(dag, n, speed));
+    loads->element[index] = torque;
+    ex_scale3(dag, torque, n, n);
+    twist(whole, loads, force->body[0], n);
+    for (int i = 0; i < 3; ++i)
+        n[i] = ex_neg(dag, n[i]);
+    twist(whole, loads, force->body[1], n);
 }
 
 /* Force and torque on a body, components in the frame of body `in` (BODY_GROUND: world). */
@@ -143,7 +262,7 @@ static void add_load(Whole *whole, Loads *loads, int body, int in, const double 
         ex_apply(dag, whole->motion[in].A, T, torque);
     }
     push(whole, loads, body, &point, force);
-    ex_add3(dag, loads->wrench[body], torque, loads->wrench[body]);
+    twist(whole, loads, body, torque);
     whole_velocity_in_base(whole, &point, v);
     ex_add3(dag, whole->turn, whole->motion[body].omega, total);
     loads->power = ex_add(dag, loads->power, ex_add(dag, ex_dot(dag, force, v), ex_dot(dag, torque, total)));
@@ -153,12 +272,13 @@ static void add_force(Whole *whole, Loads *loads, int index)
 {
     const Force *force = &whole->model->force[index];
     Ex value[6] = {0};
-    switch (force->type) {
-    case FORCE_COORDINATE:
-    case FORCE_COORDINATE_LAW: add_along(whole, loads, index); break;
-    case FORCE_POINTS:
-    case FORCE_POINTS_LAW: add_between(whole, loads, index); break;
-    default:
+    if (force->coordinate >= 0) {
+        add_along(whole, loads, index);
+    } else if (force_is_torque(force)) {
+        add_about(whole, loads, index);
+    } else if (force->type != FORCE_LOAD) {
+        add_between(whole, loads, index);
+    } else {
         for (int i = 0; i < 6; ++i)
             value[i] = force->law[i] ? law_value(whole, force->law[i], NULL) : 0;
         add_load(whole, loads, force->body[0], force->body[1], force->point[0], value, value + 3);
@@ -179,7 +299,7 @@ static void add_wheel(Whole *whole, Loads *loads, int index)
     Dag *dag = whole->dag;
     const Wheel *wheel = &whole->model->wheel[index];
     Vector center = whole_point(whole, wheel->body, wheel->center);
-    Ex at[3], v[3], F[3], one = ex_literal(dag, 1);
+    Ex at[3], v[3], F[3];
     whole_position(whole, &center, at);
     whole_velocity(whole, &center, v);
     Ex road = ex_op(dag, OP_ROAD, at[0], at[1], 0), h = ex_op(dag, OP_ROAD_PART, road, 0, 0);
@@ -187,9 +307,7 @@ static void add_wheel(Whole *whole, Loads *loads, int index)
     Ex deflection = ex_sub(dag, ex_add(dag, ex_literal(dag, wheel->radius), h), at[2]);
     Ex rate = ex_sub(dag, ex_add(dag, ex_mul(dag, slope_x, v[0]), ex_mul(dag, slope_y, v[1])), v[2]);
     Ex s = ex_op(dag, OP_MAX, ex_mul(dag, ex_literal(dag, 1 / wheel->fade), deflection), 0, 0);
-    s = ex_op(dag, OP_MIN, s, one, 0);
-    Ex fade = ex_mul(dag, ex_mul(dag, s, s), ex_sub(dag, ex_literal(dag, 3), ex_add(dag, s, s)));
-    Ex viscous = ex_mul(dag, ex_mul(dag, ex_literal(dag, wheel->damping), fade), rate);
+    Ex viscous = ex_mul(dag, ex_mul(dag, ex_literal(dag, wheel->damping), fade_in(dag, s)), rate);
     /* without contact the deflection is negative and fades the damping to 0, so the limit at 0 says it all */
     Ex fz = ex_op(dag, OP_MAX, ex_add(dag, ex_mul(dag, ex_literal(dag, wheel->stiffness), deflection), viscous), 0, 0);
     ex_scale3(dag, fz, whole->R + 6, F);

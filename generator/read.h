@@ -39,6 +39,7 @@ typedef enum KeyKind {
     KEY_JOINT,         /* index[0] */
     KEY_FORCE,         /* index[0] */
     KEY_WHEEL,         /* index[0] */
+    KEY_TABLE,         /* index[0] */
     KEY_KINDS
 } KeyKind;
 
@@ -178,6 +179,9 @@ void forces_read(Reader *reader, const Item *map);
 void wheels_read(Reader *reader, const Item *map);
 void outputs_read(Reader *reader, const Item *map);
 
+/* The unit vector perpendicular to a unit axis that is as near as can be to the axis of the model frame to which it is
+ * least parallel (e_1 of FORMAT.md section 5), fixed in both bodies; all in the model frame but `out`. */
+void perpendicular_set(const Reader *reader, const double axis[3], const int body[2], double out[2][3]);
 /* x_b - x_a of two points of the model frame and its norm; both ends in one place end in diag_fail. */
 double points_distance(const Value *points, const char *what, double d[3]);
 

@@ -40,6 +40,7 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_JOINT] = "joint",
     [KEY_FORCE] = "force",
     [KEY_WHEEL] = "wheel",
+    [KEY_TABLE] = "table",
 };
 
 /* Keywords of C11 and C++20: the runtime compiles as either. */
@@ -302,6 +303,9 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         break;
     case KEY_WHEEL:
         value->index[0] = find(reader, item, what, "wheel", model->wheel, model->wheels, sizeof *model->wheel);
+        break;
+    case KEY_TABLE:
+        value->index[0] = find(reader, item, what, "table", model->table, model->tables, sizeof *model->table);
         break;
     case KEY_TYPE:
     case KEY_ITEM:

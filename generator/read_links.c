@@ -92,9 +92,7 @@ double points_distance(const Value *points, const char *what, double d[3])
     return length;
 }
 
-/* The unit vector perpendicular to a unit axis that is as near as can be to the axis of the model frame to which it is
- * least parallel (e_1 of FORMAT.md section 5), fixed in both bodies; all in the model frame but `out`. */
-static void perpendicular_set(const Reader *reader, const double axis[3], const int body[2], double out[2][3])
+void perpendicular_set(const Reader *reader, const double axis[3], const int body[2], double out[2][3])
 {
     int least = 0;
     double e[3];

@@ -19,9 +19,14 @@ enum {
     ELEMENT_COORDINATE,
     ELEMENT_BODIES,
     ELEMENT_POINTS,
+    ELEMENT_AXIS,
     ELEMENT_STIFFNESS,
     ELEMENT_DAMPING,
     ELEMENT_FREE,
+    ELEMENT_LOW,
+    ELEMENT_HIGH,
+    ELEMENT_FADE,
+    ELEMENT_TABLE,
     ELEMENT_VALUE,
     ELEMENT_BODY,
     ELEMENT_POINT,
@@ -31,19 +36,27 @@ enum {
     ELEMENT_KEYS
 };
 
-#define FORCE_ALONG (FORM(FORCE_COORDINATE) | FORM(FORCE_COORDINATE_LAW))
-#define FORCE_BETWEEN (FORM(FORCE_POINTS) | FORM(FORCE_POINTS_LAW))
-#define FORCE_SPRING (FORM(FORCE_COORDINATE) | FORM(FORCE_POINTS))
-#define FORCE_LAWS (FORM(FORCE_COORDINATE_LAW) | FORM(FORCE_POINTS_LAW))
+#define FORCE_ALONG (FORM(FORCE_COORDINATE) | FORM(FORCE_COORDINATE_LAW) | FORM(FORCE_COORDINATE_STOP))
+#define FORCE_BETWEEN (FORM(FORCE_POINTS) | FORM(FORCE_POINTS_LAW) | FORM(FORCE_POINTS_STOP))
+#define FORCE_ABOUT (FORM(FORCE_AXIS) | FORM(FORCE_AXIS_LAW) | FORM(FORCE_AXIS_STOP))
+#define FORCE_SPRING (FORM(FORCE_COORDINATE) | FORM(FORCE_POINTS) | FORM(FORCE_AXIS))
+#define FORCE_LAWS (FORM(FORCE_COORDINATE_LAW) | FORM(FORCE_POINTS_LAW) | FORM(FORCE_AXIS_LAW))
+#define FORCE_STOP (FORM(FORCE_COORDINATE_STOP) | FORM(FORCE_POINTS_STOP) | FORM(FORCE_AXIS_STOP))
+#define FORCE_PAIR (FORCE_BETWEEN | FORCE_ABOUT)
 
 static const Key force_key[ELEMENT_KEYS] = {
     [ELEMENT_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [ELEMENT_COORDINATE] = {"coordinate", KEY_COORDINATE, FORCE_ALONG, FORCE_ALONG, BOUND_NONE, 0},
-    [ELEMENT_BODIES] = {"bodies", KEY_FORCE_BODIES, FORCE_BETWEEN, FORCE_BETWEEN, BOUND_NONE, 0},
+    [ELEMENT_BODIES] = {"bodies", KEY_FORCE_BODIES, FORCE_PAIR, FORCE_PAIR, BOUND_NONE, 0},
     [ELEMENT_POINTS] = {"points", KEY_POINTS, FORCE_BETWEEN, FORCE_BETWEEN, BOUND_NONE, 0},
-    [ELEMENT_STIFFNESS] = {"stiffness", KEY_FORMULA, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
-    [ELEMENT_DAMPING] = {"damping", KEY_FORMULA, FORCE_SPRING, 0, BOUND_NOT_NEGATIVE, 0},
+    [ELEMENT_AXIS] = {"axis", KEY_TURN, FORCE_ABOUT, FORCE_ABOUT, BOUND_NONE, 0},
+    [ELEMENT_STIFFNESS] = {"stiffness", KEY_FORMULA, FORCE_SPRING | FORCE_STOP, 0, BOUND_NOT_NEGATIVE, 0},
+    [ELEMENT_DAMPING] = {"damping", KEY_FORMULA, FORCE_SPRING | FORCE_STOP, 0, BOUND_NOT_NEGATIVE, 0},
     [ELEMENT_FREE] = {"free", KEY_FORMULA, FORCE_SPRING, 0, BOUND_NONE, 0},
+    [ELEMENT_LOW] = {"low", KEY_FORMULA, FORCE_STOP, 0, BOUND_NONE, 0},
+    [ELEMENT_HIGH] = {"high", KEY_FORMULA, FORCE_STOP, 0, BOUND_NONE, 0},
+    [ELEMENT_FADE] = {"fade", KEY_FORMULA, FORCE_STOP, 0, BOUND_POSITIVE, 0.01},
+    [ELEMENT_TABLE] = {"table", KEY_TABLE, FORCE_SPRING | FORCE_STOP, 0, BOUND_NONE, 0},
     [ELEMENT_VALUE] = {"value", KEY_FORMULA, FORCE_LAWS, FORCE_LAWS, BOUND_NONE, 0},
     [ELEMENT_BODY] = {"body", KEY_BODY, FORM(FORCE_LOAD), FORM(FORCE_LOAD), BOUND_NONE, 0},
     [ELEMENT_POINT] = {"point", KEY_POINT, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
@@ -52,29 +65,57 @@ static const Key force_key[ELEMENT_KEYS] = {
     [ELEMENT_TORQUE] = {"torque", KEY_TORQUE_VECTOR, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
 };
 
-enum { TYPE_SPRING, TYPE_FORCE, TYPE_LOAD, TYPES };
+enum { TYPE_SPRING, TYPE_FORCE, TYPE_STOP, TYPE_LOAD, TYPES };
 
 static const char *const force_type_name[TYPES] = {
     [TYPE_SPRING] = "spring_damper",
     [TYPE_FORCE] = "force",
+    [TYPE_STOP] = "stop",
     [TYPE_LOAD] = "load",
 };
 
 static const char *const force_form_name[FORCE_TYPES] = {
     [FORCE_COORDINATE] = "along a coordinate",
     [FORCE_POINTS] = "between two points",
+    [FORCE_AXIS] = "about an axis",
     [FORCE_COORDINATE_LAW] = "along a coordinate",
     [FORCE_POINTS_LAW] = "between two points",
+    [FORCE_AXIS_LAW] = "about an axis",
+    [FORCE_COORDINATE_STOP] = "along a coordinate",
+    [FORCE_POINTS_STOP] = "between two points",
+    [FORCE_AXIS_STOP] = "about an axis",
     [FORCE_LOAD] = "load",
 };
 
-const char *const force_local[FORCE_LOCALS] = {"length", "speed"};
+static const char *const between_local[FORCE_LOCALS] = {"length", "speed"};
+static const char *const about_local[FORCE_LOCALS] = {"angle", "speed"};
 
 static const unsigned force_type_forms[TYPES] = {
     [TYPE_SPRING] = FORCE_SPRING,
     [TYPE_FORCE] = FORCE_LAWS,
+    [TYPE_STOP] = FORCE_STOP,
     [TYPE_LOAD] = FORM(FORCE_LOAD),
 };
+
+bool force_is_spring(const Force *force)
+{
+    return FORM(force->type) & FORCE_SPRING;
+}
+
+bool force_is_stop(const Force *force)
+{
+    return FORM(force->type) & FORCE_STOP;
+}
+
+bool force_is_law(const Force *force)
+{
+    return FORM(force->type) & FORCE_LAWS;
+}
+
+bool force_is_torque(const Force *force)
+{
+    return FORM(force->type) & FORCE_ABOUT;
+}
 
 const Section force_section = {force_key, ELEMENT_KEYS, force_type_name, TYPES, force_form_name, force_type_forms};
 
@@ -143,7 +184,7 @@ static const Law *literal_law(Reader *reader, double value)
     return law;
 }
 
-/* Stiffness, damping or free length: numbers and parameters, so that the law stays a linear one. */
+/* A number of a spring or a stop: of numbers and parameters, so that the law keeps its shape. */
 static const Law *spring_law(Reader *reader, const Entry *entry, const Value *value, int key, double fallback)
 {
     if (!value[key].item)
@@ -161,7 +202,42 @@ static const Law *spring_law(Reader *reader, const Entry *entry, const Value *va
                   what);
     if (force_key[key].bound == BOUND_NOT_NEGATIVE && number < 0)
         diag_fail(item->at, "write zero or a positive number", "%s must not be negative (%s)", what, item->text);
+    if (force_key[key].bound == BOUND_POSITIVE && !(number > 0))
+        diag_fail(item->at, "write a positive number", "%s must be greater than zero, not %s", what, item->text);
     return law;
+}
+
+/* Stiffness or table, and damping. */
+static void read_elastic(Reader *reader, const Entry *entry, const Value *value, Force *force)
+{
+    const Value *table = value + ELEMENT_TABLE;
+    if (table->item && value[ELEMENT_STIFFNESS].item)
+        diag_fail(table->item->at, "take one of the two away", "%s has both a stiffness and a table", entry->what);
+    force->table = table->item ? table->index[0] : -1;
+    force->stiffness = spring_law(reader, entry, value, ELEMENT_STIFFNESS, 0);
+    force->damping = spring_law(reader, entry, value, ELEMENT_DAMPING, 0);
+}
+
+static void read_stop(Reader *reader, const Entry *entry, const Value *value, Force *force)
+{
+    const Model *model = reader->model;
+    const Item *low = value[ELEMENT_LOW].item, *high = value[ELEMENT_HIGH].item, *table = value[ELEMENT_TABLE].item;
+    if (!low && !high)
+        diag_fail(entry->at, "add `low: number`, `high: number` or both: where contact begins",
+                  "%s stops nothing: it has neither a low nor a high end", entry->what);
+    if (!table && !value[ELEMENT_STIFFNESS].item)
+        diag_fail(entry->at, "add `stiffness: number`, or `table: name` for force over depth",
+                  "%s has neither a stiffness nor a table", entry->what);
+    force->low = low ? spring_law(reader, entry, value, ELEMENT_LOW, 0) : NULL;
+    force->high = high ? spring_law(reader, entry, value, ELEMENT_HIGH, 0) : NULL;
+    force->fade = spring_law(reader, entry, value, ELEMENT_FADE, force_key[ELEMENT_FADE].fallback);
+    if (low && high && !(law_number(force->low, model) < law_number(force->high, model)))
+        diag_fail(high->at, "write the lower end as `low`", "high of %s is not above low: it would push both ways",
+                  entry->what);
+    if (table && table_value(&model->table[force->table], 0) != 0)
+        diag_fail(table->at, "begin the table with 0 at 0",
+                  "table of %s: '%s' is %.9g at 0, a jump where contact begins", entry->what, table->text,
+                  table_value(&model->table[force->table], 0));
 }
 
 static void read_load(Reader *reader, const Entry *entry, const Value *value, Force *force)
@@ -195,23 +271,34 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
 {
     Value value[ELEMENT_KEYS];
     int type = section_type(reader, &force_section, entry);
-    bool along = doc_find(entry->item, "coordinate");
+    bool along = doc_find(entry->item, "coordinate"), about = doc_find(entry->item, "axis");
     bool between = doc_find(entry->item, "bodies") || doc_find(entry->item, "points");
-    if (!along && !between && type != TYPE_LOAD)
-        diag_fail(entry->at, "add `coordinate: name`, or `bodies: [a, b]` and `points: [p_a, p_b]`",
+    if (!along && !about && !between && type != TYPE_LOAD)
+        diag_fail(entry->at,
+                  "add `coordinate: name`, or `bodies: [a, b]` and `points: [p_a, p_b]` or `axis: [x, y, z]`",
                   "%s acts nowhere: neither a coordinate nor two bodies are given", entry->what);
-    ForceType form = type == TYPE_LOAD     ? FORCE_LOAD
-                     : type == TYPE_SPRING ? (along ? FORCE_COORDINATE : FORCE_POINTS)
-                                           : (along ? FORCE_COORDINATE_LAW : FORCE_POINTS_LAW);
+    unsigned place = along ? FORCE_ALONG : about ? FORCE_ABOUT : FORCE_BETWEEN;
+    ForceType form = 0;
+    while (!(FORM(form) & force_type_forms[type] & (type == TYPE_LOAD ? ALL_FORMS : place)))
+        ++form;
     section_read(reader, &force_section, (int)form, entry, value);
-    *force = (Force){
-        .name = entry->name, .at = entry->at, .type = form, .coordinate = -1, .body = {BODY_GROUND, BODY_GROUND}};
+    *force = (Force){.name = entry->name,
+                     .at = entry->at,
+                     .type = form,
+                     .coordinate = -1,
+                     .body = {BODY_GROUND, BODY_GROUND},
+                     .table = -1};
     double fallback = 0;
     if (form == FORCE_LOAD) {
         read_load(reader, entry, value, force);
     } else if (along) {
         force->coordinate = value[ELEMENT_COORDINATE].index[0];
         fallback = reader->model->coordinate[force->coordinate].design;
+    } else if (about) {
+        const double *axis = value[ELEMENT_AXIS].number;
+        memcpy(force->body, value[ELEMENT_BODIES].index, sizeof force->body);
+        body_direction(reader, force->body[0], axis, force->axis);
+        perpendicular_set(reader, axis, force->body, force->reference);
     } else {
         const Value *points = value + ELEMENT_POINTS;
         double d[3];
@@ -221,14 +308,16 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
             body_point(reader, force->body[i], points->number + 3 * i, points->item->value[i]->at, force->point[i]);
         }
     }
-    if (form == FORCE_COORDINATE || form == FORCE_POINTS) {
-        force->stiffness = spring_law(reader, entry, value, ELEMENT_STIFFNESS, 0);
-        force->damping = spring_law(reader, entry, value, ELEMENT_DAMPING, 0);
+    if (force_is_spring(force) || force_is_stop(force))
+        read_elastic(reader, entry, value, force);
+    if (force_is_stop(force))
+        read_stop(reader, entry, value, force);
+    else if (force_is_spring(force))
         force->free = spring_law(reader, entry, value, ELEMENT_FREE, fallback);
-    } else if (form != FORCE_LOAD) {
+    if (force_is_law(force)) {
         LawNames names = {.model = reader->model,
-                          .local = form == FORCE_POINTS_LAW ? force_local : NULL,
-                          .locals = form == FORCE_POINTS_LAW ? FORCE_LOCALS : 0};
+                          .local = form == FORCE_POINTS_LAW ? between_local : about_local,
+                          .locals = form == FORCE_COORDINATE_LAW ? 0 : FORCE_LOCALS};
         force->law[0] = law_parse(reader->pool, value[ELEMENT_VALUE].item,
                                   pool_print(reader->pool, "value of %s", entry->what), &names);
     }

@@ -74,10 +74,12 @@ static const OutputKind output_kind[OUTPUT_TYPES] = {
 
 const Section output_section = {output_key, WATCH_KEYS, output_type_name, OUTPUT_TYPES, output_type_name, NULL};
 
-/* Whether an output belongs to an angle, directly or by a force along it. */
+/* Whether an output belongs to an angle, directly or by a force along or about it. */
 static bool of_angle(const Model *model, const Output *output)
 {
     int coordinate = -1;
+    if (output->type == OUTPUT_FORCE && force_is_torque(&model->force[output->index]))
+        return true;
     if (output->type == OUTPUT_COORDINATE || output->type == OUTPUT_DRIVE_FORCE)
         coordinate = output->index;
     else if (output->type == OUTPUT_FORCE)

@@ -43,6 +43,7 @@ static const Rule rule[KEY_KINDS] = {
     [KEY_JOINT] = {.words = WORDS_NAME, .group = "joints"},
     [KEY_FORCE] = {.words = WORDS_NAME, .group = "forces"},
     [KEY_WHEEL] = {.words = WORDS_NAME, .group = "wheels"},
+    [KEY_TABLE] = {.words = WORDS_NAME, .group = "tables"},
 };
 
 /* Maps of named entries in a file; without a section an entry is a point. */

@@ -70,7 +70,8 @@ static void value(Text *out, const Section *section, const Key *key, int indent)
     case KEY_COORDINATE:
     case KEY_JOINT:
     case KEY_FORCE:
-    case KEY_WHEEL: reference(out, "name"); break;
+    case KEY_WHEEL:
+    case KEY_TABLE: reference(out, "name"); break;
     case KEY_INERTIA:
         text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/vector\"}, ");
         object(out, &inertia_section, indent);

@@ -100,21 +100,53 @@ static double law_at(const World *world, const Law *law, const double *local)
 /* ---- elements -----------------------------------------------------------------------------------------------------
  */
 
-/* Tension of a spring and damper in parallel. */
-static double spring_damper(World *world, const Force *force, double value, double rate)
+static inline double fade_in(double s)
 {
-    const double extension = value - law_at(world, force->free, NULL);
+    s = fmin(s, 1);
+    return s * s * (3 - 2 * s);
+}
+
+/* Of a spring, by its stiffness or table. */
+static double elastic_force(World *world, const Force *force, double extension)
+{
+    if (force->table >= 0)
+        return table_at(&world->model->table[force->table], extension);
     const double elastic = law_at(world, force->stiffness, NULL) * extension;
     world->potential += 0.5 * elastic * extension;
-    return elastic + law_at(world, force->damping, NULL) * rate;
+    return elastic;
+}
+
+/* What one end of a stop pushes. */
+static double contact(World *world, const Force *force, double depth, double rate)
+{
+    if (!(depth > 0))
+        return 0;
+    const double damping = law_at(world, force->damping, NULL) * fade_in(depth / law_at(world, force->fade, NULL));
+    return fmax(0, elastic_force(world, force, depth) + damping * rate);
+}
+
+/* What an element between points, about an axis or, but for a formula, along a coordinate does against growth. */
+static double resistance(World *world, const Force *force, double value, double rate)
+{
+    if (force_is_law(force))
+        return law_at(world, force->law[0], (const double[FORCE_LOCALS]){value, rate});
+    if (force_is_spring(force))
+        return elastic_force(world, force, value - law_at(world, force->free, NULL)) +
+               law_at(world, force->damping, NULL) * rate;
+    double tension = 0;
+    if (force->high)
+        tension += contact(world, force, value - law_at(world, force->high, NULL), rate);
+    if (force->low)
+        tension -= contact(world, force, law_at(world, force->low, NULL) - value, -rate);
+    return tension;
 }
 
 static void add_along(World *world, int index)
 {
     const Force *force = &world->model->force[index];
     const int w = force->coordinate;
-    const double Q = force->type == FORCE_COORDINATE ? -spring_damper(world, force, world->x[w], world->xd[w])
-                                                     : law_at(world, force->law[0], NULL);
+    const double Q =
+        force_is_law(force) ? law_at(world, force->law[0], NULL) : -resistance(world, force, world->x[w], world->xd[w]);
     world->element[index] = Q;
     world->along[w] += Q;
 }
@@ -128,9 +160,7 @@ static void add_between(World *world, int index)
     sub3(b.r, a.r, d);
     sub3(b.v, a.v, rate);
     const double length = sqrt(dot3(d, d)), speed = dot3(d, rate) / length;
-    const double tension = force->type == FORCE_POINTS
-                               ? spring_damper(world, force, length, speed)
-                               : law_at(world, force->law[0], (const double[FORCE_LOCALS]){length, speed});
+    const double tension = resistance(world, force, length, speed);
     world->element[index] = tension;
     for (int i = 0; i < 3; ++i)
         F[i] = tension / length * d[i];
@@ -138,6 +168,40 @@ static void add_between(World *world, int index)
     for (int i = 0; i < 3; ++i)
         F[i] = -F[i];
     push(world, &b, F);
+}
+
+/* A direction fixed in a body, or in ground. */
+static inline void direction(const World *world, int body, const double u[3], double out[3])
+{
+    if (body == BODY_GROUND)
+        copy3(u, out);
+    else
+        apply3(world->A[body], u, out);
+}
+
+/* Torques T n on the first body and -T n on the second, n being the derivative of the angle by the relative rotation.
+ */
+static void add_about(World *world, int index)
+{
+    static const double still[3] = {0, 0, 0};
+    const Force *force = &world->model->force[index];
+    const int a = force->body[0], b = force->body[1];
+    double u[3], e1[3], e2[3], f1[3], n[3], turn[3];
+    direction(world, a, force->axis, u);
+    direction(world, a, force->reference[0], e1);
+    direction(world, b, force->reference[1], f1);
+    cross3(u, e1, e2);
+    const double x = dot3(e1, f1), y = dot3(e2, f1);
+    copy3(u, n);
+    add_scaled3(-dot3(u, f1), f1, n);
+    sub3(b == BODY_GROUND ? still : world->omega[b], a == BODY_GROUND ? still : world->omega[a], turn);
+    const double square = x * x + y * y;
+    const double torque = resistance(world, force, atan2(y, x), dot3(n, turn) / square);
+    world->element[index] = torque;
+    if (a != BODY_GROUND)
+        add_scaled3(torque / square, n, world->wrench[a] + 3);
+    if (b != BODY_GROUND)
+        add_scaled3(-torque / square, n, world->wrench[b] + 3);
 }
 
 /* Force and torque, components in the frame of body `in`. */
@@ -160,12 +224,13 @@ static void add_force(World *world, int index)
 {
     const Force *force = &world->model->force[index];
     double load[6];
-    switch (force->type) {
-    case FORCE_COORDINATE:
-    case FORCE_COORDINATE_LAW: add_along(world, index); break;
-    case FORCE_POINTS:
-    case FORCE_POINTS_LAW: add_between(world, index); break;
-    default:
+    if (force->coordinate >= 0) {
+        add_along(world, index);
+    } else if (force_is_torque(force)) {
+        add_about(world, index);
+    } else if (force->type != FORCE_LOAD) {
+        add_between(world, index);
+    } else {
         for (int i = 0; i < 6; ++i)
             load[i] = force->law[i] ? law_at(world, force->law[i], NULL) : 0;
         add_load(world, force->body[0], force->body[1], force->point[0], load);
@@ -184,10 +249,8 @@ static int add_wheel(World *world, int index)
     const double deflection = wheel->radius + road[0] - center.r[2];
     const double rate = road[1] * center.v[0] + road[2] * center.v[1] - center.v[2];
     double fz = 0;
-    if (deflection > 0) {
-        const double s = fmin(deflection / wheel->fade, 1);
-        fz = fmax(0, wheel->stiffness * deflection + wheel->damping * s * s * (3 - 2 * s) * rate);
-    }
+    if (deflection > 0)
+        fz = fmax(0, wheel->stiffness * deflection + wheel->damping * fade_in(deflection / wheel->fade) * rate);
     push(world, &center, (const double[3]){0, 0, fz});
     double *out = world->wheel[index];
     out[0] = fz;

@@ -19,14 +19,17 @@
     "{\"name\": \"" name "\", \"type\": \"" type "\", \"a\": " a ", \"b\": " b ", \"point_a\": " point_a \
     ", \"point_b\": " point_b ", \"axis_a\": " axis ", \"reference_a\": " ref_a ", \"reference_b\": " ref_b \
     ", \"design\": " design ", \"offset\": " offset ", \"range\": [0, 1], \"driven\": " driven "}"
+/* what neither an axis nor a stop nor a table is there for */
+#define PLAIN "\"axis_a\": null, \"reference_a\": null, \"reference_b\": null, \"low\": null, \"high\": null, " \
+              "\"fade\": null, \"table\": null, \"law\": []}"
 #define ALONG(coordinate, stiffness, damping, free) \
     "{\"name\": \"f\", \"type\": \"coordinate\", \"coordinate\": " coordinate ", \"a\": null, \"b\": null, " \
     "\"point_a\": null, \"point_b\": null, \"stiffness\": " stiffness ", \"damping\": " damping ", \"free\": " free \
-    ", \"law\": []}"
+    ", " PLAIN
 #define BETWEEN(a, b, point_a, point_b, stiffness, damping, free) \
     "{\"name\": \"f\", \"type\": \"points\", \"coordinate\": -1, \"a\": " a ", \"b\": " b ", \"point_a\": " point_a \
     ", \"point_b\": " point_b ", \"stiffness\": " stiffness ", \"damping\": " damping ", \"free\": " free \
-    ", \"law\": []}"
+    ", " PLAIN
 #define WHEEL(body, center, radius, stiffness, damping) \
     "{\"name\": \"t\", \"body\": " body ", \"center\": " center ", \"radius\": " radius ", \"stiffness\": " stiffness \
     ", \"damping\": " damping ", \"fade\": 0.01}"

@@ -85,21 +85,44 @@ static void read_coordinate(Coordinate *coordinate, const Json *json, int bodies
 
 static void read_force(Force *force, const Json *json, const Model *model)
 {
-    static const char *const name[] = {"coordinate", "coordinate_law", "points", "points_law", "load"};
-    int type = type_of(json, name, 5), laws;
-    force->coordinate = type < 2 ? index_of(json, "coordinate", 0, model->coordinates) : -1;
-    force->load = type == 4;
-    if (type >= 2) {
+    enum { COORDINATE, POINTS, AXIS, LOAD };
+    static const struct {
+        const char *name;
+        int place, laws;
+        bool stop;
+    } known[] = {{"coordinate", COORDINATE, 0, false},     {"points", POINTS, 0, false},
+                 {"axis", AXIS, 0, false},                 {"coordinate_law", COORDINATE, 1, false},
+                 {"points_law", POINTS, 1, false},         {"axis_law", AXIS, 1, false},
+                 {"coordinate_stop", COORDINATE, 0, true}, {"points_stop", POINTS, 0, true},
+                 {"axis_stop", AXIS, 0, true},             {"load", LOAD, 6, false}};
+    enum { TYPES = sizeof known / sizeof *known };
+    const char *name[TYPES];
+    for (int i = 0; i < TYPES; ++i)
+        name[i] = known[i].name;
+    int type = type_of(json, name, TYPES), place = known[type].place, laws;
+    force->coordinate = place == COORDINATE ? index_of(json, "coordinate", 0, model->coordinates) : -1;
+    force->load = place == LOAD;
+    force->about = place == AXIS;
+    force->stop = known[type].stop;
+    if (place != COORDINATE) {
         force->body[0] = index_of(json, "a", GROUND, model->bodies);
         force->body[1] = index_of(json, "b", GROUND, model->bodies);
         json_numbers(json, "point_a", force->point[0], 3);
         json_numbers(json, "point_b", force->point[1], 3);
+        json_numbers(json, "axis_a", force->axis, 3);
+        json_numbers(json, "reference_a", force->reference[0], 3);
+        json_numbers(json, "reference_b", force->reference[1], 3);
     }
+    force->low = json_get(json, "low")->kind == JSON_NULL ? -HUGE_VAL : json_number(json, "low");
+    force->high = json_get(json, "high")->kind == JSON_NULL ? HUGE_VAL : json_number(json, "high");
+    force->fade = json_number(json, "fade");
+    if (json_get(json, "table")->kind != JSON_NULL)
+        force->table = &model->table[index_of(json, "table", 0, model->tables)];
     force->stiffness = json_number(json, "stiffness");
     force->damping = json_number(json, "damping");
     force->free = json_number(json, "free");
     const Json *law = list_of(json, "law", &laws);
-    if (laws != (type == 4 ? 6 : type % 2))
+    if (laws != known[type].laws)
         fail("a force has %d formulas", laws);
     for (int i = 0; i < laws; ++i)
         force->law[i] = formula_read(law->item[i]);
@@ -213,7 +236,7 @@ static double model_length(const Model *model)
     for (int i = 0; i < model->coordinates; ++i)
         cloud_coordinate(&cloud, model, &model->coordinate[i]);
     for (int i = 0; i < model->forces; ++i)
-        for (int k = 0; k < 2 - model->force[i].load && model->force[i].coordinate < 0; ++k)
+        for (int k = 0; k < 2 - model->force[i].load && model->force[i].coordinate < 0 && !model->force[i].about; ++k)
             cloud_add(&cloud, model, model->force[i].body[k], model->force[i].point[k]);
     for (int i = 0; i < model->wheels; ++i)
         cloud_add(&cloud, model, model->wheel[i].body, model->wheel[i].center);

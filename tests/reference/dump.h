@@ -48,9 +48,14 @@ typedef struct Coordinate {
 } Coordinate;
 
 typedef struct Force {
-    int coordinate; /* -1: between points, or a load */
+    int coordinate; /* -1: between points, about an axis, or a load */
     int body[2];    /* GROUND possible; a load: body, and in whose frame (GROUND: world) */
     double point[2][3], stiffness, damping, free;
+    bool about;                      /* an axis: */
+    double axis[3], reference[2][3]; /* as of a coordinate */
+    bool stop;                       /* contact beyond: */
+    double low, high, fade;          /* infinite where there is no end */
+    const Lookup *table; /* in place of stiffness, or NULL */
     Formula *law[6]; /* NULL, or [0]: what is added to spring and damper; a load: force and torque */
     bool load;
 } Force;

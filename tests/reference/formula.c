@@ -96,7 +96,7 @@ quad formula_value(const Formula *formula, const Surroundings *around)
         return lookup_at(&around->table[formula->index], x[0]);
     if (!strcmp(op, "time"))
         return around->time;
-    if (!strcmp(op, "length"))
+    if (!strcmp(op, "length") || !strcmp(op, "angle"))
         return around->length;
     if (!strcmp(op, "speed"))
         return around->speed;

@@ -384,6 +384,25 @@ static quad law_value(const Model *model, const Configuration *configuration, co
     return formula_value(law, &around);
 }
 
+/* Contact at one end of a stop, `depth` beyond it. */
+static quad contact(const Force *force, quad depth, quad rate)
+{
+    if (depth <= 0)
+        return 0;
+    quad s = depth < force->fade ? depth / force->fade : 1;
+    quad push = force->table ? lookup_at(force->table, depth) : force->stiffness * depth;
+    return fmaxq(0, push + force->damping * (3 * s * s - 2 * s * s * s) * rate);
+}
+
+/* What spring and damper, or a stop, do against a growing length, angle or coordinate. */
+static quad resistance(const Force *force, quad value, quad rate)
+{
+    if (force->stop)
+        return contact(force, value - force->high, rate) - contact(force, force->low - value, -rate);
+    quad extension = value - force->free;
+    return (force->table ? lookup_at(force->table, extension) : force->stiffness * extension) + force->damping * rate;
+}
+
 static void add_between(const Model *model, const Configuration *configuration, const Force *force,
                         quad (*Q)[BODY_COORDINATES])
 {
@@ -395,8 +414,7 @@ static void add_between(const Model *model, const Configuration *configuration, 
         d_rate[i] = v[1][i] - v[0][i];
     }
     quad length = sqrtq(quad_dot(d, d, 3)), rate = quad_dot(d, d_rate, 3) / length;
-    quad tension = force->stiffness * (length - force->free) + force->damping * rate +
-                   law_value(model, configuration, force->law[0], length, rate);
+    quad tension = resistance(force, length, rate) + law_value(model, configuration, force->law[0], length, rate);
     for (int k = 0; k < 2; ++k) {
         if (force->body[k] == GROUND)
             continue;
@@ -406,6 +424,38 @@ static void add_between(const Model *model, const Configuration *configuration, 
         from_com(model, force->body[k], force->point[k], s);
         add_force(configuration, force->body[k], s, F, Q);
     }
+}
+
+/* A vector of the world frame for `side`, of a body or of the ground. */
+static Arrow direction(const Configuration *configuration, int body, int side, const quad u[3])
+{
+    if (body != GROUND)
+        return fixed_vector(configuration, body, side, u);
+    Arrow arrow = {.on = {false, false}};
+    memcpy(arrow.value, u, sizeof arrow.value);
+    return arrow;
+}
+
+/* Virtual work of a torque against the angle atan2(y, x), y = e_2 . f_1, x = e_1 . f_1. */
+static void add_about(const Model *model, const Configuration *configuration, const Force *force,
+                      quad (*Q)[BODY_COORDINATES])
+{
+    quad axis[3], reference[2][3], third[3];
+    widen(force->axis, axis, 3);
+    widen(force->reference[0], reference[0], 3);
+    widen(force->reference[1], reference[1], 3);
+    quad_cross(axis, reference[0], third);
+    Arrow e_1 = direction(configuration, force->body[0], 0, reference[0]),
+          e_2 = direction(configuration, force->body[0], 0, third),
+          f_1 = direction(configuration, force->body[1], 1, reference[1]);
+    Row x = dot(&e_1, &f_1), angle = dot(&e_2, &f_1);
+    quad value = atan2q(angle.value, x.value), square = x.value * x.value + angle.value * angle.value;
+    combine(&angle, x.value / square, -angle.value / square, &x);
+    quad torque = resistance(force, value, angle.rate) +
+                  law_value(model, configuration, force->law[0], value, angle.rate);
+    for (int side = 0; side < 2; ++side)
+        for (int j = 0; j < BODY_COORDINATES && force->body[side] != GROUND; ++j)
+            Q[force->body[side]][j] -= torque * angle.slope[side][j];
 }
 
 /* Force and torque on a body: the torque's generalized force is 2 G^T times its components in the body. */
@@ -431,13 +481,12 @@ void add_force_element(const Model *model, const Configuration *configuration, c
 {
     const Force *element = &model->force[force];
     if (element->coordinate < 0) {
-        (element->load ? add_load : add_between)(model, configuration, element, Q);
+        (element->load ? add_load : element->about ? add_about : add_between)(model, configuration, element, Q);
         return;
     }
     int c = element->coordinate;
     quad along = law_value(model, configuration, element->law[0], 0, 0) -
-                 (quad)element->stiffness * (configuration->w[c] - element->free) -
-                 (quad)element->damping * configuration->w_rate[c];
+                 resistance(element, configuration->w[c], configuration->w_rate[c]);
     /* virtual work: along * dw, with dw = -(dc/dq dq) / (dc/dw) */
     const Row *row = &rows[joint_row(model, model->joints) + c];
     for (int side = 0; side < 2; ++side)
