@@ -159,6 +159,9 @@ rest() {
 # masses: chassis and rack, then arms, wheel assemblies, axle
 rest hmmwv 0.4740625 0.0004326 spring_f_l "$(awk 'BEGIN { print 2095.592 + 4 * (23.965 + 90.555) }')"
 near "$(at 0 spring_f_l.value)" 0.246463 1e-6 "front spring at its design length"
+rest hmmwv_full 0.5807093 0.0030043 spring_r_l "$(awk 'BEGIN { print 2095.592 + 4 * (23.965 + 90.555) }')"
+# 6.591 mm into the rebound stop, by the data's table
+near "$(at 2 stop_r_l)" -659.1 0.5 "rebound stop at rest"
 rest hmmwv14 0.473856 0.0004314 spring_r_l "$(awk 'BEGIN { print 2095.592 + 4 * (23.965 + 5.813 + 90.555) }')"
 rest five_link 0.474472 0.0006879 spring_r_l "$(awk 'BEGIN { print 2095.592 + 2 * 23.965 + 4 * 90.555 }')"
 rest solid_axle 0.473694 0.0002147 spring_r_l "$(awk 'BEGIN { print 2095.592 + 2 * (23.965 + 90.555) + 271.11 }')"
@@ -183,7 +186,7 @@ done
 
 # ---- scenes of the other vehicles: AB3 at their step against RK4 at a tenth of it -----------------------------------
 
-for name in hmmwv14 five_link solid_axle trailing_arm; do
+for name in hmmwv_full hmmwv14 five_link solid_axle trailing_arm; do
     file=$models/scenes/$name.scene
     run $name "$file"
     for column in chassis.z wheel_f_l.z wheel_r_l.z; do at end $column; done >"$work/coarse"
@@ -194,6 +197,30 @@ for name in hmmwv14 five_link solid_axle trailing_arm; do
         sed -i 1d "$work/coarse"
     done
 done
+
+# ---- the stops of the real springs, as the wheels hang in them: they follow the data's table and never pull ----------
+
+run hmmwv_full "$models/scenes/hmmwv_full.scene"
+awk -F, '
+    NR == 1 { for (i = 1; i <= NF; ++i) { split($i, word, " "); column[word[1]] = i }; next }
+    {
+        for (i = 0; i < 2; ++i) {
+            side = i ? "r_l" : "f_l"
+            value = $column["spring_" side ".value"]
+            depth = 1000 * (value - (i ? 0.35 : 0.30)) # mm
+            rubber = depth < 0 ? 0 : depth < 10 ? 100 * depth : depth < 20 ? 150 * depth - 500 : 200 * depth - 1500
+            force = $column["stop_" side]
+            if ((force + rubber)^2 > 1e-12 || force > 0) bad = bad " " side " " force " N at " depth " mm"
+            if (depth > most[i]) most[i] = depth
+        }
+    }
+    # 30 mm would need 4500 N
+    END {
+        for (i = 0; i < 2; ++i)
+            if (!(most[i] > 20 && most[i] < 30)) bad = bad " deepest " most[i]
+        if (bad) { print bad; exit 1 }
+    }' "$work/csv" >"$work/said"
+check $? "stops: $(head -c 300 "$work/said")"
 
 # ---- cost grows with the number of bodies, not faster ------------------------------------------------------------
 
