@@ -171,7 +171,7 @@ static int hmmwv_full_solve_rack(hmmwv_full *self, const gic_real *GIC_RESTRICT 
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(2.072648852345));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -501,7 +501,7 @@ static int hmmwv_full_solve_lca_f_l(hmmwv_full *self, const gic_real *GIC_RESTRI
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(43.74775795073611));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -937,7 +937,7 @@ static int hmmwv_full_solve_wheel_f_l(hmmwv_full *self, const gic_real *GIC_REST
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(28.861380328376388));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -1542,7 +1542,7 @@ static int hmmwv_full_solve_wheel_r_l(hmmwv_full *self, const gic_real *GIC_REST
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(28.869811926497114));
     int i;
-    (void)k;
+    (void)k, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {

@@ -68,6 +68,8 @@ void mat_apply_transposed(const double A[9], const double x[3], double out[3]); 
 /* Write a whole file under a temporary name beside it and rename it: readers see all of it or the old one.
  * "-" is standard output. Exits with a message naming the file when it can't be written. */
 void file_write(const char *path, const char *bytes, size_t size);
+/* Is there something at `path` that is no file, a device or pipe? It is written to as it is: a rename would replace it. */
+bool file_is_special(const char *path);
 /* All bytes of a file ("-": standard input), terminated. Exits with a message when it can't be read. */
 char *file_read(Pool *pool, const char *path, size_t *size);
 

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { CHUNK = 1 << 16, ALIGN = 16 };
@@ -202,11 +203,26 @@ static _Noreturn void file_fail(const char *path, const char *what)
     exit(1);
 }
 
+bool file_is_special(const char *path)
+{
+    struct stat is;
+    return !stat(path, &is) && !S_ISREG(is.st_mode) && !S_ISDIR(is.st_mode);
+}
+
 void file_write(const char *path, const char *bytes, size_t size)
 {
     if (!strcmp(path, "-")) {
         if (fwrite(bytes, 1, size, stdout) != size || fflush(stdout))
             file_fail("standard output", "can't write");
+        return;
+    }
+    if (file_is_special(path)) {
+        FILE *device = fopen(path, "wb");
+        if (!device)
+            file_fail(path, "can't open");
+        const bool all = fwrite(bytes, 1, size, device) == size;
+        if (fclose(device) || !all)
+            file_fail(path, "can't write");
         return;
     }
     size_t length = strlen(path);

@@ -16,13 +16,17 @@ static _Noreturn void write_fail(const Csv *csv, const char *what)
     if (csv->temporary)
         remove(csv->temporary);
     diag_fail(gicrun_place, "make room, or choose another place with -o", "can't %s %s: %s", what,
-              csv->temporary ? csv->path : "to standard output", strerror(reason));
+              strcmp(csv->path, "-") ? csv->path : "to standard output", strerror(reason));
 }
 
 Csv csv_open(Pool *pool, const char *path)
 {
     Csv csv = {.file = stdout, .path = path};
-    if (strcmp(path, "-")) {
+    if (file_is_special(path)) {
+        csv.file = fopen(path, "w");
+        if (!csv.file)
+            diag_fail(gicrun_place, "choose another place with -o", "can't open %s: %s", path, strerror(errno));
+    } else if (strcmp(path, "-")) {
         const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid());
         csv.file = fopen(temporary, "w");
         if (!csv.file)
@@ -85,7 +89,7 @@ void csv_close(Csv *csv)
 {
     bool written = !fflush(csv->file) && !ferror(csv->file);
     if (!csv->temporary) {
-        if (!written)
+        if ((csv->file != stdout && fclose(csv->file)) || !written)
             write_fail(csv, "write");
         return;
     }

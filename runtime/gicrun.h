@@ -102,7 +102,7 @@ double *scene_numbers(Pool *pool, const Item *item, const char *what, int least)
 /* A results file in the making: written beside `path` and renamed when it is closed. */
 typedef struct Csv {
     FILE *file;
-    const char *path, *temporary; /* temporary: NULL for standard output */
+    const char *path, *temporary; /* temporary: NULL for standard output, devices and pipes */
     bool inside;                  /* a row */
 } Csv;
 

@@ -119,6 +119,16 @@ PATH=$work/bin "$gicgen" --graph none.svg "$model" 2>err
 check $? "a picture without Graphviz"
 says err "install the package graphviz"
 
+# what is no file stays what it is: as root a rename would replace a device
+mkfifo pipe
+cat pipe >piped &
+run 0 --dump-model "$model" -o pipe
+wait
+[ -p pipe ]
+check $? "a pipe is gone"
+"$gicgen" --dump-model "$model" | cmp -s - piped
+check $? "what comes through a pipe"
+
 # templates of one's own
 mkdir templates
 cp "$root"/templates/* templates

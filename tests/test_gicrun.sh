@@ -249,6 +249,13 @@ run "$work/carts.veh" "$work/swing.scene" --plot "$work/a.pdf"
 check 'unknown kind of picture: usage error' exits 2
 run -h
 check 'help goes to standard output' grep -q '^usage: gicrun' "$work/out"
+
+# a pipe stays one
+mkfifo "$work/pipe"
+cat "$work/pipe" >"$work/piped" &
+run "$work/carts.veh" "$work/swing.scene" -o "$work/pipe"
+wait
+check 'results through a pipe' [ -p "$work/pipe" ] && check 'rows through a pipe' grep -q '^time' "$work/piped"
 check 'nothing is left behind in the end' clean
 
 echo "$passed passed, $failed failed"
