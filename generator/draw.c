@@ -30,13 +30,20 @@ static void table_end(Text *out, int column)
         text_print(out, "\n");
 }
 
+void subset_shape(const Model *model, const Subset *subset, int *unknowns, int *equations)
+{
+    *unknowns = subset->class < 0 ? 1 : 7 * subset->bodies;
+    *equations = subset->bodies + subset->coordinates;
+    for (int i = 0; i < subset->joints; ++i)
+        *equations += joint_equations[model->joint[subset->joint[i]].type];
+}
+
 static void subset_print(Text *out, const Model *model, const Sequence *sequence, int index)
 {
     const Subset *subset = &sequence->subset[index];
     bool base = subset->class < 0;
-    int unknowns = base ? 1 : 7 * subset->bodies, equations = subset->bodies + subset->coordinates, column = 0;
-    for (int i = 0; i < subset->joints; ++i)
-        equations += joint_equations[model->joint[subset->joint[i]].type];
+    int unknowns, equations, column = 0;
+    subset_shape(model, subset, &unknowns, &equations);
     text_print(out, "  %4d  %d x %d  %s\n", index + 1, unknowns, equations,
                base ? "dependent Euler parameter of the base, by its normalization"
                     : pool_print(out->pool, "like %s", sequence->class[subset->class].name));

@@ -50,6 +50,11 @@ const Formulation *formulate(Pool *pool, const Model *model, const Sequence *seq
     return f;
 }
 
+bool formulation_reacts(const Formulation *f)
+{
+    return f->plan->solve == SOLVE_REDUCED && f->plan->multipliers;
+}
+
 StateNumber state_number(Pool *pool, const Formulation *f, int index)
 {
     static const char *const base[13][2] = {

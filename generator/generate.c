@@ -54,70 +54,28 @@ static const char *capital(Pool *pool, const char *s)
 
 /* ---- header comment --------------------------------------------------------------------------------------------- */
 
-static void add_count(Count *sum, Count more)
-{
-    sum->add += more.add;
-    sum->multiply += more.multiply;
-    sum->divide += more.divide;
-    sum->root += more.root;
-    sum->function += more.function;
-}
-
 static void count_line(Text *out, const char *what, Count c)
 {
     text_print(out, " *   %-40.40s %7d %9d %7d %6d %9d\n", what, c.add, c.multiply, c.divide, c.root, c.function);
 }
 
-static Count class_count(const Generation *g, int class)
-{
-    const Formula *f = g->plan->formula[class];
-    Count sum = block_count(&f->predict);
-    add_count(&sum, block_count(&f->chord));
-    add_count(&sum, block_count(&f->solve));
-    return sum;
-}
-
-/* Are there reactions to find after the accelerations? The augmented form has them already. */
-static bool reacts(const Generation *g)
-{
-    return g->plan->solve == SOLVE_REDUCED && g->plan->multipliers;
-}
-
-/* Of all outputs, with the multipliers that only they need. */
-static Count outputs_count(const Generation *g)
-{
-    Count sum = block_count(g->formulation->outputs);
-    const bool *needed = reactions_needed(g->pool, g->model, g->sequence);
-    if (reacts(g))
-        add_count(&sum, block_count(g->formulation->wrenches));
-    for (int s = 0; reacts(g) && s < g->sequence->subsets; ++s)
-        if (needed[s])
-            add_count(&sum, block_count(&g->plan->formula[g->sequence->subset[s].class]->react));
-    return sum;
-}
-
 static void write_counts(Generation *g, Text *out)
 {
-    Count all = {0};
-    text_print(
-        out,
-        g->plan->solve == SOLVE_AUGMENTED
-            ? " * Equations of motion in the augmented form (Serban and Haug 2000, eq. 16), bodies eliminated first.\n"
-            : " * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).\n");
+    const Figures *figures = figures_new(g->pool, g->formulation);
+    text_print(out,
+               g->plan->solve == SOLVE_AUGMENTED
+                   ? " * Equations of motion in the augmented form (Serban and Haug 2000, eq. 16), bodies eliminated first.\n"
+                   : " * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).\n");
     text_print(out, " * Operations of one right-hand side, one Newton correction with old factors and one with new:\n");
     text_print(out, " *   %-40s %7s %9s %7s %6s %9s\n", "", "add", "multiply", "divide", "root", "function");
     for (int c = 0; c < g->sequence->classes; ++c) {
         const Class *class = &g->sequence->class[c];
-        Count one = class_count(g, c);
-        count_line(out, pool_print(g->pool, "subset '%s' (%d times)", class->name, class->members), one);
-        for (int i = 0; i < class->members; ++i)
-            add_count(&all, one);
+        count_line(out, pool_print(g->pool, "subset '%s' (%d times)", class->name, class->members),
+                   figures_subset(figures, c, 1, 1));
     }
-    Count dynamics = block_count(g->formulation->dynamics);
-    add_count(&all, dynamics);
-    count_line(out, "forces and equations of motion", dynamics);
-    count_line(out, "all together", all);
-    count_line(out, "outputs, when asked for", outputs_count(g));
+    count_line(out, "forces and equations of motion", figures->dynamics);
+    count_line(out, "all together", figures_rhs(figures, 1, 1));
+    count_line(out, "outputs, when asked for", figures_outputs(figures));
 }
 
 static void write_banner(Generation *g, Text *out)
@@ -682,12 +640,12 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
         if (g->model->wheels)
             insert_template(g, out, "road.c.in");
     } else if (!strcmp(name, "reactions")) {
-        if (reacts(g))
+        if (formulation_reacts(g->formulation))
             template_expand(g->pool, out, g->templates, "reactions.c.in", g->model->name, NULL, insert_code, g);
     } else if (!strcmp(name, "react calls")) {
         write_react_calls(g, out, indent);
     } else if (!strcmp(name, "react")) {
-        if (reacts(g)) {
+        if (formulation_reacts(g->formulation)) {
             line(out, indent, "if (status == GIC_OK)");
             line(out, indent + 4, "status = %s_react(self, %s_time(self), self->state, e, self->rate);", g->model->name,
                  g->model->name);
@@ -732,10 +690,9 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
     }
 }
 
-void generate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, const char *templates,
-              const char *header, Text *c, Text *h)
+void generate(Pool *pool, const Formulation *formulation, const char *templates, const char *header, Text *c, Text *h)
 {
-    const Formulation *formulation = formulate(pool, model, sequence, solve);
+    const char *name = formulation->model->name;
     Generation g = {.pool = pool,
                     .formulation = formulation,
                     .model = formulation->model,
@@ -743,8 +700,8 @@ void generate(Pool *pool, const Model *model, const Sequence *sequence, Solve so
                     .plan = formulation->plan,
                     .templates = templates,
                     .header = header,
-                    .upper = capital(pool, model->name),
+                    .upper = capital(pool, name),
                     .constants = pool_alloc(pool, (size_t)(formulation->sequence->classes + 1) * sizeof(Constants))};
-    template_expand(pool, c, templates, "model.c.in", model->name, NULL, insert_code, &g);
-    template_expand(pool, h, templates, "model.h.in", model->name, NULL, insert_header, &g);
+    template_expand(pool, c, templates, "model.c.in", name, NULL, insert_code, &g);
+    template_expand(pool, h, templates, "model.h.in", name, NULL, insert_header, &g);
 }

@@ -402,9 +402,14 @@ void sequence_print(Text *out, const Model *model, const Sequence *sequence);
 /* Graphviz source of the weighted graph with its stages (the paper's Figs. 2 and 3). */
 void graph_draw(Text *out, const Model *model, const Sequence *sequence);
 
+/* A subset's coordinates and equations in Euler parameters, normalizations counted. */
+void subset_shape(const Model *model, const Subset *subset, int *unknowns, int *equations);
+
 /* picture.c: a Graphviz source as an SVG file, by Graphviz's `dot`. Exits with a message when that is missing or fails.
  */
 void picture_write(Pool *pool, const char *path, const Text *dot);
+/* The same as text; false: `dot` is not installed. `path`: what it is for, for messages. */
+bool picture_make(const char *path, const Text *dot, Text *svg);
 
 /* dump.c: FORMAT.md section 11. */
 void model_dump(Text *out, const Model *model, const Sequence *sequence);
@@ -847,6 +852,9 @@ typedef struct Formulation {
 /* From an assembled model. Models that can't be formulated end in diag_fail. */
 const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve);
 
+/* Are there reactions to find after the accelerations? The augmented form has them already. */
+bool formulation_reacts(const Formulation *f);
+
 /* One number of the state: FORMAT.md section 10. */
 typedef struct StateNumber {
     const char *name, *unit;
@@ -888,7 +896,7 @@ typedef struct Embedded {
 
 extern const Embedded embedded[];
 
-/* Where a template's line is nothing but `@name@` in a comment, `insert` prints what belongs there, with that line's
+/* Where a template's line is nothing but `@name@` in a comment (of C or of HTML), `insert` prints what belongs there, with that line's
  * indent. */
 typedef void Insert(void *context, const char *name, Text *out, int indent);
 
@@ -897,13 +905,58 @@ typedef void Insert(void *context, const char *name, Text *out, int indent);
 void template_expand(Pool *pool, Text *out, const char *templates, const char *name, const char *prefix,
                      const char *class, Insert *insert, void *context);
 
+/* ---- figures.c: what the emitted code costs in operations ------------------------------------------------------ */
+
+/* Operations of one subset's recovery, once each. */
+typedef struct ClassFigures {
+    Count predict, chord, solve;
+} ClassFigures;
+
+typedef struct Figures {
+    const Sequence *sequence;
+    ClassFigures *class; /* [classes] */
+    Count dynamics;
+    Count outputs;       /* of what outputs are made of; where they need multipliers that the dynamics don't give: */
+    Count wrenches;      /* what they follow from */
+    Count *react;        /* [classes] multipliers of one subset */
+    int *reacting;       /* [classes] of so many members */
+} Figures;
+
+const Figures *figures_new(Pool *pool, const Formulation *f);
+void count_add(Count *sum, Count more, int times);
+/* With so many corrections with old factors and with new ones: of one subset of a class; of all subsets, which is one
+ * piece; of a right-hand side in one piece. */
+Count figures_subset(const Figures *figures, int class, int chords, int passes);
+Count figures_recovery(const Figures *figures, int chords, int passes);
+Count figures_rhs(const Figures *figures, int chords, int passes);
+/* Of all outputs, on top of a right-hand side. */
+Count figures_outputs(const Figures *figures);
+
 /* ---- generate.c: all of it
  * ------------------------------------------------------------------------------------------------- */
 
-/* The generated C and its header, with equations of motion in the form `solve`. `header`: the name by which the C includes it, NULL: it doesn't. `templates` as
+/* The generated C and its header. `header`: the name by which the C includes it, NULL: it doesn't. `templates` as
  * above. */
-void generate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, const char *templates,
-              const char *header, Text *c, Text *h);
+void generate(Pool *pool, const Formulation *f, const char *templates, const char *header, Text *c, Text *h);
+
+/* ---- measure.c, report.c: the page about it ---------------------------------------------------------------------- */
+
+typedef struct Measure Measure;
+
+/* What C text takes in memory where pointers have 64 bits and gic_real has `real` bytes; `model` is the prefix of its
+ * functions. Texts are read in the order in which a compiler sees them. */
+Measure *measure_new(Pool *pool, const char *model, size_t real);
+void measure_read(Measure *measure, const char *text);
+/* Bytes: of a type (exact); of the constant objects whose names start so (exact); of the stack below a call of a
+ * function (a bound, what the C library and the user's own functions take not counted). 0: there is none such. */
+size_t measure_type(const Measure *measure, const char *name);
+size_t measure_constants(const Measure *measure, const char *start);
+size_t measure_stack(Measure *measure, const char *function);
+
+/* One HTML page: what the model is, its sequence, and what the code (c and h, as generate made them) costs. `path`:
+ * where it goes, for messages. */
+void report_print(Text *out, const char *path, const char *templates, const Formulation *f, const Text *c,
+                  const Text *h);
 
 /* ---- example.c: a program to start from -------------------------------------------------------------------- */
 

@@ -10,6 +10,8 @@ static const char usage[] =
     "       gicgen --main MODEL.veh           print a C program that calls <model>.h, to start from\n"
     "       gicgen --sequence MODEL.veh       print the computational sequence\n"
     "       gicgen --graph FILE MODEL.veh     draw bodies, joints and stages: FILE.svg (needs Graphviz) or FILE.dot\n"
+    "       gicgen --report FILE.html MODEL.veh\n"
+    "                                         write a page about the code: sequence, operations, memory, signals\n"
     "       gicgen --dump-model MODEL.veh     print the resolved model as JSON\n"
     "       gicgen --list-keys                all keys of a model file\n"
     "       gicgen --schema                   the same as a JSON Schema for editors\n"
@@ -23,12 +25,12 @@ static const char usage[] =
     "\n"
     "MODEL.veh is described in models/FORMAT.md; `-` reads standard input.\n";
 
-typedef enum Task { TASK_GENERATE, TASK_MAIN, TASK_SEQUENCE, TASK_GRAPH, TASK_DUMP } Task;
+typedef enum Task { TASK_GENERATE, TASK_MAIN, TASK_SEQUENCE, TASK_GRAPH, TASK_REPORT, TASK_DUMP } Task;
 
 typedef struct Options {
     Task task;
     Solve solve;
-    const char *model, *output, *picture, *templates;
+    const char *model, *output, *page, *templates; /* page: of --graph or --report */
 } Options;
 
 static _Noreturn void usage_error(const char *message, const char *word)
@@ -47,7 +49,7 @@ static const char *argument(int count, char **word, int *i)
 static void set_task(Options *options, Task task)
 {
     if (options->task != TASK_GENERATE)
-        usage_error("only one of --main, --sequence, --graph and --dump-model can be asked for", NULL);
+        usage_error("only one of --main, --sequence, --graph, --report and --dump-model can be asked for", NULL);
     options->task = task;
 }
 
@@ -90,9 +92,9 @@ static Options read_options(int count, char **word)
             set_task(&options, TASK_SEQUENCE);
         } else if (!strcmp(w, "--dump-model")) {
             set_task(&options, TASK_DUMP);
-        } else if (!strcmp(w, "--graph")) {
-            set_task(&options, TASK_GRAPH);
-            options.picture = argument(count, word, &i);
+        } else if (!strcmp(w, "--graph") || !strcmp(w, "--report")) {
+            set_task(&options, !strcmp(w, "--graph") ? TASK_GRAPH : TASK_REPORT);
+            options.page = argument(count, word, &i);
         } else if (w[0] == '-' && w[1]) {
             usage_error("unknown option", w);
         } else if (options.model) {
@@ -121,7 +123,8 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         usage_error("the generated file must end in .c", path);
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
-    generate(pool, model, sequence, options->solve, options->templates, strcmp(path, "-") ? name : NULL, &c, &h);
+    const Formulation *formulation = formulate(pool, model, sequence, options->solve);
+    generate(pool, formulation, options->templates, strcmp(path, "-") ? name : NULL, &c, &h);
     if (!strcmp(path, "-")) {
         text_add(&h, c.s, c.size);
         file_write(path, h.s, h.size);
@@ -135,12 +138,23 @@ static void write_graph(Pool *pool, const Model *model, const Sequence *sequence
 {
     Text dot = {.pool = pool};
     graph_draw(&dot, model, sequence);
-    if (ends_with(options->picture, ".svg"))
-        picture_write(pool, options->picture, &dot);
-    else if (ends_with(options->picture, ".dot") || !strcmp(options->picture, "-"))
-        file_write(options->picture, dot.s, dot.size);
+    if (ends_with(options->page, ".svg"))
+        picture_write(pool, options->page, &dot);
+    else if (ends_with(options->page, ".dot") || !strcmp(options->page, "-"))
+        file_write(options->page, dot.s, dot.size);
     else
-        usage_error("the picture's name must end in .svg or .dot", options->picture);
+        usage_error("the picture's name must end in .svg or .dot", options->page);
+}
+
+static void write_report(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)
+{
+    Text c = {.pool = pool}, h = {.pool = pool}, page = {.pool = pool};
+    if (strcmp(options->page, "-") && !ends_with(options->page, ".html"))
+        usage_error("the report's name must end in .html", options->page);
+    const Formulation *formulation = formulate(pool, model, sequence, options->solve);
+    generate(pool, formulation, options->templates, NULL, &c, &h);
+    report_print(&page, options->page, options->templates, formulation, &c, &h);
+    file_write(options->page, page.s, page.size);
 }
 
 int main(int count, char **word)
@@ -154,6 +168,7 @@ int main(int count, char **word)
     switch (options.task) {
     case TASK_GENERATE: write_code(pool, model, sequence, &options); break;
     case TASK_GRAPH: write_graph(pool, model, sequence, &options); break;
+    case TASK_REPORT: write_report(pool, model, sequence, &options); break;
     case TASK_MAIN:
     case TASK_SEQUENCE:
     case TASK_DUMP:

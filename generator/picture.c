@@ -32,24 +32,29 @@ static int run_dot(FILE *input, FILE *output)
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-void picture_write(Pool *pool, const char *path, const Text *dot)
+bool picture_make(const char *path, const Text *dot, Text *svg)
 {
     FILE *input = tmpfile(), *output = tmpfile();
     if (!input || !output || fwrite(dot->s, 1, dot->size, input) != dot->size || fflush(input))
         picture_fail(path, "can't make a temporary file", "free some space in the temporary folder");
     rewind(input);
     int status = run_dot(input, output);
-    if (status == 127)
-        picture_fail(path, "Graphviz's program `dot` is not installed",
-                     "install the package graphviz, or ask for a .dot file");
-    if (status)
+    if (status && status != 127)
         picture_fail(path, "Graphviz's program `dot` failed", "ask for a .dot file and see what `dot` says of it");
-    Text svg = {.pool = pool};
     char buffer[1 << 14];
     rewind(output);
     for (size_t n; (n = fread(buffer, 1, sizeof buffer, output)) > 0;)
-        text_add(&svg, buffer, n);
+        text_add(svg, buffer, n);
     fclose(input);
     fclose(output);
+    return !status;
+}
+
+void picture_write(Pool *pool, const char *path, const Text *dot)
+{
+    Text svg = {.pool = pool};
+    if (!picture_make(path, dot, &svg))
+        picture_fail(path, "Graphviz's program `dot` is not installed",
+                     "install the package graphviz, or ask for a .dot file");
     file_write(path, svg.s, svg.size);
 }

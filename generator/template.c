@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Templates: readable C in which a line that is nothing but a comment with a name between two @ marks is replaced, and
- * a line that begins with a comment's opening and a minus sign is a remark that is not copied. */
+ * Templates: readable C, or HTML, in which a line that is nothing but a comment with a name between two @ marks is
+ * replaced, and a line that begins with a comment's opening and a minus sign is a remark that is not copied. */
 #include "gicgen.h"
 
 #include <ctype.h>
@@ -56,18 +56,40 @@ static void expand_line(Text *out, const char *line, size_t size, const char *pr
     }
 }
 
-/* The name in a line of the form `    / * @name@ * /` (without the blanks inside), or NULL. */
+/* Comments as C and as HTML has them. */
+static const struct {
+    const char *open, *close, *remark;
+} comment[] = {{"/* @", "@ */", "/*-"}, {"<!-- @", "@ -->", "<!---"}};
+
+enum { COMMENTS = sizeof comment / sizeof *comment };
+
+static bool starts_with(const char *s, size_t size, const char *start)
+{
+    return size >= strlen(start) && !memcmp(s, start, strlen(start));
+}
+
+/* The name in a line that is nothing but a comment, with the name between two @ marks, or NULL. */
 static const char *insertion(Pool *pool, const char *line, size_t size, int *indent)
 {
     size_t i = 0;
     while (i < size && line[i] == ' ')
         ++i;
-    const char *from = line + i;
-    size_t left = size - i;
     *indent = (int)i;
-    if (left < 8 || memcmp(from, "/* @", 4) || memcmp(line + size - 4, "@ */", 4))
-        return NULL;
-    return pool_print(pool, "%.*s", (int)(left - 8), from + 4);
+    for (int c = 0; c < COMMENTS; ++c) {
+        size_t open = strlen(comment[c].open), close = strlen(comment[c].close);
+        if (size - i >= open + close && starts_with(line + i, size - i, comment[c].open) &&
+            !memcmp(line + size - close, comment[c].close, close))
+            return pool_print(pool, "%.*s", (int)(size - i - open - close), line + i + open);
+    }
+    return NULL;
+}
+
+static bool is_remark(const char *line, size_t size)
+{
+    bool remark = false;
+    for (int c = 0; c < COMMENTS; ++c)
+        remark = remark || starts_with(line, size, comment[c].remark);
+    return remark;
 }
 
 void template_expand(Pool *pool, Text *out, const char *templates, const char *name, const char *prefix,
@@ -83,10 +105,9 @@ void template_expand(Pool *pool, Text *out, const char *templates, const char *n
         size_t length = (size_t)((end ? end : text + size) - line);
         int indent;
         const char *what = insertion(pool, line, length, &indent);
-        bool remark = length >= 3 && !memcmp(line, "/*-", 3);
         if (what) {
             insert(context, what, out, indent);
-        } else if (!remark) {
+        } else if (!is_remark(line, length)) {
             expand_line(out, line, length, prefix, upper, class);
             text_print(out, "\n");
         }

@@ -103,7 +103,8 @@ const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *opt
     if (!options->compiler[strspn(options->compiler, " \t")])
         diag_fail(gicrun_place, "name it: --cc gcc, or set CC", "the compiler command is empty");
     const Sequence *sequence = sequence_find(pool, model);
-    generate(pool, model_assemble(pool, model, sequence), sequence, options->solve, NULL, "model.h", &c, &h);
+    const Formulation *formulation = formulate(pool, model_assemble(pool, model, sequence), sequence, options->solve);
+    generate(pool, formulation, NULL, "model.h", &c, &h);
 
     interrupt_hold();
     char *folder = pool_print(pool, "%s/gicrun-XXXXXX", temporary_folder());

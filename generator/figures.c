@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT
+ * Operations of the emitted code, counted where it is made: for the comment in front of it and for the report. */
+#include "gicgen.h"
+
+void count_add(Count *sum, Count more, int times)
+{
+    sum->add += times * more.add;
+    sum->multiply += times * more.multiply;
+    sum->divide += times * more.divide;
+    sum->root += times * more.root;
+    sum->function += times * more.function;
+}
+
+const Figures *figures_new(Pool *pool, const Formulation *f)
+{
+    int classes = f->sequence->classes;
+    Figures *figures = pool_alloc(pool, sizeof *figures);
+    *figures = (Figures){.sequence = f->sequence,
+                         .class = pool_alloc(pool, (size_t)(classes + 1) * sizeof *figures->class),
+                         .react = pool_alloc(pool, (size_t)(classes + 1) * sizeof(Count)),
+                         .reacting = pool_alloc(pool, (size_t)(classes + 1) * sizeof(int)),
+                         .dynamics = block_count(f->dynamics),
+                         .outputs = block_count(f->outputs)};
+    for (int c = 0; c < classes; ++c) {
+        const Formula *formula = f->plan->formula[c];
+        figures->class[c] =
+            (ClassFigures){block_count(&formula->predict), block_count(&formula->chord), block_count(&formula->solve)};
+    }
+    if (!formulation_reacts(f))
+        return figures;
+    figures->wrenches = block_count(f->wrenches);
+    const bool *needed = reactions_needed(pool, f->model, f->sequence);
+    for (int s = 0; s < f->sequence->subsets; ++s)
+        if (needed[s]) {
+            int class = f->sequence->subset[s].class;
+            figures->react[class] = block_count(&f->plan->formula[class]->react);
+            ++figures->reacting[class];
+        }
+    return figures;
+}
+
+Count figures_subset(const Figures *figures, int class, int chords, int passes)
+{
+    const ClassFigures *one = &figures->class[class];
+    Count sum = one->predict;
+    count_add(&sum, one->chord, chords);
+    count_add(&sum, one->solve, passes);
+    return sum;
+}
+
+Count figures_recovery(const Figures *figures, int chords, int passes)
+{
+    const Sequence *sequence = figures->sequence;
+    Count sum = {0};
+    for (int c = 0; c < sequence->classes; ++c)
+        count_add(&sum, figures_subset(figures, c, chords, passes), sequence->class[c].members);
+    return sum;
+}
+
+Count figures_rhs(const Figures *figures, int chords, int passes)
+{
+    Count sum = figures_recovery(figures, chords, passes);
+    count_add(&sum, figures->dynamics, 1);
+    return sum;
+}
+
+Count figures_outputs(const Figures *figures)
+{
+    Count sum = figures->outputs;
+    count_add(&sum, figures->wrenches, 1);
+    for (int c = 0; c < figures->sequence->classes; ++c)
+        count_add(&sum, figures->react[c], figures->reacting[c]);
+    return sum;
+}

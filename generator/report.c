@@ -1,0 +1,462 @@
+/* SPDX-License-Identifier: MIT
+ * The page of --report: what the model is, its sequence, and what its code costs. */
+#include "gicgen.h"
+
+#include <string.h>
+
+typedef struct Report {
+    Pool *pool;
+    const char *path;
+    const Formulation *formulation;
+    const Figures *figures;
+    const Model *model;
+    const Sequence *sequence;
+    Measure *measure[2]; /* in double and in single precision */
+} Report;
+
+enum { STAGES_OF_RK4 = 4 };
+
+/* ---- HTML -------------------------------------------------------------------------------------------------------- */
+
+static void html(Text *out, const char *s)
+{
+    for (; *s; ++s)
+        switch (*s) {
+        case '&': text_print(out, "&amp;"); break;
+        case '<': text_print(out, "&lt;"); break;
+        case '>': text_print(out, "&gt;"); break;
+        case '"': text_print(out, "&quot;"); break;
+        default: text_add(out, s, 1);
+        }
+}
+
+/* `columns`: titles between bars; one that begins with a number sign is of numbers. */
+static void table_open(Text *out, const char *id, const char *caption, const char *columns)
+{
+    text_print(out, "<table id=\"%s\">\n<caption>%s</caption>\n<thead><tr>", id, caption);
+    for (const char *end; *columns; columns = end + (*end != 0)) {
+        end = columns + strcspn(columns, "|");
+        bool number = *columns == '#';
+        text_print(out, "<th%s>%.*s</th>", number ? " class=\"n\"" : "", (int)(end - columns - number),
+                   columns + number);
+    }
+    text_print(out, "</tr></thead>\n<tbody>\n");
+}
+
+static void table_close(Text *out)
+{
+    text_print(out, "</tbody>\n</table>\n");
+}
+
+static void row_open(Text *out)
+{
+    text_print(out, "<tr>");
+}
+
+static void row_close(Text *out)
+{
+    text_print(out, "</tr>\n");
+}
+
+static void cell(Text *out, const char *s)
+{
+    text_print(out, "<td>");
+    html(out, s);
+    text_print(out, "</td>");
+}
+
+static void cell_number(Text *out, double value)
+{
+    text_print(out, "<td class=\"n\">%.15g</td>", value);
+}
+
+/* One more word of a list in a cell. */
+static void listed(Text *list, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void listed(Text *list, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    text_print(list, "%s%s", list->size ? ", " : "", pool_vprint(list->pool, format, args));
+    va_end(args);
+}
+
+static void cell_list(Text *out, const Text *list)
+{
+    cell(out, list->size ? list->s : "");
+}
+
+/* ---- sections ---------------------------------------------------------------------------------------------------- */
+
+static void identity(const Report *r, Text *out)
+{
+    const Model *model = r->model;
+    const Sequence *sequence = r->sequence;
+    text_print(out, "<p>");
+    html(out, model->description);
+    text_print(out,
+               "</p>\n<p>%d bodies on a %s base, <code>%s</code>; %d joints, %d dual coordinates, %d force elements, "
+               "%d wheels. %d coordinates, %d equations, %d degrees of freedom.</p>\n",
+               sequence->unknowns / 7, model->free_base ? "free" : "fixed", model->body[BODY_BASE].name, model->joints,
+               model->coordinates, model->forces, model->wheels, sequence->unknowns, sequence->equations,
+               sequence->dof);
+    text_print(out, "<p>Code of gicgen %s; model hash <code>%s</code>.</p>\n", GICGEN_VERSION, r->formulation->hash);
+}
+
+static void sequence(const Report *r, Text *out)
+{
+    const Model *model = r->model;
+    table_open(out, "sequence", "Stages and subsets",
+               "#subset|#stage|class|bodies|joints (equations)|coordinates|known before|#unknowns|#equations|motion "
+               "depends on");
+    for (int s = 0; s < r->sequence->subsets; ++s) {
+        const Subset *subset = &r->sequence->subset[s];
+        Text bodies = {.pool = r->pool}, joints = bodies, coordinates = bodies, knowns = bodies, deps = bodies;
+        int unknowns, equations;
+        for (int i = 0; i < subset->bodies; ++i)
+            listed(&bodies, "%s", model->body[subset->body[i]].name);
+        for (int i = 0; i < subset->joints; ++i) {
+            const Joint *joint = &model->joint[subset->joint[i]];
+            listed(&joints, "%s (%s %d)", joint->name, joint_type_name[joint->type], joint_equations[joint->type]);
+        }
+        for (int i = 0; i < subset->coordinates; ++i) {
+            const Coordinate *c = &model->coordinate[subset->coordinate[i]];
+            listed(&coordinates, "%s (%s%s)", c->name, coordinate_type_name[c->type], c->driven ? ", driven" : "");
+        }
+        for (int i = 0; i < subset->knowns; ++i)
+            listed(&knowns, "%s", model->body[subset->known[i]].name);
+        for (int i = 0; i < subset->deps; ++i)
+            listed(&deps, "%s", model->coordinate[subset->dep[i]].name);
+        subset_shape(model, subset, &unknowns, &equations);
+        row_open(out);
+        cell_number(out, s + 1);
+        cell_number(out, subset->stage);
+        cell(out, subset->class < 0 ? "base: its dependent Euler parameter" : r->sequence->class[subset->class].name);
+        cell_list(out, &bodies);
+        cell_list(out, &joints);
+        cell_list(out, &coordinates);
+        cell_list(out, &knowns);
+        cell_number(out, unknowns);
+        cell_number(out, equations);
+        cell_list(out, &deps);
+        row_close(out);
+    }
+    table_close(out);
+}
+
+static void graph(const Report *r, Text *out)
+{
+    Text dot = {.pool = r->pool}, svg = {.pool = r->pool};
+    graph_draw(&dot, r->model, r->sequence);
+    if (!picture_make(r->path, &dot, &svg)) {
+        text_print(out, "<p>No drawing: Graphviz's program <code>dot</code> is not installed.</p>\n");
+        return;
+    }
+    /* what precedes the picture is for a file of its own */
+    const char *from = strstr(svg.s, "<svg");
+    text_print(out, "%s", from ? from : svg.s);
+}
+
+static void count_row(Text *out, const char *what, const char *block, int times, Count c)
+{
+    const int number[] = {times, c.add, c.multiply, c.divide, c.root, c.function};
+    row_open(out);
+    cell(out, what);
+    cell(out, block);
+    for (size_t i = 0; i < sizeof number / sizeof *number; ++i)
+        cell_number(out, number[i]);
+    cell_number(out, c.add + c.multiply + c.divide + c.root + c.function);
+    row_close(out);
+}
+
+static void operations(const Report *r, Text *out)
+{
+    const Figures *f = r->figures;
+    table_open(out, "operations", "Operations of each block, once",
+               "of|block|#subsets|#add|#multiply|#divide|#root|#function|#all");
+    for (int c = 0; c < r->sequence->classes; ++c) {
+        const Class *class = &r->sequence->class[c];
+        count_row(out, class->name, "predict", class->members, f->class[c].predict);
+        count_row(out, class->name, "chord", class->members, f->class[c].chord);
+        count_row(out, class->name, "solve", class->members, f->class[c].solve);
+        if (f->reacting[c])
+            count_row(out, class->name, "react", f->reacting[c], f->react[c]);
+    }
+    count_row(out, "all together", "forces and equations of motion", 1, f->dynamics);
+    if (formulation_reacts(r->formulation))
+        count_row(out, "all together", "wrenches", 1, f->wrenches);
+    count_row(out, "all together", "outputs", 1, f->outputs);
+    table_close(out);
+}
+
+static void bounds(const Report *r, Text *out)
+{
+    (void)r;
+    text_print(
+        out,
+        "<p><code>GIC_CHORDS</code> = %d chords and <code>GIC_PASSES</code> = %d solves a subset; beyond them a call "
+        "ends with a status. A change that turns some body by more than about 0.1 rad (or moves it by 0.1 of its "
+        "subset's size) is followed in several pieces, each of them one recovery of all subsets; a call in more "
+        "than <code>GIC_PIECES</code> = %d pieces ends with a status.</p>\n",
+        CHORDS_MOST, PASSES_MOST, PIECES_MOST);
+}
+
+static double total_row(Text *out, const char *what, Count c, double times)
+{
+    const double number[] = {c.add, c.multiply, c.divide, c.root, c.function};
+    double sum = 0;
+    row_open(out);
+    cell(out, what);
+    for (size_t i = 0; i < sizeof number / sizeof *number; ++i) {
+        cell_number(out, times * number[i]);
+        sum += times * number[i];
+    }
+    cell_number(out, sum);
+    row_close(out);
+    return sum;
+}
+
+static void totals(const Report *r, Text *out)
+{
+    const Figures *f = r->figures;
+    Count usual = figures_rhs(f, 1, 1), worst = figures_rhs(f, CHORDS_MOST, PASSES_MOST), asked = usual;
+    count_add(&asked, figures_outputs(f), 1);
+    table_open(out, "totals", "Operations of whole calls", "call|#add|#multiply|#divide|#root|#function|#all");
+    total_row(out, "right-hand side, usual", usual, 1);
+    total_row(out, "right-hand side, worst case in one piece", worst, 1);
+    total_row(out, "every further piece, worst case", figures_recovery(f, CHORDS_MOST, PASSES_MOST), 1);
+    total_row(out, "AB3 step, usual", usual, 1);
+    total_row(out, "AB3 step, worst case", worst, 1);
+    total_row(out, "RK4 step or one of the first two AB3 steps, usual", usual, STAGES_OF_RK4);
+    total_row(out, "RK4 step or one of the first two AB3 steps, worst case", worst, STAGES_OF_RK4);
+    total_row(out, "outputs, usual", asked, 1);
+    table_close(out);
+}
+
+static const char *unit_of(const Coordinate *c)
+{
+    return c->type == COORDINATE_ANGLE ? "rad" : "m";
+}
+
+static void pieces(const Report *r, Text *out)
+{
+    if (!r->model->coordinates)
+        return;
+    table_open(out, "pieces", "Change of each coordinate since the last good configuration that makes one piece",
+               "coordinate|#change|unit|#range from|#to");
+    for (int w = 0; w < r->model->coordinates; ++w) {
+        const Coordinate *c = &r->model->coordinate[w];
+        row_open(out);
+        cell(out, c->name);
+        text_print(out, "<td class=\"n\">%.3g</td>", coordinate_piece(r->formulation, w));
+        cell(out, unit_of(c));
+        cell_number(out, c->range[0]);
+        cell_number(out, c->range[1]);
+        row_close(out);
+    }
+    table_close(out);
+}
+
+static void size_row(Text *out, const char *what, size_t in_double, size_t in_float)
+{
+    row_open(out);
+    cell(out, what);
+    cell_number(out, (double)in_double);
+    cell_number(out, (double)in_float);
+    row_close(out);
+}
+
+static void memory(const Report *r, Text *out)
+{
+    static const size_t real[] = {sizeof(double), sizeof(float)};
+    const struct {
+        const char *what;
+        int numbers;
+    } part[] = {{"of it starts of Newton's method, two", 2 * r->formulation->plan->start_size},
+                {"of it motions of the bodies", r->formulation->plan->motion_size},
+                {"of it inertia of the subsets", r->formulation->plan->inertia_size}};
+    Measure *const *m = r->measure;
+    table_open(out, "memory", "Bytes", "what|#double|#float");
+    size_row(out, "instance", measure_type(m[0], r->model->name), measure_type(m[1], r->model->name));
+    for (size_t i = 0; i < sizeof part / sizeof *part; ++i)
+        size_row(out, part[i].what, (size_t)part[i].numbers * real[0], (size_t)part[i].numbers * real[1]);
+    const char *numbers = pool_print(r->pool, "%s_k_", r->model->name);
+    size_row(out, "constants of the code, without the texts of names", measure_constants(m[0], ""),
+             measure_constants(m[1], ""));
+    size_row(out, "of it numbers of the subsets", measure_constants(m[0], numbers), measure_constants(m[1], numbers));
+    table_close(out);
+}
+
+static void stack(const Report *r, Text *out)
+{
+    static const char *const function[] = {"setup", "rhs", "step", "outputs", "poses", "self_test"};
+    table_open(out, "stack", "Bytes of stack at most", "function|#double|#float");
+    for (size_t i = 0; i < sizeof function / sizeof *function; ++i) {
+        const char *name = pool_print(r->pool, "%s_%s", r->model->name, function[i]);
+        size_row(out, name, measure_stack(r->measure[0], name), measure_stack(r->measure[1], name));
+    }
+    table_close(out);
+}
+
+/* ---- signals ----------------------------------------------------------------------------------------------------- */
+
+static bool law_uses(const Law *law, int parameter)
+{
+    if (!law)
+        return false;
+    bool uses = law->op == LAW_PARAMETER && law->index == parameter;
+    for (int i = 0; i < 3; ++i)
+        uses = uses || law_uses(law->arg[i], parameter);
+    return uses;
+}
+
+static bool force_uses(const Force *force, int parameter)
+{
+    bool uses = law_uses(force->stiffness, parameter) || law_uses(force->damping, parameter) ||
+                law_uses(force->free, parameter);
+    for (size_t i = 0; i < sizeof force->law / sizeof *force->law; ++i)
+        uses = uses || law_uses(force->law[i], parameter);
+    return uses;
+}
+
+/* A section of signals, or that the model has none. */
+static bool signals_open(Text *out, int count, const char *id, const char *caption, const char *columns)
+{
+    if (count)
+        table_open(out, id, caption, columns);
+    else
+        text_print(out, "<p>%s: none.</p>\n", caption);
+    return count;
+}
+
+static void signal_row(Text *out, int index, const char *name, const char *unit)
+{
+    row_open(out);
+    cell_number(out, index);
+    cell(out, name);
+    cell(out, unit);
+}
+
+static void states(const Report *r, Text *out)
+{
+    int count = r->formulation->plan->states;
+    if (!signals_open(out, count, "states", "States", "#place|name|unit|#at set-up"))
+        return;
+    for (int i = 0; i < count; ++i) {
+        const StateNumber number = state_number(r->pool, r->formulation, i);
+        signal_row(out, i, number.name, number.unit);
+        cell_number(out, number.initial);
+        row_close(out);
+    }
+    table_close(out);
+}
+
+static void inputs(const Report *r, Text *out)
+{
+    const Model *model = r->model;
+    if (!signals_open(out, model->inputs, "inputs", "Inputs", "#place|name|unit|#default"))
+        return;
+    for (int i = 0; i < model->inputs; ++i) {
+        signal_row(out, i, model->input[i].name, model->input[i].unit);
+        cell_number(out, model->input[i].initial);
+        row_close(out);
+    }
+    table_close(out);
+}
+
+static void parameters(const Report *r, Text *out)
+{
+    const Model *model = r->model;
+    if (!signals_open(out, model->tunables, "parameters", "Tunable parameters",
+                      "#place|name|unit|#default|force elements that use it"))
+        return;
+    for (int i = 0; i < model->parameters; ++i) {
+        const Parameter *p = &model->parameter[i];
+        Text users = {.pool = r->pool};
+        if (!p->tunable)
+            continue;
+        for (int k = 0; k < model->forces; ++k)
+            if (force_uses(&model->force[k], i))
+                listed(&users, "%s", model->force[k].name);
+        signal_row(out, p->index, p->name, p->unit);
+        cell_number(out, p->value);
+        cell_list(out, &users);
+        row_close(out);
+    }
+    table_close(out);
+}
+
+static void ports(const Report *r, Text *out)
+{
+    const Model *model = r->model;
+    if (!signals_open(out, model->ports, "ports", "Ports", "#place of force x y z (N), torque x y z (N m)|name|body"))
+        return;
+    for (int i = 0; i < model->ports; ++i) {
+        row_open(out);
+        cell_number(out, 6 * i);
+        cell(out, model->port[i].name);
+        cell(out, model->body[model->port[i].body].name);
+        row_close(out);
+    }
+    table_close(out);
+}
+
+static void outputs(const Report *r, Text *out)
+{
+    if (!signals_open(out, r->model->outputs, "outputs", "Outputs", "#place|name|unit|type"))
+        return;
+    for (int i = 0, place = 0; i < r->model->outputs; ++i) {
+        const Output *output = &r->model->output[i];
+        for (int c = 0; c < output->count; ++c) {
+            signal_row(out, place++, output->component[c], output->unit[c]);
+            cell(out, output_type_name[output->type]);
+            row_close(out);
+        }
+    }
+    table_close(out);
+}
+
+/* ---- the page ---------------------------------------------------------------------------------------------------- */
+
+static void insert(void *context, const char *name, Text *out, int indent)
+{
+    (void)indent;
+    static const struct {
+        const char *name;
+        void (*print)(const Report *, Text *);
+    } section[] = {{"identity", identity}, {"sequence", sequence}, {"graph", graph},   {"operations", operations},
+                   {"bounds", bounds},     {"totals", totals},     {"pieces", pieces}, {"memory", memory},
+                   {"stack", stack},       {"states", states},     {"inputs", inputs}, {"parameters", parameters},
+                   {"ports", ports},       {"outputs", outputs}};
+    for (size_t i = 0; i < sizeof section / sizeof *section; ++i)
+        if (!strcmp(name, section[i].name))
+            section[i].print(context, out);
+}
+
+/* The runtime as built in, where `name` is. */
+static void measure_runtime(Measure *m, const char *name)
+{
+    for (const Embedded *file = embedded; file->name; ++file)
+        if (!strcmp(file->name, name))
+            measure_read(m, file->bytes);
+}
+
+void report_print(Text *out, const char *path, const char *templates, const Formulation *f, const Text *c,
+                  const Text *h)
+{
+    static const size_t real[] = {sizeof(double), sizeof(float)};
+    Report r = {.pool = out->pool,
+                .path = path,
+                .formulation = f,
+                .figures = figures_new(out->pool, f),
+                .model = f->model,
+                .sequence = f->sequence};
+    for (int i = 0; i < 2; ++i) {
+        r.measure[i] = measure_new(r.pool, r.model->name, real[i]);
+        measure_runtime(r.measure[i], "gic_runtime.h");
+        measure_runtime(r.measure[i], "gic_runtime.c");
+        measure_read(r.measure[i], h->s);
+        measure_read(r.measure[i], c->s);
+    }
+    template_expand(r.pool, out, templates, "report.html.in", r.model->name, NULL, insert, &r);
+}
