@@ -951,7 +951,7 @@ void measure_read(Measure *measure, const char *text);
  * function (a bound, what the C library and the user's own functions take not counted). 0: there is none such. */
 size_t measure_type(const Measure *measure, const char *name);
 size_t measure_constants(const Measure *measure, const char *start);
-size_t measure_stack(Measure *measure, const char *function);
+size_t measure_stack(const Measure *measure, const char *function);
 
 /* One HTML page: what the model is, its sequence, and what the code (c and h, as generate made them) costs. `path`:
  * where it goes, for messages. */

@@ -23,11 +23,11 @@ typedef struct Named {
 
 typedef struct Function {
     const char *name;
+    bool private; /* to its file */
     size_t frame;
     int calls;
-    const char **call; /* names of what it calls */
-    size_t stack;      /* with the deepest of its callees; 0: not known yet */
-    bool busy;
+    const char **call; /* names of what it calls, a name a place */
+    int depth;         /* of calls, while stacks are added up */
 } Function;
 
 struct Measure {
@@ -354,9 +354,9 @@ static void body_read(Measure *m, Function *f)
     }
 }
 
-static void function_read(Measure *m, const char *name)
+static void function_read(Measure *m, const char *name, bool private)
 {
-    Function f = {.name = name, .frame = FRAME_BYTES + POINTER_BYTES * parameters_count(m)};
+    Function f = {.name = name, .private = private, .frame = FRAME_BYTES + POINTER_BYTES * parameters_count(m)};
     skip_brackets(m);
     if (accept(m, ";"))
         return;
@@ -399,14 +399,14 @@ static void typedef_read(Measure *m)
 /* A function, its prototype, or constants. */
 static void object_read(Measure *m)
 {
-    const bool declared_only = is(m, "extern");
+    const bool declared_only = is(m, "extern"), private = is(m, "static");
     const Size type = type_read(m);
     int ahead = 0;
     while (!strcmp(token(m, ahead), "*") || is_qualifier(token(m, ahead)))
         ++ahead;
     if (*token(m, ahead + 1) == '(') {
         m->next += ahead + 1;
-        function_read(m, m->token[m->next - 1]);
+        function_read(m, m->token[m->next - 1], private);
         return;
     }
     Size size;
@@ -461,23 +461,54 @@ size_t measure_constants(const Measure *m, const char *start)
     return sum;
 }
 
-size_t measure_stack(Measure *m, const char *name)
+static Function *function_find(const Measure *m, const char *name)
 {
-    Function *f = NULL;
     for (int i = 0; i < m->functions; ++i)
         if (!strcmp(m->function[i].name, name))
-            f = &m->function[i];
-    if (!f || f->stack)
-        return f ? f->stack : 0;
-    if (f->busy) {
-        fprintf(stderr, "gicgen: error: %s in the emitted code calls itself\n", name);
+            return &m->function[i];
+    return NULL;
+}
+
+/* Compilers make a private function that is called in one place only a part of its caller, and then its locals lie
+ * beside those of whatever else the caller calls. */
+static bool is_part(const Measure *m, const Function *f)
+{
+    int places = 0;
+    for (int i = 0; i < m->functions; ++i)
+        for (int k = 0; k < m->function[i].calls; ++k)
+            places += !strcmp(m->function[i].call[k], f->name);
+    return f->private && places == 1;
+}
+
+/* Bytes of a function with its parts, and below it: of the deepest of the other functions that it calls. */
+static void stack_add(const Measure *m, Function *f, size_t *own, size_t *below)
+{
+    const int depth_most = 100;
+    if (f->depth++ > depth_most) {
+        fprintf(stderr, "gicgen: error: %s in the emitted code calls itself\n", f->name);
         exit(1);
     }
-    f->busy = true;
-    size_t most = 0;
+    *own = f->frame;
+    *below = 0;
     for (int i = 0; i < f->calls; ++i) {
-        size_t callee = measure_stack(m, f->call[i]);
-        most = callee > most ? callee : most;
+        Function *callee = function_find(m, f->call[i]);
+        if (!callee)
+            continue;
+        size_t frame, deeper;
+        stack_add(m, callee, &frame, &deeper);
+        const bool part = is_part(m, callee);
+        *own += part ? frame : 0;
+        deeper += part ? 0 : frame;
+        *below = deeper > *below ? deeper : *below;
     }
-    return f->stack = f->frame + most;
+    --f->depth;
+}
+
+size_t measure_stack(const Measure *m, const char *name)
+{
+    Function *f = function_find(m, name);
+    size_t own = 0, below = 0;
+    if (f)
+        stack_add(m, f, &own, &below);
+    return own + below;
 }
