@@ -943,7 +943,7 @@ void generate(Pool *pool, const Formulation *f, const char *templates, const cha
 
 typedef struct Measure Measure;
 
-/* What C text takes in memory where pointers have 64 bits and gic_real has `real` bytes; `model` is the prefix of its
+/* What C text declares, and takes in memory where pointers have 64 bits and gic_real has `real` bytes; `model` is the prefix of its
  * functions. Texts are read in the order in which a compiler sees them. */
 Measure *measure_new(Pool *pool, const char *model, size_t real);
 void measure_read(Measure *measure, const char *text);
@@ -952,6 +952,8 @@ void measure_read(Measure *measure, const char *text);
 size_t measure_type(const Measure *measure, const char *name);
 size_t measure_constants(const Measure *measure, const char *start);
 size_t measure_stack(const Measure *measure, const char *function);
+/* The value of an enumerator or of a macro that is a number; 0: there is none such. */
+int measure_number(const Measure *measure, const char *name);
 
 /* One HTML page: what the model is, its sequence, and what the code (c and h, as generate made them) costs. `path`:
  * where it goes, for messages. */

@@ -15,7 +15,7 @@ typedef struct Size {
     size_t bytes, align;
 } Size;
 
-/* A type, the value of an enumerator, or a constant object. */
+/* A type, an enumerator (its value is in `bytes`), or a constant object. */
 typedef struct Named {
     const char *name;
     Size size;
@@ -55,8 +55,9 @@ static const char *end_of_literal(const char *s)
     return *s ? s + 1 : s;
 }
 
-/* The end of what is not for the compiler proper: blanks, comments, lines of the preprocessor; `s` where none is. */
-static const char *end_of_nothing(const char *s)
+/* The end of what is not for the compiler proper: blanks, comments, lines of the preprocessor; `s` where none is. A
+ * line that defines a number counts as an enumerator. */
+static const char *end_of_nothing(Measure *m, const char *s)
 {
     if (isspace((unsigned char)*s))
         return s + 1;
@@ -66,6 +67,10 @@ static const char *end_of_nothing(const char *s)
     }
     if (*s != '#')
         return s;
+    char name[64], number[16];
+    if (sscanf(s, "#define %63[A-Za-z0-9_] %15[0-9]", name, number) == 2)
+        *POOL_PUSH(m->pool, m->enumerator, m->enumerators) =
+            (Named){pool_print(m->pool, "%s", name), {strtoul(number, NULL, 10), 0}};
     while (*s && *s != '\n')
         s += *s == '\\' && s[1] ? 2 : 1;
     return s;
@@ -76,7 +81,7 @@ static void tokens_read(Measure *m, const char *s)
     m->tokens = m->next = 0;
     m->token = NULL;
     while (*s) {
-        const char *end = end_of_nothing(s);
+        const char *end = end_of_nothing(m, s);
         if (end == s) {
             if (is_word(s) || isdigit((unsigned char)*s))
                 while (isalnum((unsigned char)*end) || *end == '_')
@@ -450,6 +455,12 @@ size_t measure_type(const Measure *m, const char *name)
 {
     const Named *type = find(m->type, m->types, name);
     return type ? type->size.bytes : 0;
+}
+
+int measure_number(const Measure *m, const char *name)
+{
+    const Named *number = find(m->enumerator, m->enumerators, name);
+    return number ? (int)number->size.bytes : 0;
 }
 
 size_t measure_constants(const Measure *m, const char *start)

@@ -12,6 +12,7 @@ typedef struct Report {
     const Model *model;
     const Sequence *sequence;
     Measure *measure[2]; /* in double and in single precision */
+    int chords, passes;  /* corrections with old factors and with new ones, at most */
 } Report;
 
 enum { STAGES_OF_RK4 = 4 };
@@ -191,17 +192,16 @@ static void operations(const Report *r, Text *out)
 
 static void bounds(const Report *r, Text *out)
 {
-    (void)r;
     text_print(
         out,
         "<p><code>GIC_CHORDS</code> = %d chords and <code>GIC_PASSES</code> = %d solves a subset; beyond them a call "
         "ends with a status. A change that turns some body by more than about 0.1 rad (or moves it by 0.1 of its "
         "subset's size) is followed in several pieces, each of them one recovery of all subsets; a call in more "
         "than <code>GIC_PIECES</code> = %d pieces ends with a status.</p>\n",
-        CHORDS_MOST, PASSES_MOST, PIECES_MOST);
+        r->chords, r->passes, measure_number(r->measure[0], "GIC_PIECES"));
 }
 
-static double total_row(Text *out, const char *what, Count c, double times)
+static void total_row(Text *out, const char *what, Count c, double times)
 {
     const double number[] = {c.add, c.multiply, c.divide, c.root, c.function};
     double sum = 0;
@@ -213,18 +213,17 @@ static double total_row(Text *out, const char *what, Count c, double times)
     }
     cell_number(out, sum);
     row_close(out);
-    return sum;
 }
 
 static void totals(const Report *r, Text *out)
 {
     const Figures *f = r->figures;
-    Count usual = figures_rhs(f, 1, 1), worst = figures_rhs(f, CHORDS_MOST, PASSES_MOST), asked = usual;
+    Count usual = figures_rhs(f, 1, 1), worst = figures_rhs(f, r->chords, r->passes), asked = usual;
     count_add(&asked, figures_outputs(f), 1);
     table_open(out, "totals", "Operations of whole calls", "call|#add|#multiply|#divide|#root|#function|#all");
     total_row(out, "right-hand side, usual", usual, 1);
     total_row(out, "right-hand side, worst case in one piece", worst, 1);
-    total_row(out, "every further piece, worst case", figures_recovery(f, CHORDS_MOST, PASSES_MOST), 1);
+    total_row(out, "every further piece, worst case", figures_recovery(f, r->chords, r->passes), 1);
     total_row(out, "AB3 step, usual", usual, 1);
     total_row(out, "AB3 step, worst case", worst, 1);
     total_row(out, "RK4 step or one of the first two AB3 steps, usual", usual, STAGES_OF_RK4);
@@ -458,5 +457,7 @@ void report_print(Text *out, const char *path, const char *templates, const Form
         measure_read(r.measure[i], h->s);
         measure_read(r.measure[i], c->s);
     }
+    r.chords = measure_number(r.measure[0], "GIC_CHORDS");
+    r.passes = measure_number(r.measure[0], "GIC_PASSES");
     template_expand(r.pool, out, templates, "report.html.in", r.model->name, NULL, insert, &r);
 }
