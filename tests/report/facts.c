@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * What a compiled model says of itself, a line each, words separated by tabs: the size of an instance, its signals (with
- * the values that set-up gives them), and how many right-hand sides its steps take. MODEL is the name of the model, HEADER
- * its header in quotes. */
+ * What a compiled model says of itself, a line each, words separated by tabs: the size of an instance, its signals
+ * (with the values that set-up gives them), and how many right-hand sides its steps take. MODEL is the name of the
+ * model, HEADER its header in quotes. */
 #include HEADER
 
 #include <stdio.h>
