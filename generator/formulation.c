@@ -14,9 +14,10 @@ static const char *model_hash(Pool *pool, const Model *model, const Sequence *se
     return pool_print(pool, "%016llx", (unsigned long long)hash);
 }
 
+const char *const solve_name[SOLVES] = {[SOLVE_REDUCED] = "reduced", [SOLVE_AUGMENTED] = "augmented"};
+
 Solve solve_of(const char *name)
 {
-    static const char *const solve_name[SOLVES] = {[SOLVE_REDUCED] = "reduced", [SOLVE_AUGMENTED] = "augmented"};
     int i = 0;
     while (i < SOLVES && strcmp(solve_name[i], name))
         ++i;

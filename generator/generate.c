@@ -62,10 +62,11 @@ static void count_line(Text *out, const char *what, Count c)
 static void write_counts(Generation *g, Text *out)
 {
     const Figures *figures = figures_new(g->pool, g->formulation);
-    text_print(out,
-               g->plan->solve == SOLVE_AUGMENTED
-                   ? " * Equations of motion in the augmented form (Serban and Haug 2000, eq. 16), bodies eliminated first.\n"
-                   : " * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).\n");
+    text_print(
+        out,
+        g->plan->solve == SOLVE_AUGMENTED
+            ? " * Equations of motion in the augmented form (Serban and Haug 2000, eq. 16), bodies eliminated first.\n"
+            : " * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).\n");
     text_print(out, " * Operations of one right-hand side, one Newton correction with old factors and one with new:\n");
     text_print(out, " *   %-40s %7s %9s %7s %6s %9s\n", "", "add", "multiply", "divide", "root", "function");
     for (int c = 0; c < g->sequence->classes; ++c) {

@@ -668,7 +668,8 @@ bool block_reads(const Block *block, const char *array);
  * their eq. 16. */
 typedef enum Solve { SOLVE_REDUCED, SOLVE_AUGMENTED, SOLVES } Solve;
 
-/* By its name on the command line, `reduced` or `augmented`; SOLVES: there is none of that name. */
+extern const char *const solve_name[SOLVES]; /* as on the command line: "reduced" */
+/* By that name; SOLVES: there is none of that name. */
 Solve solve_of(const char *name);
 
 /* Where a subset keeps its numbers. start: what the next call begins from (pose 7 a body, S, factors); motion: one

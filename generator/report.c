@@ -101,7 +101,8 @@ static void identity(const Report *r, Text *out)
                sequence->unknowns / 7, model->free_base ? "free" : "fixed", model->body[BODY_BASE].name, model->joints,
                model->coordinates, model->forces, model->wheels, sequence->unknowns, sequence->equations,
                sequence->dof);
-    text_print(out, "<p>Code of gicgen %s; model hash <code>%s</code>.</p>\n", GICGEN_VERSION, r->formulation->hash);
+    text_print(out, "<p>Equations of motion in the %s form. Code of gicgen %s; model hash <code>%s</code>.</p>\n",
+               solve_name[r->formulation->plan->solve], GICGEN_VERSION, r->formulation->hash);
 }
 
 static void sequence(const Report *r, Text *out)

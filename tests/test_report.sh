@@ -34,9 +34,13 @@ for real in double float; do
     done
 done
 
-for model in "$root"/models/*.veh "$root/tests/laws/cart.veh"; do
-    name=$(basename "$model" .veh)
-    "$gicgen" "$model" -o "$name.c" && "$gicgen" --report "$name.html" "$model" && "$gicgen" --sequence "$model" >"$name.sequence"
+# compare NAME MODEL OPTION...: the page about a model with all that it can be compared with
+compare() {
+    name=$1
+    model=$2
+    shift 2
+    "$gicgen" "$@" "$model" -o "$name.c" && "$gicgen" "$@" --report "$name.html" "$model" &&
+        "$gicgen" --sequence "$model" >"$name.sequence"
     check $? "$name: no code, report or sequence"
     compile "$name.c" double O0 && compile "$name.c" float O0 -DGIC_FLOAT && compile "$name.c" double O2
     check $? "$name: not compiled"
@@ -54,7 +58,24 @@ for model in "$root"/models/*.veh "$root/tests/laws/cart.veh"; do
     passed=$((passed + $(grep -c '^good' said)))
     failed=$((failed + $(grep -c '^bad' said)))
     sed -n "s/^bad/FAIL $name:/p" said
+}
+
+for model in "$root"/models/*.veh "$root/tests/laws/cart.veh"; do
+    compare "$(basename "$model" .veh)" "$model"
+    grep -q 'in the reduced form' "$name.html"
+    check $? "$name does not name the form"
 done
+
+# with reactions of all joints, and in the other form
+"$gicgen" --dump-model "$root/models/hmmwv.veh" >hmmwv.json
+sh "$root/tests/reactions.sh" hmmwv.json "$root/models/hmmwv.veh" | sed 's/^model: .*/model: reacting/' >reacting.veh
+sed 's/^model: .*/model: augmented/' reacting.veh >augmented.veh
+compare reacting reacting.veh
+grep -q '<td>wrenches</td>' reacting.html && [ "$(grep -c '<td>react</td>' reacting.html)" -eq 4 ]
+check $? "no operations of reactions"
+compare augmented augmented.veh --solve augmented
+grep -q 'in the augmented form' augmented.html
+check $? "the augmented form is not named"
 
 # where parameters are used
 grep -q '<td>k</td><td>N/m</td><td class="n">4000</td><td>strut_l, strut_r, jet</td>' cart.html

@@ -140,8 +140,25 @@ def check_operations(page, code, header):
     same("classes", sorted(members), sorted(re.findall(rf"^static int {NAME}_solve_(\w+)\(", code, re.M)))
     dynamics = operations(blocks(body[f"{NAME}_dynamics"])[0])
     outputs = operations(blocks(body[f"{NAME}_measure"])[0])
+    same("operations of outputs", told.pop(("all together", "outputs")), outputs + [sum(outputs)])
+    reacting = f"{NAME}_react" in body
+    same("are there reactions", ("all together", "wrenches") in told, reacting)
+    if reacting:
+        wrenches = operations(blocks(body[f"{NAME}_react"])[0])
+        same("operations of wrenches", told["all together", "wrenches"], wrenches + [sum(wrenches)])
+        outputs = total(outputs, wrenches)
+    for name in members:
+        count = len(re.findall(rf"{NAME}_react_{name}\(", body.get(f"{NAME}_react", "")))
+        row = [row[2:] for row in page.rows_of("operations") if row[:2] == [name, "react"]]
+        if count:
+            react = operations(blocks(body[f"{NAME}_react_{name}"])[0])
+            same(f"operations of {name}, react", [int(word) for word in row[0]], [count] + react + [sum(react)])
+            outputs = total(outputs, scaled(react, count))
+        else:
+            same(f"{name} has no reactions", row, [])
     same("operations of dynamics", told["all together", "forces and equations of motion"], dynamics + [sum(dynamics)])
-    same("operations of outputs", told["all together", "outputs"], outputs + [sum(outputs)])
+    line = re.search(r"outputs, when asked for +([\d ]+)", header)
+    same("header's count of outputs", [int(word) for word in line.group(1).split()], outputs)
     rhs, bounded = total(usual, dynamics), total(worst, dynamics)
     line = re.search(r"all together +([\d ]+)", header)
     same("header's sum", [int(word) for word in line.group(1).split()], rhs)
