@@ -18,7 +18,13 @@ static const Key part_key[PART_KEYS] = {
     [PART_PREFIX] = {"prefix", KEY_NAME, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-static const Section part_section = {part_key, PART_KEYS, NULL, 0, NULL, NULL};
+static const char *const part_about[PART_KEYS] = {
+    [PART_FILE] = "path, from the folder of the file that it stands in",
+    [PART_AT] = "m, added to every point that is written in the file",
+    [PART_PREFIX] = "goes in front of every name that the file defines",
+};
+
+const Section part_section = {part_key, PART_KEYS, NULL, 0, NULL, NULL, part_about};
 
 /* A file being read, and the one that includes it. */
 typedef struct Open {

@@ -46,7 +46,27 @@ static const Key file_key[FILE_KEYS] = {
     [FILE_OUTPUTS] = {"outputs", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-const Section file_section = {file_key, FILE_KEYS, NULL, 0, NULL, NULL};
+static const char *const file_about[FILE_KEYS] = {
+    [FILE_GICGEN] = "version of the format: 1",
+    [FILE_INCLUDE] = "other files whose contents belong to this one: paths or maps",
+    [FILE_MODEL] = "name of the model, a C identifier: prefix of all generated names",
+    [FILE_DESCRIPTION] = "one line of text for the header of the generated code",
+    [FILE_GRAVITY] = "acceleration of gravity, m/s^2, world frame; default [0, 0, -9.81]",
+    [FILE_BASE] = "the body that is the free base (a chassis), or `ground` for a fixed base",
+    [FILE_POINTS] = "named points, m, model frame at design",
+    [FILE_BODIES] = "the rigid bodies",
+    [FILE_JOINTS] = "what ties bodies together",
+    [FILE_COORDINATES] = "dual coordinates: what springs and actuators act along",
+    [FILE_INPUTS] = "numbers that a scene or the calling program changes over time",
+    [FILE_PARAMETERS] = "named numbers, worked into the code or tunable at run time",
+    [FILE_TABLES] = "functions of one number, for formulas",
+    [FILE_PORTS] = "external forces and torques that the calling program supplies",
+    [FILE_FORCES] = "force elements: springs, dampers, force laws, loads",
+    [FILE_WHEELS] = "contacts of bodies with the road of the scene",
+    [FILE_OUTPUTS] = "results and their names; default: poses and velocity of a free base, and coordinates",
+};
+
+const Section file_section = {file_key, FILE_KEYS, NULL, 0, NULL, NULL, file_about};
 
 static void points_read(Reader *reader, const Item *map)
 {

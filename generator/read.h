@@ -62,8 +62,9 @@ typedef struct Section {
     int keys;
     const char *const *type; /* what the key `type` may be, where there is one */
     int types;
-    const char *const *form; /* names of the forms, for messages; NULL: there is one form */
+    const char *const *form;    /* names of the forms, for messages; NULL: there is one form */
     const unsigned *type_forms; /* the forms that a type can have; NULL: type i has form i */
+    const char *const *about;   /* [keys] what the key means, with its unit, in a line; no quotes or backslashes */
 } Section;
 
 typedef struct Value {
@@ -94,7 +95,7 @@ typedef struct Entry {
 } Entry;
 
 /* The tables of the sections whose entries hold values that a mirror, a move or a prefix changes. */
-extern const Section file_section;
+extern const Section file_section, part_section;
 extern const Section parameter_section, table_section, port_section;
 extern const Section body_section, inertia_section, orientation_section, joint_section, coordinate_section;
 extern const Section input_section, force_section, wheel_section, output_section;

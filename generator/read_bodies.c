@@ -43,9 +43,34 @@ static const char *const orientation_form[ORIENTATION_FORMS] = {
     [ORIENTATION_AXES] = "by the directions x and z",
 };
 
-const Section body_section = {body_key, BODY_KEYS, NULL, 0, NULL, NULL};
-const Section inertia_section = {inertia_key, INERTIA_KEYS, NULL, 0, NULL, NULL};
-const Section orientation_section = {orientation_key, TURN_KEYS, NULL, 0, orientation_form, NULL};
+static const char *const body_about[BODY_KEYS] = {
+    [BODY_MASS] = "mass, kg",
+    [BODY_COM] = "centre of mass at design, m, model frame",
+    [BODY_INERTIA] = "about the centre of mass, in axes parallel to the body frame, kg m^2; a list or a map",
+    [BODY_POSITION] = "origin of the body frame at design, m, model frame; default: com",
+    [BODY_ORIENTATION] = "axes of the body frame at design; default: those of the model frame",
+};
+
+static const char *const inertia_about[INERTIA_KEYS] = {
+    "moment of inertia about the x axis, kg m^2",
+    "moment of inertia about the y axis, kg m^2",
+    "moment of inertia about the z axis, kg m^2",
+    "element xy of the inertia matrix, minus the integral of x y dm, kg m^2; default 0",
+    "element xz of the inertia matrix, minus the integral of x z dm, kg m^2; default 0",
+    "element yz of the inertia matrix, minus the integral of y z dm, kg m^2; default 0",
+};
+
+static const char *const orientation_about[TURN_KEYS] = {
+    [TURN_EULER] = "Euler parameters of the body frame",
+    [TURN_AXIS] = "axis of the rotation from the model frame",
+    [TURN_ANGLE] = "angle of the rotation about the axis, rad",
+    [TURN_X] = "direction of the x axis of the body",
+    [TURN_Z] = "direction that the z axis of the body is nearest to; y = z cross x",
+};
+
+const Section body_section = {body_key, BODY_KEYS, NULL, 0, NULL, NULL, body_about};
+const Section inertia_section = {inertia_key, INERTIA_KEYS, NULL, 0, NULL, NULL, inertia_about};
+const Section orientation_section = {orientation_key, TURN_KEYS, NULL, 0, orientation_form, NULL, orientation_about};
 
 static const double triangle_tolerance = 1e-9, euler_tolerance = 1e-6;
 /* Sine of the smallest angle between the given x and z directions. */

@@ -12,7 +12,13 @@ static const Key parameter_key[PARAMETER_KEYS] = {
     [PARAMETER_TUNABLE] = {"tunable", KEY_FLAG, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-const Section parameter_section = {parameter_key, PARAMETER_KEYS, NULL, 0, NULL, NULL};
+static const char *const parameter_about[PARAMETER_KEYS] = {
+    [PARAMETER_VALUE] = "the number, in the unit that is stated",
+    [PARAMETER_UNIT] = "for people; default 1",
+    [PARAMETER_TUNABLE] = "true: may be changed at run time",
+};
+
+const Section parameter_section = {parameter_key, PARAMETER_KEYS, NULL, 0, NULL, NULL, parameter_about};
 
 enum { TABLE_X, TABLE_Y, TABLE_INTERPOLATION, TABLE_BEYOND, TABLE_KEYS };
 
@@ -23,7 +29,14 @@ static const Key table_key[TABLE_KEYS] = {
     [TABLE_BEYOND] = {"beyond", KEY_TEXT, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-const Section table_section = {table_key, TABLE_KEYS, NULL, 0, NULL, NULL};
+static const char *const table_about[TABLE_KEYS] = {
+    [TABLE_X] = "rising numbers, at least two",
+    [TABLE_Y] = "values, one for each x",
+    [TABLE_INTERPOLATION] = "between the points: `linear` (default) or `cubic`, which is monotone where the points are",
+    [TABLE_BEYOND] = "beyond the ends: `constant` (default), or `linear` on along the slope at the end",
+};
+
+const Section table_section = {table_key, TABLE_KEYS, NULL, 0, NULL, NULL, table_about};
 
 enum { PORT_BODY, PORT_POINT, PORT_IN, PORT_KEYS };
 
@@ -33,7 +46,13 @@ static const Key port_key[PORT_KEYS] = {
     [PORT_IN] = {"in", KEY_FRAME, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-const Section port_section = {port_key, PORT_KEYS, NULL, 0, NULL, NULL};
+static const char *const port_about[PORT_KEYS] = {
+    [PORT_BODY] = "the body that the force and the torque act on",
+    [PORT_POINT] = "where the force acts, at design, m, model frame; default: origin of the body frame",
+    [PORT_IN] = "the body in whose frame force (N) and torque (N m) are given; default `world`",
+};
+
+const Section port_section = {port_key, PORT_KEYS, NULL, 0, NULL, NULL, port_about};
 
 /* A parameter is `name: number` or `name: {value: number, ...}`. */
 void parameters_read(Reader *reader, const Item *map)

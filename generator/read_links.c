@@ -57,7 +57,18 @@ static const double drawn_tolerance = 1e-12;
 /* Largest angle by which a given u_b may miss the plane perpendicular to u_a, degrees. */
 static const double axes_tolerance = 10;
 
-const Section joint_section = {joint_key, LINK_KEYS, joint_type_name, JOINT_TYPES, joint_type_name, NULL};
+static const char *const joint_about[LINK_KEYS] = {
+    [LINK_TYPE] = "which equations tie the two bodies",
+    [LINK_BODIES] = "the bodies a and b",
+    [LINK_POINT] = "the common point at design, m, model frame; default, where optional: origin of the frame of b",
+    [LINK_POINTS] = "the point of a and the point of b at design, m, model frame",
+    [LINK_AXIS] = "direction at design, model frame",
+    [LINK_AXES] = "direction of a and direction of b at design, perpendicular",
+    [LINK_LENGTH] = "distance of the points, m; default: in the drawing",
+    [LINK_OFFSET] = "part of the distance along the axis, m; default: in the drawing",
+};
+
+const Section joint_section = {joint_key, LINK_KEYS, joint_type_name, JOINT_TYPES, joint_type_name, NULL, joint_about};
 
 enum { DUAL_TYPE, DUAL_BODIES, DUAL_POINTS, DUAL_AXIS, DUAL_DESIGN, DUAL_RANGE, DUAL_INITIAL, DUAL_DRIVEN, DUAL_KEYS };
 
@@ -75,8 +86,19 @@ static const Key coordinate_key[DUAL_KEYS] = {
     [DUAL_DRIVEN] = {"driven", KEY_FLAG, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
+static const char *const coordinate_about[DUAL_KEYS] = {
+    [DUAL_TYPE] = "distance of two points, translation along an axis, or angle about one",
+    [DUAL_BODIES] = "the bodies a and b",
+    [DUAL_POINTS] = "the point of a and the point of b at design, m; default, where optional: origin of the frame of b",
+    [DUAL_AXIS] = "direction fixed in a, along which or about which b moves",
+    [DUAL_DESIGN] = "value at design, m or rad; default 0",
+    [DUAL_RANGE] = "values that the mechanism is meant to reach, m or rad; default: design length -10% and +10%, design value -0.05 m and +0.05 m, -0.5 rad and +0.5 rad",
+    [DUAL_INITIAL] = "value that set-up starts from, m or rad; default: the value at design",
+    [DUAL_DRIVEN] = "true: prescribed by inputs for value, rate and acceleration",
+};
+
 const Section coordinate_section = {coordinate_key,       DUAL_KEYS, coordinate_type_name, COORDINATE_TYPES,
-                                    coordinate_type_name, NULL};
+                                    coordinate_type_name, NULL, coordinate_about};
 
 double points_distance(const Value *points, const char *what, double d[3])
 {

@@ -12,7 +12,12 @@ static const Key input_key[INPUT_KEYS] = {
     [INPUT_DEFAULT] = {"default", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
-const Section input_section = {input_key, INPUT_KEYS, NULL, 0, NULL, NULL};
+static const char *const input_about[INPUT_KEYS] = {
+    [INPUT_UNIT] = "for people; default 1",
+    [INPUT_DEFAULT] = "value until it is set; default 0",
+};
+
+const Section input_section = {input_key, INPUT_KEYS, NULL, 0, NULL, NULL, input_about};
 
 enum {
     ELEMENT_TYPE,
@@ -117,7 +122,30 @@ bool force_is_torque(const Force *force)
     return FORM(force->type) & FORCE_ABOUT;
 }
 
-const Section force_section = {force_key, ELEMENT_KEYS, force_type_name, TYPES, force_form_name, force_type_forms};
+static const char *const force_about[ELEMENT_KEYS] = {
+    [ELEMENT_TYPE] = "spring and damper, any force law, stop, or force and torque on a body",
+    [ELEMENT_COORDINATE] = "the dual coordinate that it acts along",
+    [ELEMENT_BODIES] = "the bodies a and b that it acts between; `ground` is allowed",
+    [ELEMENT_POINTS] = "the point of a and the point of b at design, m, model frame",
+    [ELEMENT_AXIS] = "direction fixed in a, about which it turns b",
+    [ELEMENT_STIFFNESS] = "N/m, or N m/rad about an axis; of numbers and parameters; default 0",
+    [ELEMENT_DAMPING] = "N s/m, or N m s/rad about an axis; of numbers and parameters; default 0",
+    [ELEMENT_LOW] = "value, length or angle below which there is contact, m or rad",
+    [ELEMENT_HIGH] = "value, length or angle above which there is contact, m or rad",
+    [ELEMENT_FADE] = "depth of contact over which damping builds up, m or rad; default 0.01",
+    [ELEMENT_TABLE] = "table of force (N) over depth or excess length (m), or torque (N m) over angle (rad)",
+    [ELEMENT_FREE] = "value or length without spring force, m or rad; default: the one at design",
+    [ELEMENT_VALUE] =
+        "force, N, or torque, N m: along the coordinate, or tension between the points, torque about the axis",
+    [ELEMENT_BODY] = "the body that the load acts on",
+    [ELEMENT_POINT] = "where the force acts, at design, m, model frame; default: origin of the body frame",
+    [ELEMENT_IN] = "the body in whose frame components are given; default `world`",
+    [ELEMENT_FORCE] = "N, a formula for each component",
+    [ELEMENT_TORQUE] = "N m, a formula for each component",
+};
+
+const Section force_section = {force_key,       ELEMENT_KEYS,     force_type_name, TYPES,
+                               force_form_name, force_type_forms, force_about};
 
 enum { TIRE_BODY, TIRE_CENTER, TIRE_RADIUS, TIRE_STIFFNESS, TIRE_DAMPING, TIRE_FADE, TIRE_KEYS };
 
@@ -130,7 +158,16 @@ static const Key wheel_key[TIRE_KEYS] = {
     [TIRE_FADE] = {"fade", KEY_NUMBER, ALL_FORMS, 0, BOUND_POSITIVE, 0.01},
 };
 
-const Section wheel_section = {wheel_key, TIRE_KEYS, NULL, 0, NULL, NULL};
+static const char *const wheel_about[TIRE_KEYS] = {
+    [TIRE_BODY] = "the body that carries the wheel",
+    [TIRE_CENTER] = "centre of the wheel at design, m, model frame",
+    [TIRE_RADIUS] = "radius without load, m",
+    [TIRE_STIFFNESS] = "vertical stiffness of the tire, N/m",
+    [TIRE_DAMPING] = "vertical damping of the tire, N s/m; default 0",
+    [TIRE_FADE] = "deflection over which damping builds up, m; default 0.01",
+};
+
+const Section wheel_section = {wheel_key, TIRE_KEYS, NULL, 0, NULL, NULL, wheel_about};
 
 /* The three inputs of a driven coordinate: value, rate, acceleration. */
 static void driven_inputs(Reader *reader, Coordinate *coordinate)

@@ -72,7 +72,18 @@ static const OutputKind output_kind[OUTPUT_TYPES] = {
     [OUTPUT_ENERGY] = {2, {"kinetic", "potential"}, {"J", "J"}, {0}},
 };
 
-const Section output_section = {output_key, WATCH_KEYS, output_type_name, OUTPUT_TYPES, output_type_name, NULL};
+static const char *const output_about[WATCH_KEYS] = {
+    [WATCH_TYPE] = "what is put out",
+    [WATCH_BODY] = "the body that it is about",
+    [WATCH_POINT] = "point of the body at design, m, model frame; default: origin of the body frame",
+    [WATCH_IN] = "the body in whose frame components are given; default `world`",
+    [WATCH_COORDINATE] = "the dual coordinate that it is about",
+    [WATCH_ELEMENT] = "the force element whose force (N) or torque (N m) it is",
+    [WATCH_JOINT] = "the joint whose force (N) and torque (N m) on its second body it is",
+    [WATCH_WHEEL] = "the wheel that it is about",
+};
+
+const Section output_section = {output_key, WATCH_KEYS, output_type_name, OUTPUT_TYPES, output_type_name, NULL, output_about};
 
 /* Whether an output belongs to an angle, directly or by a force along or about it. */
 static bool of_angle(const Model *model, const Output *output)

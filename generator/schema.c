@@ -15,11 +15,7 @@ static const char definitions[] =
     "    \"vector\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 3, \"maxItems\": "
     "3},\n"
     "    \"point\": {\"anyOf\": [{\"$ref\": \"#/$defs/vector\"}, {\"$ref\": \"#/$defs/name\"}]},\n"
-    "    \"numbers\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 2},\n"
-    "    \"include\": {\"anyOf\": [{\"type\": \"string\"}, {\"type\": \"object\", \"required\": [\"file\"], "
-    "\"additionalProperties\": false,\n"
-    "      \"properties\": {\"file\": {\"type\": \"string\"}, \"at\": {\"$ref\": \"#/$defs/vector\"}, \"prefix\": "
-    "{\"type\": \"string\"}}}]}\n"
+    "    \"numbers\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 2}\n"
     "  },\n";
 
 static void reference(Text *out, const char *name)
@@ -88,6 +84,12 @@ static void value(Text *out, const Section *section, const Key *key, int indent)
     }
 }
 
+/* What a key means, into the schema of its value. */
+static void described(Text *out, const char *about, const Text *schema)
+{
+    text_print(out, "{\"description\": \"%s\"%s%s", about, schema->s[1] == '}' ? "" : ", ", schema->s + 1);
+}
+
 /* One form of a section: `type` is its word for the key of that name, or NULL. */
 static void form(Text *out, const Section *section, int which, const char *type, int indent)
 {
@@ -99,10 +101,12 @@ static void form(Text *out, const Section *section, int which, const char *type,
             continue;
         text_print(out, "%s\n%*s\"%s\": ", separator, indent + 2, "", key->name);
         separator = ",";
+        Text schema = {.pool = out->pool};
         if (key->kind == KEY_TYPE)
-            text_print(out, "{\"const\": \"%s\"}", type);
+            text_print(&schema, "{\"const\": \"%s\"}", type);
         else
-            value(out, section, key, indent + 2);
+            value(&schema, section, key, indent + 2);
+        described(out, section->about[k], &schema);
     }
     text_print(out, "},\n%*s\"required\": [", indent, "");
     separator = "";
@@ -146,6 +150,30 @@ static void object(Text *out, const Section *section, int indent)
     text_print(out, "]}");
 }
 
+/* A file to include or a list of them, each a path or a map. */
+static void inclusion(Text *out)
+{
+    Text part = {.pool = out->pool};
+    text_print(&part, "{\"type\": \"string\"}, ");
+    object(&part, &part_section, 6);
+    text_print(out, "{\"anyOf\": [%s,\n      {\"type\": \"array\", \"items\": {\"anyOf\": [%s]}}]}", part.s, part.s);
+}
+
+/* A map of named entries; of points where `section` is NULL. */
+static void group(Text *out, const Section *section)
+{
+    text_print(out,
+               "{\"type\": \"object\", \"propertyNames\": {\"pattern\": \"%s\"}, \"additionalProperties\":\n      ",
+               name_pattern);
+    if (section == &parameter_section)
+        text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, ");
+    if (section)
+        object(out, section, 6);
+    else
+        reference(out, "vector");
+    text_print(out, "%s}", section == &parameter_section ? "]}" : "");
+}
+
 void schema_print(Text *out)
 {
     text_print(out,
@@ -158,27 +186,17 @@ void schema_print(Text *out)
     for (int k = 0; k < file_section.keys; ++k) {
         const Key *key = &file_section.key[k];
         const Section *section = group_section(key->name);
+        Text schema = {.pool = out->pool};
         text_print(out, "%s\n    \"%s\": ", k ? "," : "", key->name);
         if (!strcmp(key->name, "gicgen"))
-            text_print(out, "{\"const\": 1}");
+            text_print(&schema, "{\"const\": 1}");
         else if (!strcmp(key->name, "include"))
-            text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/include\"}, {\"type\": \"array\", \"items\": {\"$ref\": "
-                            "\"#/$defs/include\"}}]}");
+            inclusion(&schema);
         else if (!section && strcmp(key->name, "points"))
-            value(out, &file_section, key, 4);
-        else {
-            text_print(
-                out,
-                "{\"type\": \"object\", \"propertyNames\": {\"pattern\": \"%s\"}, \"additionalProperties\":\n      ",
-                name_pattern);
-            if (section == &parameter_section)
-                text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, ");
-            if (section)
-                object(out, section, 6);
-            else
-                reference(out, "vector");
-            text_print(out, "%s}", section == &parameter_section ? "]}" : "");
-        }
+            value(&schema, &file_section, key, 4);
+        else
+            group(&schema, section);
+        described(out, file_section.about[k], &schema);
     }
     text_print(out, "\n  }\n}\n");
 }
@@ -216,17 +234,18 @@ static void section_keys(Text *out, const char *name, const Section *section)
             if (key->required && key->required != key->allowed)
                 text_print(out, "; optional otherwise"), types_of(out, section, key->allowed & ~key->required);
         }
-        text_print(out, "\n");
+        text_print(out, "\n      %s\n", section->about[k]);
     }
 }
 
 void keys_print(Text *out)
 {
-    text_print(out, "Keys of a .veh file; models/FORMAT.md says what they mean.\n");
+    text_print(out, "Keys of a .veh file; models/FORMAT.md says more of each.\n");
     section_keys(out, "the file", &file_section);
     for (int k = 0; k < file_section.keys; ++k)
         if (group_section(file_section.key[k].name))
             section_keys(out, file_section.key[k].name, group_section(file_section.key[k].name));
+    section_keys(out, "an entry of include", &part_section);
     section_keys(out, "inertia as a map", &inertia_section);
     section_keys(out, "orientation (one of the three ways)", &orientation_section);
 }

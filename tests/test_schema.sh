@@ -43,7 +43,10 @@ for name in body_key_missing body_key_unknown body_not_map coordinate_angle_poin
 done
 
 "$gicgen" --list-keys >"$work/keys"
-for key in $(sed -n 's/^  \([a-z]*\) .*/\1/p' "$work/keys" | sort -u); do
+/usr/bin/python3 "$root/tests/schema_texts.py" "$work/schema" "$work/keys" >"$work/said" &&
+    ! grep '^bad' "$work/said" && [ "$(sed -n '$s/ described$//p' "$work/said")" -gt 60 ]
+check $? "descriptions of keys: $(cat "$work/said")"
+for key in $(sed -n 's/^  \([a-z][a-z]*\) .*/\1/p' "$work/keys" | sort -u); do
     grep -q "[\`{ ]$key[\`:]" "$root/models/FORMAT.md" && grep -q "\"$key\": " "$work/schema"
     check $? "key '$key' is missing in FORMAT.md or in the schema"
 done
