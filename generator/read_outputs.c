@@ -83,7 +83,8 @@ static const char *const output_about[WATCH_KEYS] = {
     [WATCH_WHEEL] = "the wheel that it is about",
 };
 
-const Section output_section = {output_key, WATCH_KEYS, output_type_name, OUTPUT_TYPES, output_type_name, NULL, output_about};
+const Section output_section = {output_key,       WATCH_KEYS, output_type_name, OUTPUT_TYPES,
+                                output_type_name, NULL,       output_about};
 
 /* Whether an output belongs to an angle, directly or by a force along or about it. */
 static bool of_angle(const Model *model, const Output *output)
