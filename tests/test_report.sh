@@ -23,7 +23,7 @@ check() {
 # compile FILE REAL HOW OPTION: object and call graph with stack usage
 compile() {
     # shellcheck disable=SC2086  # none or one word
-    cc -std=c99 -"$3" -ffp-contract=off -I"$root/runtime" -I. $4 -fcallgraph-info=su -c "$1" -o "$(basename "$1" .c).$2.$3.o"
+    gcc -std=c99 -"$3" -ffp-contract=off -I"$root/runtime" -I. $4 -fcallgraph-info=su -c "$1" -o "$(basename "$1" .c).$2.$3.o"
 }
 
 for real in double float; do
