@@ -319,6 +319,14 @@ static bool force_uses(const Force *force, int parameter)
     return uses;
 }
 
+/* What takes numbers from a tunable parameter. */
+static void users_list(const Report *r, int parameter, Text *users)
+{
+    for (int k = 0; k < r->model->forces; ++k)
+        if (force_uses(&r->model->force[k], parameter))
+            listed(users, "force %s", r->model->force[k].name);
+}
+
 /* A section of signals, or that the model has none. */
 static bool signals_open(Text *out, int count, const char *id, const char *caption, const char *columns)
 {
@@ -368,16 +376,14 @@ static void parameters(const Report *r, Text *out)
 {
     const Model *model = r->model;
     if (!signals_open(out, model->tunables, "parameters", "Tunable parameters",
-                      "#place|name|unit|#default|force elements that use it"))
+                      "#place|name|unit|#default|used by"))
         return;
     for (int i = 0; i < model->parameters; ++i) {
         const Parameter *p = &model->parameter[i];
         Text users = {.pool = r->pool};
         if (!p->tunable)
             continue;
-        for (int k = 0; k < model->forces; ++k)
-            if (force_uses(&model->force[k], i))
-                listed(&users, "%s", model->force[k].name);
+        users_list(r, i, &users);
         signal_row(out, p->index, p->name, p->unit);
         cell_number(out, p->value);
         cell_list(out, &users);
