@@ -375,8 +375,7 @@ static void inputs(const Report *r, Text *out)
 static void parameters(const Report *r, Text *out)
 {
     const Model *model = r->model;
-    if (!signals_open(out, model->tunables, "parameters", "Tunable parameters",
-                      "#place|name|unit|#default|used by"))
+    if (!signals_open(out, model->tunables, "parameters", "Tunable parameters", "#place|name|unit|#default|used by"))
         return;
     for (int i = 0; i < model->parameters; ++i) {
         const Parameter *p = &model->parameter[i];
