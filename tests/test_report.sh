@@ -102,7 +102,7 @@ check $? "no word of Graphviz"
 # templates of one's own that declare what can't be measured
 mkdir templates
 cp "$root"/templates/* templates
-sed -i 's/^    gic_real energy/    wonder it;\n&/; s/^    gic_real e\[4\], turn\[3\];/    wonder it;\n&/' templates/model.c.in
+sed -i 's/^    gic_head head;/    wonder it;\n&/' templates/model.h.in
 "$gicgen" --templates templates --report strange.html "$root/models/pendulum.veh" 2>err
 [ $? -eq 1 ] && [ ! -e strange.html ] && grep -q 'unknown type in the emitted code' err
 check $? "an unknown type was measured: $(cat err)"

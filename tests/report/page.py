@@ -74,7 +74,7 @@ def operations(text):
     """Operations of straight-line code, by kind: numbers and indices hold none."""
     text = re.sub(r"\b(GIC_)?R\([^()]*\)", "1", text)
     text = re.sub(r"\[[^]]*\]", "", text)
-    text = re.sub(r"\bconst gic_real (?=t)|&", "", text)
+    text = re.sub(r"\bconst gic_real (?=t)|&", "", text).replace("->", ".")
     count = dict.fromkeys(KINDS, 0)
     before = ""
     for token in re.findall(r"\w+|\S", text):
