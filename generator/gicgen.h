@@ -897,8 +897,8 @@ typedef struct Embedded {
 
 extern const Embedded embedded[];
 
-/* Where a template's line is nothing but `@name@` in a comment (of C or of HTML), `insert` prints what belongs there, with that line's
- * indent. */
+/* Where a template's line is nothing but `@name@` in a comment (of C or of HTML), `insert` prints what belongs there,
+ * with that line's indent. */
 typedef void Insert(void *context, const char *name, Text *out, int indent);
 
 /* Expand the template `name` (from the folder `templates`, or built in where that is NULL): every word PREFIX becomes
@@ -944,8 +944,8 @@ void generate(Pool *pool, const Formulation *f, const char *templates, const cha
 
 typedef struct Measure Measure;
 
-/* What C text declares, and takes in memory where pointers have 64 bits and gic_real has `real` bytes; `model` is the prefix of its
- * functions. Texts are read in the order in which a compiler sees them. */
+/* What C text declares, and takes in memory where pointers have 64 bits and gic_real has `real` bytes; `model` is the
+ * prefix of its functions. Texts are read in the order in which a compiler sees them. */
 Measure *measure_new(Pool *pool, const char *model, size_t real);
 void measure_read(Measure *measure, const char *text);
 /* Bytes: of a type (exact); of the constant objects whose names start so (exact); of the stack below a call of a

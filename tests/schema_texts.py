@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""schema_texts.py SCHEMA KEYS: every key in the JSON Schema has a description, the same one wherever KEYS (what --list-keys
-prints) has it; prints `bad KEY: reason` for each that has not, and at last how many there are."""
+"""schema_texts.py SCHEMA KEYS: every key in the JSON Schema has a description, the same one wherever KEYS (what
+--list-keys prints) has it; prints `bad KEY: reason` for each that has not, and at last how many there are."""
 import json
 import re
 import sys

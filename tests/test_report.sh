@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_report.sh GICGEN: the page of --report against the emitted code (operations counted in its text), what a compiler
-# makes of it (sizes, constants, stack at -O0 and -O2), what it says when it runs (signals, right-hand sides a step), and
-# --sequence.
+# test_report.sh GICGEN: the page of --report against the emitted code (operations counted in its text), what a
+# compiler makes of it (sizes, constants, stack at -O0 and -O2), what it says when it runs (signals, right-hand sides a
+# step), and --sequence.
 gicgen=$(realpath "$1")
 root=$(cd "$(dirname "$0")/.." && pwd)
 work=$(mktemp -d) || exit 1
@@ -23,7 +23,8 @@ check() {
 # compile FILE REAL HOW OPTION: object and call graph with stack usage
 compile() {
     # shellcheck disable=SC2086  # none or one word
-    gcc -std=c99 -"$3" -ffp-contract=off -I"$root/runtime" -I. $4 -fcallgraph-info=su -c "$1" -o "$(basename "$1" .c).$2.$3.o"
+    gcc -std=c99 -"$3" -ffp-contract=off -I"$root/runtime" -I. $4 -fcallgraph-info=su -c "$1" \
+        -o "$(basename "$1" .c).$2.$3.o"
 }
 
 for real in double float; do
@@ -82,7 +83,8 @@ grep -q '<td>k</td><td>N/m</td><td class="n">4000</td><td>force strut_l, force s
 check $? "users of parameter k: $(grep '<td>k</td>' cart.html)"
 
 # names and texts are escaped
-sed 's|^model: .*|&\ndescription: "a <b> \& \\"c\\" </p>"|; s|unit: N/m,|unit: "<N/m>",|' "$root/tests/laws/cart.veh" >odd.veh
+sed 's|^model: .*|&\ndescription: "a <b> \& \\"c\\" </p>"|; s|unit: N/m,|unit: "<N/m>",|' \
+    "$root/tests/laws/cart.veh" >odd.veh
 "$gicgen" --report - odd.veh >odd.html
 check $? "no report on standard output"
 grep -q '<p>a &lt;b&gt; &amp; &quot;c&quot; &lt;/p&gt;</p>' odd.html && grep -q '<td>&lt;N/m&gt;</td>' odd.html

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """page.py PAGE CODE SEQUENCE FACTS FACTS_FLOAT: whether the page of `gicgen --report` says what the code is.
 
-CODE.c and CODE.h are the emitted files, SEQUENCE what --sequence prints, FACTS what facts.c prints of the compiled model.
-CODE.*.ci beside them are call graphs with stack usage (gcc -fcallgraph-info=su), CODE.*.symbols the symbols of an object
-file (nm -S). Prints `good WHAT` or `bad WHAT: how`, a line each. Everything is read from the code or from what a compiler
-made of it, nothing with the generator's own functions."""
+CODE.c and CODE.h are the emitted files, SEQUENCE what --sequence prints, FACTS what facts.c prints of the compiled
+model. CODE.*.ci beside them are call graphs with stack usage (gcc -fcallgraph-info=su), CODE.*.symbols the symbols
+of an object file (nm -S). Prints `good WHAT` or `bad WHAT: how`, a line each. Everything is read from the code or
+from what a compiler made of it, nothing with the generator's own functions."""
 import glob
 import html.parser
 import re
@@ -133,7 +133,8 @@ def check_operations(page, code, header):
         for block, found in (("predict", predict), ("chord", chord), ("solve", solve)):
             same(f"operations of {name}, {block}", told[name, block], found + [sum(found)])
         usual = total(usual, scaled(total(predict, chord, solve), count))
-        worst = total(worst, scaled(total(predict, scaled(chord, bound["CHORDS"]), scaled(solve, bound["PASSES"])), count))
+        once = total(predict, scaled(chord, bound["CHORDS"]), scaled(solve, bound["PASSES"]))
+        worst = total(worst, scaled(once, count))
         line = re.search(rf"subset '{name}' \((\d+) times\) +([\d ]+)", header)
         same(f"header's count of {name}", [int(line.group(1))] + [int(word) for word in line.group(2).split()],
              [count] + total(predict, chord, solve))
@@ -197,7 +198,8 @@ def check_sequence(page, sequence):
     told = []
     for row in page.rows_of("sequence"):
         entry = {"subset": row[0], "stage": row[1], "size": row[7:9]}
-        entry.update({what: word for what, word in zip(("bodies", "joints", "coordinates", "known before"), row[3:7]) if word})
+        lists = ("bodies", "joints", "coordinates", "known before")
+        entry.update({what: word for what, word in zip(lists, row[3:7]) if word})
         told.append(entry)
     same("sequence", told, subsets)
 
@@ -284,10 +286,11 @@ def main():
     page.close()
     same("elements are closed", page.open, [])
     check("no foreign parts", not re.search(r"<script|<link|<img|src=|url\(|href=\"http", text))
-    check("graph", "<svg" in text and all(f">{row[3]}<" in text for row in page.rows_of("sequence") if "," not in row[3]))
+    alone = [row[3] for row in page.rows_of("sequence") if "," not in row[3]]
+    check("graph", "<svg" in text and all(f">{body}<" in text for body in alone), alone)
     code, header = read(CODE + ".c"), read(CODE + ".h")
     facts, facts_float = [[line.split("\t") for line in read(path).splitlines()] for path in (FACTS, FACTS_FLOAT)]
-    check("model hash", re.search(r"model hash (\w+)", page.text).group(1) == re.search(r"model hash (\w+)", code).group(1))
+    same("model hash", *(re.search(r"model hash (\w+)", one).group(1) for one in (page.text, code)))
     check_operations(page, code, header)
     check_sequence(page, read(SEQUENCE))
     check_signals(page, facts)
