@@ -312,8 +312,10 @@ static bool law_uses(const Law *law, int parameter)
 
 static bool force_uses(const Force *force, int parameter)
 {
-    bool uses = law_uses(force->stiffness, parameter) || law_uses(force->damping, parameter) ||
-                law_uses(force->free, parameter);
+    const Law *const number[] = {force->stiffness, force->damping, force->free, force->low, force->high, force->fade};
+    bool uses = false;
+    for (size_t i = 0; i < sizeof number / sizeof *number; ++i)
+        uses = uses || law_uses(number[i], parameter);
     for (size_t i = 0; i < sizeof force->law / sizeof *force->law; ++i)
         uses = uses || law_uses(force->law[i], parameter);
     return uses;
