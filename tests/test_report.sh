@@ -79,7 +79,7 @@ grep -q 'in the augmented form' augmented.html
 check $? "the augmented form is not named"
 
 # where parameters are used
-grep -q '<td>k</td><td>N/m</td><td class="n">4000</td><td>force strut_l, force strut_r, force jet</td>' cart.html
+grep -q '<td>k</td><td>N/m</td><td class="n">4000</td><td>force strut_l, force strut_r, force jet, force bumper_l, force bumper_r, force twist</td>' cart.html
 check $? "users of parameter k: $(grep '<td>k</td>' cart.html)"
 
 # names and texts are escaped
