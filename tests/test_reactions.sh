@@ -159,6 +159,36 @@ for form in reduced augmented; do
             balance("x", 0); balance("y", 0); balance("z", 9.81)
             same("guide along its axis", v["output.guide.force.z"], 0, size)
         }'
+    cp results "moving.$form"
+done
+
+# ---- a drive in the place of the spring, moving as the spring let it: the same force, and the same everywhere else
+
+variant replaced <<'END'
+s/^\(  spring: {type: length,\)/\1 driven: true,/
+/^  spring: {type: spring_damper/d
+s/^forces:.*/forces: {}/
+s/^  force: .*/  force: {type: drive_force, coordinate: spring}/
+END
+for form in reduced augmented; do
+    awk -F, 'NR == FNR { line[NR] = $0; next }
+        FNR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^spring.acceleration/) column = i }
+        { print line[FNR] "," (FNR == 1 ? "spring.acceleration" : $column) }' states "moving.$form" >driven
+    "$gicrun" --solve $form --eval driven replaced.veh -o results
+    check $? "drive in the place of the spring, $form"
+    sed 's/ \[[^],]*\]//g' "moving.$form" >spring
+    balances $form "drive in the place of the spring" '
+        {
+            if (NR == 2) { getline line <"spring"; names = split(line, of, ",") }
+            getline line <"spring"
+            split(line, cell, ",")
+            size = 6300 + v["output.tire.fz"]
+            for (i = 1; i <= names; ++i) if (of[i] == "output.force" || of[i] ~ /(force|torque)\.[xyz]$/) {
+                size += cell[i] < 0 ? -cell[i] : cell[i]; ++compared }
+            for (i = 1; i <= names; ++i) if (of[i] == "output.force" || of[i] ~ /(force|torque)\.[xyz]$/)
+                same(of[i], v[of[i]], cell[i], size)
+            if (compared != 31 * (NR - 1)) { print compared " numbers compared"; bad = 1 }
+        }'
 done
 
 # ---- what is emitted
