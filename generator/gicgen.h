@@ -536,8 +536,9 @@ typedef struct Factors {
  * row_left [n] marks the rows without one. */
 Factors *linear_factor(Dag *dag, int n, const Ex *A, const double *column_scale, const bool *usable, int *rank,
                        bool *row_left);
-/* Symmetric positive definite: pivots on the diagonal, in this order [n], or cheapest first where it is NULL. Uses the
- * upper triangle of A. */
+/* Symmetric and positive definite, or quasidefinite (a positive and a negative definite block on the diagonal), so that
+ * every order of pivots on the diagonal is good: in this one [n], or cheapest first where it is NULL. Uses the upper
+ * triangle of A. */
 Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A, const int *order);
 /* x = A^-1 b; x may alias b. */
 void linear_solve(Dag *dag, const Factors *factors, const Ex *b, Ex *x);
@@ -751,7 +752,7 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve s
                const double (*origin)[3]);
 
 /* Inputs of every global block, as C names: y state, e recovered Euler parameters of the base, x and xd values and
- * rates of all coordinates, u inputs, m motions, n inertias. Fixed base: r, v, turn are 0 and R the identity. */
+ * rates of all coordinates, u inputs, m motions, n inertias, lambda multipliers (Plan.multiplier_offset). Fixed base: r, v, turn are 0 and R the identity. */
 typedef struct Whole {
     const Plan *plan;
     const Model *model;

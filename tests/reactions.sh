@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# reactions.sh DUMP MODEL.veh: a model that includes another and asks for the reaction force of each of its joints, under
-# the joint's name, and for the force of each driven coordinate, `drive_NAME`. DUMP is the other's dump.
+# reactions.sh DUMP MODEL.veh: a model that includes another and asks for the reaction force of each of its joints,
+# under the joint's name, and for the force of each driven coordinate, `drive_NAME`. DUMP is the other's dump.
 cat <<END
 gicgen: 1
 include: $2

@@ -3,8 +3,8 @@
 # test_accelerations.sh GICGEN GICRUN STATES REFERENCE AGREE: accelerations, poses, reactions of all joints and drive
 # forces of generated code against the independent reference in quad precision, at ROWS (default 100) random states of
 # every model, of a cart with every kind of force law and of the HMMWV with a driven rack, with the equations of motion
-# in either form; constraint residuals at the same states. Each form within half of 1e-12 of the reference: so they agree
-# with each other to 1e-12.
+# in either form; constraint residuals at the same states. Each form within half of 1e-12 of the reference: so they
+# agree with each other to 1e-12.
 gicgen=$1
 gicrun=$2
 states=$3

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 # test_random.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE: accelerations, poses, reactions of all joints and
 # drive forces of random vehicles against the independent reference in quad precision at random states, with the
-# equations of motion in either form, and the diagnosis of random mistakes: one error, which
-# names a culprit. VEHICLES (default 20) of either kind at ROWS (default 10) states, or those of SEEDS alone (SEEDS="12
-# 40"); a full run is VEHICLES=300 ROWS=20. KEEP=folder: what they made is left there.
+# equations of motion in either form, and the diagnosis of random mistakes: one error, which names a culprit. VEHICLES
+# (default 20) of either kind at ROWS (default 10) states, or those of SEEDS alone (SEEDS="12 40"); a full run is
+# VEHICLES=300 ROWS=20. KEEP=folder: what they made is left there.
 random_vehicle=$1
 gicgen=$2
 gicrun=$3

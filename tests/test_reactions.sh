@@ -22,12 +22,14 @@ check() {
     fi
 }
 
-# balances FORM LABEL PROGRAM: an awk program over the rows of `results` says with same(label, is, should, scale) what must be
-# equal; v["name"] is a cell of the row, 0 where there is no such column, and rows is how many rows there must be.
+# balances FORM LABEL PROGRAM: an awk program over the rows of `results` says with same(label, is, should, scale) what
+# must be equal; v["name"] is a cell of the row, 0 where there is no such column. There must be a row for each state.
 balances() {
     awk -F, '
         function same(label, is, should, scale) {
-            if (!((is - should) ^ 2 <= (1e-12 * scale) ^ 2)) { print "row " NR - 1 ", " label ": " is " instead of " should; bad = 1 }
+            if ((is - should) ^ 2 <= (1e-12 * scale) ^ 2) return
+            print "row " NR - 1 ", " label ": " is " instead of " should
+            bad = 1
         }
         NR == 1 { for (i = 1; i <= NF; ++i) { sub(/ \[.*/, "", $i); name[i] = $i } next }
         { for (i = 1; i <= NF; ++i) v[name[i]] = $i }
@@ -96,7 +98,8 @@ masses='function balance(k, g) { # forces on wheel, arm and all, without drives
         wheel = f - 90.555 * (g + v["output.a_wheel." k])
         all = wheel - 23.965 * (g + v["output.a_arm." k]) - 525.59 * (g + v["output.carriage_acceleration." k])
         same("wheel " k, v["output.ball.force." k] + v["output.upper.force." k] + v["output.tierod.force." k], -wheel, size)
-        same("all " k, v["output.guide.force." k] + (k == "z" ? v["output.lift"] : 0), -all, size)
+        all += k == "z" ? v["output.lift"] : 0
+        same("all " k, v["output.guide.force." k], -all, size)
     }'
 # variant NAME: the quarter car with these outputs, after the script on standard input
 variant() {
@@ -221,7 +224,8 @@ solves 3 "the rack"
 
 # ---- the code compiles everywhere, and its self-test measures rounding
 
-"$gicgen" --dump-model "$root/models/hmmwv.veh" >dump && sh "$root/tests/reactions.sh" dump "$root/models/hmmwv.veh" >hmmwv.veh
+"$gicgen" --dump-model "$root/models/hmmwv.veh" >dump &&
+    sh "$root/tests/reactions.sh" dump "$root/models/hmmwv.veh" >hmmwv.veh
 cat >drive.c <<'END'
 #include "hmmwv.h"
 #include <stdio.h>
