@@ -357,7 +357,7 @@ static Part part_of(Pool *pool, const World *world, const Subset *subset)
                  .body = subset->body,
                  .tie = pool_alloc(pool, most * sizeof *part.tie),
                  .end = pool_alloc(pool, most * sizeof *part.end),
-                 .size = 0.01};
+                 .size = 0.1 * world->size};
     for (int i = 0; i < subset->joints; ++i)
         add_tie(world, subset, &part, subset->joint[i]);
     for (int i = 0; i < subset->coordinates; ++i)
