@@ -39,8 +39,7 @@ static inline void push(World *world, const Point *point, const double F[3])
     add3(wrench + 3, torque, wrench + 3);
 }
 
-/* ---- laws ---------------------------------------------------------------------------------------------------------
- */
+/* ---- laws ------------------------------------------------------------------------------------------------ */
 
 static double law_at(const World *world, const Law *law, const double *local);
 
@@ -97,8 +96,7 @@ static double law_at(const World *world, const Law *law, const double *local)
     }
 }
 
-/* ---- elements -----------------------------------------------------------------------------------------------------
- */
+/* ---- elements -------------------------------------------------------------------------------------------- */
 
 static inline double fade_in(double s)
 {

@@ -49,8 +49,7 @@ const char *instance_status(Pool *pool, const gic_model *model, const gic_head *
 /* An array of the instance at one of the descriptor's offsets. */
 double *instance_array(gic_head *self, size_t offset);
 
-/* ---- one function for each engine that is not in a file of its own name -------------------------------------------
- */
+/* ---- one function for each engine that is not in a file of its own name ---------------------------------- */
 
 /* build.c: generated code, compiled and loaded. */
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);

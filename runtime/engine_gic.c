@@ -52,8 +52,7 @@ static int *part_swap(const Part *part, double *start)
     return (int *)(void *)(start + part->factors + part->n * part->n);
 }
 
-/* ---- one subset ---------------------------------------------------------------------------------------------------
- */
+/* ---- one subset ------------------------------------------------------------------------------------------ */
 
 /* Right-hand side of a correction; the normalizations hold at all times. */
 static void residuals(World *world, const Part *part, double *b)
@@ -201,8 +200,7 @@ static void velocities(const Interpreted *context, const Part *part, double *sta
     profile->recovery_functions += ready - begun + (profile_clock(profile) - solved);
 }
 
-/* ---- all subsets --------------------------------------------------------------------------------------------------
- */
+/* ---- all subsets ----------------------------------------------------------------------------------------- */
 
 /* A rigid motion that takes the base from its old pose to the present one. */
 typedef struct Carry {
@@ -327,8 +325,7 @@ static int start(const Interpreted *context, Instance *self)
     return recover(context, self, false);
 }
 
-/* ---- opening ------------------------------------------------------------------------------------------------------
- */
+/* ---- opening --------------------------------------------------------------------------------------------- */
 
 static int local_of(const Subset *subset, int body)
 {

@@ -16,8 +16,7 @@ double profile_clock(const EngineProfile *profile)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* ---- for the engines ----------------------------------------------------------------------------------------------
- */
+/* ---- for the engines ------------------------------------------------------------------------------------- */
 
 static double *array_of(const Instance *self, size_t offset)
 {
@@ -120,8 +119,7 @@ int interpreted_accelerate(const Interpreted *context, const double *state, cons
     return GIC_OK;
 }
 
-/* ---- descriptor functions -----------------------------------------------------------------------------------------
- */
+/* ---- descriptor functions -------------------------------------------------------------------------------- */
 
 static int finite(const Instance *self, size_t offset, int32_t count)
 {
@@ -244,8 +242,7 @@ static int any_setup(void *instance)
     return self->head.status = context->start(context, self);
 }
 
-/* ---- the descriptor -----------------------------------------------------------------------------------------------
- */
+/* ---- the descriptor -------------------------------------------------------------------------------------- */
 
 static gic_signal *signals(Pool *pool, int count)
 {

@@ -38,8 +38,7 @@ static const int parts_of_joint[JOINT_TYPES] = {
 static const int parts_of_coordinate[COORDINATE_TYPES] = {
     [COORDINATE_LENGTH] = PART_LENGTH, [COORDINATE_TRANSLATION] = PART_ALONG, [COORDINATE_ANGLE] = PART_TURN};
 
-/* ---- what is known before the first evaluation --------------------------------------------------------------------
- */
+/* ---- what is known before the first evaluation ----------------------------------------------------------- */
 
 static void set_arms(const Model *model, Tie *tie, const double point[2][3])
 {
@@ -166,8 +165,7 @@ World *world_new(Pool *pool, const Model *model, const Sequence *sequence)
     return world;
 }
 
-/* ---- bodies -------------------------------------------------------------------------------------------------------
- */
+/* ---- bodies ---------------------------------------------------------------------------------------------- */
 
 static inline void turn_body(const double p[4], double A[9])
 {
@@ -229,8 +227,7 @@ void world_set_base(World *world, const double r[3], const double e[4], const do
     world_set_rate(world, BODY_BASE, qd);
 }
 
-/* ---- equations ----------------------------------------------------------------------------------------------------
- */
+/* ---- equations ------------------------------------------------------------------------------------------- */
 
 static inline void find_vectors(const World *world, const Tie *tie, TieVectors *v)
 {

@@ -77,7 +77,7 @@ typedef struct World {
     void *solving;
 } World;
 
-/* ---- world.c: kinematics ---------------------------------------------------------------------------------------- */
+/* ---- world.c: kinematics --------------------------------------------------------------------------------- */
 
 /* Everything that can be known before the first evaluation; bodies stand at the design. model: assembled. */
 World *world_new(Pool *pool, const Model *model, const Sequence *sequence);
@@ -103,7 +103,7 @@ void world_coordinate(World *world, int coordinate, double near, double out[2]);
 /* Largest constraint residual at the present configuration, relative to world->size. */
 double world_residual(World *world);
 
-/* ---- applied.c: forces ------------------------------------------------------------------------------------------- */
+/* ---- applied.c: forces ----------------------------------------------------------------------------------- */
 
 /* wrench, along, element, wheel at the present configuration. Forces along coordinates are not among the wrenches
  * before world_spread(). GIC_ERROR_ROAD where the road has no finite height. */
@@ -111,7 +111,7 @@ int world_forces(World *world);
 /* Forces along coordinates as wrenches on the bodies; needs J and dual of the coordinates' ties. */
 void world_spread(World *world);
 
-/* ---- accelerate.c: equations of motion -------------------------------------------------------------------------- */
+/* ---- accelerate.c: equations of motion ------------------------------------------------------------------- */
 
 /* Choose the solver, and let it do what depends on the mechanism alone. world_new() begins with the topology-based
  * one. */
@@ -121,7 +121,7 @@ void world_set_solver(Pool *pool, World *world, const Solver *solver);
  * of driven coordinates. GIC_ERROR_MASS where the constraints are not independent. */
 int world_accelerate(World *world);
 
-/* ---- interpreted_outputs.c --------------------------------------------------------------------------------------- */
+/* ---- interpreted_outputs.c ------------------------------------------------------------------------------- */
 
 /* All components of all outputs at the present configuration and its accelerations. */
 void world_outputs(const World *world, double *out);
