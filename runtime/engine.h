@@ -41,8 +41,8 @@ typedef struct EngineOptions {
 /* Open an engine, one of engine_name, for a model. Every failure ends in diag_fail. */
 const Engine *engine_open(Pool *pool, const char *name, const Model *model, const EngineOptions *options);
 
-/* Memory for one instance, not set up. It may be copied byte by byte. Instances of one interpreted engine share scratch:
- * one call at a time. */
+/* Memory for one instance, not set up. It may be copied byte by byte. Instances of one interpreted engine share
+ * scratch: one call at a time. */
 gic_head *instance_new(Pool *pool, const Engine *engine);
 /* "status text" or "status text: subset 'name'" of the last call. */
 const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status);

@@ -91,7 +91,8 @@ static double drive_force(const World *world, int coordinate)
     return world->multiplier[world->tie[world->coordinate_tie[coordinate]].first] * world->dual[coordinate];
 }
 
-/* Of a row, what its multiplier puts on the body at one end as force and torque about the centre of mass: -J^T multiplier. */
+/* Of a row, what its multiplier puts on the body at one end as force and torque about the centre of mass: -J^T
+ * multiplier. */
 static void add_row_force(const World *world, const Tie *tie, int row, int end, double out[6])
 {
     const int body = tie->body[end];
