@@ -2828,6 +2828,14 @@ static const char *const andrews_body_name[8] = {
     "K7",
 };
 
+static const int32_t andrews_parameter_geometric[1] = {
+    0
+};
+
+static const char *const andrews_condition_text[1] = {
+    NULL
+};
+
 /* Design poses of the bodies relative to the base, and their places in a start. */
 static const struct {
     int place;
@@ -2855,12 +2863,14 @@ static const gic_real andrews_parameter_default[ANDREWS_PARAMETER_ROOM] = {
     R(0.0)
 };
 
-int andrews_setup(andrews *self)
+int andrews_setup_with(andrews *self, const gic_real *parameter)
 {
-    gic_real e[4], turn[3];
+    gic_real wanted[ANDREWS_PARAMETER_ROOM], e[4], turn[3];
     int i, body, status;
+    for (i = 0; i < ANDREWS_PARAMETERS; ++i)
+        wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = -1;
+    self->head.subset = self->head.condition = -1;
     if (andrews_model.abi_version != GIC_ABI_VERSION || andrews_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < ANDREWS_STATES; ++i)
@@ -2868,7 +2878,9 @@ int andrews_setup(andrews *self)
     for (i = 0; i < ANDREWS_INPUTS; ++i)
         self->input[i] = andrews_default[i];
     for (i = 0; i < ANDREWS_PARAMETERS; ++i)
-        self->parameter[i] = andrews_parameter_default[i];
+        self->parameter[i] = wanted[i];
+    if (!gic_finite(self->parameter, ANDREWS_PARAMETERS))
+        return self->head.status = GIC_ERROR_INPUT;
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < ANDREWS_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = andrews_coordinate_design[i];
@@ -2882,6 +2894,11 @@ int andrews_setup(andrews *self)
     if (status == GIC_OK)
         status = andrews_recover(self, turn, 0);
     return self->head.status = status;
+}
+
+int andrews_setup(andrews *self)
+{
+    return andrews_setup_with(self, andrews_parameter_default);
 }
 
 int andrews_step(andrews *self, gic_real step, gic_method method)
@@ -2903,6 +2920,12 @@ const char *andrews_status_subset(const andrews *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < andrews_model.subset_count ? andrews_model.subset_name[subset] : NULL;
+}
+
+const char *andrews_status_condition(const andrews *self)
+{
+    const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
+    return condition >= 0 && condition < andrews_model.condition_count ? andrews_model.condition_text[condition] : NULL;
 }
 
 void andrews_snapshot(const andrews *self, andrews *copy)
@@ -3569,6 +3592,11 @@ static int andrews_any_setup(void *self)
     return andrews_setup((andrews *)self);
 }
 
+static int andrews_any_setup_with(void *self, const gic_real *parameter)
+{
+    return andrews_setup_with((andrews *)self, parameter);
+}
+
 static int andrews_any_rhs(void *self, gic_real time, const gic_real *state, gic_real *rate)
 {
     return andrews_rhs((andrews *)self, time, state, rate);
@@ -3637,7 +3665,11 @@ const gic_model andrews_model = {
     andrews_coordinate_input,
     andrews_subset_name,
     andrews_body_name,
+    andrews_parameter_geometric,
+    ANDREWS_CONDITIONS,
+    andrews_condition_text,
     andrews_any_setup,
+    andrews_any_setup_with,
     andrews_any_rhs,
     andrews_any_settle,
     andrews_any_outputs,

@@ -54,8 +54,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 1
-#error "andrews.h was generated for version 1 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 2
+#error "andrews.h was generated for version 2 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -64,7 +64,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    ANDREWS_ABI = 1,
+    ANDREWS_ABI = 2,
     ANDREWS_FREE_BASE = 0,
     ANDREWS_STATES = 2,
     ANDREWS_INPUTS = 0,
@@ -90,6 +90,9 @@ enum {
     ANDREWS_MOTION_ROOM = 210,
     ANDREWS_INERTIA_ROOM = 92,
     ANDREWS_MULTIPLIER_ROOM = 1,
+    ANDREWS_CONDITIONS = 0,
+    ANDREWS_DERIVED = 0,
+    ANDREWS_PIECES = 1,
     ANDREWS_KNOWN_ROOM = 1,
     ANDREWS_DEPENDENCE_ROOM = 1
 };
@@ -153,7 +156,8 @@ typedef struct andrews {
     gic_real state[ANDREWS_STATE_ROOM];
     gic_real input[ANDREWS_INPUT_ROOM];
     gic_real output[ANDREWS_OUTPUT_ROOM];
-    gic_real parameter[ANDREWS_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls */
+    gic_real parameter[ANDREWS_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
+                                                    * ones (andrews_model.parameter_geometric) by andrews_setup_with */
     gic_real port[ANDREWS_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[ANDREWS_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[ANDREWS_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
@@ -168,6 +172,9 @@ typedef struct andrews {
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int andrews_setup(andrews *self);
+
+/* The same as if the file had these numbers (ANDREWS_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+int andrews_setup_with(andrews *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: ANDREWS_STATES numbers. rate is written only on GIC_OK. */
 int andrews_rhs(andrews *self, gic_real time, const gic_real *state, gic_real *rate);
@@ -184,9 +191,10 @@ int andrews_poses(andrews *self, gic_real *pose);
 /* Present time, s. */
 gic_real andrews_time(const andrews *self);
 
-/* What a status means; and about which subset of bodies the last status was, NULL: about none. */
+/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
 const char *andrews_status_text(int status);
 const char *andrews_status_subset(const andrews *self);
+const char *andrews_status_condition(const andrews *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
 void andrews_snapshot(const andrews *self, andrews *copy);

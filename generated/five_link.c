@@ -3769,6 +3769,14 @@ static const char *const five_link_body_name[8] = {
     "wheel_r_r",
 };
 
+static const int32_t five_link_parameter_geometric[1] = {
+    0
+};
+
+static const char *const five_link_condition_text[1] = {
+    NULL
+};
+
 /* Design poses of the bodies relative to the base, and their places in a start. */
 static const struct {
     int place;
@@ -3817,12 +3825,14 @@ static const gic_real five_link_parameter_default[FIVE_LINK_PARAMETER_ROOM] = {
     R(0.0)
 };
 
-int five_link_setup(five_link *self)
+int five_link_setup_with(five_link *self, const gic_real *parameter)
 {
-    gic_real e[4], turn[3];
+    gic_real wanted[FIVE_LINK_PARAMETER_ROOM], e[4], turn[3];
     int i, body, status;
+    for (i = 0; i < FIVE_LINK_PARAMETERS; ++i)
+        wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = -1;
+    self->head.subset = self->head.condition = -1;
     if (five_link_model.abi_version != GIC_ABI_VERSION || five_link_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < FIVE_LINK_STATES; ++i)
@@ -3830,7 +3840,9 @@ int five_link_setup(five_link *self)
     for (i = 0; i < FIVE_LINK_INPUTS; ++i)
         self->input[i] = five_link_default[i];
     for (i = 0; i < FIVE_LINK_PARAMETERS; ++i)
-        self->parameter[i] = five_link_parameter_default[i];
+        self->parameter[i] = wanted[i];
+    if (!gic_finite(self->parameter, FIVE_LINK_PARAMETERS))
+        return self->head.status = GIC_ERROR_INPUT;
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < FIVE_LINK_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = five_link_coordinate_design[i];
@@ -3844,6 +3856,11 @@ int five_link_setup(five_link *self)
     if (status == GIC_OK)
         status = five_link_recover(self, turn, 0);
     return self->head.status = status;
+}
+
+int five_link_setup(five_link *self)
+{
+    return five_link_setup_with(self, five_link_parameter_default);
 }
 
 int five_link_step(five_link *self, gic_real step, gic_method method)
@@ -3865,6 +3882,12 @@ const char *five_link_status_subset(const five_link *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < five_link_model.subset_count ? five_link_model.subset_name[subset] : NULL;
+}
+
+const char *five_link_status_condition(const five_link *self)
+{
+    const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
+    return condition >= 0 && condition < five_link_model.condition_count ? five_link_model.condition_text[condition] : NULL;
 }
 
 void five_link_snapshot(const five_link *self, five_link *copy)
@@ -5111,6 +5134,11 @@ static int five_link_any_setup(void *self)
     return five_link_setup((five_link *)self);
 }
 
+static int five_link_any_setup_with(void *self, const gic_real *parameter)
+{
+    return five_link_setup_with((five_link *)self, parameter);
+}
+
 static int five_link_any_rhs(void *self, gic_real time, const gic_real *state, gic_real *rate)
 {
     return five_link_rhs((five_link *)self, time, state, rate);
@@ -5179,7 +5207,11 @@ const gic_model five_link_model = {
     five_link_coordinate_input,
     five_link_subset_name,
     five_link_body_name,
+    five_link_parameter_geometric,
+    FIVE_LINK_CONDITIONS,
+    five_link_condition_text,
     five_link_any_setup,
+    five_link_any_setup_with,
     five_link_any_rhs,
     five_link_any_settle,
     five_link_any_outputs,

@@ -75,8 +75,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 1
-#error "five_link.h was generated for version 1 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 2
+#error "five_link.h was generated for version 2 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -85,7 +85,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    FIVE_LINK_ABI = 1,
+    FIVE_LINK_ABI = 2,
     FIVE_LINK_FREE_BASE = 1,
     FIVE_LINK_STATES = 23,
     FIVE_LINK_INPUTS = 0,
@@ -111,6 +111,9 @@ enum {
     FIVE_LINK_MOTION_ROOM = 222,
     FIVE_LINK_INERTIA_ROOM = 179,
     FIVE_LINK_MULTIPLIER_ROOM = 1,
+    FIVE_LINK_CONDITIONS = 0,
+    FIVE_LINK_DERIVED = 0,
+    FIVE_LINK_PIECES = 1,
     FIVE_LINK_KNOWN_ROOM = 2,
     FIVE_LINK_DEPENDENCE_ROOM = 2
 };
@@ -225,7 +228,8 @@ typedef struct five_link {
     gic_real state[FIVE_LINK_STATE_ROOM];
     gic_real input[FIVE_LINK_INPUT_ROOM];
     gic_real output[FIVE_LINK_OUTPUT_ROOM];
-    gic_real parameter[FIVE_LINK_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls */
+    gic_real parameter[FIVE_LINK_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
+                                                    * ones (five_link_model.parameter_geometric) by five_link_setup_with */
     gic_real port[FIVE_LINK_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[FIVE_LINK_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[FIVE_LINK_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
@@ -240,6 +244,9 @@ typedef struct five_link {
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int five_link_setup(five_link *self);
+
+/* The same as if the file had these numbers (FIVE_LINK_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+int five_link_setup_with(five_link *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: FIVE_LINK_STATES numbers. rate is written only on GIC_OK. */
 int five_link_rhs(five_link *self, gic_real time, const gic_real *state, gic_real *rate);
@@ -256,9 +263,10 @@ int five_link_poses(five_link *self, gic_real *pose);
 /* Present time, s. */
 gic_real five_link_time(const five_link *self);
 
-/* What a status means; and about which subset of bodies the last status was, NULL: about none. */
+/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
 const char *five_link_status_text(int status);
 const char *five_link_status_subset(const five_link *self);
+const char *five_link_status_condition(const five_link *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
 void five_link_snapshot(const five_link *self, five_link *copy);

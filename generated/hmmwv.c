@@ -3757,6 +3757,14 @@ static const char *const hmmwv_body_name[10] = {
     "wheel_r_r",
 };
 
+static const int32_t hmmwv_parameter_geometric[1] = {
+    0
+};
+
+static const char *const hmmwv_condition_text[1] = {
+    NULL
+};
+
 /* Design poses of the bodies relative to the base, and their places in a start. */
 static const struct {
     int place;
@@ -3807,12 +3815,14 @@ static const gic_real hmmwv_parameter_default[HMMWV_PARAMETER_ROOM] = {
     R(0.0)
 };
 
-int hmmwv_setup(hmmwv *self)
+int hmmwv_setup_with(hmmwv *self, const gic_real *parameter)
 {
-    gic_real e[4], turn[3];
+    gic_real wanted[HMMWV_PARAMETER_ROOM], e[4], turn[3];
     int i, body, status;
+    for (i = 0; i < HMMWV_PARAMETERS; ++i)
+        wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = -1;
+    self->head.subset = self->head.condition = -1;
     if (hmmwv_model.abi_version != GIC_ABI_VERSION || hmmwv_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < HMMWV_STATES; ++i)
@@ -3820,7 +3830,9 @@ int hmmwv_setup(hmmwv *self)
     for (i = 0; i < HMMWV_INPUTS; ++i)
         self->input[i] = hmmwv_default[i];
     for (i = 0; i < HMMWV_PARAMETERS; ++i)
-        self->parameter[i] = hmmwv_parameter_default[i];
+        self->parameter[i] = wanted[i];
+    if (!gic_finite(self->parameter, HMMWV_PARAMETERS))
+        return self->head.status = GIC_ERROR_INPUT;
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < HMMWV_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = hmmwv_coordinate_design[i];
@@ -3834,6 +3846,11 @@ int hmmwv_setup(hmmwv *self)
     if (status == GIC_OK)
         status = hmmwv_recover(self, turn, 0);
     return self->head.status = status;
+}
+
+int hmmwv_setup(hmmwv *self)
+{
+    return hmmwv_setup_with(self, hmmwv_parameter_default);
 }
 
 int hmmwv_step(hmmwv *self, gic_real step, gic_method method)
@@ -3855,6 +3872,12 @@ const char *hmmwv_status_subset(const hmmwv *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < hmmwv_model.subset_count ? hmmwv_model.subset_name[subset] : NULL;
+}
+
+const char *hmmwv_status_condition(const hmmwv *self)
+{
+    const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
+    return condition >= 0 && condition < hmmwv_model.condition_count ? hmmwv_model.condition_text[condition] : NULL;
 }
 
 void hmmwv_snapshot(const hmmwv *self, hmmwv *copy)
@@ -5308,6 +5331,11 @@ static int hmmwv_any_setup(void *self)
     return hmmwv_setup((hmmwv *)self);
 }
 
+static int hmmwv_any_setup_with(void *self, const gic_real *parameter)
+{
+    return hmmwv_setup_with((hmmwv *)self, parameter);
+}
+
 static int hmmwv_any_rhs(void *self, gic_real time, const gic_real *state, gic_real *rate)
 {
     return hmmwv_rhs((hmmwv *)self, time, state, rate);
@@ -5376,7 +5404,11 @@ const gic_model hmmwv_model = {
     hmmwv_coordinate_input,
     hmmwv_subset_name,
     hmmwv_body_name,
+    hmmwv_parameter_geometric,
+    HMMWV_CONDITIONS,
+    hmmwv_condition_text,
     hmmwv_any_setup,
+    hmmwv_any_setup_with,
     hmmwv_any_rhs,
     hmmwv_any_settle,
     hmmwv_any_outputs,

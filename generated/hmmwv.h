@@ -81,8 +81,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 1
-#error "hmmwv.h was generated for version 1 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 2
+#error "hmmwv.h was generated for version 2 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -91,7 +91,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV_ABI = 1,
+    HMMWV_ABI = 2,
     HMMWV_FREE_BASE = 1,
     HMMWV_STATES = 23,
     HMMWV_INPUTS = 0,
@@ -117,6 +117,9 @@ enum {
     HMMWV_MOTION_ROOM = 282,
     HMMWV_INERTIA_ROOM = 225,
     HMMWV_MULTIPLIER_ROOM = 1,
+    HMMWV_CONDITIONS = 0,
+    HMMWV_DERIVED = 0,
+    HMMWV_PIECES = 1,
     HMMWV_KNOWN_ROOM = 2,
     HMMWV_DEPENDENCE_ROOM = 2
 };
@@ -225,7 +228,8 @@ typedef struct hmmwv {
     gic_real state[HMMWV_STATE_ROOM];
     gic_real input[HMMWV_INPUT_ROOM];
     gic_real output[HMMWV_OUTPUT_ROOM];
-    gic_real parameter[HMMWV_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls */
+    gic_real parameter[HMMWV_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
+                                                    * ones (hmmwv_model.parameter_geometric) by hmmwv_setup_with */
     gic_real port[HMMWV_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[HMMWV_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
@@ -240,6 +244,9 @@ typedef struct hmmwv {
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int hmmwv_setup(hmmwv *self);
+
+/* The same as if the file had these numbers (HMMWV_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+int hmmwv_setup_with(hmmwv *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_STATES numbers. rate is written only on GIC_OK. */
 int hmmwv_rhs(hmmwv *self, gic_real time, const gic_real *state, gic_real *rate);
@@ -256,9 +263,10 @@ int hmmwv_poses(hmmwv *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_time(const hmmwv *self);
 
-/* What a status means; and about which subset of bodies the last status was, NULL: about none. */
+/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
 const char *hmmwv_status_text(int status);
 const char *hmmwv_status_subset(const hmmwv *self);
+const char *hmmwv_status_condition(const hmmwv *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
 void hmmwv_snapshot(const hmmwv *self, hmmwv *copy);

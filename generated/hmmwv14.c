@@ -4891,6 +4891,14 @@ static const char *const hmmwv14_body_name[14] = {
     "uca_r_r",
 };
 
+static const int32_t hmmwv14_parameter_geometric[1] = {
+    0
+};
+
+static const char *const hmmwv14_condition_text[1] = {
+    NULL
+};
+
 /* Design poses of the bodies relative to the base, and their places in a start. */
 static const struct {
     int place;
@@ -4945,12 +4953,14 @@ static const gic_real hmmwv14_parameter_default[HMMWV14_PARAMETER_ROOM] = {
     R(0.0)
 };
 
-int hmmwv14_setup(hmmwv14 *self)
+int hmmwv14_setup_with(hmmwv14 *self, const gic_real *parameter)
 {
-    gic_real e[4], turn[3];
+    gic_real wanted[HMMWV14_PARAMETER_ROOM], e[4], turn[3];
     int i, body, status;
+    for (i = 0; i < HMMWV14_PARAMETERS; ++i)
+        wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = -1;
+    self->head.subset = self->head.condition = -1;
     if (hmmwv14_model.abi_version != GIC_ABI_VERSION || hmmwv14_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < HMMWV14_STATES; ++i)
@@ -4958,7 +4968,9 @@ int hmmwv14_setup(hmmwv14 *self)
     for (i = 0; i < HMMWV14_INPUTS; ++i)
         self->input[i] = hmmwv14_default[i];
     for (i = 0; i < HMMWV14_PARAMETERS; ++i)
-        self->parameter[i] = hmmwv14_parameter_default[i];
+        self->parameter[i] = wanted[i];
+    if (!gic_finite(self->parameter, HMMWV14_PARAMETERS))
+        return self->head.status = GIC_ERROR_INPUT;
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < HMMWV14_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = hmmwv14_coordinate_design[i];
@@ -4972,6 +4984,11 @@ int hmmwv14_setup(hmmwv14 *self)
     if (status == GIC_OK)
         status = hmmwv14_recover(self, turn, 0);
     return self->head.status = status;
+}
+
+int hmmwv14_setup(hmmwv14 *self)
+{
+    return hmmwv14_setup_with(self, hmmwv14_parameter_default);
 }
 
 int hmmwv14_step(hmmwv14 *self, gic_real step, gic_method method)
@@ -4993,6 +5010,12 @@ const char *hmmwv14_status_subset(const hmmwv14 *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < hmmwv14_model.subset_count ? hmmwv14_model.subset_name[subset] : NULL;
+}
+
+const char *hmmwv14_status_condition(const hmmwv14 *self)
+{
+    const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
+    return condition >= 0 && condition < hmmwv14_model.condition_count ? hmmwv14_model.condition_text[condition] : NULL;
 }
 
 void hmmwv14_snapshot(const hmmwv14 *self, hmmwv14 *copy)
@@ -7026,6 +7049,11 @@ static int hmmwv14_any_setup(void *self)
     return hmmwv14_setup((hmmwv14 *)self);
 }
 
+static int hmmwv14_any_setup_with(void *self, const gic_real *parameter)
+{
+    return hmmwv14_setup_with((hmmwv14 *)self, parameter);
+}
+
 static int hmmwv14_any_rhs(void *self, gic_real time, const gic_real *state, gic_real *rate)
 {
     return hmmwv14_rhs((hmmwv14 *)self, time, state, rate);
@@ -7094,7 +7122,11 @@ const gic_model hmmwv14_model = {
     hmmwv14_coordinate_input,
     hmmwv14_subset_name,
     hmmwv14_body_name,
+    hmmwv14_parameter_geometric,
+    HMMWV14_CONDITIONS,
+    hmmwv14_condition_text,
     hmmwv14_any_setup,
+    hmmwv14_any_setup_with,
     hmmwv14_any_rhs,
     hmmwv14_any_settle,
     hmmwv14_any_outputs,

@@ -83,8 +83,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 1
-#error "hmmwv14.h was generated for version 1 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 2
+#error "hmmwv14.h was generated for version 2 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -93,7 +93,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV14_ABI = 1,
+    HMMWV14_ABI = 2,
     HMMWV14_FREE_BASE = 1,
     HMMWV14_STATES = 23,
     HMMWV14_INPUTS = 0,
@@ -119,6 +119,9 @@ enum {
     HMMWV14_MOTION_ROOM = 414,
     HMMWV14_INERTIA_ROOM = 225,
     HMMWV14_MULTIPLIER_ROOM = 1,
+    HMMWV14_CONDITIONS = 0,
+    HMMWV14_DERIVED = 0,
+    HMMWV14_PIECES = 1,
     HMMWV14_KNOWN_ROOM = 2,
     HMMWV14_DEPENDENCE_ROOM = 2
 };
@@ -242,7 +245,8 @@ typedef struct hmmwv14 {
     gic_real state[HMMWV14_STATE_ROOM];
     gic_real input[HMMWV14_INPUT_ROOM];
     gic_real output[HMMWV14_OUTPUT_ROOM];
-    gic_real parameter[HMMWV14_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls */
+    gic_real parameter[HMMWV14_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
+                                                    * ones (hmmwv14_model.parameter_geometric) by hmmwv14_setup_with */
     gic_real port[HMMWV14_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV14_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[HMMWV14_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
@@ -257,6 +261,9 @@ typedef struct hmmwv14 {
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int hmmwv14_setup(hmmwv14 *self);
+
+/* The same as if the file had these numbers (HMMWV14_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+int hmmwv14_setup_with(hmmwv14 *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV14_STATES numbers. rate is written only on GIC_OK. */
 int hmmwv14_rhs(hmmwv14 *self, gic_real time, const gic_real *state, gic_real *rate);
@@ -273,9 +280,10 @@ int hmmwv14_poses(hmmwv14 *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv14_time(const hmmwv14 *self);
 
-/* What a status means; and about which subset of bodies the last status was, NULL: about none. */
+/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
 const char *hmmwv14_status_text(int status);
 const char *hmmwv14_status_subset(const hmmwv14 *self);
+const char *hmmwv14_status_condition(const hmmwv14 *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
 void hmmwv14_snapshot(const hmmwv14 *self, hmmwv14 *copy);

@@ -3996,6 +3996,14 @@ static const char *const hmmwv_full_body_name[10] = {
     "wheel_r_r",
 };
 
+static const int32_t hmmwv_full_parameter_geometric[1] = {
+    0
+};
+
+static const char *const hmmwv_full_condition_text[1] = {
+    NULL
+};
+
 /* Design poses of the bodies relative to the base, and their places in a start. */
 static const struct {
     int place;
@@ -4046,12 +4054,14 @@ static const gic_real hmmwv_full_parameter_default[HMMWV_FULL_PARAMETER_ROOM] = 
     R(0.0)
 };
 
-int hmmwv_full_setup(hmmwv_full *self)
+int hmmwv_full_setup_with(hmmwv_full *self, const gic_real *parameter)
 {
-    gic_real e[4], turn[3];
+    gic_real wanted[HMMWV_FULL_PARAMETER_ROOM], e[4], turn[3];
     int i, body, status;
+    for (i = 0; i < HMMWV_FULL_PARAMETERS; ++i)
+        wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = -1;
+    self->head.subset = self->head.condition = -1;
     if (hmmwv_full_model.abi_version != GIC_ABI_VERSION || hmmwv_full_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < HMMWV_FULL_STATES; ++i)
@@ -4059,7 +4069,9 @@ int hmmwv_full_setup(hmmwv_full *self)
     for (i = 0; i < HMMWV_FULL_INPUTS; ++i)
         self->input[i] = hmmwv_full_default[i];
     for (i = 0; i < HMMWV_FULL_PARAMETERS; ++i)
-        self->parameter[i] = hmmwv_full_parameter_default[i];
+        self->parameter[i] = wanted[i];
+    if (!gic_finite(self->parameter, HMMWV_FULL_PARAMETERS))
+        return self->head.status = GIC_ERROR_INPUT;
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < HMMWV_FULL_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = hmmwv_full_coordinate_design[i];
@@ -4073,6 +4085,11 @@ int hmmwv_full_setup(hmmwv_full *self)
     if (status == GIC_OK)
         status = hmmwv_full_recover(self, turn, 0);
     return self->head.status = status;
+}
+
+int hmmwv_full_setup(hmmwv_full *self)
+{
+    return hmmwv_full_setup_with(self, hmmwv_full_parameter_default);
 }
 
 int hmmwv_full_step(hmmwv_full *self, gic_real step, gic_method method)
@@ -4094,6 +4111,12 @@ const char *hmmwv_full_status_subset(const hmmwv_full *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < hmmwv_full_model.subset_count ? hmmwv_full_model.subset_name[subset] : NULL;
+}
+
+const char *hmmwv_full_status_condition(const hmmwv_full *self)
+{
+    const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
+    return condition >= 0 && condition < hmmwv_full_model.condition_count ? hmmwv_full_model.condition_text[condition] : NULL;
 }
 
 void hmmwv_full_snapshot(const hmmwv_full *self, hmmwv_full *copy)
@@ -5709,6 +5732,11 @@ static int hmmwv_full_any_setup(void *self)
     return hmmwv_full_setup((hmmwv_full *)self);
 }
 
+static int hmmwv_full_any_setup_with(void *self, const gic_real *parameter)
+{
+    return hmmwv_full_setup_with((hmmwv_full *)self, parameter);
+}
+
 static int hmmwv_full_any_rhs(void *self, gic_real time, const gic_real *state, gic_real *rate)
 {
     return hmmwv_full_rhs((hmmwv_full *)self, time, state, rate);
@@ -5777,7 +5805,11 @@ const gic_model hmmwv_full_model = {
     hmmwv_full_coordinate_input,
     hmmwv_full_subset_name,
     hmmwv_full_body_name,
+    hmmwv_full_parameter_geometric,
+    HMMWV_FULL_CONDITIONS,
+    hmmwv_full_condition_text,
     hmmwv_full_any_setup,
+    hmmwv_full_any_setup_with,
     hmmwv_full_any_rhs,
     hmmwv_full_any_settle,
     hmmwv_full_any_outputs,

@@ -81,8 +81,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 1
-#error "hmmwv_full.h was generated for version 1 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 2
+#error "hmmwv_full.h was generated for version 2 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -91,7 +91,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV_FULL_ABI = 1,
+    HMMWV_FULL_ABI = 2,
     HMMWV_FULL_FREE_BASE = 1,
     HMMWV_FULL_STATES = 23,
     HMMWV_FULL_INPUTS = 0,
@@ -117,6 +117,9 @@ enum {
     HMMWV_FULL_MOTION_ROOM = 282,
     HMMWV_FULL_INERTIA_ROOM = 225,
     HMMWV_FULL_MULTIPLIER_ROOM = 1,
+    HMMWV_FULL_CONDITIONS = 0,
+    HMMWV_FULL_DERIVED = 0,
+    HMMWV_FULL_PIECES = 1,
     HMMWV_FULL_KNOWN_ROOM = 2,
     HMMWV_FULL_DEPENDENCE_ROOM = 2
 };
@@ -233,7 +236,8 @@ typedef struct hmmwv_full {
     gic_real state[HMMWV_FULL_STATE_ROOM];
     gic_real input[HMMWV_FULL_INPUT_ROOM];
     gic_real output[HMMWV_FULL_OUTPUT_ROOM];
-    gic_real parameter[HMMWV_FULL_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls */
+    gic_real parameter[HMMWV_FULL_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
+                                                    * ones (hmmwv_full_model.parameter_geometric) by hmmwv_full_setup_with */
     gic_real port[HMMWV_FULL_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV_FULL_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[HMMWV_FULL_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
@@ -248,6 +252,9 @@ typedef struct hmmwv_full {
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int hmmwv_full_setup(hmmwv_full *self);
+
+/* The same as if the file had these numbers (HMMWV_FULL_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+int hmmwv_full_setup_with(hmmwv_full *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_FULL_STATES numbers. rate is written only on GIC_OK. */
 int hmmwv_full_rhs(hmmwv_full *self, gic_real time, const gic_real *state, gic_real *rate);
@@ -264,9 +271,10 @@ int hmmwv_full_poses(hmmwv_full *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_full_time(const hmmwv_full *self);
 
-/* What a status means; and about which subset of bodies the last status was, NULL: about none. */
+/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
 const char *hmmwv_full_status_text(int status);
 const char *hmmwv_full_status_subset(const hmmwv_full *self);
+const char *hmmwv_full_status_condition(const hmmwv_full *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
 void hmmwv_full_snapshot(const hmmwv_full *self, hmmwv_full *copy);

@@ -756,6 +756,14 @@ static const char *const pendulum_body_name[2] = {
     "rod",
 };
 
+static const int32_t pendulum_parameter_geometric[1] = {
+    0
+};
+
+static const char *const pendulum_condition_text[1] = {
+    NULL
+};
+
 /* Design poses of the bodies relative to the base, and their places in a start. */
 static const struct {
     int place;
@@ -777,12 +785,14 @@ static const gic_real pendulum_parameter_default[PENDULUM_PARAMETER_ROOM] = {
     R(0.0)
 };
 
-int pendulum_setup(pendulum *self)
+int pendulum_setup_with(pendulum *self, const gic_real *parameter)
 {
-    gic_real e[4], turn[3];
+    gic_real wanted[PENDULUM_PARAMETER_ROOM], e[4], turn[3];
     int i, body, status;
+    for (i = 0; i < PENDULUM_PARAMETERS; ++i)
+        wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = -1;
+    self->head.subset = self->head.condition = -1;
     if (pendulum_model.abi_version != GIC_ABI_VERSION || pendulum_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < PENDULUM_STATES; ++i)
@@ -790,7 +800,9 @@ int pendulum_setup(pendulum *self)
     for (i = 0; i < PENDULUM_INPUTS; ++i)
         self->input[i] = pendulum_default[i];
     for (i = 0; i < PENDULUM_PARAMETERS; ++i)
-        self->parameter[i] = pendulum_parameter_default[i];
+        self->parameter[i] = wanted[i];
+    if (!gic_finite(self->parameter, PENDULUM_PARAMETERS))
+        return self->head.status = GIC_ERROR_INPUT;
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < PENDULUM_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = pendulum_coordinate_design[i];
@@ -804,6 +816,11 @@ int pendulum_setup(pendulum *self)
     if (status == GIC_OK)
         status = pendulum_recover(self, turn, 0);
     return self->head.status = status;
+}
+
+int pendulum_setup(pendulum *self)
+{
+    return pendulum_setup_with(self, pendulum_parameter_default);
 }
 
 int pendulum_step(pendulum *self, gic_real step, gic_method method)
@@ -825,6 +842,12 @@ const char *pendulum_status_subset(const pendulum *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < pendulum_model.subset_count ? pendulum_model.subset_name[subset] : NULL;
+}
+
+const char *pendulum_status_condition(const pendulum *self)
+{
+    const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
+    return condition >= 0 && condition < pendulum_model.condition_count ? pendulum_model.condition_text[condition] : NULL;
 }
 
 void pendulum_snapshot(const pendulum *self, pendulum *copy)
@@ -1018,6 +1041,11 @@ static int pendulum_any_setup(void *self)
     return pendulum_setup((pendulum *)self);
 }
 
+static int pendulum_any_setup_with(void *self, const gic_real *parameter)
+{
+    return pendulum_setup_with((pendulum *)self, parameter);
+}
+
 static int pendulum_any_rhs(void *self, gic_real time, const gic_real *state, gic_real *rate)
 {
     return pendulum_rhs((pendulum *)self, time, state, rate);
@@ -1086,7 +1114,11 @@ const gic_model pendulum_model = {
     pendulum_coordinate_input,
     pendulum_subset_name,
     pendulum_body_name,
+    pendulum_parameter_geometric,
+    PENDULUM_CONDITIONS,
+    pendulum_condition_text,
     pendulum_any_setup,
+    pendulum_any_setup_with,
     pendulum_any_rhs,
     pendulum_any_settle,
     pendulum_any_outputs,

@@ -32,8 +32,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 1
-#error "pendulum.h was generated for version 1 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 2
+#error "pendulum.h was generated for version 2 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -42,7 +42,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    PENDULUM_ABI = 1,
+    PENDULUM_ABI = 2,
     PENDULUM_FREE_BASE = 0,
     PENDULUM_STATES = 2,
     PENDULUM_INPUTS = 0,
@@ -68,6 +68,9 @@ enum {
     PENDULUM_MOTION_ROOM = 30,
     PENDULUM_INERTIA_ROOM = 23,
     PENDULUM_MULTIPLIER_ROOM = 1,
+    PENDULUM_CONDITIONS = 0,
+    PENDULUM_DERIVED = 0,
+    PENDULUM_PIECES = 1,
     PENDULUM_KNOWN_ROOM = 1,
     PENDULUM_DEPENDENCE_ROOM = 1
 };
@@ -97,7 +100,8 @@ typedef struct pendulum {
     gic_real state[PENDULUM_STATE_ROOM];
     gic_real input[PENDULUM_INPUT_ROOM];
     gic_real output[PENDULUM_OUTPUT_ROOM];
-    gic_real parameter[PENDULUM_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls */
+    gic_real parameter[PENDULUM_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
+                                                    * ones (pendulum_model.parameter_geometric) by pendulum_setup_with */
     gic_real port[PENDULUM_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[PENDULUM_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[PENDULUM_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
@@ -112,6 +116,9 @@ typedef struct pendulum {
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int pendulum_setup(pendulum *self);
+
+/* The same as if the file had these numbers (PENDULUM_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+int pendulum_setup_with(pendulum *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: PENDULUM_STATES numbers. rate is written only on GIC_OK. */
 int pendulum_rhs(pendulum *self, gic_real time, const gic_real *state, gic_real *rate);
@@ -128,9 +135,10 @@ int pendulum_poses(pendulum *self, gic_real *pose);
 /* Present time, s. */
 gic_real pendulum_time(const pendulum *self);
 
-/* What a status means; and about which subset of bodies the last status was, NULL: about none. */
+/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
 const char *pendulum_status_text(int status);
 const char *pendulum_status_subset(const pendulum *self);
+const char *pendulum_status_condition(const pendulum *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
 void pendulum_snapshot(const pendulum *self, pendulum *copy);

@@ -2080,6 +2080,14 @@ static const char *const quarter_car_body_name[4] = {
     "wheel",
 };
 
+static const int32_t quarter_car_parameter_geometric[1] = {
+    0
+};
+
+static const char *const quarter_car_condition_text[1] = {
+    NULL
+};
+
 /* Design poses of the bodies relative to the base, and their places in a start. */
 static const struct {
     int place;
@@ -2105,12 +2113,14 @@ static const gic_real quarter_car_parameter_default[QUARTER_CAR_PARAMETER_ROOM] 
     R(0.0)
 };
 
-int quarter_car_setup(quarter_car *self)
+int quarter_car_setup_with(quarter_car *self, const gic_real *parameter)
 {
-    gic_real e[4], turn[3];
+    gic_real wanted[QUARTER_CAR_PARAMETER_ROOM], e[4], turn[3];
     int i, body, status;
+    for (i = 0; i < QUARTER_CAR_PARAMETERS; ++i)
+        wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = -1;
+    self->head.subset = self->head.condition = -1;
     if (quarter_car_model.abi_version != GIC_ABI_VERSION || quarter_car_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < QUARTER_CAR_STATES; ++i)
@@ -2118,7 +2128,9 @@ int quarter_car_setup(quarter_car *self)
     for (i = 0; i < QUARTER_CAR_INPUTS; ++i)
         self->input[i] = quarter_car_default[i];
     for (i = 0; i < QUARTER_CAR_PARAMETERS; ++i)
-        self->parameter[i] = quarter_car_parameter_default[i];
+        self->parameter[i] = wanted[i];
+    if (!gic_finite(self->parameter, QUARTER_CAR_PARAMETERS))
+        return self->head.status = GIC_ERROR_INPUT;
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < QUARTER_CAR_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = quarter_car_coordinate_design[i];
@@ -2132,6 +2144,11 @@ int quarter_car_setup(quarter_car *self)
     if (status == GIC_OK)
         status = quarter_car_recover(self, turn, 0);
     return self->head.status = status;
+}
+
+int quarter_car_setup(quarter_car *self)
+{
+    return quarter_car_setup_with(self, quarter_car_parameter_default);
 }
 
 int quarter_car_step(quarter_car *self, gic_real step, gic_method method)
@@ -2153,6 +2170,12 @@ const char *quarter_car_status_subset(const quarter_car *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < quarter_car_model.subset_count ? quarter_car_model.subset_name[subset] : NULL;
+}
+
+const char *quarter_car_status_condition(const quarter_car *self)
+{
+    const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
+    return condition >= 0 && condition < quarter_car_model.condition_count ? quarter_car_model.condition_text[condition] : NULL;
 }
 
 void quarter_car_snapshot(const quarter_car *self, quarter_car *copy)
@@ -2540,6 +2563,11 @@ static int quarter_car_any_setup(void *self)
     return quarter_car_setup((quarter_car *)self);
 }
 
+static int quarter_car_any_setup_with(void *self, const gic_real *parameter)
+{
+    return quarter_car_setup_with((quarter_car *)self, parameter);
+}
+
 static int quarter_car_any_rhs(void *self, gic_real time, const gic_real *state, gic_real *rate)
 {
     return quarter_car_rhs((quarter_car *)self, time, state, rate);
@@ -2608,7 +2636,11 @@ const gic_model quarter_car_model = {
     quarter_car_coordinate_input,
     quarter_car_subset_name,
     quarter_car_body_name,
+    quarter_car_parameter_geometric,
+    QUARTER_CAR_CONDITIONS,
+    quarter_car_condition_text,
     quarter_car_any_setup,
+    quarter_car_any_setup_with,
     quarter_car_any_rhs,
     quarter_car_any_settle,
     quarter_car_any_outputs,

@@ -51,8 +51,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 1
-#error "quarter_car.h was generated for version 1 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 2
+#error "quarter_car.h was generated for version 2 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -61,7 +61,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    QUARTER_CAR_ABI = 1,
+    QUARTER_CAR_ABI = 2,
     QUARTER_CAR_FREE_BASE = 0,
     QUARTER_CAR_STATES = 4,
     QUARTER_CAR_INPUTS = 0,
@@ -87,6 +87,9 @@ enum {
     QUARTER_CAR_MOTION_ROOM = 102,
     QUARTER_CAR_INERTIA_ROOM = 87,
     QUARTER_CAR_MULTIPLIER_ROOM = 1,
+    QUARTER_CAR_CONDITIONS = 0,
+    QUARTER_CAR_DERIVED = 0,
+    QUARTER_CAR_PIECES = 1,
     QUARTER_CAR_KNOWN_ROOM = 2,
     QUARTER_CAR_DEPENDENCE_ROOM = 2
 };
@@ -129,7 +132,8 @@ typedef struct quarter_car {
     gic_real state[QUARTER_CAR_STATE_ROOM];
     gic_real input[QUARTER_CAR_INPUT_ROOM];
     gic_real output[QUARTER_CAR_OUTPUT_ROOM];
-    gic_real parameter[QUARTER_CAR_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls */
+    gic_real parameter[QUARTER_CAR_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
+                                                    * ones (quarter_car_model.parameter_geometric) by quarter_car_setup_with */
     gic_real port[QUARTER_CAR_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[QUARTER_CAR_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[QUARTER_CAR_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
@@ -144,6 +148,9 @@ typedef struct quarter_car {
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int quarter_car_setup(quarter_car *self);
+
+/* The same as if the file had these numbers (QUARTER_CAR_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+int quarter_car_setup_with(quarter_car *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: QUARTER_CAR_STATES numbers. rate is written only on GIC_OK. */
 int quarter_car_rhs(quarter_car *self, gic_real time, const gic_real *state, gic_real *rate);
@@ -160,9 +167,10 @@ int quarter_car_poses(quarter_car *self, gic_real *pose);
 /* Present time, s. */
 gic_real quarter_car_time(const quarter_car *self);
 
-/* What a status means; and about which subset of bodies the last status was, NULL: about none. */
+/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
 const char *quarter_car_status_text(int status);
 const char *quarter_car_status_subset(const quarter_car *self);
+const char *quarter_car_status_condition(const quarter_car *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
 void quarter_car_snapshot(const quarter_car *self, quarter_car *copy);

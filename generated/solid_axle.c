@@ -3740,6 +3740,14 @@ static const char *const solid_axle_body_name[7] = {
     "axle",
 };
 
+static const int32_t solid_axle_parameter_geometric[1] = {
+    0
+};
+
+static const char *const solid_axle_condition_text[1] = {
+    NULL
+};
+
 /* Design poses of the bodies relative to the base, and their places in a start. */
 static const struct {
     int place;
@@ -3787,12 +3795,14 @@ static const gic_real solid_axle_parameter_default[SOLID_AXLE_PARAMETER_ROOM] = 
     R(0.0)
 };
 
-int solid_axle_setup(solid_axle *self)
+int solid_axle_setup_with(solid_axle *self, const gic_real *parameter)
 {
-    gic_real e[4], turn[3];
+    gic_real wanted[SOLID_AXLE_PARAMETER_ROOM], e[4], turn[3];
     int i, body, status;
+    for (i = 0; i < SOLID_AXLE_PARAMETERS; ++i)
+        wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = -1;
+    self->head.subset = self->head.condition = -1;
     if (solid_axle_model.abi_version != GIC_ABI_VERSION || solid_axle_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < SOLID_AXLE_STATES; ++i)
@@ -3800,7 +3810,9 @@ int solid_axle_setup(solid_axle *self)
     for (i = 0; i < SOLID_AXLE_INPUTS; ++i)
         self->input[i] = solid_axle_default[i];
     for (i = 0; i < SOLID_AXLE_PARAMETERS; ++i)
-        self->parameter[i] = solid_axle_parameter_default[i];
+        self->parameter[i] = wanted[i];
+    if (!gic_finite(self->parameter, SOLID_AXLE_PARAMETERS))
+        return self->head.status = GIC_ERROR_INPUT;
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < SOLID_AXLE_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = solid_axle_coordinate_design[i];
@@ -3814,6 +3826,11 @@ int solid_axle_setup(solid_axle *self)
     if (status == GIC_OK)
         status = solid_axle_recover(self, turn, 0);
     return self->head.status = status;
+}
+
+int solid_axle_setup(solid_axle *self)
+{
+    return solid_axle_setup_with(self, solid_axle_parameter_default);
 }
 
 int solid_axle_step(solid_axle *self, gic_real step, gic_method method)
@@ -3835,6 +3852,12 @@ const char *solid_axle_status_subset(const solid_axle *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < solid_axle_model.subset_count ? solid_axle_model.subset_name[subset] : NULL;
+}
+
+const char *solid_axle_status_condition(const solid_axle *self)
+{
+    const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
+    return condition >= 0 && condition < solid_axle_model.condition_count ? solid_axle_model.condition_text[condition] : NULL;
 }
 
 void solid_axle_snapshot(const solid_axle *self, solid_axle *copy)
@@ -4976,6 +4999,11 @@ static int solid_axle_any_setup(void *self)
     return solid_axle_setup((solid_axle *)self);
 }
 
+static int solid_axle_any_setup_with(void *self, const gic_real *parameter)
+{
+    return solid_axle_setup_with((solid_axle *)self, parameter);
+}
+
 static int solid_axle_any_rhs(void *self, gic_real time, const gic_real *state, gic_real *rate)
 {
     return solid_axle_rhs((solid_axle *)self, time, state, rate);
@@ -5044,7 +5072,11 @@ const gic_model solid_axle_model = {
     solid_axle_coordinate_input,
     solid_axle_subset_name,
     solid_axle_body_name,
+    solid_axle_parameter_geometric,
+    SOLID_AXLE_CONDITIONS,
+    solid_axle_condition_text,
     solid_axle_any_setup,
+    solid_axle_any_setup_with,
     solid_axle_any_rhs,
     solid_axle_any_settle,
     solid_axle_any_outputs,

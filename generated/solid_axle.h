@@ -70,8 +70,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 1
-#error "solid_axle.h was generated for version 1 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 2
+#error "solid_axle.h was generated for version 2 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -80,7 +80,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    SOLID_AXLE_ABI = 1,
+    SOLID_AXLE_ABI = 2,
     SOLID_AXLE_FREE_BASE = 1,
     SOLID_AXLE_STATES = 23,
     SOLID_AXLE_INPUTS = 0,
@@ -106,6 +106,9 @@ enum {
     SOLID_AXLE_MOTION_ROOM = 198,
     SOLID_AXLE_INERTIA_ROOM = 165,
     SOLID_AXLE_MULTIPLIER_ROOM = 1,
+    SOLID_AXLE_CONDITIONS = 0,
+    SOLID_AXLE_DERIVED = 0,
+    SOLID_AXLE_PIECES = 1,
     SOLID_AXLE_KNOWN_ROOM = 2,
     SOLID_AXLE_DEPENDENCE_ROOM = 2
 };
@@ -217,7 +220,8 @@ typedef struct solid_axle {
     gic_real state[SOLID_AXLE_STATE_ROOM];
     gic_real input[SOLID_AXLE_INPUT_ROOM];
     gic_real output[SOLID_AXLE_OUTPUT_ROOM];
-    gic_real parameter[SOLID_AXLE_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls */
+    gic_real parameter[SOLID_AXLE_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
+                                                    * ones (solid_axle_model.parameter_geometric) by solid_axle_setup_with */
     gic_real port[SOLID_AXLE_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[SOLID_AXLE_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[SOLID_AXLE_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
@@ -232,6 +236,9 @@ typedef struct solid_axle {
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int solid_axle_setup(solid_axle *self);
+
+/* The same as if the file had these numbers (SOLID_AXLE_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+int solid_axle_setup_with(solid_axle *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: SOLID_AXLE_STATES numbers. rate is written only on GIC_OK. */
 int solid_axle_rhs(solid_axle *self, gic_real time, const gic_real *state, gic_real *rate);
@@ -248,9 +255,10 @@ int solid_axle_poses(solid_axle *self, gic_real *pose);
 /* Present time, s. */
 gic_real solid_axle_time(const solid_axle *self);
 
-/* What a status means; and about which subset of bodies the last status was, NULL: about none. */
+/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
 const char *solid_axle_status_text(int status);
 const char *solid_axle_status_subset(const solid_axle *self);
+const char *solid_axle_status_condition(const solid_axle *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
 void solid_axle_snapshot(const solid_axle *self, solid_axle *copy);

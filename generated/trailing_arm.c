@@ -3581,6 +3581,14 @@ static const char *const trailing_arm_body_name[8] = {
     "arm_r_r",
 };
 
+static const int32_t trailing_arm_parameter_geometric[1] = {
+    0
+};
+
+static const char *const trailing_arm_condition_text[1] = {
+    NULL
+};
+
 /* Design poses of the bodies relative to the base, and their places in a start. */
 static const struct {
     int place;
@@ -3629,12 +3637,14 @@ static const gic_real trailing_arm_parameter_default[TRAILING_ARM_PARAMETER_ROOM
     R(0.0)
 };
 
-int trailing_arm_setup(trailing_arm *self)
+int trailing_arm_setup_with(trailing_arm *self, const gic_real *parameter)
 {
-    gic_real e[4], turn[3];
+    gic_real wanted[TRAILING_ARM_PARAMETER_ROOM], e[4], turn[3];
     int i, body, status;
+    for (i = 0; i < TRAILING_ARM_PARAMETERS; ++i)
+        wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = -1;
+    self->head.subset = self->head.condition = -1;
     if (trailing_arm_model.abi_version != GIC_ABI_VERSION || trailing_arm_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < TRAILING_ARM_STATES; ++i)
@@ -3642,7 +3652,9 @@ int trailing_arm_setup(trailing_arm *self)
     for (i = 0; i < TRAILING_ARM_INPUTS; ++i)
         self->input[i] = trailing_arm_default[i];
     for (i = 0; i < TRAILING_ARM_PARAMETERS; ++i)
-        self->parameter[i] = trailing_arm_parameter_default[i];
+        self->parameter[i] = wanted[i];
+    if (!gic_finite(self->parameter, TRAILING_ARM_PARAMETERS))
+        return self->head.status = GIC_ERROR_INPUT;
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < TRAILING_ARM_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = trailing_arm_coordinate_design[i];
@@ -3656,6 +3668,11 @@ int trailing_arm_setup(trailing_arm *self)
     if (status == GIC_OK)
         status = trailing_arm_recover(self, turn, 0);
     return self->head.status = status;
+}
+
+int trailing_arm_setup(trailing_arm *self)
+{
+    return trailing_arm_setup_with(self, trailing_arm_parameter_default);
 }
 
 int trailing_arm_step(trailing_arm *self, gic_real step, gic_method method)
@@ -3677,6 +3694,12 @@ const char *trailing_arm_status_subset(const trailing_arm *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < trailing_arm_model.subset_count ? trailing_arm_model.subset_name[subset] : NULL;
+}
+
+const char *trailing_arm_status_condition(const trailing_arm *self)
+{
+    const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
+    return condition >= 0 && condition < trailing_arm_model.condition_count ? trailing_arm_model.condition_text[condition] : NULL;
 }
 
 void trailing_arm_snapshot(const trailing_arm *self, trailing_arm *copy)
@@ -5034,6 +5057,11 @@ static int trailing_arm_any_setup(void *self)
     return trailing_arm_setup((trailing_arm *)self);
 }
 
+static int trailing_arm_any_setup_with(void *self, const gic_real *parameter)
+{
+    return trailing_arm_setup_with((trailing_arm *)self, parameter);
+}
+
 static int trailing_arm_any_rhs(void *self, gic_real time, const gic_real *state, gic_real *rate)
 {
     return trailing_arm_rhs((trailing_arm *)self, time, state, rate);
@@ -5102,7 +5130,11 @@ const gic_model trailing_arm_model = {
     trailing_arm_coordinate_input,
     trailing_arm_subset_name,
     trailing_arm_body_name,
+    trailing_arm_parameter_geometric,
+    TRAILING_ARM_CONDITIONS,
+    trailing_arm_condition_text,
     trailing_arm_any_setup,
+    trailing_arm_any_setup_with,
     trailing_arm_any_rhs,
     trailing_arm_any_settle,
     trailing_arm_any_outputs,

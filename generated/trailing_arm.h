@@ -73,8 +73,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 1
-#error "trailing_arm.h was generated for version 1 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 2
+#error "trailing_arm.h was generated for version 2 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -83,7 +83,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    TRAILING_ARM_ABI = 1,
+    TRAILING_ARM_ABI = 2,
     TRAILING_ARM_FREE_BASE = 1,
     TRAILING_ARM_STATES = 23,
     TRAILING_ARM_INPUTS = 0,
@@ -109,6 +109,9 @@ enum {
     TRAILING_ARM_MOTION_ROOM = 222,
     TRAILING_ARM_INERTIA_ROOM = 179,
     TRAILING_ARM_MULTIPLIER_ROOM = 1,
+    TRAILING_ARM_CONDITIONS = 0,
+    TRAILING_ARM_DERIVED = 0,
+    TRAILING_ARM_PIECES = 1,
     TRAILING_ARM_KNOWN_ROOM = 2,
     TRAILING_ARM_DEPENDENCE_ROOM = 2
 };
@@ -227,7 +230,8 @@ typedef struct trailing_arm {
     gic_real state[TRAILING_ARM_STATE_ROOM];
     gic_real input[TRAILING_ARM_INPUT_ROOM];
     gic_real output[TRAILING_ARM_OUTPUT_ROOM];
-    gic_real parameter[TRAILING_ARM_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls */
+    gic_real parameter[TRAILING_ARM_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
+                                                    * ones (trailing_arm_model.parameter_geometric) by trailing_arm_setup_with */
     gic_real port[TRAILING_ARM_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[TRAILING_ARM_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[TRAILING_ARM_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
@@ -242,6 +246,9 @@ typedef struct trailing_arm {
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int trailing_arm_setup(trailing_arm *self);
+
+/* The same as if the file had these numbers (TRAILING_ARM_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+int trailing_arm_setup_with(trailing_arm *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: TRAILING_ARM_STATES numbers. rate is written only on GIC_OK. */
 int trailing_arm_rhs(trailing_arm *self, gic_real time, const gic_real *state, gic_real *rate);
@@ -258,9 +265,10 @@ int trailing_arm_poses(trailing_arm *self, gic_real *pose);
 /* Present time, s. */
 gic_real trailing_arm_time(const trailing_arm *self);
 
-/* What a status means; and about which subset of bodies the last status was, NULL: about none. */
+/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
 const char *trailing_arm_status_text(int status);
 const char *trailing_arm_status_subset(const trailing_arm *self);
+const char *trailing_arm_status_condition(const trailing_arm *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
 void trailing_arm_snapshot(const trailing_arm *self, trailing_arm *copy);

@@ -58,6 +58,12 @@ const Model *model_assemble(Pool *pool, const Model *drawn, const Sequence *sequ
     Model *model = pool_grow(pool, (void *)drawn, sizeof *drawn, sizeof *drawn);
     size_t size = (size_t)model->bodies * sizeof *model->body;
     model->body = pool_grow(pool, drawn->body, size, size);
+    for (int b = 0; b < model->bodies; ++b) {
+        const Body *from = &drawn->body[b];
+        tuning_copy(model, &model->body[b].mass, &from->mass, 1);
+        tuning_copy(model, model->body[b].com, from->com, 3);
+        tuning_copy(model, model->body[b].inertia, from->inertia, 6);
+    }
     double(*origin)[3] = reference_points(pool, drawn, sequence);
     const double(*fixed)[3] = (const double(*)[3])origin;
     Sampling *sampling = sampling_new(pool, drawn, sequence, fixed);

@@ -60,7 +60,7 @@ static void inverse_inertia(System *s, int body, Ex out[6])
     Dag *dag = s->dag;
     Ex J[9], own[6], unit[3];
     for (int i = 0; i < 9; ++i)
-        J[i] = ex_literal(dag, s->whole->model->body[body].inertia[place[i / 3][i % 3]]);
+        J[i] = whole_number(s->whole, &s->whole->model->body[body].inertia[place[i / 3][i % 3]]);
     const Factors *factors = linear_factor_symmetric(dag, 3, J, NULL);
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j)
@@ -104,7 +104,7 @@ static void open_body(System *s, int b, const Loads *loads)
     if (b == BODY_BASE) {
         memcpy(s->base_inertia, J, sizeof s->base_inertia);
     } else {
-        s->inverse[b][0] = ex_div(dag, ex_literal(dag, 1), ex_literal(dag, body->mass));
+        s->inverse[b][0] = ex_div(dag, ex_literal(dag, 1), whole_number(whole, &body->mass));
         inverse_inertia(s, b, s->inverse[b] + 1);
     }
     symmetric_apply(dag, J, m->omega, t);
@@ -141,9 +141,7 @@ static int open_joint(System *s, int index, const double (*origin)[3], int multi
 {
     const Joint *joint = &s->whole->model->joint[index];
     const Motion *const end[2] = {&s->motion[joint->body[0]], &s->motion[joint->body[1]]};
-    double number[FIXTURE_NUMBERS];
-    fixture_of_joint(joint, origin, number);
-    Fixture fixture = fixture_literal(s->dag, number);
+    Fixture fixture = whole_joint_fixture(s->whole, joint, origin);
     Row row[ROWS_MAX];
     int rows = joint_rows(s->dag, joint->type, &fixture, end, row);
     const Tie *tie = open_tie(s, joint->body, rows);
@@ -171,9 +169,7 @@ static void open_coordinate(System *s, int index, const double (*origin)[3], int
     Whole *whole = s->whole;
     const Coordinate *coordinate = &whole->model->coordinate[index];
     const Motion *const end[2] = {&s->motion[coordinate->body[0]], &s->motion[coordinate->body[1]]};
-    double number[FIXTURE_NUMBERS];
-    fixture_of_coordinate(coordinate, origin, number);
-    Fixture fixture = fixture_literal(s->dag, number);
+    Fixture fixture = whole_coordinate_fixture(whole, coordinate, origin);
     Row row = coordinate_row(s->dag, coordinate->type, &fixture, end, whole->x[index], whole->xd[index]);
     push_along(s, &row, coordinate->body, loads->own[index]);
     Equation *equation =
@@ -201,6 +197,7 @@ static System open_system(Whole *whole)
     const Loads *loads = loads_make(whole);
     for (int b = 0; b < model->bodies; ++b) {
         memcpy(origin[b], model->body[b].com, sizeof origin[b]);
+        tuning_copy(model, origin[b], model->body[b].com, 3);
         open_body(&s, b, loads);
     }
     for (int k = 0; k < plan->sequence->subsets; ++k) {
@@ -294,7 +291,7 @@ static Ex *reduced_matrix(const System *s)
         for (int j = i; j < base + 3; ++j)
             H[n * i + j] = ex_neg(dag, s->base_inertia[place[i - base][j - base]]);
     for (int i = base + 3; i < n; ++i)
-        H[n * i + i] = ex_literal(dag, -s->whole->model->body[BODY_BASE].mass);
+        H[n * i + i] = ex_neg(dag, whole_number(s->whole, &s->whole->model->body[BODY_BASE].mass));
     return H;
 }
 
@@ -321,7 +318,7 @@ static void shortfall(const System *s, const Ex *driven, Ex *out)
     Ex *base = out + s->equations, t[3];
     const Ex *acceleration = s->acceleration[BODY_BASE];
     symmetric_apply(dag, s->base_inertia, acceleration, base);
-    ex_scale3(dag, ex_literal(dag, s->whole->model->body[BODY_BASE].mass), acceleration + 3, base + 3);
+    ex_scale3(dag, whole_number(s->whole, &s->whole->model->body[BODY_BASE].mass), acceleration + 3, base + 3);
     for (int part = 0; part < 6; part += 3)
         ex_sub3(dag, base + part, s->wrench[BODY_BASE] + part, base + part);
     for (int i = 0; i < s->equations; ++i)

@@ -28,29 +28,28 @@ static void add_base(Whole *whole, Composite *c)
     const Body *base = &whole->model->body[BODY_BASE];
     Ex x[3], J[6], t[3], total = 0;
     for (int b = 0; b < whole->model->bodies; ++b)
-        total = ex_add(dag, total, ex_literal(dag, whole->model->body[b].mass));
+        total = ex_add(dag, total, whole_number(whole, &whole->model->body[b].mass));
     c->mass = total;
+    Ex mass = whole_number(whole, &base->mass), square[3];
     for (int i = 0; i < 3; ++i) {
-        x[i] = ex_literal(dag, base->com[i]);
-        c->first[i] = ex_add(dag, c->first[i], ex_literal(dag, base->mass * base->com[i]));
+        x[i] = whole_number(whole, &base->com[i]);
+        square[i] = ex_mul(dag, x[i], x[i]);
+        c->first[i] = ex_add(dag, c->first[i], ex_mul(dag, mass, x[i]));
     }
     whole_inertia(whole, BODY_BASE, J);
-    const double m = base->mass, *r = base->com;
-    const double steiner[6] = {m * (r[1] * r[1] + r[2] * r[2]),
-                               m * (r[0] * r[0] + r[2] * r[2]),
-                               m * (r[0] * r[0] + r[1] * r[1]),
-                               -m * r[0] * r[1],
-                               -m * r[0] * r[2],
-                               -m * r[1] * r[2]};
-    for (int i = 0; i < 6; ++i) {
-        J[i] = ex_add(dag, J[i], ex_literal(dag, steiner[i]));
-        c->second[i] = ex_add(dag, c->second[i], J[i]);
+    for (int i = 0; i < 3; ++i) {
+        static const int product[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+        int j = product[i][0], k = product[i][1];
+        J[i] = ex_add(dag, J[i], ex_mul(dag, mass, ex_add(dag, square[i == 0], square[i == 2 ? 1 : 2])));
+        J[3 + i] = ex_add(dag, J[3 + i], ex_mul(dag, ex_mul(dag, ex_neg(dag, mass), x[j]), x[k]));
     }
+    for (int i = 0; i < 6; ++i)
+        c->second[i] = ex_add(dag, c->second[i], J[i]);
     /* m turn x (turn x com), and turn x (J turn) about the origin */
     ex_cross(dag, whole->turn, x, t);
     Ex force[3], moment[3];
     ex_cross(dag, whole->turn, t, force);
-    ex_scale3(dag, ex_literal(dag, m), force, force);
+    ex_scale3(dag, mass, force, force);
     ex_add3(dag, c->force, force, c->force);
     ex_apply(dag, (Ex[]){J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]}, whole->turn, t);
     ex_cross(dag, whole->turn, t, moment);
@@ -183,7 +182,7 @@ static void store_base_rates(Whole *whole, Block *block, const Ex *z)
         block_store(block, ex_add(dag, ex_mul(dag, whole->e[0], t[i]), cross[i]), "rate[%d]", 4 + i);
     ex_apply(dag, whole->R, z + 3, a);
     for (int i = 0; i < 3; ++i) {
-        block_store(block, ex_add(dag, a[i], ex_literal(dag, whole->model->gravity[i])), "rate[%d]", twist + i);
+        block_store(block, ex_add(dag, a[i], whole_number(whole, &whole->model->gravity[i])), "rate[%d]", twist + i);
         block_store(block, z[i], "rate[%d]", twist + 3 + i);
     }
 }
@@ -244,7 +243,7 @@ void whole_inertial_wrench(Whole *whole, int b, const Ex alpha[3], const Ex a[3]
     const Ex matrix[9] = {J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]};
     whole_acceleration(whole, b, &com, alpha, a, w2, acceleration);
     whole_angular_acceleration(whole, b, alpha, w2, angular);
-    ex_scale3(dag, ex_literal(dag, body->mass), acceleration, force);
+    ex_scale3(dag, whole_number(whole, &body->mass), acceleration, force);
     ex_add3(dag, whole->turn, whole->motion[b].omega, total);
     ex_apply(dag, matrix, total, t);
     ex_cross(dag, total, t, moment);
@@ -322,7 +321,7 @@ void whole_accelerations(Whole *whole, Ex alpha[3], Ex a[3], Ex **w2)
         for (int i = 0; i < 3; ++i) {
             alpha[i] = ex_input(dag, pool_print(dag->pool, "rate[%d]", twist + 3 + i), NULL);
             Ex total = ex_input(dag, pool_print(dag->pool, "rate[%d]", twist + i), NULL);
-            world[i] = ex_sub(dag, total, ex_literal(dag, whole->model->gravity[i]));
+            world[i] = ex_sub(dag, total, whole_number(whole, &whole->model->gravity[i]));
         }
         ex_apply_transposed(dag, whole->R, world, a);
     }
@@ -363,7 +362,7 @@ Block *energy_block(Whole *whole)
         whole_angular_acceleration(whole, b, alpha, w2, angular);
         ex_add3(dag, whole->turn, whole->motion[b].omega, total);
         ex_apply(dag, (Ex[]){J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]}, angular, t);
-        Ex linear = ex_mul(dag, ex_literal(dag, model->body[b].mass), ex_dot(dag, acceleration, velocity));
+        Ex linear = ex_mul(dag, whole_number(whole, &model->body[b].mass), ex_dot(dag, acceleration, velocity));
         Ex turning = ex_dot(dag, total, t);
         rate = ex_add(dag, rate, ex_add(dag, linear, turning));
         scale = ex_add(dag, scale, ex_add(dag, magnitude(dag, linear), magnitude(dag, turning)));

@@ -6,7 +6,10 @@
 #include <string.h>
 
 /* The version of gic_runtime.h that emitted code is written for: GIC_ABI_VERSION. */
-enum { ABI_VERSION = 1 };
+enum { ABI_VERSION = 2 };
+
+/* Steps from the drawing to given lengths at set-up, as many as assemble.c takes. */
+enum { ASSEMBLY_PIECES = 64 };
 
 typedef struct Generation {
     Pool *pool;
@@ -139,6 +142,9 @@ static void write_sizes(Generation *g, Text *out, int indent)
                 {"MOTION_ROOM", room(plan->motion_size)},
                 {"INERTIA_ROOM", room(plan->inertia_size)},
                 {"MULTIPLIER_ROOM", room(plan->multipliers)},
+                {"CONDITIONS", model->tuning ? model->tuning->conditions : 0},
+                {"DERIVED", plan->derived->count},
+                {"PIECES", model->tuning && model->tuning->assembles ? ASSEMBLY_PIECES : 1},
                 {"KNOWN_ROOM", room(g->formulation->known_most)},
                 {"DEPENDENCE_ROOM", room(g->formulation->dependence_most)}};
     size_t count = sizeof size / sizeof *size;
@@ -197,6 +203,8 @@ static bool any_reads(const Block *const *block, int blocks, const char *array)
 static void write_arguments(Generation *g, Text *out, int indent, const Block *const *block, int blocks)
 {
     static const char *const part[] = {"x", "rate", "change", "turn"};
+    if (any_reads(block, blocks, "d"))
+        line(out, indent, "const gic_real *const d = links->derived;");
     const Subset *first = &g->sequence->subset[g->sequence->class[g->class].member[0]];
     for (int i = 0; i < first->knowns; ++i)
         if (any_reads(block, blocks, pool_print(g->pool, "m%d", i)))
@@ -346,6 +354,8 @@ static void write_calls(Generation *g, Text *out, int indent)
             line(out, indent, "links->rate[%d] = xd[%d];", j, subset->dep[j]);
             line(out, indent, "links->change[%d] = start[%d] - old[%d];", j, subset->dep[j], subset->dep[j]);
         }
+        if (g->plan->formula[subset->class]->derived)
+            line(out, indent, "links->derived = self->derived + %d;", g->plan->derived_offset[s]);
         line(out, indent,
              "status = %s_solve_%s(self, %s_k_%s[%d], links, old + %d, start + %d, self->motion + %d, self->inertia + "
              "%d);",
@@ -369,6 +379,8 @@ static void write_residuals(Generation *g, Text *out, int indent)
         write_knowns(g, out, indent, subset);
         for (int j = 0; j < subset->deps; ++j)
             line(out, indent, "links.x[%d] = start[%d];", j, subset->dep[j]);
+        if (g->plan->formula[subset->class]->derived)
+            line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
         line(out, indent, "one = %s_residual_%s(%s_k_%s[%d], &links, start + %d);", g->model->name, class->name,
              g->model->name, class->name, member_of(class, s), g->plan->start_offset[s]);
         line(out, indent, "largest = GIC_MAX(largest, one);");
@@ -395,6 +407,8 @@ static void write_react_calls(Generation *g, Text *out, int indent)
                 line(out, indent, "onto[%d] = spare;", i);
         for (int j = 0; j < subset->deps; ++j)
             line(out, indent, "links.x[%d] = start[%d];", j, subset->dep[j]);
+        if (plan->formula[subset->class]->derived)
+            line(out, indent, "links.derived = self->derived + %d;", plan->derived_offset[s]);
         line(out, indent, "%s_react_%s(%s_k_%s[%d], &links, start + %d, lambda + %d, onto);", g->model->name,
              class->name, g->model->name, class->name, member_of(class, s), plan->start_offset[s],
              plan->multiplier_offset[subset->body[0]]);
@@ -421,13 +435,25 @@ static void write_pieces(Generation *g, Text *out, int indent)
         line(out, indent, "R(0.0)");
 }
 
+/* Pose of a body in the drawing; what follows parameters is set at set-up. */
+static void body_in_drawing(const Generation *g, int body, double q[7])
+{
+    Ex c[3];
+    body_drawn(g->plan, body, c, q + 3);
+    for (int i = 0; i < 3; ++i)
+        q[i] = ex_value(g->model->tuning->dag, c[i], 0);
+}
+
 static void write_design(Generation *g, Text *out, int indent)
 {
     for (int s = 0; s < g->sequence->subsets; ++s) {
         const Subset *subset = &g->sequence->subset[s];
         for (int b = 0; subset->class >= 0 && b < subset->bodies; ++b) {
             double q[7];
-            body_design(g->formulation, subset->body[b], q);
+            if (g->model->tuning)
+                body_in_drawing(g, subset->body[b], q);
+            else
+                body_design(g->formulation, subset->body[b], q);
             text_print(out, "%*s{%d, {", indent, "", g->plan->start_offset[s] + 7 * b);
             for (int i = 0; i < 7; ++i)
                 text_print(out, "%s%s", i ? ", " : "", emit_number(g->pool, q[i]));
@@ -543,6 +569,29 @@ static void write_tables(Generation *g, Text *out)
     for (int b = 0; b < g->model->bodies; ++b)
         line(out, 4, "%s,", quoted(g->pool, g->model->body[b].name));
     close_table(out, g->model->bodies, "NULL");
+    open_table(g, out, "int32_t ", "parameter_geometric", g->model->tunables);
+    for (int i = 0; i < g->model->parameters; ++i)
+        if (g->model->parameter[i].tunable)
+            line(out, 4, "%d, /* %s */", g->model->parameter[i].geometric, g->model->parameter[i].name);
+    close_table(out, g->model->tunables, "0");
+    int conditions = g->model->tuning ? g->model->tuning->conditions : 0;
+    open_table(g, out, "char *const ", "condition_text", conditions);
+    for (int i = 0; i < conditions; ++i)
+        line(out, 4, "%s,", quoted(g->pool, g->model->tuning->condition[i].text));
+    close_table(out, conditions, "NULL");
+}
+
+/* Has a geometric parameter changed since set-up? */
+static void write_tuned(Generation *g, Text *out, int indent)
+{
+    int place = 0;
+    for (int i = 0; i < g->model->parameters; ++i) {
+        const Parameter *parameter = &g->model->parameter[i];
+        if (parameter->geometric) {
+            line(out, indent, "if (self->parameter[%d] != self->derived[%d])", parameter->index, place++);
+            line(out, indent + 4, "return self->head.status = GIC_ERROR_TUNED; /* %s */", parameter->name);
+        }
+    }
 }
 
 /* Tables of the model as the runtime interpolates them. */
@@ -590,6 +639,11 @@ static void insert_header(void *context, const char *name, Text *out, int indent
         write_abi(g, out);
     else if (!strcmp(name, "sizes"))
         write_sizes(g, out, indent);
+    else if (!strcmp(name, "derived")) {
+        if (g->model->tuning)
+            line(out, indent, "gic_real derived[%s_DERIVED]; /* numbers that follow geometric parameters, those first */",
+                 g->upper);
+    }
     else
         write_places(g, out, indent);
 }
@@ -603,6 +657,14 @@ static void insert_nothing(void *context, const char *name, Text *out, int inden
 static void insert_template(Generation *g, Text *out, const char *name)
 {
     template_expand(g->pool, out, g->templates, name, g->model->name, NULL, insert_nothing, NULL);
+}
+
+static void insert_derive(void *context, const char *name, Text *out, int indent)
+{
+    Generation *g = context;
+    Constants none = {0};
+    const Block *block = !strcmp(name, "derive") ? derive_block(g->pool, g->plan) : draw_block(g->pool, g->plan);
+    block_emit(out, block, &none, indent);
 }
 
 static void insert_code(void *context, const char *name, Text *out, int indent)
@@ -684,6 +746,16 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
         write_residuals(g, out, indent);
     } else if (!strcmp(name, "tables")) {
         write_tables(g, out);
+    } else if (!strcmp(name, "links")) {
+        if (g->model->tuning)
+            line(out, indent, "const gic_real *derived; /* numbers of the subset that follow geometric parameters */");
+    } else if (!strcmp(name, "tuned")) {
+        write_tuned(g, out, indent);
+    } else if (!strcmp(name, "tuning")) {
+        if (g->model->tuning)
+            template_expand(g->pool, out, g->templates, "derive.c.in", g->model->name, NULL, insert_derive, g);
+    } else if (!strcmp(name, "begin")) {
+        line(out, indent, "status = %s_%s;", g->model->name, g->model->tuning ? "assemble(self, turn)" : "recover(self, turn, 1)");
     } else if (!strcmp(name, "identity")) {
         line(out, indent, "%s,", quoted(g->pool, g->model->name));
         line(out, indent, "%s,", quoted(g->pool, g->model->description));

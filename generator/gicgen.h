@@ -164,7 +164,7 @@ typedef struct LawNames {
 
 /* Parse a scalar of the file as a formula; mistakes end in diag_fail at their place inside the text. */
 const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNames *names);
-/* Does the law change at run time through a tunable parameter? */
+/* Does the law change through a tunable parameter? */
 bool law_is_tunable(const Law *law, const struct Model *model);
 /* Its value with parameters at their file's values, for laws of numbers and parameters alone. */
 double law_number(const Law *law, const struct Model *model);
@@ -236,7 +236,9 @@ typedef struct Parameter {
     Place at;
     double value;
     bool tunable;
-    int index; /* tunable: place among parameters at run time */
+    int index;         /* tunable: place among parameters at run time */
+    const Law *law;    /* what it is made of, where tunable ones are among that; else NULL */
+    bool geometric;    /* tunable: points, axes, masses and so on depend on it, so that it acts at set-up */
 } Parameter;
 
 /* y over rising x; slopes make it a monotone cubic (FORMAT.md section 7). */
@@ -350,6 +352,8 @@ typedef struct Model {
     Parameter *parameter;
     Table *table;
     Port *port;
+    struct Tuning *tuning; /* tune.c; NULL: no number but those of force laws is tunable */
+    const Body *drawn;     /* [bodies] where they stand in the drawing; `body` is assembled */
 } Model;
 
 extern const char *const joint_type_name[JOINT_TYPES]; /* as in the file: "revolute" */
@@ -508,6 +512,11 @@ double op_value(Op op, double a, double b, double c);
 /* sin and cos without libm: the same digits on every machine. */
 void portable_sincos(double x, double *sine, double *cosine);
 
+/* What a law is in a graph that reads tunable parameters as p[i]: one of numbers, parameters and tables; the top of one
+ * (not an input, a coordinate, time or local) with these arguments. */
+Ex law_expression(Dag *dag, const Model *model, const Law *law);
+Ex law_top(Dag *dag, const Model *model, const Law *law, const Ex arg[3]);
+
 /* Operations needed at run time for some roots, by kind. */
 typedef struct Count {
     int add, multiply, divide, root, function;
@@ -516,6 +525,49 @@ typedef struct Count {
 Count dag_count(const Dag *dag, const Ex *root, int roots);
 /* [nodes] which nodes are needed for some roots. */
 const bool *dag_needed(const Dag *dag, const Ex *root, int roots);
+
+/* ---- tune.c: numbers that follow tunable parameters --------------------------------------------------------- */
+
+/* Something that must be greater than 0 (`zero`: or 0), whatever the parameters are. */
+typedef struct Condition {
+    Ex value;
+    bool zero;
+    const char *text; /* "mass of body 'arm' must be greater than zero" */
+} Condition;
+
+/* A Model has its numbers at the parameters' values in the file. What set-up computes anew for others are these
+ * formulas, in a graph of their own, by the address of the number in the Model. Its inputs are p[i], the tunable
+ * parameters, and `rest`, the share of the way from the drawing to given lengths that is still ahead. */
+typedef struct Tuning {
+    Dag *dag;
+    int numbers, conditions;
+    struct TunedNumber {
+        const double *at;
+        Ex formula;
+    } * number;
+    Condition *condition;
+    bool assembles; /* lengths other than the drawing's: formulas depend on `rest` */
+} Tuning;
+
+Tuning *tuning_new(Pool *pool);
+/* The formula of a number of the model, 0: it follows no parameter; and the same with a literal instead of 0. */
+Ex tuned_number(const Model *model, const double *at);
+Ex tuned_or_fixed(const Model *model, const double *at);
+/* Differences of the numbers at a and b likewise, 0: follows no parameter. */
+Ex tuned_difference(const Model *model, const double *a, const double *b);
+/* Let numbers follow formulas [count]; 0 and literals: they don't. */
+void tuning_set(Tuning *tuning, const double *at, const Ex *formula, int count);
+/* Numbers [count] that are copies of others follow the same formulas. */
+void tuning_copy(const Model *model, const double *to, const double *from, int count);
+void tuning_require(Tuning *tuning, Ex value, bool zero, const char *text);
+/* All is read: which parameters are geometric. Without any the model has no tuning. */
+void tuning_close(Model *model);
+
+/* The numbers that emitted code keeps in derived[], as formulas of a Tuning: geometric parameters first. */
+typedef struct Derived {
+    int count;
+    Ex *formula;
+} Derived;
 
 /* ---- linear.c: straight-line factorizations ------------------------------------------------------------ */
 
@@ -607,11 +659,14 @@ typedef struct Fixture {
 
 enum { ROWS_MAX = 6, FIXTURE_NUMBERS = sizeof(Fixture) / sizeof(Ex) };
 
-/* A fixture of these numbers, in the order of its members. */
-Fixture fixture_literal(Dag *dag, const double number[FIXTURE_NUMBERS]);
 /* The same as numbers, in the order of Fixture's members; origin: reference points [bodies][3], body frames. */
 void fixture_of_joint(const Joint *joint, const double (*origin)[3], double number[FIXTURE_NUMBERS]);
 void fixture_of_coordinate(const Coordinate *coordinate, const double (*origin)[3], double number[FIXTURE_NUMBERS]);
+/* And as formulas of the model's tuning, 0 where a number follows no parameter. */
+void fixture_tuned_joint(const Model *model, const Joint *joint, const double (*origin)[3],
+                         Ex formula[FIXTURE_NUMBERS]);
+void fixture_tuned_coordinate(const Model *model, const Coordinate *coordinate, const double (*origin)[3],
+                              Ex formula[FIXTURE_NUMBERS]);
 int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2], Row row[ROWS_MAX]);
 /* x, rate: value and rate of the coordinate. */
 Row coordinate_row(Dag *dag, CoordinateType type, const Fixture *fixture, const Motion *const end[2], Ex x, Ex rate);
@@ -689,7 +744,7 @@ enum { INERTIA_FIRST = 0, INERTIA_SECOND = 3, INERTIA_FORCE = 9, INERTIA_MOMENT 
 
 int inertia_mass(int deps, int j, int k); /* place of M_jk, j <= k */
 
-/* The formulas of a class. C names: k constants of the member, m0, m1, ... motions of the knowns, x, rate, change:
+/* The formulas of a class. C names: k constants of the member, d those of them that tunable parameters change, m0, m1, ... motions of the knowns, x, rate, change:
  * value, rate and change since the start of the deps, turn: angular velocity of the base, q: pose, s and f: S and
  * factors of the start. */
 typedef struct Formula {
@@ -703,6 +758,8 @@ typedef struct Formula {
     Block residual;  /* worst: largest constraint residual at q, relative to size */
     Block react;     /* multipliers w from the wrenches w that the bodies need, f and q being those at their place; what
                         the joints put on the knowns is taken from theirs, w0, w1, ...; only what outputs need */
+    int derived;     /* numbers d[] that follow tunable parameters */
+    Ex *derived_of;  /* [derived][members] their formulas */
 } Formula;
 
 /* All classes [classes]. Fills the sampling on the way. Members that need other pivots than their class's first one get
@@ -740,6 +797,8 @@ typedef struct Plan {
     int *motion_offset;                 /* [bodies] */
     int multipliers; /* kept for outputs; 0: none needs them */
     int *multiplier_offset;             /* [bodies] six places a body; those of a subset's bodies are its equations' */
+    int *derived_offset;                /* [subsets] where d[] begins in derived[] */
+    Derived *derived;                   /* grows with the blocks that are made */
     int start_size, inertia_size, motion_size;
     int free_coordinates;
     int *coordinate_state, *coordinate_rate; /* [coordinates] index in the state, -1: driven */
@@ -765,8 +824,14 @@ typedef struct Whole {
 } Whole;
 
 Whole *whole_new(Pool *pool, const Plan *plan);
-/* A point of a body (or of ground) relative to the base, in the base frame; s in the body frame. */
+/* A number of the model, a difference of two. */
+Ex whole_number(Whole *whole, const double *at);
+Ex whole_difference(Whole *whole, const double *a, const double *b);
+/* A point of a body (or of ground) relative to the base, in the base frame; s in the body frame: numbers of the model. */
 Vector whole_point(Whole *whole, int body, const double s[3]);
+/* Fixtures; origin: reference points. */
+Fixture whole_joint_fixture(Whole *whole, const Joint *joint, const double (*origin)[3]);
+Fixture whole_coordinate_fixture(Whole *whole, const Coordinate *coordinate, const double (*origin)[3]);
 /* World position and velocity of a point given relative to the base. */
 void whole_position(Whole *whole, const Vector *point, Ex out[3]);
 void whole_velocity(Whole *whole, const Vector *point, Ex out[3]);
@@ -837,6 +902,15 @@ void whole_inertial_wrench(Whole *whole, int body, const Ex alpha[3], const Ex a
 void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2,
                         Ex out[3]);
 void whole_angular_acceleration(Whole *whole, int body, const Ex alpha[3], const Ex *w2, Ex out[3]);
+
+/* ---- derive.c: what follows geometric parameters, at set-up; models with a tuning only ----------------------------- */
+
+/* derived[] from p[] and `rest`; checks what parameters must not violate. After all blocks that read derived[]. */
+const Block *derive_block(Pool *pool, const Plan *plan);
+/* What of state[], input[] and start[0] follows parameters, at the drawing. */
+const Block *draw_block(Pool *pool, const Plan *plan);
+/* Where a body stands in the drawing relative to the base: reference point, as formulas, and Euler parameters. */
+void body_drawn(const Plan *plan, int body, Ex c[3], double p[4]);
 
 /* ---- formulation.c: all of the above for one model ----------------------------------------------------------- */
 

@@ -5,21 +5,27 @@
 
 #include <string.h>
 
-static double get_origin(const Work *w, int i, int b, int axis)
+static double get_origin(const Work *w, int i, int b, int axis, Ex *formula)
 {
     int body = subset_member(w, i)->body[b];
-    return w->model->body[body].com[axis] - w->origin[body][axis];
+    const double *com = &w->model->body[body].com[axis], *origin = &w->origin[body][axis];
+    *formula = tuned_difference(w->model, com, origin);
+    return *com - *origin;
 }
 
-static double get_mass(const Work *w, int i, int b, int unused)
+static double get_mass(const Work *w, int i, int b, int unused, Ex *formula)
 {
+    const double *mass = &w->model->body[subset_member(w, i)->body[b]].mass;
     (void)unused;
-    return w->model->body[subset_member(w, i)->body[b]].mass;
+    *formula = tuned_number(w->model, mass);
+    return *mass;
 }
 
-static double get_inertia(const Work *w, int i, int b, int entry)
+static double get_inertia(const Work *w, int i, int b, int entry, Ex *formula)
 {
-    return w->model->body[subset_member(w, i)->body[b]].inertia[entry];
+    const double *inertia = &w->model->body[subset_member(w, i)->body[b]].inertia[entry];
+    *formula = tuned_number(w->model, inertia);
+    return *inertia;
 }
 
 int inertia_mass(int deps, int j, int k)

@@ -400,7 +400,7 @@ const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNa
 bool law_is_tunable(const Law *law, const Model *model)
 {
     if (law->op == LAW_PARAMETER)
-        return model->parameter[law->index].tunable;
+        return model->parameter[law->index].tunable || model->parameter[law->index].law;
     for (int i = 0; i < 3 && law->arg[i]; ++i)
         if (law_is_tunable(law->arg[i], model))
             return true;
@@ -420,5 +420,37 @@ double law_number(const Law *law, const Model *model)
         return op_value((Op)law->call, x[0], x[1], x[2]);
     }
     default: return 0;
+    }
+}
+
+Ex law_expression(Dag *dag, const Model *model, const Law *law)
+{
+    Ex arg[3] = {0};
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        arg[i] = law_expression(dag, model, law->arg[i]);
+    return law_top(dag, model, law, arg);
+}
+
+Ex law_top(Dag *dag, const Model *model, const Law *law, const Ex arg[3])
+{
+    const Parameter *parameter = law->op == LAW_PARAMETER ? &model->parameter[law->index] : NULL;
+    if (parameter && parameter->tunable)
+        return ex_input(dag, pool_print(dag->pool, "p[%d]", parameter->index), NULL);
+    if (parameter)
+        return parameter->law ? law_expression(dag, model, parameter->law) : ex_literal(dag, parameter->value);
+    if (law->op == LAW_NUMBER)
+        return ex_literal(dag, law->number);
+    if (law->op == LAW_TABLE && dag->node[arg[0]].op == OP_LITERAL)
+        return ex_literal(dag, table_value(&model->table[law->index], ex_value(dag, arg[0], 0)));
+    if (law->op == LAW_TABLE)
+        return ex_op(dag, OP_TABLE, arg[0], (Ex)law->index, 0);
+    switch ((Op)law->call) {
+    case OP_NEG: return ex_neg(dag, arg[0]);
+    case OP_ADD: return ex_add(dag, arg[0], arg[1]);
+    case OP_SUB: return ex_sub(dag, arg[0], arg[1]);
+    case OP_MUL: return ex_mul(dag, arg[0], arg[1]);
+    case OP_DIV: return ex_div(dag, arg[0], arg[1]);
+    case OP_POW: return ex_pow(dag, arg[0], arg[1]);
+    default: return ex_op(dag, (Op)law->call, arg[0], arg[1], arg[2]);
     }
 }

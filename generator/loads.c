@@ -54,34 +54,17 @@ static Ex table_lookup(Whole *whole, int table, Ex x)
 static Ex law_value(Whole *whole, const Law *law, const Ex *local)
 {
     Dag *dag = whole->dag;
-    const Model *model = whole->model;
     Ex arg[3] = {0};
     for (int i = 0; i < 3 && law->arg[i]; ++i)
         arg[i] = law_value(whole, law->arg[i], local);
     switch (law->op) {
-    case LAW_NUMBER: return ex_literal(dag, law->number);
-    case LAW_PARAMETER: {
-        const Parameter *parameter = &model->parameter[law->index];
-        if (!parameter->tunable)
-            return ex_literal(dag, parameter->value);
-        return ex_input(dag, pool_print(dag->pool, "p[%d]", parameter->index), NULL);
-    }
+    case LAW_NUMBER: return whole_number(whole, &law->number);
     case LAW_INPUT: return ex_input(dag, pool_print(dag->pool, "u[%d]", law->index), NULL);
     case LAW_VALUE: return whole->x[law->index];
     case LAW_RATE: return whole->xd[law->index];
     case LAW_TIME: return ex_input(dag, "time", NULL);
     case LAW_LOCAL: return local[law->index];
-    case LAW_TABLE: return table_lookup(whole, law->index, arg[0]);
-    default: break;
-    }
-    switch ((Op)law->call) {
-    case OP_NEG: return ex_neg(dag, arg[0]);
-    case OP_ADD: return ex_add(dag, arg[0], arg[1]);
-    case OP_SUB: return ex_sub(dag, arg[0], arg[1]);
-    case OP_MUL: return ex_mul(dag, arg[0], arg[1]);
-    case OP_DIV: return ex_div(dag, arg[0], arg[1]);
-    case OP_POW: return ex_pow(dag, arg[0], arg[1]);
-    default: return ex_op(dag, (Op)law->call, arg[0], arg[1], arg[2]);
+    default: return law_top(dag, whole->model, law, arg);
     }
 }
 
@@ -200,16 +183,12 @@ static void add_between(Whole *whole, Loads *loads, int index)
 }
 
 /* A direction fixed in a body, or in the ground, in the base frame. */
-static void direction(Whole *whole, int body, const double u[3], Ex out[3])
+static void direction(Whole *whole, int body, const Ex local[3], Ex out[3])
 {
-    Dag *dag = whole->dag;
-    Ex local[3];
-    for (int i = 0; i < 3; ++i)
-        local[i] = ex_literal(dag, u[i]);
     if (body == BODY_GROUND)
-        ex_apply_transposed(dag, whole->R, local, out);
+        ex_apply_transposed(whole->dag, whole->R, local, out);
     else
-        ex_apply(dag, whole->motion[body].A, local, out);
+        ex_apply(whole->dag, whole->motion[body].A, local, out);
 }
 
 /* A pair of torques T n on the first body and -T n on the second, whose power is -T angle'. With x = e_1 . f_1,
@@ -219,13 +198,18 @@ static void add_about(Whole *whole, Loads *loads, int index)
 {
     Dag *dag = whole->dag;
     const Force *force = &whole->model->force[index];
-    double third[3];
+    Ex local[4][3]; /* u, e_1, e_2, f_1 */
     Ex u[3], e1[3], e2[3], f1[3], n[3], turn[2][3], speed[3];
-    vec_cross(force->axis, force->reference[0], third);
-    direction(whole, force->body[0], force->axis, u);
-    direction(whole, force->body[0], force->reference[0], e1);
-    direction(whole, force->body[0], third, e2);
-    direction(whole, force->body[1], force->reference[1], f1);
+    for (int i = 0; i < 3; ++i) {
+        local[0][i] = whole_number(whole, &force->axis[i]);
+        local[1][i] = whole_number(whole, &force->reference[0][i]);
+        local[3][i] = whole_number(whole, &force->reference[1][i]);
+    }
+    ex_cross(dag, local[0], local[1], local[2]);
+    direction(whole, force->body[0], local[0], u);
+    direction(whole, force->body[0], local[1], e1);
+    direction(whole, force->body[0], local[2], e2);
+    direction(whole, force->body[1], local[3], f1);
     for (int i = 0; i < 2; ++i) {
         ex_zero3(dag, turn[i]);
         if (force->body[i] == BODY_GROUND)
@@ -304,12 +288,13 @@ static void add_wheel(Whole *whole, Loads *loads, int index)
     whole_velocity(whole, &center, v);
     Ex road = ex_op(dag, OP_ROAD, at[0], at[1], 0), h = ex_op(dag, OP_ROAD_PART, road, 0, 0);
     Ex slope_x = ex_op(dag, OP_ROAD_PART, road, 1, 0), slope_y = ex_op(dag, OP_ROAD_PART, road, 2, 0);
-    Ex deflection = ex_sub(dag, ex_add(dag, ex_literal(dag, wheel->radius), h), at[2]);
+    Ex deflection = ex_sub(dag, ex_add(dag, whole_number(whole, &wheel->radius), h), at[2]);
     Ex rate = ex_sub(dag, ex_add(dag, ex_mul(dag, slope_x, v[0]), ex_mul(dag, slope_y, v[1])), v[2]);
-    Ex s = ex_op(dag, OP_MAX, ex_mul(dag, ex_literal(dag, 1 / wheel->fade), deflection), 0, 0);
-    Ex viscous = ex_mul(dag, ex_mul(dag, ex_literal(dag, wheel->damping), fade_in(dag, s)), rate);
+    Ex share = ex_div(dag, ex_literal(dag, 1), whole_number(whole, &wheel->fade));
+    Ex s = ex_op(dag, OP_MAX, ex_mul(dag, share, deflection), 0, 0);
+    Ex viscous = ex_mul(dag, ex_mul(dag, whole_number(whole, &wheel->damping), fade_in(dag, s)), rate);
     /* without contact the deflection is negative and fades the damping to 0, so the limit at 0 says it all */
-    Ex fz = ex_op(dag, OP_MAX, ex_add(dag, ex_mul(dag, ex_literal(dag, wheel->stiffness), deflection), viscous), 0, 0);
+    Ex fz = ex_op(dag, OP_MAX, ex_add(dag, ex_mul(dag, whole_number(whole, &wheel->stiffness), deflection), viscous), 0, 0);
     ex_scale3(dag, fz, whole->R + 6, F);
     push(whole, loads, wheel->body, &center, F);
     loads->power = ex_add(dag, loads->power, ex_mul(dag, fz, v[2]));

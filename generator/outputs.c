@@ -123,7 +123,7 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         Ex half = ex_literal(dag, 0.5);
         for (int b = whole->model->free_base ? 0 : 1; b < whole->model->bodies; ++b) {
             const Body *body = &whole->model->body[b];
-            Ex v[3], total[3], J[6], gravity[3], mass = ex_literal(dag, body->mass);
+            Ex v[3], total[3], J[6], gravity[3], mass = whole_number(whole, &body->mass);
             Vector com = whole_point(whole, b, body->com);
             whole_velocity(whole, &com, v);
             ex_add3(dag, whole->turn, whole->motion[b].omega, total);
@@ -132,7 +132,7 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
             Ex twice = ex_add(dag, ex_mul(dag, mass, ex_dot(dag, v, v)), ex_dot(dag, total, t));
             out[0] = ex_add(dag, out[0], ex_mul(dag, half, twice));
             for (int i = 0; i < 3; ++i)
-                gravity[i] = ex_literal(dag, whole->model->gravity[i]);
+                gravity[i] = whole_number(whole, &whole->model->gravity[i]);
             whole_position(whole, &com, t);
             out[1] = ex_sub(dag, out[1], ex_mul(dag, mass, ex_dot(dag, gravity, t)));
         }

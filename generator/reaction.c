@@ -83,9 +83,7 @@ Ex whole_drive_reaction(Whole *whole, int index)
     const Plan *plan = whole->plan;
     const Coordinate *coordinate = &whole->model->coordinate[index];
     const Motion *const end[2] = {&whole->motion[coordinate->body[0]], &whole->motion[coordinate->body[1]]};
-    double number[FIXTURE_NUMBERS];
-    fixture_of_coordinate(coordinate, plan->origin, number);
-    Fixture fixture = fixture_literal(dag, number);
+    Fixture fixture = whole_coordinate_fixture(whole, coordinate, plan->origin);
     Row row = coordinate_row(dag, coordinate->type, &fixture, end, whole->x[index], whole->xd[index]);
     Ex lambda = ex_input(dag, pool_print(dag->pool, "lambda[%d]", multiplier_place(plan, true, index)), NULL);
     /* J^T lambda acts on the bodies, which move by J twist = -dual w' */
@@ -105,9 +103,9 @@ void whole_reaction(Whole *whole, int index, Ex force[3], Ex torque[3])
     double(*origin)[3] = pool_alloc(dag->pool, (size_t)whole->model->bodies * sizeof *origin);
     memcpy(origin, plan->origin, (size_t)whole->model->bodies * sizeof *origin);
     memcpy(origin[joint->body[1]], joint->point[1], sizeof *origin);
-    double number[FIXTURE_NUMBERS];
-    fixture_of_joint(joint, (const double(*)[3])origin, number);
-    Fixture fixture = fixture_literal(dag, number);
+    tuning_copy(whole->model, origin[joint->body[0]], plan->origin[joint->body[0]], 3);
+    tuning_copy(whole->model, origin[joint->body[1]], joint->point[1], 3);
+    Fixture fixture = whole_joint_fixture(whole, joint, (const double(*)[3])origin);
     Row row[ROWS_MAX];
     int rows = joint_rows(dag, joint->type, &fixture, end, row), place = multiplier_place(plan, false, index);
     ex_zero3(dag, force);

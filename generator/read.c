@@ -3,8 +3,6 @@
  * each other, whatever their order in the file. */
 #include "read.h"
 
-#include <string.h>
-
 enum {
     FILE_GICGEN,
     FILE_INCLUDE,
@@ -74,7 +72,7 @@ static void points_read(Reader *reader, const Item *map)
     reader->point = pool_alloc(reader->pool, sizeof *reader->point * (size_t)(reader->points + 1));
     for (int i = 0; i < reader->points; ++i) {
         reader->point[i].name = entry[i].name;
-        vector_read(reader, entry[i].item, entry[i].what, reader->point[i].x, 3);
+        vector_read(reader, entry[i].item, entry[i].what, reader->point[i].x, 3, reader->point[i].tuned);
     }
 }
 
@@ -90,12 +88,16 @@ const Model *model_read(Pool *pool, const char *path)
         .name = value[FILE_MODEL].text,
         .description = value[FILE_DESCRIPTION].item ? value[FILE_DESCRIPTION].text : "",
         .gravity = {0, 0, -9.81},
+        .tuning = tuning_new(pool),
     };
     model_name_check(model->name, value[FILE_MODEL].item->at);
-    if (value[FILE_GRAVITY].item)
-        memcpy(model->gravity, value[FILE_GRAVITY].number, sizeof model->gravity);
     parameters_read(&reader, value[FILE_PARAMETERS].item);
     tables_read(&reader, value[FILE_TABLES].item);
+    if (value[FILE_GRAVITY].item) {
+        Ex tuned[3];
+        vector_read(&reader, value[FILE_GRAVITY].item, "gravity of the model", model->gravity, 3, tuned);
+        tuning_set(model->tuning, model->gravity, tuned, 3);
+    }
     points_read(&reader, value[FILE_POINTS].item);
     bodies_read(&reader, value[FILE_BASE].item, value[FILE_BODIES].item);
     joints_read(&reader, value[FILE_JOINTS].item);
@@ -105,5 +107,7 @@ const Model *model_read(Pool *pool, const char *path)
     forces_read(&reader, value[FILE_FORCES].item);
     wheels_read(&reader, value[FILE_WHEELS].item);
     outputs_read(&reader, value[FILE_OUTPUTS].item);
+    model->drawn = model->body;
+    tuning_close(model);
     return model;
 }

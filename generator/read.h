@@ -19,11 +19,12 @@ typedef enum KeyKind {
     KEY_ORIENTATION,   /* likewise: a map of orientation_section */
     KEY_TEXT,          /* text */
     KEY_NAME,          /* text */
-    KEY_NUMBER,        /* number[0] */
-    KEY_ODD,           /* the same; changes its sign in the mirror */
+    KEY_NUMBER,        /* number[0], which follows no tunable parameter */
+    KEY_MEASURE,       /* number[0], which may */
+    KEY_ODD,           /* the same as KEY_MEASURE; changes its sign in the mirror */
     KEY_FLAG,          /* flag */
     KEY_RANGE,         /* number[0] < number[1] */
-    KEY_VECTOR,        /* number[0..2] */
+    KEY_VECTOR,        /* read by the section itself: three numbers */
     KEY_AXIS,          /* number[0..2], unit length */
     KEY_TURN,          /* the same; an axis that something turns about, which the mirror reverses (axial) */
     KEY_DUAL_AXIS,     /* the same as KEY_TURN where the type is `angle`, else as KEY_AXIS */
@@ -70,6 +71,7 @@ typedef struct Section {
 typedef struct Value {
     const Item *item; /* NULL: the key is absent */
     double number[6];
+    Ex tuned[6]; /* what they follow, in the model's tuning; 0: no tunable parameter */
     int index[2];
     const char *text;
     bool flag;
@@ -78,6 +80,7 @@ typedef struct Value {
 typedef struct Point {
     const char *name;
     double x[3];
+    Ex tuned[3]; /* as in Value */
 } Point;
 
 typedef struct Reader {
@@ -85,6 +88,7 @@ typedef struct Reader {
     Model *model;
     Point *point;
     int points;
+    bool fixed; /* what is being read may follow no tunable parameter */
 } Reader;
 
 /* One entry of a map of named things. */
@@ -146,9 +150,10 @@ int section_type(Reader *reader, const Section *section, const Entry *entry);
 void section_read(Reader *reader, const Section *section, int form, const Entry *entry, Value *value);
 /* Does the text of a scalar mention a parameter? */
 bool mentions_parameter(const Reader *reader, const Item *item);
-/* A number, or a formula of parameters that are not tunable; a vector of such. */
-double number_read(Reader *reader, const Item *item, const char *what);
-void vector_read(Reader *reader, const Item *item, const char *what, double *out, int size);
+/* A number, or a formula of parameters; a vector of such. tuned: what they follow, 0: no tunable parameter; NULL: tunable
+ * parameters end in diag_fail. */
+double number_read(Reader *reader, const Item *item, const char *what, Ex *tuned);
+void vector_read(Reader *reader, const Item *item, const char *what, double *out, int size, Ex *tuned);
 /* The prefix of all generated names must be an identifier that C and C++ leave free. */
 void model_name_check(const char *name, Place at);
 /* A text that ends up in a comment and in a string of the generated code: one line. */
@@ -161,9 +166,10 @@ void generated_names_check(Reader *reader, const char *thing, const char *const 
 /* ---- read_bodies.c ---- */
 
 void bodies_read(Reader *reader, const Item *base, const Item *bodies);
-/* A point or a direction of the model frame in the frame of a body (BODY_GROUND: unchanged). */
-void body_point(const Reader *reader, int body, const double x[3], Place at, double out[3]);
-void body_direction(const Reader *reader, int body, const double x[3], double out[3]);
+/* A point or a direction of the model frame, and what it follows, in the frame of a body (BODY_GROUND: unchanged); out:
+ * its place in the Model. */
+void body_point(const Reader *reader, int body, const double x[3], const Ex tuned[3], Place at, double out[3]);
+void body_direction(const Reader *reader, int body, const double x[3], const Ex tuned[3], double out[3]);
 
 /* ---- read_links.c: joints and dual coordinates; read_loads.c: inputs, forces, wheels; read_outputs.c ---- */
 
@@ -181,9 +187,37 @@ void wheels_read(Reader *reader, const Item *map);
 void outputs_read(Reader *reader, const Item *map);
 
 /* The unit vector perpendicular to a unit axis that is as near as can be to the axis of the model frame to which it is
- * least parallel (e_1 of FORMAT.md section 5), fixed in both bodies; all in the model frame but `out`. */
-void perpendicular_set(const Reader *reader, const double axis[3], const int body[2], double out[2][3]);
-/* x_b - x_a of two points of the model frame and its norm; both ends in one place end in diag_fail. */
-double points_distance(const Value *points, const char *what, double d[3]);
+ * least parallel (e_1 of FORMAT.md section 5), fixed in both bodies; all in the model frame but `out`, its places in the
+ * Model. */
+void perpendicular_set(const Reader *reader, const double axis[3], const Ex tuned[3], const int body[2],
+                       double out[2][3]);
+/* x_b - x_a of two points of the model frame and its norm; both ends in one place end in diag_fail. *tuned: what the norm
+ * follows, 0: no parameter. */
+double points_distance(const Reader *reader, const Value *points, const char *what, double d[3], Ex *tuned);
+
+/* ---- read_tuned.c: the same steps as formulas, for numbers that follow tunable parameters ---- */
+
+bool any_tuned(const Ex *tuned, int count);
+/* Formulas of numbers, whether they follow parameters or not. */
+void formulas(const Reader *reader, const double *number, const Ex *tuned, int count, Ex *out);
+/* Formulas that follow no parameter become 0. */
+void tuned_reduce(const Reader *reader, Ex *formula, int count);
+/* A given direction u becomes a unit vector. */
+void axis_tune(const Reader *reader, const double u[3], Ex tuned[3], const char *what);
+/* The perpendicular to a unit axis of FORMAT.md section 5, e_1. */
+void perpendicular_tune(const Reader *reader, const double axis[3], const Ex tuned[3], Ex out[3]);
+/* What is perpendicular to the axis of a joint: as near as can be to `side`, which is so in the file, lest pivots go. */
+void side_tune(const Reader *reader, const double axis[3], const Ex tuned[3], const double side[3], const char *what,
+               Ex out[3]);
+/* The second of two unit axes becomes its part perpendicular to the first; tolerance: largest cosine between them. */
+void square_tune(const Reader *reader, const double axes[6], Ex tuned[6], double tolerance, const char *what);
+/* What x_b - x_a follows, as `formulas` has it; what its norm follows, 0: no parameter. */
+void points_formula(const Reader *reader, const Value *points, Ex d[3]);
+Ex distance_tune(const Reader *reader, const Value *points, const char *what);
+/* Length and offset of a link, from the drawing to given ones. */
+void link_tune(const Reader *reader, const Value *points, const Value *axis, const Value *length, const Value *offset,
+               double tolerance, const char *what, Joint *joint);
+/* Design and initial value of a coordinate stay inside its range. */
+void range_tune(const Reader *reader, const Value *range, const char *what, const Coordinate *coordinate);
 
 #endif

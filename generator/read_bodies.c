@@ -8,7 +8,7 @@
 enum { BODY_MASS, BODY_COM, BODY_INERTIA, BODY_POSITION, BODY_ORIENTATION, BODY_KEYS };
 
 static const Key body_key[BODY_KEYS] = {
-    [BODY_MASS] = {"mass", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
+    [BODY_MASS] = {"mass", KEY_MEASURE, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
     [BODY_COM] = {"com", KEY_POINT, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [BODY_INERTIA] = {"inertia", KEY_INERTIA, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [BODY_POSITION] = {"position", KEY_POINT, ALL_FORMS, 0, BOUND_NONE, 0},
@@ -18,11 +18,11 @@ static const Key body_key[BODY_KEYS] = {
 enum { INERTIA_KEYS = 6 };
 
 static const Key inertia_key[INERTIA_KEYS] = {
-    {"xx", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
-    {"yy", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
-    {"zz", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
+    {"xx", KEY_MEASURE, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
+    {"yy", KEY_MEASURE, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
+    {"zz", KEY_MEASURE, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
     {"xy", KEY_ODD, ALL_FORMS, 0, BOUND_NONE, 0},
-    {"xz", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
+    {"xz", KEY_MEASURE, ALL_FORMS, 0, BOUND_NONE, 0},
     {"yz", KEY_ODD, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
@@ -88,16 +88,50 @@ static bool positive_definite(const double m[6])
     return m[2] - l20 * m[4] - s21 / d1 * s21 > 0;
 }
 
+/* The pivots of a symmetric matrix that must be positive definite. */
+static void require_definite(const Reader *reader, const Ex m[6], const char *text)
+{
+    Tuning *tuning = reader->model->tuning;
+    Dag *dag = tuning->dag;
+    Ex l10 = ex_div(dag, m[3], m[0]), l20 = ex_div(dag, m[4], m[0]);
+    Ex d1 = ex_sub(dag, m[1], ex_mul(dag, l10, m[3])), s21 = ex_sub(dag, m[5], ex_mul(dag, l20, m[3]));
+    Ex d2 = ex_sub(dag, ex_sub(dag, m[2], ex_mul(dag, l20, m[4])), ex_mul(dag, ex_div(dag, s21, d1), s21));
+    tuning_require(tuning, m[0], false, text);
+    tuning_require(tuning, d1, false, text);
+    tuning_require(tuning, d2, false, text);
+}
+
+/* The same checks for set-up, where the inertia follows parameters. */
+static void inertia_tune(const Reader *reader, const char *what, const double inertia[6], Ex tuned[6])
+{
+    Tuning *tuning = reader->model->tuning;
+    Dag *dag = tuning->dag;
+    Ex m[6], spread[6], slack = ex_literal(dag, 0.5 + triangle_tolerance / 4);
+    if (!any_tuned(tuned, 6))
+        return;
+    tuning_set(tuning, inertia, tuned, 6);
+    formulas(reader, inertia, tuned, 6, m);
+    require_definite(reader, m, pool_print(reader->pool, "%s must be positive definite", what));
+    Ex trace = ex_add(dag, ex_add(dag, m[0], m[1]), m[2]);
+    for (int i = 0; i < 6; ++i)
+        spread[i] = i < 3 ? ex_sub(dag, ex_mul(dag, slack, trace), m[i]) : ex_neg(dag, m[i]);
+    require_definite(reader, spread,
+                     pool_print(reader->pool, "%s: no principal value may be larger than the sum of the others", what));
+}
+
 static void inertia_read(Reader *reader, const Item *item, const Entry *body, double inertia[6])
 {
     const char *what = pool_print(reader->pool, "inertia of %s", body->what);
+    Ex tuned[6] = {0};
     if (item->kind == ITEM_MAP) {
         Value value[INERTIA_KEYS];
         section_read(reader, &inertia_section, 0, &(Entry){"inertia", what, item->at, item}, value);
-        for (int i = 0; i < 6; ++i)
+        for (int i = 0; i < 6; ++i) {
             inertia[i] = value[i].number[0];
+            tuned[i] = value[i].tuned[0];
+        }
     } else if (item->kind == ITEM_LIST && item->count == 3)
-        vector_read(reader, item, what, inertia, 3);
+        vector_read(reader, item, what, inertia, 3, tuned);
     else
         diag_fail(item->at, "write [Ixx, Iyy, Izz] or {xx: , yy: , zz: , xy: , xz: , yz: }",
                   "%s must be a list of three numbers or a map", what);
@@ -112,6 +146,7 @@ static void inertia_read(Reader *reader, const Item *item, const Entry *body, do
     if (!isfinite(trace) || !positive_definite(spread))
         diag_fail(item->at, "check the values; for a flat body the largest is the sum of the others",
                   "%s is that of no body: a principal value is larger than the sum of the other two", what);
+    inertia_tune(reader, what, inertia, tuned);
 }
 
 /* Euler parameters of the rotation matrix with columns x, y, z (Shepperd: divide by the largest parameter). */
@@ -148,7 +183,9 @@ static void orientation_read(Reader *reader, const Item *item, const Entry *body
                : is_map && (doc_find(item, "axis") || doc_find(item, "angle")) ? ORIENTATION_ANGLE
                                                                                 : ORIENTATION_AXES;
     Value value[TURN_KEYS];
+    reader->fixed = true;
     section_read(reader, &orientation_section, form, &entry, value);
+    reader->fixed = false;
     if (form == ORIENTATION_EULER) {
         memcpy(euler, value[TURN_EULER].number, 4 * sizeof *euler);
         double square = euler[0] * euler[0] + vec_dot(euler + 1, euler + 1);
@@ -185,11 +222,14 @@ static void body_read(Reader *reader, const Entry *entry)
     section_read(reader, &body_section, 0, entry, value);
     *body = (Body){.name = entry->name, .at = entry->at, .mass = value[BODY_MASS].number[0], .euler = {1, 0, 0, 0}};
     const double *com = value[BODY_COM].number;
-    memcpy(body->position, value[BODY_POSITION].item ? value[BODY_POSITION].number : com, sizeof body->position);
+    const Value *position = value[BODY_POSITION].item ? value + BODY_POSITION : value + BODY_COM;
+    memcpy(body->position, position->number, sizeof body->position);
+    tuning_set(reader->model->tuning, &body->mass, value[BODY_MASS].tuned, 1);
+    tuning_set(reader->model->tuning, body->position, position->tuned, 3);
     if (value[BODY_ORIENTATION].item)
         orientation_read(reader, value[BODY_ORIENTATION].item, entry, body->euler);
     inertia_read(reader, value[BODY_INERTIA].item, entry, body->inertia);
-    body_point(reader, index, com, value[BODY_COM].item->at, body->com);
+    body_point(reader, index, com, value[BODY_COM].tuned, value[BODY_COM].item->at, body->com);
 }
 
 void bodies_read(Reader *reader, const Item *base, const Item *bodies)
@@ -228,23 +268,36 @@ void bodies_read(Reader *reader, const Item *base, const Item *bodies)
             body_read(reader, entry + i);
 }
 
-void body_point(const Reader *reader, int body, const double x[3], Place at, double out[3])
+void body_point(const Reader *reader, int body, const double x[3], const Ex tuned_x[3], Place at, double out[3])
 {
-    const double origin[3] = {0, 0, 0};
-    const double *position = body == BODY_GROUND ? origin : reader->model->body[body].position;
-    double d[3] = {x[0] - position[0], x[1] - position[1], x[2] - position[2]};
-    body_direction(reader, body, d, out);
+    const double zero[3] = {0, 0, 0};
+    const double *origin = body == BODY_GROUND ? zero : reader->model->body[body].position;
+    double d[3];
+    Ex formula[3];
+    formulas(reader, x, tuned_x, 3, formula);
+    for (int i = 0; i < 3; ++i) {
+        d[i] = x[i] - origin[i];
+        formula[i] = ex_sub(reader->model->tuning->dag, formula[i], tuned_or_fixed(reader->model, origin + i));
+    }
+    body_direction(reader, body, d, formula, out);
     if (!isfinite(vec_norm(out)))
         diag_fail(at, "coordinates are in metres", "the point is too far away");
 }
 
-void body_direction(const Reader *reader, int body, const double x[3], double out[3])
+void body_direction(const Reader *reader, int body, const double x[3], const Ex tuned_x[3], double out[3])
 {
-    double A[9];
+    Dag *dag = reader->model->tuning->dag;
+    double A[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    Ex turn[9], formula[3], turned[3];
     if (body == BODY_GROUND) {
         memcpy(out, x, 3 * sizeof *out);
-        return;
+    } else {
+        mat_from_euler(reader->model->body[body].euler, A);
+        mat_apply_transposed(A, x, out);
     }
-    mat_from_euler(reader->model->body[body].euler, A);
-    mat_apply_transposed(A, x, out);
+    for (int i = 0; i < 9; ++i)
+        turn[i] = ex_literal(dag, A[i]);
+    formulas(reader, x, tuned_x, 3, formula);
+    ex_apply_transposed(dag, turn, formula, turned);
+    tuning_set(reader->model->tuning, out, turned, 3);
 }

@@ -21,6 +21,7 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_TEXT] = "text",
     [KEY_NAME] = "name",
     [KEY_NUMBER] = "number",
+    [KEY_MEASURE] = "number",
     [KEY_ODD] = "number",
     [KEY_FLAG] = "true",
     [KEY_RANGE] = "[low, high]",
@@ -188,60 +189,79 @@ bool mentions_parameter(const Reader *reader, const Item *item)
 }
 
 /* What mentions no parameter and is no number gets doc_number's message. */
-double number_read(Reader *reader, const Item *item, const char *what)
+double number_read(Reader *reader, const Item *item, const char *what, Ex *tuned)
 {
+    if (tuned)
+        *tuned = 0;
     if (!mentions_parameter(reader, item))
         return doc_number(item, what);
     LawNames names = {
         .model = reader->model, .constant = true, .remedy = "put what changes with time into a force element"};
     const Law *law = law_parse(reader->pool, item, what, &names);
-    if (law_is_tunable(law, reader->model))
-        diag_fail(item->at, "leave out `tunable: true` of that parameter, or use it in force elements only",
+    bool tunable = law_is_tunable(law, reader->model);
+    if (tunable && (!tuned || reader->fixed))
+        diag_fail(item->at, "leave out `tunable: true` of that parameter, or use it elsewhere",
                   "%s is fixed when the code is generated, but '%s' has a tunable parameter", what, item->text);
-    double number = law_number(law, reader->model);
+    double number = law_number(law, reader->model); /* law_parse has negated it where the item is */
+    double shift = item->negated ? 0 - item->shift : item->shift;
     if (!isfinite(number))
         diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number",
                   what);
-    number += item->shift;
-    return item->negated ? 0 - number : number;
+    if (tunable) {
+        Dag *dag = reader->model->tuning->dag;
+        *tuned = ex_add(dag, law_expression(dag, reader->model, law), ex_literal(dag, shift));
+        tuned_reduce(reader, tuned, 1);
+    }
+    return number + shift;
 }
 
-void vector_read(Reader *reader, const Item *item, const char *what, double *out, int size)
+void vector_read(Reader *reader, const Item *item, const char *what, double *out, int size, Ex *tuned)
 {
-    bool formulas = false;
+    bool any = false;
     for (int i = 0; item->kind == ITEM_LIST && item->count == size && i < size; ++i)
-        formulas = formulas || mentions_parameter(reader, item->value[i]);
-    if (!formulas)
+        any = any || mentions_parameter(reader, item->value[i]);
+    if (!any)
         doc_vector(item, what, out, size);
-    for (int i = 0; formulas && i < size; ++i)
-        out[i] = number_read(reader, item->value[i], what);
+    for (int i = 0; i < size; ++i) {
+        if (any)
+            out[i] = number_read(reader, item->value[i], what, tuned ? tuned + i : NULL);
+        else if (tuned)
+            tuned[i] = 0;
+    }
 }
 
-static void read_point(Reader *reader, const Item *item, const char *what, double x[3])
+static void read_point(Reader *reader, const Item *item, const char *what, double x[3], Ex tuned[3])
 {
     if (item->kind == ITEM_SCALAR) {
         if (!isalpha((unsigned char)item->text[0]))
             diag_fail(item->at, "write [x, y, z] or the name of a point", "%s must be a point", what);
         int i = find(reader, item, what, "point", reader->point, reader->points, sizeof *reader->point);
         memcpy(x, reader->point[i].x, sizeof reader->point[i].x);
+        memcpy(tuned, reader->point[i].tuned, sizeof reader->point[i].tuned);
     } else
-        vector_read(reader, item, what, x, 3);
+        vector_read(reader, item, what, x, 3, tuned);
 }
 
-static void read_axis(Reader *reader, const Item *item, const char *what, double u[3])
+static void read_axis(Reader *reader, const Item *item, const char *what, double u[3], Ex tuned[3])
 {
-    vector_read(reader, item, what, u, 3);
+    vector_read(reader, item, what, u, 3, tuned);
+    axis_tune(reader, u, tuned, what);
     if (!vector_normalize(u, 3))
         diag_fail(item->at, "write a direction, such as [0, 0, 1]", "%s has no direction: it is zero", what);
 }
 
-static void read_number(Reader *reader, const Key *key, const Item *item, const char *what, double *number)
+static void read_number(Reader *reader, const Key *key, const Item *item, const char *what, Value *value)
 {
-    *number = number_read(reader, item, what);
+    double *number = value->number;
+    *number = number_read(reader, item, what, key->kind == KEY_NUMBER ? NULL : value->tuned);
     if (key->bound == BOUND_POSITIVE && !(*number > 0))
         diag_fail(item->at, "write a positive number", "%s must be greater than zero, not %s", what, item->text);
     if (key->bound == BOUND_NOT_NEGATIVE && *number < 0)
         diag_fail(item->at, "write zero or a positive number", "%s must not be negative (%s)", what, item->text);
+    if (value->tuned[0] && key->bound != BOUND_NONE)
+        tuning_require(reader->model->tuning, value->tuned[0], key->bound == BOUND_NOT_NEGATIVE,
+                       pool_print(reader->pool, "%s must %s", what,
+                                  key->bound == BOUND_POSITIVE ? "be greater than zero" : "not be negative"));
 }
 
 static void read_value(Reader *reader, const Key *key, const Item *item, const char *what, Value *value)
@@ -254,33 +274,33 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         text_check(value->text, what, item->at);
         break;
     case KEY_NUMBER:
-    case KEY_ODD: read_number(reader, key, item, what, value->number); break;
+    case KEY_MEASURE:
+    case KEY_ODD: read_number(reader, key, item, what, value); break;
     case KEY_FLAG: value->flag = doc_bool(item, what); break;
     case KEY_RANGE:
-        vector_read(reader, item, what, value->number, 2);
+        vector_read(reader, item, what, value->number, 2, NULL);
         if (!(value->number[0] < value->number[1]))
             diag_fail(item->at, "write [low, high]", "%s: the low end must be below the high end", what);
         break;
-    case KEY_VECTOR: vector_read(reader, item, what, value->number, 3); break;
     case KEY_AXIS:
     case KEY_TURN:
-    case KEY_DUAL_AXIS: read_axis(reader, item, what, value->number); break;
+    case KEY_DUAL_AXIS: read_axis(reader, item, what, value->number, value->tuned); break;
     case KEY_AXES:
         if (item->kind != ITEM_LIST || item->count != 2)
             diag_fail(item->at, "write [u_a, u_b]; each is a direction [x, y, z]",
                       "%s must be a list of two directions", what);
         for (int i = 0; i < 2; ++i)
             read_axis(reader, item->value[i], pool_print(reader->pool, "the %s of %s", i ? "second" : "first", what),
-                      value->number + 3 * i);
+                      value->number + 3 * i, value->tuned + 3 * i);
         break;
-    case KEY_EULER: vector_read(reader, item, what, value->number, 4); break;
-    case KEY_POINT: read_point(reader, item, what, value->number); break;
+    case KEY_EULER: vector_read(reader, item, what, value->number, 4, NULL); break;
+    case KEY_POINT: read_point(reader, item, what, value->number, value->tuned); break;
     case KEY_POINTS:
         if (item->kind != ITEM_LIST || item->count != 2)
             diag_fail(item->at, "write [p_a, p_b]; each is [x, y, z] or the name of a point",
                       "%s must be a list of two points", what);
-        read_point(reader, item->value[0], what, value->number);
-        read_point(reader, item->value[1], what, value->number + 3);
+        read_point(reader, item->value[0], what, value->number, value->tuned);
+        read_point(reader, item->value[1], what, value->number + 3, value->tuned + 3);
         break;
     case KEY_BODY: value->index[0] = find_body(reader, item, what, false); break;
     case KEY_BODIES: find_bodies(reader, item, what, false, value->index); break;
@@ -309,6 +329,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         break;
     case KEY_TYPE:
     case KEY_ITEM:
+    case KEY_VECTOR:
     case KEY_FORMULA:
     case KEY_FORCE_VECTOR:
     case KEY_TORQUE_VECTOR:

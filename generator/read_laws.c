@@ -7,7 +7,7 @@
 enum { PARAMETER_VALUE, PARAMETER_UNIT, PARAMETER_TUNABLE, PARAMETER_KEYS };
 
 static const Key parameter_key[PARAMETER_KEYS] = {
-    [PARAMETER_VALUE] = {"value", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [PARAMETER_VALUE] = {"value", KEY_MEASURE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [PARAMETER_UNIT] = {"unit", KEY_TEXT, ALL_FORMS, 0, BOUND_NONE, 0},
     [PARAMETER_TUNABLE] = {"tunable", KEY_FLAG, ALL_FORMS, 0, BOUND_NONE, 0},
 };
@@ -63,20 +63,28 @@ void parameters_read(Reader *reader, const Item *map)
     model->parameter = pool_alloc(reader->pool, sizeof *model->parameter * (size_t)(count + 1));
     const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(count + 1));
     Place *at = pool_alloc(reader->pool, sizeof *at * (size_t)(count + 1));
+    const LawNames names = {.model = model, .constant = true};
     /* each may use those before it */
     for (int i = 0; i < count; model->parameters = ++i) {
         Value value[PARAMETER_KEYS] = {{0}};
         if (entry[i].item->kind == ITEM_MAP)
             section_read(reader, &parameter_section, 0, entry + i, value);
         else
-            value[PARAMETER_VALUE].number[0] = number_read(reader, entry[i].item, entry[i].what);
+            value[PARAMETER_VALUE].number[0] =
+                number_read(reader, entry[i].item, entry[i].what, value[PARAMETER_VALUE].tuned);
+        const Item *item = value[PARAMETER_VALUE].item ? value[PARAMETER_VALUE].item : entry[i].item;
+        bool tuned = value[PARAMETER_VALUE].tuned[0], tunable = value[PARAMETER_TUNABLE].flag;
+        if (tuned && tunable)
+            diag_fail(item->at, "leave out `tunable: true`: it changes with those it is made of",
+                      "%s follows other tunable parameters, so it has no value of its own", entry[i].what);
         model->parameter[i] = (Parameter){
             .name = entry[i].name,
             .at = entry[i].at,
             .unit = value[PARAMETER_UNIT].item ? value[PARAMETER_UNIT].text : "1",
             .value = value[PARAMETER_VALUE].number[0],
-            .tunable = value[PARAMETER_TUNABLE].flag,
-            .index = value[PARAMETER_TUNABLE].flag ? model->tunables++ : -1,
+            .tunable = tunable,
+            .index = tunable ? model->tunables++ : -1,
+            .law = tuned ? law_parse(reader->pool, item, entry[i].what, &names) : NULL,
         };
         name[i] = entry[i].name;
         at[i] = entry[i].at;
@@ -90,7 +98,7 @@ static double *numbers(Reader *reader, const Value *value, const char *what, int
     if (item->kind != ITEM_LIST || item->count < 2)
         diag_fail(item->at, "write [first, second, ...], at least two numbers", "%s must be a list of numbers", what);
     double *out = pool_alloc(reader->pool, sizeof *out * (size_t)item->count);
-    vector_read(reader, item, what, out, item->count);
+    vector_read(reader, item, what, out, item->count, NULL);
     *count = item->count;
     return out;
 }
@@ -152,6 +160,7 @@ void ports_read(Reader *reader, const Item *map)
             diag_fail(value[PORT_BODY].item->at, "name a body that can move", "%s: a force on ground moves nothing",
                       entry[i].what);
         if (value[PORT_POINT].item)
-            body_point(reader, port->body, value[PORT_POINT].number, value[PORT_POINT].item->at, port->point);
+            body_point(reader, port->body, value[PORT_POINT].number, value[PORT_POINT].tuned,
+                       value[PORT_POINT].item->at, port->point);
     }
 }

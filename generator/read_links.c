@@ -48,8 +48,8 @@ static const Key joint_key[LINK_KEYS] = {
     [LINK_POINTS] = {"points", KEY_POINTS, LINKS, LINKS, BOUND_NONE, 0},
     [LINK_AXIS] = {"axis", KEY_AXIS, ONE_AXIS, ONE_AXIS, BOUND_NONE, 0},
     [LINK_AXES] = {"axes", KEY_AXES, TWO_AXES, TWO_AXES, BOUND_NONE, 0},
-    [LINK_LENGTH] = {"length", KEY_NUMBER, LINKS, 0, BOUND_POSITIVE, 0},
-    [LINK_OFFSET] = {"offset", KEY_NUMBER, FORM(JOINT_REVOLUTE_SPHERICAL), 0, BOUND_NONE, 0},
+    [LINK_LENGTH] = {"length", KEY_MEASURE, LINKS, 0, BOUND_POSITIVE, 0},
+    [LINK_OFFSET] = {"offset", KEY_MEASURE, FORM(JOINT_REVOLUTE_SPHERICAL), 0, BOUND_NONE, 0},
 };
 
 /* Given lengths and offsets that differ by less than this part of the length are the drawing's, with its rounding. */
@@ -80,9 +80,9 @@ static const Key coordinate_key[DUAL_KEYS] = {
     [DUAL_BODIES] = {"bodies", KEY_BODIES, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [DUAL_POINTS] = {"points", KEY_POINTS, DUAL_ENDS, FORM(COORDINATE_LENGTH), BOUND_NONE, 0},
     [DUAL_AXIS] = {"axis", KEY_DUAL_AXIS, DUAL_AXES, DUAL_AXES, BOUND_NONE, 0},
-    [DUAL_DESIGN] = {"design", KEY_NUMBER, DUAL_AXES, 0, BOUND_NONE, 0},
+    [DUAL_DESIGN] = {"design", KEY_MEASURE, DUAL_AXES, 0, BOUND_NONE, 0},
     [DUAL_RANGE] = {"range", KEY_RANGE, ALL_FORMS, 0, BOUND_NONE, 0},
-    [DUAL_INITIAL] = {"initial", KEY_NUMBER, ALL_FORMS, 0, BOUND_NONE, 0},
+    [DUAL_INITIAL] = {"initial", KEY_MEASURE, ALL_FORMS, 0, BOUND_NONE, 0},
     [DUAL_DRIVEN] = {"driven", KEY_FLAG, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
@@ -101,7 +101,7 @@ static const char *const coordinate_about[DUAL_KEYS] = {
 const Section coordinate_section = {coordinate_key,       DUAL_KEYS, coordinate_type_name, COORDINATE_TYPES,
                                     coordinate_type_name, NULL,      coordinate_about};
 
-double points_distance(const Value *points, const char *what, double d[3])
+double points_distance(const Reader *reader, const Value *points, const char *what, double d[3], Ex *tuned)
 {
     for (int i = 0; i < 3; ++i)
         d[i] = points->number[3 + i] - points->number[i];
@@ -112,25 +112,34 @@ double points_distance(const Value *points, const char *what, double d[3])
     if (!isfinite(length))
         diag_fail(points->item->value[1]->at, "coordinates are in metres", "%s: its two points are too far apart",
                   what);
+    *tuned = distance_tune(reader, points, what);
     return length;
 }
 
-void perpendicular_set(const Reader *reader, const double axis[3], const int body[2], double out[2][3])
+static void perpendicular(const double axis[3], double e[3])
 {
     int least = 0;
-    double e[3];
     for (int i = 1; i < 3; ++i)
         if (fabs(axis[i]) < fabs(axis[least]))
             least = i;
     for (int i = 0; i < 3; ++i)
         e[i] = (i == least) - axis[least] * axis[i];
     vector_normalize(e, 3);
+}
+
+void perpendicular_set(const Reader *reader, const double axis[3], const Ex tuned[3], const int body[2],
+                       double out[2][3])
+{
+    double e[3];
+    Ex tuned_e[3];
+    perpendicular(axis, e);
+    perpendicular_tune(reader, axis, tuned, tuned_e);
     for (int i = 0; i < 2; ++i)
-        body_direction(reader, body[i], e, out[i]);
+        body_direction(reader, body[i], e, tuned_e, out[i]);
 }
 
 /* Replace the second of two given axes by its part perpendicular to the first. */
-static void axes_square(Value *axes, const Entry *entry)
+static void axes_square(const Reader *reader, Value *axes, const Entry *entry)
 {
     const double degree = acos(-1.0) / 180;
     const double *a = axes->number;
@@ -139,6 +148,8 @@ static void axes_square(Value *axes, const Entry *entry)
     if (!(miss < axes_tolerance))
         diag_fail(axes->item->value[1]->at, "turn one of them; in a universal joint they are the arms of the cross",
                   "axes of %s: the angle between them is %.4g degrees, which is not near 90", entry->what, 90 - miss);
+    square_tune(reader, axes->number, axes->tuned, sin(axes_tolerance * degree),
+                pool_print(reader->pool, "axes of %s", entry->what));
     for (int i = 0; i < 3; ++i)
         b[i] -= along * a[i];
     vector_normalize(b, 3);
@@ -148,20 +159,26 @@ static void axes_square(Value *axes, const Entry *entry)
 static void joint_axes_set(const Reader *reader, Value *value, const Entry *entry, Joint *joint)
 {
     static const double x[3] = {1, 0, 0};
-    const double *axis[2];
+    const double *axis[2] = {x, x};
+    const Ex *tuned[2] = {value[LINK_AXIS].tuned, value[LINK_AXIS].tuned};
     if (FORM(joint->type) & TWO_AXES) {
-        axes_square(value + LINK_AXES, entry);
-        axis[0] = value[LINK_AXES].number;
-        axis[1] = value[LINK_AXES].number + 3;
+        axes_square(reader, value + LINK_AXES, entry);
+        for (int i = 0; i < 2; ++i) {
+            axis[i] = value[LINK_AXES].number + 3 * i;
+            tuned[i] = value[LINK_AXES].tuned + 3 * i;
+        }
     } else if (FORM(joint->type) & ONE_AXIS)
         axis[0] = axis[1] = value[LINK_AXIS].number;
-    else if (joint->type == JOINT_FIXED)
-        axis[0] = axis[1] = x;
-    else
+    else if (joint->type != JOINT_FIXED)
         return;
     for (int i = 0; i < 2; ++i)
-        body_direction(reader, joint->body[i], axis[i], joint->axis[i]);
-    perpendicular_set(reader, axis[0], joint->body, joint->side);
+        body_direction(reader, joint->body[i], axis[i], tuned[i], joint->axis[i]);
+    double side[3];
+    Ex tuned_side[3];
+    perpendicular(axis[0], side);
+    side_tune(reader, axis[0], tuned[0], side, entry->what, tuned_side);
+    for (int i = 0; i < 2; ++i)
+        body_direction(reader, joint->body[i], side, tuned_side, joint->side[i]);
 }
 
 /* A length or an offset: the drawing's unless another one is given. */
@@ -178,9 +195,11 @@ static void link_set(const Reader *reader, const Value *value, const Entry *entr
 {
     const Value *points = value + LINK_POINTS;
     const Value *given_length = value + LINK_LENGTH, *given_offset = value + LINK_OFFSET;
-    double d[3], drawn = points_distance(points, entry->what, d);
+    Ex tuned;
+    double d[3], drawn = points_distance(reader, points, entry->what, d, &tuned);
     for (int i = 0; i < 2; ++i)
-        body_point(reader, joint->body[i], points->number + 3 * i, points->item->value[i]->at, joint->point[i]);
+        body_point(reader, joint->body[i], points->number + 3 * i, points->tuned + 3 * i, points->item->value[i]->at,
+                   joint->point[i]);
     joint->length = link_number(given_length, drawn, drawn, joint);
     double square = joint->length * joint->length;
     if (!(square > 0 && isfinite(square)))
@@ -200,6 +219,18 @@ static void link_set(const Reader *reader, const Value *value, const Entry *entr
               "%s: the link lies along its own axis, so turning about it moves nothing", entry->what);
 }
 
+/* The origin of a body frame as a point. */
+static Value origin_value(const Reader *reader, int body)
+{
+    const double *position = reader->model->body[body].position;
+    Value value = {.item = NULL};
+    for (int i = 0; i < 3; ++i) {
+        value.number[i] = position[i];
+        value.tuned[i] = tuned_number(reader->model, position + i);
+    }
+    return value;
+}
+
 static void joint_read(Reader *reader, const Entry *entry, Joint *joint)
 {
     Value value[LINK_KEYS];
@@ -208,13 +239,16 @@ static void joint_read(Reader *reader, const Entry *entry, Joint *joint)
     const int *body = value[LINK_BODIES].index;
     *joint = (Joint){.name = entry->name, .at = entry->at, .type = type, .body = {body[0], body[1]}, .drawn = true};
     joint_axes_set(reader, value, entry, joint);
-    if (FORM(type) & LINKS)
+    if (FORM(type) & LINKS) {
         link_set(reader, value, entry, joint);
-    else if (FORM(type) & (ONE_POINT | MAYBE_POINT)) {
+        link_tune(reader, value + LINK_POINTS, value + LINK_AXIS, value + LINK_LENGTH, value + LINK_OFFSET,
+                  drawn_tolerance, entry->what, joint);
+    } else if (FORM(type) & (ONE_POINT | MAYBE_POINT)) {
         const Value *point = value + LINK_POINT;
-        const double *x = point->item ? point->number : reader->model->body[body[1]].position;
+        const Value origin = origin_value(reader, body[1]), *x = point->item ? point : &origin;
         for (int i = 0; i < 2; ++i)
-            body_point(reader, body[i], x, point->item ? point->item->at : entry->at, joint->point[i]);
+            body_point(reader, body[i], x->number, x->tuned, point->item ? point->item->at : entry->at,
+                       joint->point[i]);
     }
 }
 
@@ -276,25 +310,38 @@ static void coordinate_read(Reader *reader, const Entry *entry, Coordinate *coor
                                .design = value[DUAL_DESIGN].number[0],
                                .driven = value[DUAL_DRIVEN].flag,
                                .input = -1};
+    Tuning *tuning = reader->model->tuning;
+    Ex tuned_design = value[DUAL_DESIGN].tuned[0];
+    const Ex *tuned_axis = value[DUAL_AXIS].tuned;
     if (FORM(type) & DUAL_AXES)
-        body_direction(reader, body[0], axis, coordinate->axis);
+        body_direction(reader, body[0], axis, tuned_axis, coordinate->axis);
     double d[3] = {0, 0, 0};
     if (type == COORDINATE_LENGTH)
-        coordinate->design = points_distance(points, entry->what, d);
+        coordinate->design = points_distance(reader, points, entry->what, d, &tuned_design);
     else if (type == COORDINATE_ANGLE)
-        perpendicular_set(reader, axis, body, coordinate->reference);
+        perpendicular_set(reader, axis, tuned_axis, body, coordinate->reference);
+    tuning_set(tuning, &coordinate->design, &tuned_design, 1);
     if (FORM(type) & DUAL_ENDS)
         for (int i = 0; i < 2; ++i) {
-            const double *x = points->item ? points->number + 3 * i : reader->model->body[body[1]].position;
-            body_point(reader, body[i], x, points->item ? points->item->value[i]->at : entry->at, coordinate->point[i]);
+            const Value origin = origin_value(reader, body[1]);
+            const double *x = points->item ? points->number + 3 * i : origin.number;
+            const Ex *tuned_x = points->item ? points->tuned + 3 * i : origin.tuned;
+            body_point(reader, body[i], x, tuned_x, points->item ? points->item->value[i]->at : entry->at,
+                       coordinate->point[i]);
         }
     if (type == COORDINATE_TRANSLATION && points->item) {
+        Ex tuned_d[3], u[3];
         for (int i = 0; i < 3; ++i)
             d[i] = points->number[3 + i] - points->number[i];
         coordinate->offset = vec_dot(axis, d);
+        points_formula(reader, points, tuned_d);
+        formulas(reader, axis, tuned_axis, 3, u);
+        tuning_set(tuning, &coordinate->offset, (Ex[]){ex_dot(tuning->dag, u, tuned_d)}, 1);
     }
     range_set(value + DUAL_RANGE, entry, coordinate);
     initial_set(value + DUAL_INITIAL, entry, coordinate);
+    tuning_set(tuning, &coordinate->initial, value[DUAL_INITIAL].item ? value[DUAL_INITIAL].tuned : &tuned_design, 1);
+    range_tune(reader, value + DUAL_RANGE, entry->what, coordinate);
 }
 
 void coordinates_read(Reader *reader, const Item *map)

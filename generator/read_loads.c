@@ -152,10 +152,10 @@ enum { TIRE_BODY, TIRE_CENTER, TIRE_RADIUS, TIRE_STIFFNESS, TIRE_DAMPING, TIRE_F
 static const Key wheel_key[TIRE_KEYS] = {
     [TIRE_BODY] = {"body", KEY_BODY, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [TIRE_CENTER] = {"center", KEY_POINT, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
-    [TIRE_RADIUS] = {"radius", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
-    [TIRE_STIFFNESS] = {"stiffness", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
-    [TIRE_DAMPING] = {"damping", KEY_NUMBER, ALL_FORMS, 0, BOUND_NOT_NEGATIVE, 0},
-    [TIRE_FADE] = {"fade", KEY_NUMBER, ALL_FORMS, 0, BOUND_POSITIVE, 0.01},
+    [TIRE_RADIUS] = {"radius", KEY_MEASURE, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
+    [TIRE_STIFFNESS] = {"stiffness", KEY_MEASURE, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
+    [TIRE_DAMPING] = {"damping", KEY_MEASURE, ALL_FORMS, 0, BOUND_NOT_NEGATIVE, 0},
+    [TIRE_FADE] = {"fade", KEY_MEASURE, ALL_FORMS, 0, BOUND_POSITIVE, 0.01},
 };
 
 static const char *const wheel_about[TIRE_KEYS] = {
@@ -214,25 +214,28 @@ void inputs_read(Reader *reader, const Item *map)
     generated_names_check(reader, "input", name, at, model->inputs);
 }
 
-static const Law *literal_law(Reader *reader, double value)
+/* tuned: what the value follows, 0: no tunable parameter */
+static const Law *literal_law(Reader *reader, double value, Ex tuned)
 {
     Law *law = pool_alloc(reader->pool, sizeof *law);
     *law = (Law){.op = LAW_NUMBER, .number = value};
+    tuning_set(reader->model->tuning, &law->number, &tuned, 1);
     return law;
 }
 
 /* A number of a spring or a stop: of numbers and parameters, so that the law keeps its shape. */
-static const Law *spring_law(Reader *reader, const Entry *entry, const Value *value, int key, double fallback)
+static const Law *spring_law(Reader *reader, const Entry *entry, const Value *value, int key, double fallback,
+                             Ex tuned_fallback)
 {
     if (!value[key].item)
-        return literal_law(reader, fallback);
+        return literal_law(reader, fallback, tuned_fallback);
     const Item *item = value[key].item;
     const char *what = pool_print(reader->pool, "%s of %s", force_key[key].name, entry->what);
     LawNames names = {
         .model = reader->model, .constant = true, .remedy = "use the element type `force` for any other law"};
     bool formula = item->quoted || mentions_parameter(reader, item);
     const Law *law =
-        formula ? law_parse(reader->pool, item, what, &names) : literal_law(reader, doc_number(item, what));
+        formula ? law_parse(reader->pool, item, what, &names) : literal_law(reader, doc_number(item, what), 0);
     double number = law_number(law, reader->model);
     if (!isfinite(number))
         diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number",
@@ -251,8 +254,8 @@ static void read_elastic(Reader *reader, const Entry *entry, const Value *value,
     if (table->item && value[ELEMENT_STIFFNESS].item)
         diag_fail(table->item->at, "take one of the two away", "%s has both a stiffness and a table", entry->what);
     force->table = table->item ? table->index[0] : -1;
-    force->stiffness = spring_law(reader, entry, value, ELEMENT_STIFFNESS, 0);
-    force->damping = spring_law(reader, entry, value, ELEMENT_DAMPING, 0);
+    force->stiffness = spring_law(reader, entry, value, ELEMENT_STIFFNESS, 0, 0);
+    force->damping = spring_law(reader, entry, value, ELEMENT_DAMPING, 0, 0);
 }
 
 static void read_stop(Reader *reader, const Entry *entry, const Value *value, Force *force)
@@ -265,9 +268,9 @@ static void read_stop(Reader *reader, const Entry *entry, const Value *value, Fo
     if (!table && !value[ELEMENT_STIFFNESS].item)
         diag_fail(entry->at, "add `stiffness: number`, or `table: name` for force over depth",
                   "%s has neither a stiffness nor a table", entry->what);
-    force->low = low ? spring_law(reader, entry, value, ELEMENT_LOW, 0) : NULL;
-    force->high = high ? spring_law(reader, entry, value, ELEMENT_HIGH, 0) : NULL;
-    force->fade = spring_law(reader, entry, value, ELEMENT_FADE, force_key[ELEMENT_FADE].fallback);
+    force->low = low ? spring_law(reader, entry, value, ELEMENT_LOW, 0, 0) : NULL;
+    force->high = high ? spring_law(reader, entry, value, ELEMENT_HIGH, 0, 0) : NULL;
+    force->fade = spring_law(reader, entry, value, ELEMENT_FADE, force_key[ELEMENT_FADE].fallback, 0);
     if (low && high && !(law_number(force->low, model) < law_number(force->high, model)))
         diag_fail(high->at, "write the lower end as `low`", "high of %s is not above low: it would push both ways",
                   entry->what);
@@ -290,7 +293,8 @@ static void read_load(Reader *reader, const Entry *entry, const Value *value, Fo
         diag_fail(value[ELEMENT_BODY].item->at, "name a body that can move", "%s: a load on ground moves nothing",
                   entry->what);
     if (value[ELEMENT_POINT].item)
-        body_point(reader, force->body[0], value[ELEMENT_POINT].number, value[ELEMENT_POINT].item->at, force->point[0]);
+        body_point(reader, force->body[0], value[ELEMENT_POINT].number, value[ELEMENT_POINT].tuned,
+                   value[ELEMENT_POINT].item->at, force->point[0]);
     for (int part = 0; part < 2; ++part) {
         const Item *item = value[key[part]].item;
         const char *what = pool_print(reader->pool, "%s of %s", force_key[key[part]].name, entry->what);
@@ -326,23 +330,27 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
                      .body = {BODY_GROUND, BODY_GROUND},
                      .table = -1};
     double fallback = 0;
+    Ex tuned_fallback = 0;
     if (form == FORCE_LOAD) {
         read_load(reader, entry, value, force);
     } else if (along) {
         force->coordinate = value[ELEMENT_COORDINATE].index[0];
         fallback = reader->model->coordinate[force->coordinate].design;
+        tuned_fallback = tuned_number(reader->model, &reader->model->coordinate[force->coordinate].design);
     } else if (about) {
         const double *axis = value[ELEMENT_AXIS].number;
+        const Ex *tuned = value[ELEMENT_AXIS].tuned;
         memcpy(force->body, value[ELEMENT_BODIES].index, sizeof force->body);
-        body_direction(reader, force->body[0], axis, force->axis);
-        perpendicular_set(reader, axis, force->body, force->reference);
+        body_direction(reader, force->body[0], axis, tuned, force->axis);
+        perpendicular_set(reader, axis, tuned, force->body, force->reference);
     } else {
         const Value *points = value + ELEMENT_POINTS;
         double d[3];
-        fallback = points_distance(points, entry->what, d);
+        fallback = points_distance(reader, points, entry->what, d, &tuned_fallback);
         for (int i = 0; i < 2; ++i) {
             force->body[i] = value[ELEMENT_BODIES].index[i];
-            body_point(reader, force->body[i], points->number + 3 * i, points->item->value[i]->at, force->point[i]);
+            body_point(reader, force->body[i], points->number + 3 * i, points->tuned + 3 * i,
+                       points->item->value[i]->at, force->point[i]);
         }
     }
     if (force_is_spring(force) || force_is_stop(force))
@@ -350,7 +358,7 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
     if (force_is_stop(force))
         read_stop(reader, entry, value, force);
     else if (force_is_spring(force))
-        force->free = spring_law(reader, entry, value, ELEMENT_FREE, fallback);
+        force->free = spring_law(reader, entry, value, ELEMENT_FREE, fallback, tuned_fallback);
     if (force_is_law(force)) {
         LawNames names = {.model = reader->model,
                           .local = form == FORCE_POINTS_LAW ? between_local : about_local,
@@ -387,9 +395,14 @@ void wheels_read(Reader *reader, const Item *map)
             .damping = value[TIRE_DAMPING].number[0],
             .fade = value[TIRE_FADE].number[0],
         };
+        tuning_set(model->tuning, &wheel->radius, value[TIRE_RADIUS].tuned, 1);
+        tuning_set(model->tuning, &wheel->stiffness, value[TIRE_STIFFNESS].tuned, 1);
+        tuning_set(model->tuning, &wheel->damping, value[TIRE_DAMPING].tuned, 1);
+        tuning_set(model->tuning, &wheel->fade, value[TIRE_FADE].tuned, 1);
         if (!model->free_base && wheel->body == BODY_BASE)
             diag_fail(value[TIRE_BODY].item->at, "name the body that carries it", "%s: ground can't roll on the road",
                       entry[i].what);
-        body_point(reader, wheel->body, value[TIRE_CENTER].number, value[TIRE_CENTER].item->at, wheel->center);
+        body_point(reader, wheel->body, value[TIRE_CENTER].number, value[TIRE_CENTER].tuned, value[TIRE_CENTER].item->at,
+                   wheel->center);
     }
 }

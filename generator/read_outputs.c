@@ -121,7 +121,8 @@ static void output_read(Reader *reader, const Entry *entry, Output *output)
     if (value[WATCH_BODY].item)
         output->body = value[WATCH_BODY].index[0];
     if (value[WATCH_POINT].item)
-        body_point(reader, output->body, value[WATCH_POINT].number, value[WATCH_POINT].item->at, output->point);
+        body_point(reader, output->body, value[WATCH_POINT].number, value[WATCH_POINT].tuned,
+                   value[WATCH_POINT].item->at, output->point);
     if (value[WATCH_IN].item)
         output->in = value[WATCH_IN].index[0];
     for (int k = WATCH_COORDINATE; k <= WATCH_WHEEL; ++k)

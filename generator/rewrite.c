@@ -26,7 +26,9 @@ static const Rule rule[KEY_KINDS] = {
     [KEY_FORCE_VECTOR] = {.odd = Y, .words = WORDS_FORMULA},
     [KEY_TORQUE_VECTOR] = {.odd = X | Z, .words = WORDS_FORMULA},
     [KEY_NUMBER] = {.words = WORDS_FORMULA},
-    [KEY_INERTIA] = {.section = &inertia_section},
+    [KEY_MEASURE] = {.words = WORDS_FORMULA},
+    [KEY_INERTIA] = {.words = WORDS_FORMULA, .section = &inertia_section},
+    [KEY_RANGE] = {.words = WORDS_FORMULA},
     [KEY_ORIENTATION] = {.section = &orientation_section},
     [KEY_ODD] = {.odd = X},
     [KEY_AXIS] = {.odd = Y},
@@ -216,6 +218,8 @@ Item *entry_rewrite(const Rewrite *rewrite, const char *group, Item *entry)
     const Section *section = groups[group_index(group)].section;
     if (!section)
         return value_rewrite(rewrite, &rule[KEY_POINT], false, entry);
+    if (entry->kind == ITEM_SCALAR && section == &parameter_section)
+        return value_rewrite(rewrite, &rule[KEY_MEASURE], false, entry);
     return entry->kind == ITEM_MAP ? map_rewrite(rewrite, section, entry) : entry;
 }
 

@@ -79,12 +79,67 @@ void fixture_of_coordinate(const Coordinate *coordinate, const double (*origin)[
     number[NUMBER_OFFSET] = coordinate->design - (coordinate->type == COORDINATE_TRANSLATION ? coordinate->offset : 0);
 }
 
-Fixture fixture_literal(Dag *dag, const double number[FIXTURE_NUMBERS])
+/* Formulas [count] that follow no parameter become 0. */
+static void drop_fixed(const Dag *dag, Ex *formula, int count)
 {
-    Fixture fixture;
-    for (int i = 0; i < FIXTURE_NUMBERS; ++i)
-        ((Ex *)&fixture)[i] = ex_literal(dag, number[i]);
-    return fixture;
+    for (int i = 0; i < count; ++i)
+        if (dag->node[formula[i]].level < LEVEL_VARIABLE)
+            formula[i] = 0;
+}
+
+static void tuned_or_fixed3(const Model *model, const double at[3], Ex out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = tuned_or_fixed(model, &at[i]);
+}
+
+static void tuned_points(const Model *model, const int body[2], const double point[2][3], const double (*origin)[3],
+                         Ex formula[FIXTURE_NUMBERS])
+{
+    for (int end = 0; end < 2; ++end)
+        for (int i = 0; i < 3; ++i)
+            formula[NUMBER_POINT + 3 * end + i] = tuned_difference(model, &point[end][i], &origin[body[end]][i]);
+}
+
+void fixture_tuned_joint(const Model *model, const Joint *joint, const double (*origin)[3],
+                         Ex formula[FIXTURE_NUMBERS])
+{
+    memset(formula, 0, FIXTURE_NUMBERS * sizeof formula[0]);
+    if (!model->tuning)
+        return;
+    Dag *dag = model->tuning->dag;
+    for (int end = 0; end < 2; ++end) {
+        Ex *side = formula + NUMBER_SIDE + 3 * end;
+        tuned_or_fixed3(model, joint->axis[end], formula + NUMBER_AXIS + 3 * end);
+        tuned_or_fixed3(model, joint->side[end], side);
+        ex_cross(dag, formula + NUMBER_AXIS + 3 * end, side, side + 6);
+    }
+    Ex length = tuned_or_fixed(model, &joint->length);
+    formula[NUMBER_SQUARE] = ex_mul(dag, length, length);
+    formula[NUMBER_OFFSET] = tuned_or_fixed(model, &joint->offset);
+    drop_fixed(dag, formula, FIXTURE_NUMBERS);
+    if (joint_parts[joint->type] & (PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG))
+        tuned_points(model, joint->body, joint->point, origin, formula);
+}
+
+void fixture_tuned_coordinate(const Model *model, const Coordinate *coordinate, const double (*origin)[3],
+                              Ex formula[FIXTURE_NUMBERS])
+{
+    memset(formula, 0, FIXTURE_NUMBERS * sizeof formula[0]);
+    if (!model->tuning)
+        return;
+    Dag *dag = model->tuning->dag;
+    tuned_or_fixed3(model, coordinate->axis, formula + NUMBER_AXIS);
+    tuned_or_fixed3(model, coordinate->reference[0], formula + NUMBER_SIDE);
+    tuned_or_fixed3(model, coordinate->reference[1], formula + NUMBER_SIDE + 3);
+    ex_cross(dag, formula + NUMBER_AXIS, formula + NUMBER_SIDE, formula + NUMBER_SIDE + 6);
+    if (coordinate->type == COORDINATE_TRANSLATION)
+        formula[NUMBER_OFFSET] = tuned_difference(model, &coordinate->design, &coordinate->offset);
+    else if (coordinate->type == COORDINATE_ANGLE)
+        formula[NUMBER_OFFSET] = tuned_or_fixed(model, &coordinate->design);
+    drop_fixed(dag, formula, FIXTURE_NUMBERS);
+    if (coordinate->type != COORDINATE_ANGLE)
+        tuned_points(model, coordinate->body, coordinate->point, origin, formula);
 }
 
 /* Add f . (rate of the vector) to a row's derivative at one end. */

@@ -35,6 +35,7 @@ static void value(Text *out, const Section *section, const Key *key, int indent)
 {
     switch (key->kind) {
     case KEY_NUMBER:
+    case KEY_MEASURE:
     case KEY_ODD:
         if (key->bound == BOUND_NONE)
             reference(out, "number");

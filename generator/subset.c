@@ -40,6 +40,7 @@ double (*reference_points(Pool *pool, const Model *model, const Sequence *sequen
 {
     double(*origin)[3] = pool_alloc(pool, (size_t)model->bodies * sizeof *origin);
     int *best = pool_alloc(pool, (size_t)model->bodies * sizeof *best);
+    const double **held = pool_alloc(pool, (size_t)model->bodies * sizeof *held);
     for (int s = 0; s < sequence->subsets; ++s)
         for (int i = 0; i < sequence->subset[s].joints; ++i) {
             const Joint *joint = &model->joint[sequence->subset[s].joint[i]];
@@ -51,38 +52,84 @@ double (*reference_points(Pool *pool, const Model *model, const Sequence *sequen
                 if (merit > best[body]) {
                     best[body] = merit;
                     memcpy(origin[body], joint->point[end], sizeof origin[body]);
+                    held[body] = joint->point[end];
                 }
             }
         }
+    for (int body = 0; body < model->bodies; ++body)
+        if (held[body])
+            tuning_copy(model, origin[body], held[body], 3);
     return origin;
 }
 
 /* ---- the class's data --------------------------------------------------------------------------------------- */
 
-Ex subset_constant(Work *w, double (*get)(const Work *, int member, int a, int b), int a, int b)
+/* A number of every member: a constant of the class, or, where a member's follows tunable parameters, an input d[]. */
+static Ex class_number(Work *w, const double *value, const Ex *formula)
+{
+    int members = w->class->members, slot = 0;
+    Ex own[members], opposite[members];
+    bool any = false;
+    for (int i = 0; i < members; ++i)
+        any = any || formula[i];
+    if (!any)
+        return ex_constant(w->dag, value);
+    Dag *derive = w->model->tuning->dag;
+    for (int i = 0; i < members; ++i) {
+        own[i] = formula[i] ? formula[i] : ex_literal(derive, value[i]);
+        opposite[i] = ex_neg(derive, own[i]);
+    }
+    const Ex *known = w->derived_of;
+    while (slot < w->derived && memcmp(known, own, sizeof own) && memcmp(known, opposite, sizeof opposite))
+        ++slot, known += members;
+    bool negative = slot < w->derived && memcmp(known, own, sizeof own);
+    if (slot == w->derived) {
+        size_t row = sizeof own, size = (size_t)w->derived++ * row;
+        w->derived_of = pool_grow(w->pool, w->derived_of, size, size + row);
+        memcpy(w->derived_of + (size_t)slot * (size_t)members, own, row);
+    }
+    double sample[w->dag->samples];
+    for (int s = 0; s < w->dag->samples; ++s)
+        sample[s] = negative ? -value[s / w->configurations] : value[s / w->configurations];
+    Ex number = ex_input(w->dag, pool_print(w->pool, "d[%d]", slot), sample);
+    return negative ? ex_neg(w->dag, number) : number;
+}
+
+Ex subset_constant(Work *w, SubsetNumber *get, int a, int b)
 {
     double value[w->class->members];
-    for (int i = 0; i < w->class->members; ++i)
-        value[i] = get(w, i, a, b);
-    return ex_constant(w->dag, value);
+    Ex formula[w->class->members];
+    for (int i = 0; i < w->class->members; ++i) {
+        formula[i] = 0;
+        value[i] = get(w, i, a, b, &formula[i]);
+    }
+    return class_number(w, value, formula);
 }
 
 static void make_fixture(Work *w, Connection *tie, int position)
 {
     int members = w->class->members;
     double number[members][FIXTURE_NUMBERS], value[members];
+    Ex tuned_number[members][FIXTURE_NUMBERS], formula[members];
     for (int i = 0; i < members; ++i) {
         const Subset *subset = subset_member(w, i);
-        if (tie->is_coordinate)
-            fixture_of_coordinate(&w->model->coordinate[subset->coordinate[position]], w->origin, number[i]);
-        else
-            fixture_of_joint(&w->model->joint[subset->joint[position]], w->origin, number[i]);
+        if (tie->is_coordinate) {
+            const Coordinate *coordinate = &w->model->coordinate[subset->coordinate[position]];
+            fixture_of_coordinate(coordinate, w->origin, number[i]);
+            fixture_tuned_coordinate(w->model, coordinate, w->origin, tuned_number[i]);
+        } else {
+            const Joint *joint = &w->model->joint[subset->joint[position]];
+            fixture_of_joint(joint, w->origin, number[i]);
+            fixture_tuned_joint(w->model, joint, w->origin, tuned_number[i]);
+        }
     }
     Ex *out = (Ex *)&tie->fixture;
     for (int j = 0; j < FIXTURE_NUMBERS; ++j) {
-        for (int i = 0; i < members; ++i)
+        for (int i = 0; i < members; ++i) {
             value[i] = number[i][j];
-        out[j] = ex_constant(w->dag, value);
+            formula[i] = tuned_number[i][j];
+        }
+        out[j] = class_number(w, value, formula);
     }
 }
 
@@ -521,6 +568,8 @@ static Formula *formulate_class(Work *w, Solve solve)
         subset_inertia(w, layout, motion, &formula->solve);
         subset_react(w, remembered, &formula->react);
     }
+    formula->derived = w->derived;
+    formula->derived_of = w->derived_of;
     return formula;
 }
 

@@ -37,6 +37,8 @@ typedef struct Work {
     Motion base;
     Ex *x, *rate, *change;
     double size; /* see Formula */
+    int derived; /* numbers that follow tunable parameters: d[] */
+    Ex *derived_of; /* [derived][members] their formulas */
     Row *row;    /* [n] equations with the unknowns at q and at rest */
     int *row_of; /* [n] connection that a row belongs to */
     Ex *J;       /* [n][n] Jacobian by the unknown twists */
@@ -46,8 +48,9 @@ typedef struct Work {
 
 /* Subset of the i-th member. */
 const Subset *subset_member(const Work *w, int i);
-/* A constant of the class from every member's number. */
-Ex subset_constant(Work *w, double (*get)(const Work *, int member, int a, int b), int a, int b);
+/* A constant of the class from every member's number; *formula: what it follows, where that is not 0. */
+typedef double SubsetNumber(const Work *w, int member, int a, int b, Ex *formula);
+Ex subset_constant(Work *w, SubsetNumber *get, int a, int b);
 
 /* follow.c: take one member through its sample paths. Sets the graph's samples of that member to the ends of the paths,
  * w->alive, and what later subsets need of it in `sampling`. */

@@ -5,6 +5,20 @@
 
 #include <string.h>
 
+/* What the class of a subset reads as d[]. */
+static void add_derived(Plan *plan, Pool *pool, int subset)
+{
+    const Class *class = &plan->sequence->class[plan->sequence->subset[subset].class];
+    const Formula *formula = plan->formula[plan->sequence->subset[subset].class];
+    int member = 0;
+    while (class->member[member] != subset)
+        ++member;
+    plan->derived_offset[subset] = plan->derived->count;
+    for (int i = 0; i < formula->derived; ++i)
+        *POOL_PUSH(pool, plan->derived->formula, plan->derived->count) =
+            formula->derived_of[i * class->members + member];
+}
+
 Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Formula **formula,
                const double (*origin)[3])
 {
@@ -20,9 +34,15 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve s
                    .inertia_offset = pool_alloc(pool, subsets * sizeof(int)),
                    .motion_offset = pool_alloc(pool, bodies * sizeof(int)),
                    .multiplier_offset = pool_alloc(pool, bodies * sizeof(int)),
+                   .derived_offset = pool_alloc(pool, subsets * sizeof(int)),
+                   .derived = pool_alloc(pool, sizeof(Derived)),
                    .coordinate_state = pool_alloc(pool, coordinates * sizeof(int)),
                    .coordinate_rate = pool_alloc(pool, coordinates * sizeof(int)),
                    .coordinate_unknown = pool_alloc(pool, coordinates * sizeof(int))};
+    for (int i = 0; model->tuning && i < model->parameters; ++i)
+        if (model->parameter[i].geometric)
+            *POOL_PUSH(pool, plan->derived->formula, plan->derived->count) =
+                ex_input(model->tuning->dag, pool_print(pool, "p[%d]", model->parameter[i].index), NULL);
     /* the coordinates that a start belongs to stand in front of it */
     plan->start_size = model->coordinates;
     int multipliers = 0;
@@ -35,6 +55,7 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve s
         plan->inertia_offset[s] = plan->inertia_size;
         plan->start_size += layout->start_size;
         plan->inertia_size += layout->inertia_size;
+        add_derived(plan, pool, s);
         for (int b = 0; b < subset->bodies; ++b) {
             plan->motion_offset[subset->body[b]] = plan->motion_size;
             plan->motion_size += layout->motion_size;
@@ -91,7 +112,7 @@ Whole *whole_new(Pool *pool, const Plan *plan)
     }
     Ex gravity[3];
     for (int i = 0; i < 3; ++i)
-        gravity[i] = ex_literal(dag, model->gravity[i]);
+        gravity[i] = whole_number(whole, &model->gravity[i]);
     if (model->free_base) {
         int twist = 7 + plan->free_coordinates;
         for (int i = 0; i < 3; ++i) {
@@ -111,6 +132,30 @@ Whole *whole_new(Pool *pool, const Plan *plan)
     return whole;
 }
 
+/* The number of derived[] with that formula, which gets a place there; 0 is none: a literal. */
+static Ex derived_number(Whole *whole, Ex formula, double value)
+{
+    Derived *derived = whole->plan->derived;
+    int i = 0;
+    if (!formula)
+        return ex_literal(whole->dag, value);
+    while (i < derived->count && derived->formula[i] != formula)
+        ++i;
+    if (i == derived->count)
+        *POOL_PUSH(whole->dag->pool, derived->formula, derived->count) = formula;
+    return ex_input(whole->dag, pool_print(whole->dag->pool, "self->derived[%d]", i), &value);
+}
+
+Ex whole_number(Whole *whole, const double *at)
+{
+    return derived_number(whole, tuned_number(whole->model, at), *at);
+}
+
+Ex whole_difference(Whole *whole, const double *a, const double *b)
+{
+    return derived_number(whole, tuned_difference(whole->model, a, b), *a - *b);
+}
+
 Vector whole_point(Whole *whole, int body, const double s[3])
 {
     Dag *dag = whole->dag;
@@ -120,7 +165,7 @@ Vector whole_point(Whole *whole, int body, const double s[3])
         Vector vector = {.point = true};
         Ex world[3], velocity[3];
         for (int i = 0; i < 3; ++i)
-            local[i] = ex_literal(dag, s[i]);
+            local[i] = whole_number(whole, &s[i]);
         ex_sub3(dag, local, whole->r, world);
         ex_apply_transposed(dag, whole->R, world, vector.v);
         ex_apply_transposed(dag, whole->R, whole->v, velocity);
@@ -130,8 +175,34 @@ Vector whole_point(Whole *whole, int body, const double s[3])
         return vector;
     }
     for (int i = 0; i < 3; ++i)
-        local[i] = ex_literal(dag, s[i] - whole->plan->origin[body][i]);
+        local[i] = whole_difference(whole, &s[i], &whole->plan->origin[body][i]);
     return vector_point(dag, &whole->motion[body], local);
+}
+
+static Fixture whole_fixture(Whole *whole, const double number[FIXTURE_NUMBERS], const Ex formula[FIXTURE_NUMBERS])
+{
+    Fixture fixture;
+    for (int i = 0; i < FIXTURE_NUMBERS; ++i)
+        ((Ex *)&fixture)[i] = derived_number(whole, formula[i], number[i]);
+    return fixture;
+}
+
+Fixture whole_joint_fixture(Whole *whole, const Joint *joint, const double (*origin)[3])
+{
+    double number[FIXTURE_NUMBERS];
+    Ex formula[FIXTURE_NUMBERS];
+    fixture_of_joint(joint, origin, number);
+    fixture_tuned_joint(whole->model, joint, origin, formula);
+    return whole_fixture(whole, number, formula);
+}
+
+Fixture whole_coordinate_fixture(Whole *whole, const Coordinate *coordinate, const double (*origin)[3])
+{
+    double number[FIXTURE_NUMBERS];
+    Ex formula[FIXTURE_NUMBERS];
+    fixture_of_coordinate(coordinate, origin, number);
+    fixture_tuned_coordinate(whole->model, coordinate, origin, formula);
+    return whole_fixture(whole, number, formula);
 }
 
 void whole_position(Whole *whole, const Vector *point, Ex out[3])
@@ -180,7 +251,7 @@ void whole_inertia(Whole *whole, int body, Ex J[6])
 {
     Ex own[6];
     for (int i = 0; i < 6; ++i)
-        own[i] = ex_literal(whole->dag, whole->model->body[body].inertia[i]);
+        own[i] = whole_number(whole, &whole->model->body[body].inertia[i]);
     whole_rotate_inertia(whole, body, own, J);
 }
 

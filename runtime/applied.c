@@ -84,6 +84,8 @@ static double law_at(const World *world, const Law *law, const double *local)
     case LAW_NUMBER: return law->number;
     case LAW_PARAMETER: {
         const Parameter *parameter = &world->model->parameter[law->index];
+        if (parameter->law)
+            return law_at(world, parameter->law, local);
         return parameter->tunable ? world->parameter[parameter->index] : parameter->value;
     }
     case LAW_INPUT: return world->input[law->index];

@@ -45,6 +45,8 @@ double *instance_array(gic_head *self, size_t offset)
 
 const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status)
 {
+    if (status == GIC_ERROR_GEOMETRY && self->condition >= 0 && self->condition < model->condition_count)
+        return pool_print(pool, "%s: %s", gic_status_text(status), model->condition_text[self->condition]);
     if (self->subset < 0 || self->subset >= model->subset_count)
         return gic_status_text(status);
     return pool_print(pool, "%s: subset '%s'", gic_status_text(status), model->subset_name[self->subset]);

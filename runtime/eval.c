@@ -4,15 +4,17 @@
 
 #include <string.h>
 
-/* Which column of the table fills which number of the instance: states first, then inputs; -1: keeps its default. */
+/* Which column of the table fills which number of the instance: states first, then inputs, then parameters; -1: keeps its
+ * default. */
 typedef struct Columns {
-    int states, inputs;
-    int *column; /* [states + inputs] */
+    int states, inputs, parameters;
+    int *column; /* [states + inputs + parameters] */
 } Columns;
 
 static const char *number_name(const gic_model *model, int i)
 {
-    return i < model->slow_count ? model->state[i].name : model->input[i - model->slow_count].name;
+    int input = i - model->slow_count, parameter = input - model->input_count;
+    return input < 0 ? model->state[i].name : parameter < 0 ? model->input[input].name : model->parameter[parameter].name;
 }
 
 /* Must the table have it? All states, and what driven coordinates do. */
@@ -30,8 +32,9 @@ static bool is_needed(const gic_model *model, int i)
 
 static Columns find_columns(Pool *pool, const gic_model *model, const States *table)
 {
-    Columns columns = {.states = model->slow_count, .inputs = model->input_count};
-    const int numbers = columns.states + columns.inputs;
+    Columns columns = {.states = model->slow_count, .inputs = model->input_count,
+                       .parameters = model->parameter_count};
+    const int numbers = columns.states + columns.inputs + columns.parameters;
     const char **name = pool_alloc(pool, sizeof *name * (size_t)(numbers + 1));
     columns.column = pool_alloc(pool, sizeof *columns.column * (size_t)(numbers + 1));
     for (int i = 0; i < numbers; ++i) {
@@ -45,7 +48,7 @@ static Columns find_columns(Pool *pool, const gic_model *model, const States *ta
         const char *nearest = diag_nearest(table->name[k], name, numbers);
         if (i == numbers)
             diag_fail(table->at[k], nearest ? pool_print(pool, "did you mean '%s'?", nearest) : "remove the column",
-                      "the model has no state or input '%s'", table->name[k]);
+                      "the model has no state, input or tunable parameter '%s'", table->name[k]);
         columns.column[i] = k;
     }
     Text missing = {.pool = pool};
@@ -132,7 +135,11 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
     const double *output = instance_array(self, model->output_offset);
     double *rate = pool_alloc(pool, sizeof *rate * (size_t)(model->slow_count + model->fast_count + 1));
     double *pose = pool_alloc(pool, sizeof *pose * 7 * (size_t)(model->body_count + 1));
+    double *standard = pool_alloc(pool, sizeof *standard * (size_t)(model->parameter_count + 1));
+    double *parameter = pool_alloc(pool, sizeof *parameter * (size_t)(model->parameter_count + 1));
     int failures = 0;
+    model->setup(self);
+    memcpy(standard, instance_array(self, model->parameter_offset), sizeof *standard * (size_t)model->parameter_count);
 
     Csv csv = csv_open(pool, request->results);
     write_header(model, &csv);
@@ -140,7 +147,11 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
         const double *value = table->value + row * table->columns;
         gic_self_test test = {.constraint = 0};
         /* set up afresh: poses come by continuation from the design, whatever row came before */
-        int status = model->setup(self);
+        for (int i = 0; i < columns.parameters; ++i) {
+            int column = columns.column[columns.states + columns.inputs + i];
+            parameter[i] = column < 0 ? standard[i] : value[column];
+        }
+        int status = model->setup_with(self, parameter);
         self->road = scene ? scene->road : NULL;
         for (int i = 0; i < columns.states + columns.inputs; ++i)
             if (columns.column[i] >= 0)

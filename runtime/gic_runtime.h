@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Raised when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 1
+#define GIC_ABI_VERSION 2
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. */
@@ -51,13 +51,15 @@ typedef double gic_real;
     X(GIC_ERROR_MASS, -7, "the mass matrix is not positive definite") \
     X(GIC_ERROR_RESULT, -8, "a result is not a finite number") \
     X(GIC_ERROR_ROAD, -9, "the road has no finite height under a wheel") \
-    X(GIC_ERROR_ABI, -10, "generated code and runtime have different versions or number types")
+    X(GIC_ERROR_ABI, -10, "generated code and runtime have different versions or number types") \
+    X(GIC_ERROR_GEOMETRY, -11, "a parameter makes the geometry impossible") \
+    X(GIC_ERROR_TUNED, -12, "a geometric parameter is not the one that the geometry is for: set up with it")
 
 typedef enum gic_status {
 #define GIC_STATUS_ENUM(name, code, text) name = code,
     GIC_STATUS_LIST(GIC_STATUS_ENUM)
 #undef GIC_STATUS_ENUM
-        GIC_STATUS_LAST = -10
+        GIC_STATUS_LAST = -12
 } gic_status;
 
 /* What a status means, in one line; never NULL. */
@@ -89,6 +91,7 @@ typedef struct gic_head {
     int32_t flip;         /* which of the two Newton starts is the last good one */
     int32_t status;       /* of the last call */
     int32_t subset;       /* that the status is about, -1: none; see the descriptor's subset_name */
+    int32_t condition;    /* that GIC_ERROR_GEOMETRY is about, -1: none; see the descriptor's condition_text */
     int64_t rhs_count;    /* right-hand sides evaluated */
     int64_t newton_count; /* subset solutions, and the corrections they took in total */
     int64_t correction_count;
@@ -134,8 +137,12 @@ typedef struct gic_model {
     const int32_t *coordinate_state; /* index of w in state[] (its rate: slow_count / 2 further on), -1: driven */
     const int32_t *coordinate_input; /* driven: index of value in input[], rate and acceleration follow; else -1 */
     const char *const *subset_name, *const *body_name;
-    /* the functions; `self` is the instance */
+    const int32_t *parameter_geometric; /* 1: acts at set-up only, points, axes, masses and so on depend on it; 0: at once */
+    int32_t condition_count;
+    const char *const *condition_text; /* what geometric parameters must not violate */
+    /* the functions; `self` is the instance, `parameter` has parameter_count numbers */
     int (*setup)(void *self);
+    int (*setup_with)(void *self, const gic_real *parameter);
     int (*rhs)(void *self, gic_real time, const gic_real *state, gic_real *rate);
     int (*settle)(void *self, gic_real *state);
     int (*outputs)(void *self);

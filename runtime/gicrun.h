@@ -64,6 +64,7 @@ typedef struct Scene {
     double tolerance;   /* of variable steps */
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
     double *value, *rate; /* [coordinates] at time 0; not used where driven */
+    bool placed, *given;  /* does the scene give the position, [coordinates] the values? Else they are the model's */
     const gic_road *road; /* NULL: flat at z = 0 */
     double *parameter; /* [tunables] */
     int profiles, columns, curves;

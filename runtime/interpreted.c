@@ -138,6 +138,17 @@ static void load(const Instance *self, double time)
     world->lane = self->head.lane;
 }
 
+/* Interpreted engines have the geometry of the file. */
+static bool same_geometry(const Instance *self)
+{
+    const Model *model = self->context->world->model;
+    const double *value = array_of(self, self->context->code.parameter_offset);
+    for (int i = 0; i < model->parameters; ++i)
+        if (model->parameter[i].geometric && value[model->parameter[i].index] != model->parameter[i].value)
+            return false;
+    return true;
+}
+
 static int any_rhs(void *instance, double time, const double *state, double *rate)
 {
     Instance *self = instance;
@@ -150,6 +161,8 @@ static int any_rhs(void *instance, double time, const double *state, double *rat
         !finite(self, code->parameter_offset, code->parameter_count) ||
         !finite(self, code->port_offset, code->port_count))
         return self->head.status = GIC_ERROR_INPUT;
+    if (!same_geometry(self))
+        return self->head.status = GIC_ERROR_TUNED;
     ++self->head.rhs_count;
     load(self, time);
     int status = context->evaluate(context, self, state, result);
@@ -216,15 +229,17 @@ static int any_settle(void *instance, double *state)
     return status;
 }
 
-static int any_setup(void *instance)
+static int any_setup_with(void *instance, const double *parameter)
 {
     Instance *self = instance;
     const Interpreted *context = self->context;
     const gic_model *code = &context->code;
     const Model *model = context->world->model;
+    double wanted[code->parameter_count + 1]; /* they may be the instance's own */
+    memcpy(wanted, parameter, sizeof *wanted * (size_t)code->parameter_count);
     memset(self, 0, code->size);
     self->context = context;
-    self->head.subset = -1;
+    self->head.subset = self->head.condition = -1;
     double *state = array_of(self, code->state_offset), *input = array_of(self, code->input_offset);
     if (code->free_base) {
         memcpy(state, model->body[BODY_BASE].position, sizeof model->body[BODY_BASE].position);
@@ -235,14 +250,25 @@ static int any_setup(void *instance)
             state[context->coordinate_state[c]] = model->coordinate[c].initial;
     for (int i = 0; i < model->inputs; ++i)
         input[i] = model->input[i].initial;
-    for (int i = 0; i < model->parameters; ++i)
-        if (model->parameter[i].tunable)
-            array_of(self, code->parameter_offset)[model->parameter[i].index] = model->parameter[i].value;
+    memcpy(array_of(self, code->parameter_offset), wanted, sizeof *wanted * (size_t)code->parameter_count);
+    if (!same_geometry(self))
+        return self->head.status = GIC_ERROR_TUNED;
     load(self, 0);
     return self->head.status = context->start(context, self);
 }
 
-/* ---- the descriptor -------------------------------------------------------------------------------------- */
+static int any_setup(void *instance)
+{
+    const Model *model = ((Instance *)instance)->context->world->model;
+    double value[model->tunables + 1];
+    for (int i = 0; i < model->parameters; ++i)
+        if (model->parameter[i].tunable)
+            value[model->parameter[i].index] = model->parameter[i].value;
+    return any_setup_with(instance, value);
+}
+
+/* ---- the descriptor -----------------------------------------------------------------------------------------------
+ */
 
 static gic_signal *signals(Pool *pool, int count)
 {
@@ -377,6 +403,10 @@ Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *seq
     int states = model->free_base ? 13 : 0;
     for (int c = 0; c < model->coordinates; ++c)
         states += model->coordinate[c].driven ? 0 : 2;
+    int32_t *geometric = pool_alloc(pool, ((size_t)model->tunables + 1) * sizeof *geometric);
+    for (int i = 0; i < model->parameters; ++i)
+        if (model->parameter[i].tunable)
+            geometric[model->parameter[i].index] = model->parameter[i].geometric;
     context->world = world_new(pool, model, sequence);
     context->profile = pool_alloc(pool, sizeof *context->profile);
     context->code = (gic_model){.abi_version = GIC_ABI_VERSION,
@@ -396,7 +426,9 @@ Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *seq
                                 .subset_count = sequence->subsets,
                                 .body_count = model->bodies,
                                 .wheel_count = model->wheels,
+                                .parameter_geometric = geometric,
                                 .setup = any_setup,
+                                .setup_with = any_setup_with,
                                 .rhs = any_rhs,
                                 .settle = any_settle,
                                 .outputs = any_outputs,

@@ -194,6 +194,7 @@ static void read_base(Reader *reader, const Item *initial)
     const Item *angular = doc_find(initial, "angular_velocity");
     if (position)
         doc_vector(position, "initial position", scene->position, 3);
+    scene->placed = position;
     if (orientation)
         read_orientation(orientation, scene->euler);
     if (velocity && speed)
@@ -250,6 +251,7 @@ static void read_initial(Reader *reader, const Item *initial)
         read_coordinates(reader, rates, "rate", scene->rate);
     for (int i = 0; coordinates && i < model->coordinates; ++i) {
         const Item *item = doc_find(coordinates, model->coordinate[i].name);
+        scene->given[i] = item;
         if (item)
             warn_range(&model->coordinate[i], item->at, scene->value[i], scene->value[i]);
     }
@@ -505,6 +507,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     memcpy(scene->euler, model->body[BODY_BASE].euler, sizeof scene->euler);
     scene->value = pool_alloc(pool, sizeof(double) * (size_t)(model->coordinates + 1));
     scene->rate = pool_alloc(pool, sizeof(double) * (size_t)(model->coordinates + 1));
+    scene->given = pool_alloc(pool, sizeof(bool) * (size_t)(model->coordinates + 1));
     for (int i = 0; i < model->coordinates; ++i)
         scene->value[i] = model->coordinate[i].initial;
     const Item *initial = doc_find(root, "initial"), *road = doc_find(root, "road"), *inputs = doc_find(root, "inputs");

@@ -40,15 +40,15 @@ static double seconds(clockid_t clock_id)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Where the base stands in the state, and the free coordinates: FORMAT.md section 10. */
+/* Where the base stands in the state, and the free coordinates: FORMAT.md section 10. What the scene doesn't give stays as
+ * set-up has it: geometric parameters may have moved it. */
 static void set_state(const gic_model *model, const Scene *scene, gic_head *self)
 {
     double *state = instance_array(self, model->state_offset);
-    memcpy(instance_array(self, model->parameter_offset), scene->parameter,
-           sizeof(double) * (size_t)model->parameter_count);
     const int half = model->slow_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
     if (model->free_base) {
-        memcpy(state, scene->position, sizeof scene->position);
+        if (scene->placed)
+            memcpy(state, scene->position, sizeof scene->position);
         memcpy(state + 3, scene->euler, sizeof scene->euler);
         memcpy(state + half + 1, scene->velocity, sizeof scene->velocity);
         memcpy(state + half + 4, scene->angular_velocity, sizeof scene->angular_velocity);
@@ -57,7 +57,8 @@ static void set_state(const gic_model *model, const Scene *scene, gic_head *self
         int at = model->coordinate_state[i];
         if (at < 0)
             continue;
-        state[at] = scene->value[i];
+        if (scene->given[i])
+            state[at] = scene->value[i];
         state[at + half] = scene->rate[i];
     }
 }
@@ -180,7 +181,7 @@ static const char *remedy_of(int status)
 
 int scene_start(const gic_model *model, const Scene *scene, gic_head *self)
 {
-    const int status = model->setup(self);
+    const int status = model->setup_with(self, scene->parameter);
     if (status != GIC_OK)
         return status;
     set_state(model, scene, self);

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: MIT
+ * Numbers that follow tunable parameters: the formulas beside the numbers of a model, by their addresses. */
+#include "gicgen.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+Tuning *tuning_new(Pool *pool)
+{
+    Tuning *tuning = pool_alloc(pool, sizeof *tuning);
+    tuning->dag = dag_new(pool, 1, 1);
+    return tuning;
+}
+
+Ex tuned_number(const Model *model, const double *at)
+{
+    for (int i = 0; model->tuning && i < model->tuning->numbers; ++i)
+        if (model->tuning->number[i].at == at)
+            return model->tuning->number[i].formula;
+    return 0;
+}
+
+Ex tuned_or_fixed(const Model *model, const double *at)
+{
+    Ex formula = tuned_number(model, at);
+    return formula ? formula : ex_literal(model->tuning->dag, *at);
+}
+
+Ex tuned_difference(const Model *model, const double *a, const double *b)
+{
+    if (!tuned_number(model, a) && !tuned_number(model, b))
+        return 0;
+    Dag *dag = model->tuning->dag;
+    Ex difference = ex_sub(dag, tuned_or_fixed(model, a), tuned_or_fixed(model, b));
+    return dag->node[difference].level == LEVEL_VARIABLE ? difference : 0;
+}
+
+void tuning_set(Tuning *tuning, const double *at, const Ex *formula, int count)
+{
+    for (int i = 0; i < count; ++i)
+        if (tuning->dag->node[formula[i]].level == LEVEL_VARIABLE)
+            *POOL_PUSH(tuning->dag->pool, tuning->number, tuning->numbers) = (struct TunedNumber){at + i, formula[i]};
+}
+
+void tuning_copy(const Model *model, const double *to, const double *from, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        Ex formula = tuned_number(model, from + i);
+        if (formula)
+            tuning_set(model->tuning, to + i, &formula, 1);
+    }
+}
+
+void tuning_require(Tuning *tuning, Ex value, bool zero, const char *text)
+{
+    if (tuning->dag->node[value].level == LEVEL_VARIABLE)
+        *POOL_PUSH(tuning->dag->pool, tuning->condition, tuning->conditions) = (Condition){value, zero, text};
+}
+
+void tuning_close(Model *model)
+{
+    Tuning *tuning = model->tuning;
+    Dag *dag = tuning->dag;
+    bool any = false;
+    int roots = 0;
+    Ex *root = pool_alloc(dag->pool, (size_t)(tuning->numbers + tuning->conditions + 1) * sizeof *root);
+    for (int i = 0; i < tuning->numbers; ++i)
+        root[roots++] = tuning->number[i].formula;
+    for (int i = 0; i < tuning->conditions; ++i)
+        root[roots++] = tuning->condition[i].value;
+    const bool *needed = dag_needed(dag, root, roots);
+    for (int e = 0; e < dag->nodes; ++e) {
+        if (!needed[e] || dag->node[e].op != OP_INPUT)
+            continue;
+        if (!strcmp(dag->node[e].name, "rest")) {
+            tuning->assembles = true;
+            continue;
+        }
+        for (int i = 0; i < model->parameters; ++i)
+            if (model->parameter[i].tunable && atoi(dag->node[e].name + 2) == model->parameter[i].index)
+                any = model->parameter[i].geometric = true;
+    }
+    if (!any)
+        model->tuning = NULL;
+}
