@@ -1,0 +1,125 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_tuning.sh GICGEN GICRUN STATES REFERENCE AGREE: tunable geometry. Generated code that is set up with random values of its
+# parameters does what the file with those values baked in says: accelerations, poses and reactions against the
+# quad-precision reference on the dump of the baked file, and all outputs against the baked file's own code.
+gicgen=$(realpath "$1")
+gicrun=$(realpath "$2")
+states=$(realpath "$3")
+reference=$(realpath "$4")
+agree=$(realpath "$5")
+root=$(cd "$(dirname "$0")/.." && pwd)
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+passed=0
+failed=0
+
+check() {
+    if [ "$1" -eq 0 ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAIL $2"
+    fi
+}
+
+# draw FILE SEED: FILE with a value for each tunable parameter from between the two numbers behind it, no longer tunable;
+# names and values in columns.csv. What is mirrored gets another value on the right.
+draw() {
+    sed "s|file: \.\./\.\.|file: $root|; s|^include: \.\./\.\.|include: $root|" "$1" |
+        awk -v seed="$2" -v OFMT=%.17g -v CONVFMT=%.17g '
+            BEGIN { srand(seed) }
+            /tunable: true/ {
+                name = $1
+                sub(/:/, "", name)
+                low = $(NF - 1)
+                high = $NF
+                sides = name ~ /_l$/ ? 2 : 1
+                for (side = 1; side <= sides; ++side) {
+                    value = sprintf("%.12g", low + rand() * (high - low))
+                    line = $0
+                    sub(/value: [^,}]*/, "value: " value, line)
+                    sub(/, tunable: true/, "", line)
+                    if (side == 2) {
+                        sub(/_l$/, "_r", name)
+                        sub(/_l:/, "_r:", line)
+                    }
+                    print line
+                    names = names "," name
+                    values = values "," value
+                }
+                next
+            }
+            { print }
+            END { print names "\n" values >"columns.csv" }'
+}
+
+# same A B: no cell of two tables differs by more than 1e-12 of the largest magnitude in its row and kind of column, 1e-11 where
+# that is an energy (the work of 2 t through 1 m against a gram)
+same() {
+    paste -d '\n' "$1" "$2" | awk -F, '
+        NR == 1 { for (i = 1; i <= NF; ++i) name[i] = $i }
+        NR > 2 && NR % 2 { for (i = 1; i <= NF; ++i) a[i] = $i }
+        NR > 2 && !(NR % 2) {
+            scale = 1
+            for (i = 1; i <= NF - 3; ++i) if (name[i] !~ /^output/) { x = a[i] < 0 ? -a[i] : a[i]; if (x > scale) scale = x }
+            for (i = 1; i <= NF - 3; ++i) {
+                x = a[i] < 0 ? -a[i] : a[i]
+                d = a[i] - $i
+                if (d < 0) d = -d
+                limit = 1e-12 * (x > scale ? x : scale)
+                if (a[i] == "" || $i == "" || d > limit) { bad = 1; if (shown++ < 5) print name[i], a[i], $i }
+            }
+        }
+        END { exit bad || NR < 4 }'
+}
+
+for model in car rig hand; do
+    tuned=$root/tests/tuning/$model.veh
+    for seed in 1 2 3; do
+        draw "$tuned" "$seed" >baked.veh
+        "$gicgen" --dump-model baked.veh >dump && "$states" dump --count 12 --seed "$seed" -o states.csv &&
+            "$reference" dump states.csv -o accelerations.csv 2>/dev/null
+        awk 'NR == FNR { column[NR] = $0; next } { print $0 column[FNR == 1 ? 1 : 2] }' columns.csv states.csv >tuned.csv
+        "$gicrun" --eval tuned.csv "$tuned" -o results.csv && "$agree" dump accelerations.csv results.csv >said
+        check $? "$model, values $seed: set up with them, against the reference"
+        tail -n 1 said
+        "$gicrun" --eval states.csv baked.veh -o baked.csv && same baked.csv results.csv
+        check $? "$model, values $seed: set up with them, against the values baked in"
+    done
+done
+
+# the augmented form reads the same numbers
+"$gicrun" --eval tuned.csv --solve augmented "$tuned" -o results.csv && "$agree" dump accelerations.csv results.csv >said
+check $? "the augmented form, against the reference"
+
+# what set-up says, in C, in single precision and in C++
+for model in car hand; do
+    "$gicgen" "$root/tests/tuning/$model.veh" -o "$model.c" || failed=$((failed + 1))
+done
+for how in "cc -std=c99" "cc -std=c99 -DGIC_FLOAT" "c++ -x c++" "c++ -x c++ -DGIC_FLOAT"; do
+    $how -O1 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -ffp-contract=off -I. -I"$root/runtime" \
+        "$root/tests/tuning/statuses.c" car.c hand.c "$root/runtime/gic_runtime.c" -x none -lm -o statuses && ./statuses
+    check $? "$how: what set-up says"
+done
+
+# a scene's parameters are the model's with those values: the same run to rounding, from the state that they move
+draw "$root/tests/tuning/rig.veh" 4 >baked.veh
+printf 'gicscene: 1\nduration: 0.2\nstep: 0.002\nintegrator: rk4\noutput_step: 0.2\n' >baked.scene
+{
+    cat baked.scene
+    awk -F, '{ for (i = 2; i <= NF; ++i) if (NR == 1) name[i] = $i; else text = text (i > 2 ? ", " : "") name[i] ": " $i }
+        END { print "parameters: {" text "}" }' columns.csv
+} >tuned.scene
+"$gicrun" --quiet baked.veh baked.scene -o baked.csv &&
+    "$gicrun" --quiet "$root/tests/tuning/rig.veh" tuned.scene -o results.csv &&
+    paste -d '\n' baked.csv results.csv | awk -F, '
+        NR % 2 { for (i = 1; i <= NF; ++i) a[i] = $i }
+        NR > 2 && !(NR % 2) { for (i = 1; i <= NF; ++i) { d = a[i] - $i; x = a[i]
+            if (d * d > 1e-18 * (1 + x * x)) { print "column " i ": " a[i] " " $i; bad = 1 } } }
+        END { exit bad || NR < 6 }'
+check $? "parameters of a scene"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
