@@ -55,5 +55,7 @@ double *instance_array(gic_head *self, size_t offset);
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
 /* engine_gic.c: the method of Serban and Haug 2000, interpreted. */
 const Engine *engine_gic(Pool *pool, const Model *model, const EngineOptions *options);
+/* tape_engine.c: the expression graph of the generated code, interpreted. */
+const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *options);
 
 #endif

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: MIT
+ * The functions of the descriptor: the second half of the template model.c.in, over tapes. */
+#include "tape_engine.h"
+
+#include <string.h>
+
+/* Where the rates of a free base stand in the state: v, omega. */
+static int twist_place(const TapeEngine *engine)
+{
+    return 7 + engine->formulation->plan->free_coordinates;
+}
+
+static int32_t *dependent_parameter(TapeInstance *self)
+{
+    return (int32_t *)(void *)tape_array(self, self->engine->code.discrete_offset);
+}
+
+/* Euler parameters with the dependent one recovered from the other three, and the angular velocity of the base. */
+static int orient(TapeInstance *self, const double *y, double e[4], double turn[3])
+{
+    if (!self->engine->code.free_base) {
+        memcpy(e, (const double[4]){1, 0, 0, 0}, 4 * sizeof *e);
+        memset(turn, 0, 3 * sizeof *turn);
+        return GIC_OK;
+    }
+    int32_t dependent = *dependent_parameter(self);
+    int64_t switches = 0;
+    memcpy(turn, y + twist_place(self->engine) + 3, 3 * sizeof *turn);
+    return gic_orientation(y + 3, &dependent, &switches, e);
+}
+
+/* Coordinates and rates, from the state where they are free, from the inputs where they are driven. */
+static void gather(TapeInstance *self, const double *y)
+{
+    const TapeEngine *engine = self->engine;
+    const Plan *plan = engine->formulation->plan;
+    const double *u = tape_array(self, engine->code.input_offset);
+    double *x = tape_array(self, engine->x_offset), *xd = tape_array(self, engine->xd_offset);
+    for (int w = 0; w < plan->model->coordinates; ++w) {
+        const Coordinate *c = &plan->model->coordinate[w];
+        x[w] = c->driven ? u[c->input] : y[plan->coordinate_state[w]];
+        xd[w] = c->driven ? u[c->input + 1] : y[plan->coordinate_rate[w]];
+    }
+}
+
+int tape_whole(TapeInstance *self, const Tape *tape, double time, const double *y, const double *e, double *rate,
+               double *acc, double *out)
+{
+    const TapeEngine *engine = self->engine;
+    const gic_model *code = &engine->code;
+    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time};
+    double *const array[WHOLE_COUNT] = {
+        [WHOLE_time] = &time,
+        [WHOLE_y] = (double *)y, /* blocks only read these two */
+        [WHOLE_e] = (double *)e,
+        [WHOLE_x] = tape_array(self, engine->x_offset),
+        [WHOLE_xd] = tape_array(self, engine->xd_offset),
+        [WHOLE_u] = tape_array(self, code->input_offset),
+        [WHOLE_m] = tape_array(self, engine->motion_offset),
+        [WHOLE_n] = tape_array(self, engine->inertia_offset),
+        [WHOLE_p] = tape_array(self, code->parameter_offset),
+        [WHOLE_port] = tape_array(self, code->port_offset),
+        [WHOLE_s] = tape_start(self),
+        [WHOLE_rate] = rate,
+        [WHOLE_acc] = acc,
+        [WHOLE_out] = out,
+        [WHOLE_pose] = out,
+        [WHOLE_tau] = out,
+        [WHOLE_energy] = out,
+    };
+    return tape_play(tape, 0, array, &world, engine->frame);
+}
+
+static int evaluate(TapeInstance *self, double time, const double *y, double e[4], double *rate)
+{
+    const TapeEngine *engine = self->engine;
+    const gic_model *code = &engine->code;
+    double turn[3];
+    self->head.subset = -1;
+    if (!gic_finite(y, code->slow_count) || !gic_finite(&time, 1) ||
+        !gic_finite(tape_array(self, code->input_offset), code->input_count) ||
+        !gic_finite(tape_array(self, code->parameter_offset), code->parameter_count) ||
+        !gic_finite(tape_array(self, code->port_offset), code->port_count))
+        return self->head.status = GIC_ERROR_INPUT;
+    ++self->head.rhs_count;
+    int status = orient(self, y, e, turn);
+    if (status == GIC_OK) {
+        gather(self, y);
+        status = tape_recover(self, turn, false);
+    }
+    if (status == GIC_OK)
+        status = tape_whole(self, engine->dynamics, time, y, e, engine->result, NULL, NULL);
+    if (status == GIC_OK && !gic_finite(engine->result, code->slow_count))
+        status = GIC_ERROR_RESULT;
+    if (status == GIC_OK)
+        memcpy(rate, engine->result, (size_t)code->slow_count * sizeof *rate);
+    return self->head.status = status;
+}
+
+int tape_refresh(TapeInstance *self, double e[4])
+{
+    const gic_model *code = &self->engine->code;
+    const double time = gic_time(self);
+    if (self->head.input_function)
+        self->head.input_function(self->head.user, self->head.lane, time, tape_array(self, code->input_offset));
+    return evaluate(self, time, tape_array(self, code->state_offset), e, tape_array(self, code->rate_offset));
+}
+
+static int rhs(void *instance, double time, const double *state, double *rate)
+{
+    double e[4];
+    return evaluate(instance, time, state, e, rate);
+}
+
+/* The dependent parameter takes its recovered value, and the largest one becomes the dependent one. */
+static int settle(void *instance, double *y)
+{
+    TapeInstance *self = instance;
+    double e[4];
+    if (!self->engine->code.free_base)
+        return GIC_OK;
+    int status = gic_orientation(y + 3, dependent_parameter(self), &self->head.switch_count, e);
+    if (status == GIC_OK)
+        memcpy(y + 3, e, sizeof e);
+    return status;
+}
+
+static int outputs(void *instance)
+{
+    TapeInstance *self = instance;
+    const TapeEngine *engine = self->engine;
+    const gic_model *code = &engine->code;
+    double e[4];
+    int status = tape_refresh(self, e);
+    if (status == GIC_OK)
+        status = tape_whole(self, engine->outputs, gic_time(self), tape_array(self, code->state_offset), e,
+                            tape_array(self, code->rate_offset), NULL, engine->out);
+    if (status == GIC_OK && !gic_finite(engine->out, code->output_count))
+        status = GIC_ERROR_RESULT;
+    if (status == GIC_OK)
+        memcpy(tape_array(self, code->output_offset), engine->out, (size_t)code->output_count * sizeof(double));
+    return self->head.status = status;
+}
+
+static int poses(void *instance, double *pose)
+{
+    TapeInstance *self = instance;
+    double e[4];
+    int status = tape_refresh(self, e);
+    if (status == GIC_OK)
+        tape_whole(self, self->engine->poses, gic_time(self), tape_array(self, self->engine->code.state_offset), e,
+                   NULL, NULL, pose);
+    return status;
+}
+
+static int setup(void *instance)
+{
+    TapeInstance *self = instance;
+    const TapeEngine *engine = self->engine;
+    const gic_model *code = &engine->code;
+    const Plan *plan = engine->formulation->plan;
+    const Model *model = plan->model;
+    double e[4], turn[3];
+    memset(self, 0, code->size);
+    self->engine = engine;
+    self->head.subset = -1;
+    double *state = tape_array(self, code->state_offset), *input = tape_array(self, code->input_offset);
+    double *parameter = tape_array(self, code->parameter_offset), *x = tape_array(self, engine->x_offset);
+    double *start = tape_start(self);
+    memcpy(state, engine->initial, (size_t)code->slow_count * sizeof *state);
+    for (int i = 0; i < model->inputs; ++i)
+        input[i] = model->input[i].initial;
+    for (int i = 0; i < model->parameters; ++i)
+        if (model->parameter[i].tunable)
+            parameter[model->parameter[i].index] = model->parameter[i].value;
+    /* from the design poses alone, then on to the initial values of the coordinates */
+    for (int i = 0; i < model->coordinates; ++i)
+        start[i] = x[i] = model->coordinate[i].design;
+    for (int s = 0; s < plan->sequence->subsets; ++s) {
+        const Subset *subset = &plan->sequence->subset[s];
+        for (int b = 0; subset->class >= 0 && b < subset->bodies; ++b)
+            body_design(engine->formulation, subset->body[b], start + plan->start_offset[s] + 7 * b);
+    }
+    int status = orient(self, state, e, turn);
+    if (status == GIC_OK)
+        status = tape_recover(self, turn, true);
+    gather(self, state);
+    if (status == GIC_OK)
+        status = tape_recover(self, turn, false);
+    return self->head.status = status;
+}
+
+const Engine *engine_tape(Pool *pool, const Model *model, const char *compiler)
+{
+    (void)compiler;
+    TapeEngine *tape = tape_open(pool, model);
+    tape->code.setup = setup;
+    tape->code.rhs = rhs;
+    tape->code.settle = settle;
+    tape->code.outputs = outputs;
+    tape->code.poses = poses;
+    tape->code.self_test = tape_self_test;
+    Engine *engine = pool_alloc(pool, sizeof *engine);
+    *engine = (Engine){.name = "tape", .code = &tape->code, .context = tape};
+    return engine;
+}

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Engine `tape`: the control flow of the generated code over tapes instead of emitted blocks. Functions are called as
+ * in the templates, and do the same in the same order. */
+#ifndef TAPE_ENGINE_H
+#define TAPE_ENGINE_H
+
+#include "engine.h"
+#include "tape.h"
+
+/* One class of subsets. */
+typedef struct TapeClass {
+    const Tape *predict, *chord, *solve, *residual;
+    const Layout *layout;
+    double enough; /* square of a correction that is rounding, relative to the subset's size */
+} TapeClass;
+
+/* What a subset is connected to, as in model.c.in. */
+typedef struct TapeLinks {
+    double **known, *x, *rate, *change, turn[3];
+    bool cold;
+} TapeLinks;
+
+/* What all instances of a model share: tapes, tables, places in an instance (bytes), and scratch that no call leaves
+ * anything in. So one thread at a time may compute. */
+typedef struct TapeEngine {
+    gic_model code;
+    const Formulation *formulation;
+    TapeClass *class;
+    int *member; /* [subsets] */
+    const Tape *dynamics, *outputs, *poses, *inverse, *energy;
+    gic_table *table;
+    double *piece, *initial; /* [coordinates], [states] */
+    size_t x_offset, xd_offset, start_offset[2], motion_offset, inertia_offset;
+    double *frame, *q, *first, *result, *out;
+    double *acc, *unit, *tau0, *tau, *mass; /* [unknowns], and squared */
+    TapeLinks links;
+} TapeEngine;
+
+/* Numbers at the places of the engine and of its descriptor follow. */
+typedef struct TapeInstance {
+    gic_head head;
+    const TapeEngine *engine;
+} TapeInstance;
+
+static inline double *tape_array(TapeInstance *self, size_t offset)
+{
+    return instance_array(&self->head, offset);
+}
+
+/* The Newton start of the last good configuration. */
+static inline double *tape_start(TapeInstance *self)
+{
+    return tape_array(self, self->engine->start_offset[self->head.flip]);
+}
+
+/* Arrays of a class's blocks, with m0, m1, ... behind, and of the blocks about the whole mechanism; names as in Formula
+ * and Whole of gicgen.h. */
+#define CLASS_ARRAYS(X) \
+    X(q) X(x) X(rate) X(change) X(turn) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst)
+#define WHOLE_ARRAYS(X) \
+    X(time) X(y) X(e) X(x) X(xd) X(u) X(m) X(n) X(p) X(port) X(s) X(rate) X(acc) X(out) X(pose) X(tau) X(energy)
+#define CLASS_ENUM(name) CLASS_##name,
+#define WHOLE_ENUM(name) WHOLE_##name,
+enum { CLASS_ARRAYS(CLASS_ENUM) CLASS_KNOWN };
+enum { WHOLE_ARRAYS(WHOLE_ENUM) WHOLE_COUNT };
+#undef CLASS_ENUM
+#undef WHOLE_ENUM
+
+/* tape_open.c: all but the functions of the descriptor. */
+TapeEngine *tape_open(Pool *pool, const Model *model);
+
+/* tape_recover.c: all bodies at the coordinates of the instance, followed from the last good configuration; and the
+ * largest constraint residual of all subsets there, relative to their sizes. */
+int tape_recover(TapeInstance *self, const double turn[3], bool cold);
+double tape_residual(TapeInstance *self);
+
+/* tape_engine.c: play a tape about the whole mechanism, with the instance's arrays but for `rate`, `acc` and `out`
+ * (which is also pose, tau and energy); NULL: not used. */
+int tape_whole(TapeInstance *self, const Tape *tape, double time, const double *y, const double *e, double *rate,
+               double *acc, double *out);
+/* The present state recovered, its rate in the instance. */
+int tape_refresh(TapeInstance *self, double e[4]);
+
+/* tape_self_test.c: as the generated code tests itself. */
+int tape_self_test(void *self, gic_self_test *result);
+
+#endif

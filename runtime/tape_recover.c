@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: MIT
+ * Recovery of the dependent coordinates: the templates subset.c.in and the first half of model.c.in, over tapes. */
+#include "tape_engine.h"
+
+#include "../templates/bounds.c.in"
+
+#include <math.h>
+#include <string.h>
+
+/* Addresses of what a class's blocks read and write. */
+static void class_arrays(TapeLinks *links, int knowns, double **array)
+{
+    array[CLASS_x] = links->x;
+    array[CLASS_rate] = links->rate;
+    array[CLASS_change] = links->change;
+    array[CLASS_turn] = links->turn;
+    memcpy(array + CLASS_KNOWN, links->known, (size_t)knowns * sizeof *array);
+}
+
+/* One subset. old, start: its parts of the Newton starts. */
+static int solve_subset(TapeInstance *self, TapeLinks *links, int s, double *old, double *start)
+{
+    const TapeEngine *engine = self->engine;
+    const Plan *plan = engine->formulation->plan;
+    const Subset *subset = &plan->sequence->subset[s];
+    const TapeClass *class = &engine->class[subset->class];
+    const TapeWorld none = {.table = NULL};
+    const size_t pose = 7 * (size_t)subset->bodies * sizeof(double);
+    const int member = engine->member[s];
+    double *q = engine->q, *frame = engine->frame, *array[CLASS_KNOWN + subset->knowns];
+    double step = 0, reach = 0, before = 1;
+    class_arrays(links, subset->knowns, array);
+    array[CLASS_q] = q;
+    array[CLASS_s] = old + class->layout->start_S;
+    array[CLASS_f] = old + class->layout->start_factors;
+    array[CLASS_start] = start;
+    array[CLASS_motion] = tape_array(self, engine->motion_offset) + plan->motion_offset[subset->body[0]];
+    array[CLASS_inertia] = tape_array(self, engine->inertia_offset) + plan->inertia_offset[s];
+    array[CLASS_step] = &step;
+    array[CLASS_reach] = &reach;
+    memcpy(q, old, pose);
+    if (!links->cold) {
+        tape_play(class->predict, member, array, &none, frame);
+        for (int i = 0; i < GIC_CHORDS; ++i) {
+            tape_play(class->chord, member, array, &none, frame);
+            ++self->head.correction_count;
+            if (!(step < GIC_LEAP_SQUARE))
+                return GIC_ERROR_NEWTON;
+            if (4 * step * GIC_MAX(reach, step) <= class->enough)
+                break;
+        }
+    }
+    for (int i = 0; i < GIC_PASSES; ++i) {
+        int status = tape_play(class->solve, member, array, &none, frame);
+        if (status != GIC_OK)
+            return status;
+        ++self->head.correction_count;
+        if (!(step < GIC_LEAP_SQUARE))
+            return GIC_ERROR_NEWTON;
+        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
+        if (step <= class->enough || (step <= GIC_ROUNDING_SQUARE && step > before / 16)) {
+            if (step > self->head.largest_step)
+                self->head.largest_step = step;
+            ++self->head.newton_count;
+            memcpy(start, q, pose);
+            return GIC_OK;
+        }
+        before = step;
+    }
+    return GIC_ERROR_NEWTON;
+}
+
+static void link_knowns(TapeInstance *self, TapeLinks *links, const Subset *subset)
+{
+    const Plan *plan = self->engine->formulation->plan;
+    for (int i = 0; i < subset->knowns; ++i)
+        links->known[i] = tape_array(self, self->engine->motion_offset) + plan->motion_offset[subset->known[i]];
+}
+
+/* start[] from old[], both with the coordinates in front. */
+static int recover_piece(TapeInstance *self, TapeLinks *links, double *old, double *start)
+{
+    const Plan *plan = self->engine->formulation->plan;
+    const double *xd = tape_array(self, self->engine->xd_offset);
+    for (int s = 0; s < plan->sequence->subsets; ++s) {
+        const Subset *subset = &plan->sequence->subset[s];
+        if (subset->class < 0)
+            continue;
+        link_knowns(self, links, subset);
+        for (int j = 0; j < subset->deps; ++j) {
+            const int w = subset->dep[j];
+            links->x[j] = start[w];
+            links->rate[j] = xd[w];
+            links->change[j] = start[w] - old[w];
+        }
+        int status = solve_subset(self, links, s, old + plan->start_offset[s], start + plan->start_offset[s]);
+        if (status != GIC_OK) {
+            self->head.subset = s;
+            return status;
+        }
+    }
+    return GIC_OK;
+}
+
+int tape_recover(TapeInstance *self, const double turn[3], bool cold)
+{
+    const TapeEngine *engine = self->engine;
+    const int coordinates = engine->code.coordinate_count;
+    const double *from = tape_start(self), *x = tape_array(self, engine->x_offset);
+    double *first = engine->first;
+    TapeLinks links = engine->links;
+    int pieces = 1;
+    links.cold = cold;
+    memcpy(links.turn, turn, sizeof links.turn);
+    for (int i = 0; i < coordinates; ++i) {
+        const double parts = fabs(x[i] - from[i]) / engine->piece[i];
+        if (!(parts < GIC_PIECES))
+            return GIC_ERROR_REACH;
+        pieces = GIC_MAX(pieces, (int)parts + 1);
+        first[i] = from[i];
+    }
+    for (int piece = 1; piece <= pieces; ++piece) {
+        double *old = tape_start(self), *start = tape_array(self, engine->start_offset[1 - self->head.flip]);
+        const double share = (double)piece / (double)pieces;
+        for (int i = 0; i < coordinates; ++i)
+            start[i] = piece == pieces ? x[i] : first[i] + share * (x[i] - first[i]);
+        int status = recover_piece(self, &links, old, start);
+        if (status != GIC_OK)
+            return status;
+        self->head.flip = 1 - self->head.flip;
+    }
+    return GIC_OK;
+}
+
+double tape_residual(TapeInstance *self)
+{
+    const TapeEngine *engine = self->engine;
+    const Plan *plan = engine->formulation->plan;
+    const TapeWorld none = {.table = NULL};
+    double *start = tape_start(self), largest = 0, worst = 0;
+    TapeLinks links = engine->links;
+    for (int s = 0; s < plan->sequence->subsets; ++s) {
+        const Subset *subset = &plan->sequence->subset[s];
+        if (subset->class < 0)
+            continue;
+        double *array[CLASS_KNOWN + subset->knowns];
+        link_knowns(self, &links, subset);
+        for (int j = 0; j < subset->deps; ++j)
+            links.x[j] = start[subset->dep[j]];
+        class_arrays(&links, subset->knowns, array);
+        array[CLASS_q] = start + plan->start_offset[s];
+        array[CLASS_worst] = &worst;
+        tape_play(engine->class[subset->class].residual, engine->member[s], array, &none, engine->frame);
+        largest = GIC_MAX(largest, worst);
+    }
+    return largest;
+}
