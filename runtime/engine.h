@@ -56,6 +56,8 @@ const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *opt
 /* engine_gic.c: the method of Serban and Haug 2000, interpreted. */
 const Engine *engine_gic(Pool *pool, const Model *model, const EngineOptions *options);
 /* tape_engine.c: the expression graph of the generated code, interpreted. */
+const Engine *engine_gic(Pool *pool, const Model *model, const EngineOptions *options);
+/* tape_engine.c: the expression graph of the generated code, interpreted. */
 const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *options);
 
 #endif

@@ -67,6 +67,7 @@ int tape_whole(TapeInstance *self, const Tape *tape, double time, const double *
         [WHOLE_pose] = out,
         [WHOLE_tau] = out,
         [WHOLE_energy] = out,
+        [WHOLE_lambda] = tape_array(self, engine->multiplier_offset),
     };
     return tape_play(tape, 0, array, &world, engine->frame);
 }
@@ -132,6 +133,8 @@ static int outputs(void *instance)
     const gic_model *code = &engine->code;
     double e[4];
     int status = tape_refresh(self, e);
+    if (status == GIC_OK && engine->wrenches)
+        status = tape_react(self, e);
     if (status == GIC_OK)
         status = tape_whole(self, engine->outputs, gic_time(self), tape_array(self, code->state_offset), e,
                             tape_array(self, code->rate_offset), NULL, engine->out);
@@ -190,10 +193,10 @@ static int setup(void *instance)
     return self->head.status = status;
 }
 
-const Engine *engine_tape(Pool *pool, const Model *model, const char *compiler)
+const Engine *engine_tape(Pool *pool, const Model *model, Solve solve, const char *compiler)
 {
     (void)compiler;
-    TapeEngine *tape = tape_open(pool, model);
+    TapeEngine *tape = tape_open(pool, model, solve);
     tape->code.setup = setup;
     tape->code.rhs = rhs;
     tape->code.settle = settle;

@@ -10,14 +10,14 @@
 
 /* One class of subsets. */
 typedef struct TapeClass {
-    const Tape *predict, *chord, *solve, *residual;
+    const Tape *predict, *chord, *solve, *residual, *react;
     const Layout *layout;
     double enough; /* square of a correction that is rounding, relative to the subset's size */
 } TapeClass;
 
-/* What a subset is connected to, as in model.c.in. */
+/* What a subset is connected to, as in model.c.in, and addresses of all arrays of its class's blocks. */
 typedef struct TapeLinks {
-    double **known, *x, *rate, *change, turn[3];
+    double **array, *x, *rate, *change, turn[3];
     bool cold;
 } TapeLinks;
 
@@ -29,9 +29,11 @@ typedef struct TapeEngine {
     TapeClass *class;
     int *member; /* [subsets] */
     const Tape *dynamics, *outputs, *poses, *inverse, *energy;
+    const Tape *wrenches; /* NULL: no reactions to find after the accelerations */
+    const bool *reacts;   /* [subsets] whose multipliers outputs need */
     gic_table *table;
     double *piece, *initial; /* [coordinates], [states] */
-    size_t x_offset, xd_offset, start_offset[2], motion_offset, inertia_offset;
+    size_t x_offset, xd_offset, start_offset[2], motion_offset, inertia_offset, multiplier_offset;
     double *frame, *q, *first, *result, *out;
     double *acc, *unit, *tau0, *tau, *mass; /* [unknowns], and squared */
     TapeLinks links;
@@ -54,12 +56,13 @@ static inline double *tape_start(TapeInstance *self)
     return tape_array(self, self->engine->start_offset[self->head.flip]);
 }
 
-/* Arrays of a class's blocks, with m0, m1, ... behind, and of the blocks about the whole mechanism; names as in Formula
- * and Whole of gicgen.h. */
+/* Arrays of a class's blocks, with m0, m1, ... and as many w0, w1, ... behind, and of the blocks about the whole
+ * mechanism; names as in Formula and Whole of gicgen.h. */
 #define CLASS_ARRAYS(X) \
-    X(q) X(x) X(rate) X(change) X(turn) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst)
+    X(q) X(x) X(rate) X(change) X(turn) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst) X(w)
 #define WHOLE_ARRAYS(X) \
-    X(time) X(y) X(e) X(x) X(xd) X(u) X(m) X(n) X(p) X(port) X(s) X(rate) X(acc) X(out) X(pose) X(tau) X(energy)
+    X(time) \
+    X(y) X(e) X(x) X(xd) X(u) X(m) X(n) X(p) X(port) X(s) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda)
 #define CLASS_ENUM(name) CLASS_##name,
 #define WHOLE_ENUM(name) WHOLE_##name,
 enum { CLASS_ARRAYS(CLASS_ENUM) CLASS_KNOWN };
@@ -68,12 +71,18 @@ enum { WHOLE_ARRAYS(WHOLE_ENUM) WHOLE_COUNT };
 #undef WHOLE_ENUM
 
 /* tape_open.c: all but the functions of the descriptor. */
-TapeEngine *tape_open(Pool *pool, const Model *model);
+TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve);
 
 /* tape_recover.c: all bodies at the coordinates of the instance, followed from the last good configuration; and the
  * largest constraint residual of all subsets there, relative to their sizes. */
 int tape_recover(TapeInstance *self, const double turn[3], bool cold);
 double tape_residual(TapeInstance *self);
+
+/* The same file: links->array filled as far as it is about what a subset is connected to. */
+void tape_link(TapeInstance *self, TapeLinks *links, const Subset *subset);
+
+/* tape_react.c: multipliers of the subsets that outputs need, at the present rate; e: Euler parameters of the base. */
+int tape_react(TapeInstance *self, const double e[4]);
 
 /* tape_engine.c: play a tape about the whole mechanism, with the instance's arrays but for `rate`, `acc` and `out`
  * (which is also pose, tau and energy); NULL: not used. */

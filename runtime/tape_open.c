@@ -14,13 +14,15 @@ static double *numbers(Pool *pool, int count)
 static void record_classes(Pool *pool, TapeEngine *engine)
 {
     const Formulation *f = engine->formulation;
-    const char **array = pool_alloc(pool, (size_t)(CLASS_KNOWN + f->known_most) * sizeof *array);
+    const int arrays = CLASS_KNOWN + 2 * f->known_most;
+    const char **array = pool_alloc(pool, (size_t)arrays * sizeof *array);
 #define NAME(name) array[CLASS_##name] = #name;
     CLASS_ARRAYS(NAME)
 #undef NAME
-    for (int i = 0; i < f->known_most; ++i)
+    for (int i = 0; i < f->known_most; ++i) {
         array[CLASS_KNOWN + i] = pool_print(pool, "m%d", i);
-    const int arrays = CLASS_KNOWN + f->known_most;
+        array[CLASS_KNOWN + f->known_most + i] = pool_print(pool, "w%d", i);
+    }
     engine->class = pool_alloc(pool, (size_t)(f->sequence->classes + 1) * sizeof *engine->class);
     for (int c = 0; c < f->sequence->classes; ++c) {
         const Formula *formula = f->plan->formula[c];
@@ -29,6 +31,7 @@ static void record_classes(Pool *pool, TapeEngine *engine)
                                        .chord = tape_record(pool, &formula->chord, array, arrays),
                                        .solve = tape_record(pool, &formula->solve, array, arrays),
                                        .residual = tape_record(pool, &formula->residual, array, arrays),
+                                       .react = tape_record(pool, &formula->react, array, arrays),
                                        .layout = &formula->layout,
                                        .enough = GIC_ENOUGH(far)};
         for (int i = 0; i < f->sequence->class[c].members; ++i)
@@ -49,6 +52,10 @@ static void record_whole(Pool *pool, TapeEngine *engine)
     engine->poses = tape_record(pool, f->poses, array, WHOLE_COUNT);
     engine->inverse = tape_record(pool, f->inverse, array, WHOLE_COUNT);
     engine->energy = tape_record(pool, f->energy, array, WHOLE_COUNT);
+    if (f->wrenches && f->plan->multipliers) {
+        engine->wrenches = tape_record(pool, f->wrenches, array, WHOLE_COUNT);
+        engine->reacts = reactions_needed(pool, f->model, f->sequence);
+    }
 }
 
 static void make_tables(Pool *pool, TapeEngine *engine)
@@ -65,12 +72,12 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
 {
     const Formulation *f = engine->formulation;
     const Tape *const whole[] = {engine->dynamics, engine->outputs, engine->poses, engine->inverse, engine->energy};
-    int slots = 0, bodies = 0, unknowns = f->plan->unknowns;
+    int slots = engine->wrenches ? engine->wrenches->slots : 0, bodies = 0, unknowns = f->plan->unknowns;
     for (size_t i = 0; i < sizeof whole / sizeof *whole; ++i)
         slots = GIC_MAX(slots, whole[i]->slots);
     for (int c = 0; c < f->sequence->classes; ++c) {
         const TapeClass *class = &engine->class[c];
-        const Tape *const part[] = {class->predict, class->chord, class->solve, class->residual};
+        const Tape *const part[] = {class->predict, class->chord, class->solve, class->residual, class->react};
         for (size_t i = 0; i < sizeof part / sizeof *part; ++i)
             slots = GIC_MAX(slots, part[i]->slots);
         bodies = GIC_MAX(bodies, class->layout->bodies);
@@ -85,7 +92,7 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
     engine->tau0 = numbers(pool, unknowns);
     engine->tau = numbers(pool, unknowns);
     engine->mass = numbers(pool, unknowns * unknowns);
-    engine->links = (TapeLinks){.known = pool_alloc(pool, (size_t)(f->known_most + 1) * sizeof(double *)),
+    engine->links = (TapeLinks){.array = pool_alloc(pool, (size_t)(CLASS_KNOWN + 2 * f->known_most) * sizeof(double *)),
                                 .x = numbers(pool, f->dependence_most),
                                 .rate = numbers(pool, f->dependence_most),
                                 .change = numbers(pool, f->dependence_most)};
@@ -122,6 +129,7 @@ static void lay_out(TapeEngine *engine)
     engine->start_offset[1] = put_array(code, plan->start_size);
     engine->motion_offset = put_array(code, plan->motion_size);
     engine->inertia_offset = put_array(code, plan->inertia_size);
+    engine->multiplier_offset = put_array(code, plan->multipliers);
 }
 
 static gic_signal *signals(Pool *pool, int count)
@@ -207,10 +215,10 @@ static void describe_names(Pool *pool, TapeEngine *engine)
     code->body_name = body;
 }
 
-TapeEngine *tape_open(Pool *pool, const Model *model)
+TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve)
 {
     const Sequence *sequence = sequence_find(pool, model);
-    const Formulation *f = formulate(pool, model_assemble(pool, model, sequence), sequence);
+    const Formulation *f = formulate(pool, model_assemble(pool, model, sequence), sequence, solve);
     TapeEngine *engine = pool_alloc(pool, sizeof *engine);
     model = f->model;
     *engine = (TapeEngine){.formulation = f,

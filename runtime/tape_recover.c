@@ -7,14 +7,17 @@
 #include <math.h>
 #include <string.h>
 
-/* Addresses of what a class's blocks read and write. */
-static void class_arrays(TapeLinks *links, int knowns, double **array)
+void tape_link(TapeInstance *self, TapeLinks *links, const Subset *subset)
 {
+    double **array = links->array;
+    const Plan *plan = self->engine->formulation->plan;
+    double *motion = tape_array(self, self->engine->motion_offset);
     array[CLASS_x] = links->x;
     array[CLASS_rate] = links->rate;
     array[CLASS_change] = links->change;
     array[CLASS_turn] = links->turn;
-    memcpy(array + CLASS_KNOWN, links->known, (size_t)knowns * sizeof *array);
+    for (int i = 0; i < subset->knowns; ++i)
+        array[CLASS_KNOWN + i] = motion + plan->motion_offset[subset->known[i]];
 }
 
 /* One subset. old, start: its parts of the Newton starts. */
@@ -27,9 +30,9 @@ static int solve_subset(TapeInstance *self, TapeLinks *links, int s, double *old
     const TapeWorld none = {.table = NULL};
     const size_t pose = 7 * (size_t)subset->bodies * sizeof(double);
     const int member = engine->member[s];
-    double *q = engine->q, *frame = engine->frame, *array[CLASS_KNOWN + subset->knowns];
+    double *q = engine->q, *frame = engine->frame, **array = links->array;
     double step = 0, reach = 0, before = 1;
-    class_arrays(links, subset->knowns, array);
+    tape_link(self, links, subset);
     array[CLASS_q] = q;
     array[CLASS_s] = old + class->layout->start_S;
     array[CLASS_f] = old + class->layout->start_factors;
@@ -70,13 +73,6 @@ static int solve_subset(TapeInstance *self, TapeLinks *links, int s, double *old
     return GIC_ERROR_NEWTON;
 }
 
-static void link_knowns(TapeInstance *self, TapeLinks *links, const Subset *subset)
-{
-    const Plan *plan = self->engine->formulation->plan;
-    for (int i = 0; i < subset->knowns; ++i)
-        links->known[i] = tape_array(self, self->engine->motion_offset) + plan->motion_offset[subset->known[i]];
-}
-
 /* start[] from old[], both with the coordinates in front. */
 static int recover_piece(TapeInstance *self, TapeLinks *links, double *old, double *start)
 {
@@ -86,7 +82,6 @@ static int recover_piece(TapeInstance *self, TapeLinks *links, double *old, doub
         const Subset *subset = &plan->sequence->subset[s];
         if (subset->class < 0)
             continue;
-        link_knowns(self, links, subset);
         for (int j = 0; j < subset->deps; ++j) {
             const int w = subset->dep[j];
             links->x[j] = start[w];
@@ -143,14 +138,12 @@ double tape_residual(TapeInstance *self)
         const Subset *subset = &plan->sequence->subset[s];
         if (subset->class < 0)
             continue;
-        double *array[CLASS_KNOWN + subset->knowns];
-        link_knowns(self, &links, subset);
         for (int j = 0; j < subset->deps; ++j)
             links.x[j] = start[subset->dep[j]];
-        class_arrays(&links, subset->knowns, array);
-        array[CLASS_q] = start + plan->start_offset[s];
-        array[CLASS_worst] = &worst;
-        tape_play(engine->class[subset->class].residual, engine->member[s], array, &none, engine->frame);
+        tape_link(self, &links, subset);
+        links.array[CLASS_q] = start + plan->start_offset[s];
+        links.array[CLASS_worst] = &worst;
+        tape_play(engine->class[subset->class].residual, engine->member[s], links.array, &none, engine->frame);
         largest = GIC_MAX(largest, worst);
     }
     return largest;
