@@ -41,8 +41,19 @@ typedef struct EngineOptions {
 /* Open an engine, one of engine_name, for a model. Every failure ends in diag_fail. */
 const Engine *engine_open(Pool *pool, const char *name, const Model *model, const EngineOptions *options);
 
-/* Memory for one instance, not set up. It may be copied byte by byte. Instances of one interpreted engine share
- * scratch: one call at a time. */
+/* Every instance of an interpreted engine begins so, with the descriptor's arrays and then the engine's own behind it. */
+typedef struct Instance {
+    gic_head head;
+    const void *context;
+} Instance;
+
+/* descriptor.c: the descriptor of an interpreted model but for its functions, from an assembled model; and room for
+ * `count` more numbers in its instances: their offset, bytes. */
+gic_model descriptor_new(Pool *pool, const Model *model, const Sequence *sequence);
+size_t descriptor_place(gic_model *code, size_t count);
+
+/* Memory for one instance, not set up. It may be copied byte by byte. Instances of one interpreted engine share scratch:
+ * one call at a time. */
 gic_head *instance_new(Pool *pool, const Engine *engine);
 /* "status text" or "status text: subset 'name'" of the last call. */
 const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status);

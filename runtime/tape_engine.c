@@ -10,29 +10,29 @@ static int twist_place(const TapeEngine *engine)
     return 7 + engine->formulation->plan->free_coordinates;
 }
 
-static int32_t *dependent_parameter(TapeInstance *self)
+static int32_t *dependent_parameter(Instance *self)
 {
-    return (int32_t *)(void *)tape_array(self, self->engine->code.discrete_offset);
+    return (int32_t *)(void *)tape_array(self, tape_of(self)->code.discrete_offset);
 }
 
 /* Euler parameters with the dependent one recovered from the other three, and the angular velocity of the base. */
-static int orient(TapeInstance *self, const double *y, double e[4], double turn[3])
+static int orient(Instance *self, const double *y, double e[4], double turn[3])
 {
-    if (!self->engine->code.free_base) {
+    if (!tape_of(self)->code.free_base) {
         memcpy(e, (const double[4]){1, 0, 0, 0}, 4 * sizeof *e);
         memset(turn, 0, 3 * sizeof *turn);
         return GIC_OK;
     }
     int32_t dependent = *dependent_parameter(self);
     int64_t switches = 0;
-    memcpy(turn, y + twist_place(self->engine) + 3, 3 * sizeof *turn);
+    memcpy(turn, y + twist_place(tape_of(self)) + 3, 3 * sizeof *turn);
     return gic_orientation(y + 3, &dependent, &switches, e);
 }
 
 /* Coordinates and rates, from the state where they are free, from the inputs where they are driven. */
-static void gather(TapeInstance *self, const double *y)
+static void gather(Instance *self, const double *y)
 {
-    const TapeEngine *engine = self->engine;
+    const TapeEngine *engine = tape_of(self);
     const Plan *plan = engine->formulation->plan;
     const double *u = tape_array(self, engine->code.input_offset);
     double *x = tape_array(self, engine->x_offset), *xd = tape_array(self, engine->xd_offset);
@@ -43,10 +43,10 @@ static void gather(TapeInstance *self, const double *y)
     }
 }
 
-int tape_whole(TapeInstance *self, const Tape *tape, double time, const double *y, const double *e, double *rate,
+int tape_whole(Instance *self, const Tape *tape, double time, const double *y, const double *e, double *rate,
                double *acc, double *out)
 {
-    const TapeEngine *engine = self->engine;
+    const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
     const TapeWorld world = {engine->table, self->head.road, self->head.lane, time};
     double *const array[WHOLE_COUNT] = {
@@ -72,9 +72,9 @@ int tape_whole(TapeInstance *self, const Tape *tape, double time, const double *
     return tape_play(tape, 0, array, &world, engine->frame);
 }
 
-static int evaluate(TapeInstance *self, double time, const double *y, double e[4], double *rate)
+static int evaluate(Instance *self, double time, const double *y, double e[4], double *rate)
 {
-    const TapeEngine *engine = self->engine;
+    const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
     double turn[3];
     self->head.subset = -1;
@@ -98,9 +98,9 @@ static int evaluate(TapeInstance *self, double time, const double *y, double e[4
     return self->head.status = status;
 }
 
-int tape_refresh(TapeInstance *self, double e[4])
+int tape_refresh(Instance *self, double e[4])
 {
-    const gic_model *code = &self->engine->code;
+    const gic_model *code = &tape_of(self)->code;
     const double time = gic_time(self);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, tape_array(self, code->input_offset));
@@ -116,9 +116,9 @@ static int rhs(void *instance, double time, const double *state, double *rate)
 /* The dependent parameter takes its recovered value, and the largest one becomes the dependent one. */
 static int settle(void *instance, double *y)
 {
-    TapeInstance *self = instance;
+    Instance *self = instance;
     double e[4];
-    if (!self->engine->code.free_base)
+    if (!tape_of(self)->code.free_base)
         return GIC_OK;
     int status = gic_orientation(y + 3, dependent_parameter(self), &self->head.switch_count, e);
     if (status == GIC_OK)
@@ -128,8 +128,8 @@ static int settle(void *instance, double *y)
 
 static int outputs(void *instance)
 {
-    TapeInstance *self = instance;
-    const TapeEngine *engine = self->engine;
+    Instance *self = instance;
+    const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
     double e[4];
     int status = tape_refresh(self, e);
@@ -147,25 +147,25 @@ static int outputs(void *instance)
 
 static int poses(void *instance, double *pose)
 {
-    TapeInstance *self = instance;
+    Instance *self = instance;
     double e[4];
     int status = tape_refresh(self, e);
     if (status == GIC_OK)
-        tape_whole(self, self->engine->poses, gic_time(self), tape_array(self, self->engine->code.state_offset), e,
+        tape_whole(self, tape_of(self)->poses, gic_time(self), tape_array(self, tape_of(self)->code.state_offset), e,
                    NULL, NULL, pose);
     return status;
 }
 
 static int setup(void *instance)
 {
-    TapeInstance *self = instance;
-    const TapeEngine *engine = self->engine;
+    Instance *self = instance;
+    const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
     const Plan *plan = engine->formulation->plan;
     const Model *model = plan->model;
     double e[4], turn[3];
     memset(self, 0, code->size);
-    self->engine = engine;
+    self->context = engine;
     self->head.subset = -1;
     double *state = tape_array(self, code->state_offset), *input = tape_array(self, code->input_offset);
     double *parameter = tape_array(self, code->parameter_offset), *x = tape_array(self, engine->x_offset);

@@ -39,21 +39,20 @@ typedef struct TapeEngine {
     TapeLinks links;
 } TapeEngine;
 
-/* Numbers at the places of the engine and of its descriptor follow. */
-typedef struct TapeInstance {
-    gic_head head;
-    const TapeEngine *engine;
-} TapeInstance;
+static inline const TapeEngine *tape_of(const Instance *self)
+{
+    return self->context;
+}
 
-static inline double *tape_array(TapeInstance *self, size_t offset)
+static inline double *tape_array(Instance *self, size_t offset)
 {
     return instance_array(&self->head, offset);
 }
 
 /* The Newton start of the last good configuration. */
-static inline double *tape_start(TapeInstance *self)
+static inline double *tape_start(Instance *self)
 {
-    return tape_array(self, self->engine->start_offset[self->head.flip]);
+    return tape_array(self, tape_of(self)->start_offset[self->head.flip]);
 }
 
 /* Arrays of a class's blocks, with m0, m1, ... and as many w0, w1, ... behind, and of the blocks about the whole
@@ -75,21 +74,21 @@ TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve);
 
 /* tape_recover.c: all bodies at the coordinates of the instance, followed from the last good configuration; and the
  * largest constraint residual of all subsets there, relative to their sizes. */
-int tape_recover(TapeInstance *self, const double turn[3], bool cold);
-double tape_residual(TapeInstance *self);
+int tape_recover(Instance *self, const double turn[3], bool cold);
+double tape_residual(Instance *self);
 
 /* The same file: links->array filled as far as it is about what a subset is connected to. */
-void tape_link(TapeInstance *self, TapeLinks *links, const Subset *subset);
+void tape_link(Instance *self, TapeLinks *links, const Subset *subset);
 
 /* tape_react.c: multipliers of the subsets that outputs need, at the present rate; e: Euler parameters of the base. */
-int tape_react(TapeInstance *self, const double e[4]);
+int tape_react(Instance *self, const double e[4]);
 
 /* tape_engine.c: play a tape about the whole mechanism, with the instance's arrays but for `rate`, `acc` and `out`
  * (which is also pose, tau and energy); NULL: not used. */
-int tape_whole(TapeInstance *self, const Tape *tape, double time, const double *y, const double *e, double *rate,
+int tape_whole(Instance *self, const Tape *tape, double time, const double *y, const double *e, double *rate,
                double *acc, double *out);
 /* The present state recovered, its rate in the instance. */
-int tape_refresh(TapeInstance *self, double e[4]);
+int tape_refresh(Instance *self, double e[4]);
 
 /* tape_self_test.c: as the generated code tests itself. */
 int tape_self_test(void *self, gic_self_test *result);

@@ -98,121 +98,21 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
                                 .change = numbers(pool, f->dependence_most)};
 }
 
-/* ---- instance and descriptor ----------------------------------------------------------------------------------- */
+/* ---- instances --------------------------------------------------------------------------------------------------- */
 
-/* The place of `count` more numbers. */
-static size_t put_array(gic_model *code, int count)
-{
-    size_t offset = code->size;
-    code->size += (size_t)count * sizeof(double);
-    return offset;
-}
-
+/* What the descriptor's arrays are followed by. */
 static void lay_out(TapeEngine *engine)
 {
     gic_model *code = &engine->code;
     const Plan *plan = engine->formulation->plan;
-    const int states = code->slow_count;
-    code->size = sizeof(TapeInstance);
-    code->state_offset = put_array(code, states);
-    code->input_offset = put_array(code, code->input_count);
-    code->output_offset = put_array(code, code->output_count);
-    code->parameter_offset = put_array(code, code->parameter_count);
-    code->port_offset = put_array(code, code->port_count);
-    code->discrete_offset = put_array(code, 1);
-    code->rate_offset = put_array(code, states);
-    code->history_offset = put_array(code, 2 * states);
-    code->scratch_offset = put_array(code, 4 * states + code->input_count);
-    engine->x_offset = put_array(code, code->coordinate_count);
-    engine->xd_offset = put_array(code, code->coordinate_count);
-    engine->start_offset[0] = put_array(code, plan->start_size);
-    engine->start_offset[1] = put_array(code, plan->start_size);
-    engine->motion_offset = put_array(code, plan->motion_size);
-    engine->inertia_offset = put_array(code, plan->inertia_size);
-    engine->multiplier_offset = put_array(code, plan->multipliers);
-}
-
-static gic_signal *signals(Pool *pool, int count)
-{
-    return pool_alloc(pool, (size_t)(count + 1) * sizeof(gic_signal));
-}
-
-static void describe_signals(Pool *pool, TapeEngine *engine)
-{
-    static const gic_signal discrete[] = {{"dependent_euler_parameter", "1"}};
-    static const char *const port_part[6] = {"force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z"};
-    gic_model *code = &engine->code;
-    const Model *model = engine->formulation->model;
-    gic_signal *state = signals(pool, code->slow_count), *input = signals(pool, model->inputs);
-    gic_signal *parameter = signals(pool, model->tunables), *port = signals(pool, 6 * model->ports);
-    gic_signal *output = signals(pool, model->output_components), *coordinate = signals(pool, model->coordinates);
-    engine->initial = numbers(pool, code->slow_count);
-    for (int i = 0; i < code->slow_count; ++i) {
-        const StateNumber number = state_number(pool, engine->formulation, i);
-        state[i] = (gic_signal){number.name, number.unit};
-        engine->initial[i] = number.initial;
-    }
-    for (int i = 0; i < model->inputs; ++i)
-        input[i] = (gic_signal){model->input[i].name, model->input[i].unit};
-    for (int i = 0; i < model->parameters; ++i)
-        if (model->parameter[i].tunable)
-            parameter[model->parameter[i].index] = (gic_signal){model->parameter[i].name, model->parameter[i].unit};
-    for (int i = 0; i < 6 * model->ports; ++i)
-        port[i] =
-            (gic_signal){pool_print(pool, "%s.%s", model->port[i / 6].name, port_part[i % 6]), i % 6 < 3 ? "N" : "N m"};
-    for (int i = 0, index = 0; i < model->outputs; ++i)
-        for (int c = 0; c < model->output[i].count; ++c)
-            output[index++] = (gic_signal){model->output[i].component[c], model->output[i].unit[c]};
-    for (int i = 0; i < model->coordinates; ++i)
-        coordinate[i] =
-            (gic_signal){model->coordinate[i].name, model->coordinate[i].type == COORDINATE_ANGLE ? "rad" : "m"};
-    code->state = state;
-    code->discrete = discrete;
-    code->input = input;
-    code->parameter = parameter;
-    code->port = port;
-    code->output = output;
-    code->coordinate = coordinate;
-}
-
-static void describe_coordinates(Pool *pool, TapeEngine *engine)
-{
-    gic_model *code = &engine->code;
-    const Model *model = engine->formulation->model;
-    const int count = model->coordinates;
-    double *design = numbers(pool, count), *low = numbers(pool, count), *high = numbers(pool, count);
-    int32_t *state = pool_alloc(pool, (size_t)(count + 1) * sizeof *state);
-    int32_t *input = pool_alloc(pool, (size_t)(count + 1) * sizeof *input);
-    engine->piece = numbers(pool, count);
-    for (int i = 0; i < count; ++i) {
-        const Coordinate *c = &model->coordinate[i];
-        design[i] = c->design;
-        low[i] = c->range[0];
-        high[i] = c->range[1];
-        state[i] = engine->formulation->plan->coordinate_state[i];
-        input[i] = c->driven ? c->input : -1;
-        engine->piece[i] = coordinate_piece(engine->formulation, i);
-    }
-    code->coordinate_design = design;
-    code->coordinate_low = low;
-    code->coordinate_high = high;
-    code->coordinate_state = state;
-    code->coordinate_input = input;
-}
-
-static void describe_names(Pool *pool, TapeEngine *engine)
-{
-    gic_model *code = &engine->code;
-    const Model *model = engine->formulation->model;
-    const Sequence *sequence = engine->formulation->sequence;
-    const char **subset = pool_alloc(pool, (size_t)(sequence->subsets + 1) * sizeof *subset);
-    const char **body = pool_alloc(pool, (size_t)model->bodies * sizeof *body);
-    for (int s = 0; s < sequence->subsets; ++s)
-        subset[s] = subset_title(pool, model, &sequence->subset[s]);
-    for (int b = 0; b < model->bodies; ++b)
-        body[b] = model->body[b].name;
-    code->subset_name = subset;
-    code->body_name = body;
+    const size_t coordinates = (size_t)code->coordinate_count;
+    engine->x_offset = descriptor_place(code, coordinates);
+    engine->xd_offset = descriptor_place(code, coordinates);
+    engine->start_offset[0] = descriptor_place(code, (size_t)plan->start_size);
+    engine->start_offset[1] = descriptor_place(code, (size_t)plan->start_size);
+    engine->motion_offset = descriptor_place(code, (size_t)plan->motion_size);
+    engine->inertia_offset = descriptor_place(code, (size_t)plan->inertia_size);
+    engine->multiplier_offset = descriptor_place(code, (size_t)plan->multipliers);
 }
 
 TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve)
@@ -220,33 +120,20 @@ TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve)
     const Sequence *sequence = sequence_find(pool, model);
     const Formulation *f = formulate(pool, model_assemble(pool, model, sequence), sequence, solve);
     TapeEngine *engine = pool_alloc(pool, sizeof *engine);
-    model = f->model;
     *engine = (TapeEngine){.formulation = f,
+                           .code = descriptor_new(pool, f->model, f->sequence),
                            .member = pool_alloc(pool, (size_t)(f->sequence->subsets + 1) * sizeof(int)),
-                           .code = {.abi_version = GIC_ABI_VERSION,
-                                    .real_size = sizeof(gic_real),
-                                    .name = model->name,
-                                    .description = model->description,
-                                    .hash = f->hash,
-                                    .generator = "gicgen " GICGEN_VERSION,
-                                    .free_base = model->free_base,
-                                    .slow_count = f->plan->states,
-                                    .discrete_count = model->free_base,
-                                    .input_count = model->inputs,
-                                    .parameter_count = model->tunables,
-                                    .output_count = model->output_components,
-                                    .port_count = 6 * model->ports,
-                                    .coordinate_count = model->coordinates,
-                                    .subset_count = f->sequence->subsets,
-                                    .body_count = model->bodies,
-                                    .wheel_count = model->wheels}};
+                           .piece = numbers(pool, f->model->coordinates),
+                           .initial = numbers(pool, f->plan->states)};
+    engine->code.hash = f->hash;
+    for (int i = 0; i < f->model->coordinates; ++i)
+        engine->piece[i] = coordinate_piece(f, i);
+    for (int i = 0; i < f->plan->states; ++i)
+        engine->initial[i] = state_number(pool, f, i).initial;
     record_classes(pool, engine);
     record_whole(pool, engine);
     make_tables(pool, engine);
     make_scratch(pool, engine);
     lay_out(engine);
-    describe_signals(pool, engine);
-    describe_coordinates(pool, engine);
-    describe_names(pool, engine);
     return engine;
 }

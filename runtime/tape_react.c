@@ -3,9 +3,9 @@
 #include "tape_engine.h"
 
 /* One subset; what it puts on the bodies solved before it is taken from theirs. spare: for those that nobody needs. */
-static void react_subset(TapeInstance *self, TapeLinks *links, int s, double *spare)
+static void react_subset(Instance *self, TapeLinks *links, int s, double *spare)
 {
-    const TapeEngine *engine = self->engine;
+    const TapeEngine *engine = tape_of(self);
     const Plan *plan = engine->formulation->plan;
     const Subset *subset = &plan->sequence->subset[s];
     const TapeClass *class = &engine->class[subset->class];
@@ -25,9 +25,9 @@ static void react_subset(TapeInstance *self, TapeLinks *links, int s, double *sp
     tape_play(class->react, engine->member[s], links->array, &none, engine->frame);
 }
 
-int tape_react(TapeInstance *self, const double e[4])
+int tape_react(Instance *self, const double e[4])
 {
-    const TapeEngine *engine = self->engine;
+    const TapeEngine *engine = tape_of(self);
     const Sequence *sequence = engine->formulation->sequence;
     TapeLinks links = engine->links;
     double spare[6] = {0};

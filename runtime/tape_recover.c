@@ -7,11 +7,11 @@
 #include <math.h>
 #include <string.h>
 
-void tape_link(TapeInstance *self, TapeLinks *links, const Subset *subset)
+void tape_link(Instance *self, TapeLinks *links, const Subset *subset)
 {
     double **array = links->array;
-    const Plan *plan = self->engine->formulation->plan;
-    double *motion = tape_array(self, self->engine->motion_offset);
+    const Plan *plan = tape_of(self)->formulation->plan;
+    double *motion = tape_array(self, tape_of(self)->motion_offset);
     array[CLASS_x] = links->x;
     array[CLASS_rate] = links->rate;
     array[CLASS_change] = links->change;
@@ -21,9 +21,9 @@ void tape_link(TapeInstance *self, TapeLinks *links, const Subset *subset)
 }
 
 /* One subset. old, start: its parts of the Newton starts. */
-static int solve_subset(TapeInstance *self, TapeLinks *links, int s, double *old, double *start)
+static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, double *start)
 {
-    const TapeEngine *engine = self->engine;
+    const TapeEngine *engine = tape_of(self);
     const Plan *plan = engine->formulation->plan;
     const Subset *subset = &plan->sequence->subset[s];
     const TapeClass *class = &engine->class[subset->class];
@@ -74,10 +74,10 @@ static int solve_subset(TapeInstance *self, TapeLinks *links, int s, double *old
 }
 
 /* start[] from old[], both with the coordinates in front. */
-static int recover_piece(TapeInstance *self, TapeLinks *links, double *old, double *start)
+static int recover_piece(Instance *self, TapeLinks *links, double *old, double *start)
 {
-    const Plan *plan = self->engine->formulation->plan;
-    const double *xd = tape_array(self, self->engine->xd_offset);
+    const Plan *plan = tape_of(self)->formulation->plan;
+    const double *xd = tape_array(self, tape_of(self)->xd_offset);
     for (int s = 0; s < plan->sequence->subsets; ++s) {
         const Subset *subset = &plan->sequence->subset[s];
         if (subset->class < 0)
@@ -97,9 +97,9 @@ static int recover_piece(TapeInstance *self, TapeLinks *links, double *old, doub
     return GIC_OK;
 }
 
-int tape_recover(TapeInstance *self, const double turn[3], bool cold)
+int tape_recover(Instance *self, const double turn[3], bool cold)
 {
-    const TapeEngine *engine = self->engine;
+    const TapeEngine *engine = tape_of(self);
     const int coordinates = engine->code.coordinate_count;
     const double *from = tape_start(self), *x = tape_array(self, engine->x_offset);
     double *first = engine->first;
@@ -127,9 +127,9 @@ int tape_recover(TapeInstance *self, const double turn[3], bool cold)
     return GIC_OK;
 }
 
-double tape_residual(TapeInstance *self)
+double tape_residual(Instance *self)
 {
-    const TapeEngine *engine = self->engine;
+    const TapeEngine *engine = tape_of(self);
     const Plan *plan = engine->formulation->plan;
     const TapeWorld none = {.table = NULL};
     double *start = tape_start(self), largest = 0, worst = 0;

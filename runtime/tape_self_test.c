@@ -6,17 +6,17 @@
 #include <string.h>
 
 /* Residual of the equations of motion at accelerations acc, at the present state. */
-static int inverse(TapeInstance *self, const double *e, double *acc, double *tau)
+static int inverse(Instance *self, const double *e, double *acc, double *tau)
 {
-    const TapeEngine *engine = self->engine;
+    const TapeEngine *engine = tape_of(self);
     return tape_whole(self, engine->inverse, gic_time(self), tape_array(self, engine->code.state_offset), e, NULL, acc,
                       tau);
 }
 
 /* The mass matrix column by column: what a unit acceleration adds to the residual. */
-static int mass_matrix(TapeInstance *self, const double *e, int n)
+static int mass_matrix(Instance *self, const double *e, int n)
 {
-    const TapeEngine *engine = self->engine;
+    const TapeEngine *engine = tape_of(self);
     for (int j = 0; j < n; ++j) {
         engine->unit[j] = 1;
         int status = inverse(self, e, engine->unit, engine->tau);
@@ -63,8 +63,8 @@ static void eliminate(const TapeEngine *engine, int n, gic_self_test *result)
 
 int tape_self_test(void *instance, gic_self_test *result)
 {
-    TapeInstance *self = instance;
-    const TapeEngine *engine = self->engine;
+    Instance *self = instance;
+    const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
     const int n = engine->formulation->plan->unknowns;
     double e[4], energy[3];
