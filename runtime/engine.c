@@ -2,15 +2,14 @@
  * The engines by name, and instances of any of them. */
 #include "engine.h"
 
-#include "interpreted.h"
-
 #include <string.h>
+#include <time.h>
 
 typedef const Engine *Open(Pool *pool, const Model *model, const EngineOptions *options);
 
-const char *const engine_name[] = {"cc", "gic", NULL};
+const char *const engine_name[] = {"cc", "gic", "tape", NULL};
 
-static Open *const engine_opener[] = {engine_cc, engine_gic};
+static Open *const engine_opener[] = {engine_cc, engine_gic, engine_tape};
 
 static int engine_index(const char *name)
 {
@@ -28,6 +27,15 @@ bool engine_known(const char *name)
 const Engine *engine_open(Pool *pool, const char *name, const Model *model, const EngineOptions *options)
 {
     return engine_opener[engine_index(name)](pool, model, options);
+}
+
+double profile_clock(const EngineProfile *profile)
+{
+    struct timespec now;
+    if (!profile->on)
+        return 0;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 gic_head *instance_new(Pool *pool, const Engine *engine)

@@ -21,6 +21,9 @@ typedef struct EngineProfile {
     int64_t evaluations, newton, factorizations, repartitions;
 } EngineProfile;
 
+/* The time, s; 0 while the profile is off. */
+double profile_clock(const EngineProfile *profile);
+
 typedef struct Engine {
     const char *name;
     const gic_model *code;

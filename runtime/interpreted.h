@@ -1,25 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * Interpreted engines as descriptors: the instance, the functions of gic_model that are the same for all of them, and
- * what an engine adds. */
+ * Engines that interpret a World: the functions of gic_model that are the same for all of them, and what an engine
+ * adds. */
 #ifndef INTERPRETED_H
 #define INTERPRETED_H
 
+#include "engine.h"
 #include "world.h"
-
-typedef struct Instance {
-    gic_head head;
-    const struct Interpreted *context;
-    /* behind it: the descriptor's arrays, then `own` numbers of the engine */
-} Instance;
 
 /* The context of an engine's instances. */
 typedef struct Interpreted {
     gic_model code; /* an engine may replace what differs */
     World *world;
     EngineProfile *profile;
-    size_t own_offset;     /* bytes */
-    int *coordinate_state; /* [coordinates] index of w in the state; -1: driven */
+    size_t own_offset; /* bytes */
     /* start: the engine's numbers at setup, where `state`, `input` and `parameter` of the instance have their initial
      * values. evaluate: World and rate[] at a state, for which the instance's inputs are loaded. Both return a status
      * and may set head.subset. What the engine remembers changes only to what is good at some configuration on the way.
@@ -43,8 +37,5 @@ void interpreted_place_base(const Interpreted *context, const double *state, con
 /* Forces and accelerations at the World's configuration, for which J, dual and vectors of all ties are there; then
  * rate[]. Rows A to C of the profile. */
 int interpreted_accelerate(const Interpreted *context, const double *state, const double e[4], double *rate);
-
-/* The time, s; 0 while the profile is off. */
-double profile_clock(const EngineProfile *profile);
 
 #endif

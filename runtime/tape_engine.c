@@ -84,13 +84,18 @@ static int evaluate(Instance *self, double time, const double *y, double e[4], d
         !gic_finite(tape_array(self, code->port_offset), code->port_count))
         return self->head.status = GIC_ERROR_INPUT;
     ++self->head.rhs_count;
+    const double begun = profile_clock(engine->profile);
     int status = orient(self, y, e, turn);
     if (status == GIC_OK) {
         gather(self, y);
         status = tape_recover(self, turn, false);
     }
+    const double recovered = profile_clock(engine->profile);
     if (status == GIC_OK)
         status = tape_whole(self, engine->dynamics, time, y, e, engine->result, NULL, NULL);
+    engine->profile->recovery += recovered - begun;
+    engine->profile->acceleration += profile_clock(engine->profile) - recovered;
+    ++engine->profile->evaluations;
     if (status == GIC_OK && !gic_finite(engine->result, code->slow_count))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK)
@@ -193,10 +198,9 @@ static int setup(void *instance)
     return self->head.status = status;
 }
 
-const Engine *engine_tape(Pool *pool, const Model *model, Solve solve, const char *compiler)
+const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *options)
 {
-    (void)compiler;
-    TapeEngine *tape = tape_open(pool, model, solve);
+    TapeEngine *tape = tape_open(pool, model, options->solve);
     tape->code.setup = setup;
     tape->code.rhs = rhs;
     tape->code.settle = settle;
@@ -204,6 +208,6 @@ const Engine *engine_tape(Pool *pool, const Model *model, Solve solve, const cha
     tape->code.poses = poses;
     tape->code.self_test = tape_self_test;
     Engine *engine = pool_alloc(pool, sizeof *engine);
-    *engine = (Engine){.name = "tape", .code = &tape->code, .context = tape};
+    *engine = (Engine){.name = "tape", .code = &tape->code, .context = tape, .profile = tape->profile};
     return engine;
 }

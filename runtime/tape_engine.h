@@ -25,6 +25,7 @@ typedef struct TapeLinks {
  * anything in. So one thread at a time may compute. */
 typedef struct TapeEngine {
     gic_model code;
+    EngineProfile *profile; /* rows A and D: within blocks, functions and solver are one */
     const Formulation *formulation;
     TapeClass *class;
     int *member; /* [subsets] */

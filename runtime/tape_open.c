@@ -122,6 +122,7 @@ TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve)
     TapeEngine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (TapeEngine){.formulation = f,
                            .code = descriptor_new(pool, f->model, f->sequence),
+                           .profile = pool_alloc(pool, sizeof *engine->profile),
                            .member = pool_alloc(pool, (size_t)(f->sequence->subsets + 1) * sizeof(int)),
                            .piece = numbers(pool, f->model->coordinates),
                            .initial = numbers(pool, f->plan->states)};

@@ -46,6 +46,7 @@ static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, do
         tape_play(class->predict, member, array, &none, frame);
         for (int i = 0; i < GIC_CHORDS; ++i) {
             tape_play(class->chord, member, array, &none, frame);
+            ++engine->profile->newton;
             ++self->head.correction_count;
             if (!(step < GIC_LEAP_SQUARE))
                 return GIC_ERROR_NEWTON;
@@ -55,6 +56,8 @@ static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, do
     }
     for (int i = 0; i < GIC_PASSES; ++i) {
         int status = tape_play(class->solve, member, array, &none, frame);
+        ++engine->profile->newton;
+        ++engine->profile->factorizations;
         if (status != GIC_OK)
             return status;
         ++self->head.correction_count;
