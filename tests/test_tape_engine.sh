@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_tape_engine.sh GICGEN GICRUN STATES RANDOM_VEHICLE: the engine `tape` against compiled code, byte by byte: both do
-# the same operations, so that every digit of results, statuses and messages must agree. At ROWS (default 30) random
+# test_tape_engine.sh GICGEN GICRUN STATES RANDOM_VEHICLE: the engine `tape` against compiled code, byte by byte: both
+# do the same operations, so that every digit of results, statuses and messages must agree. At ROWS (default 30) random
 # states of every model and of random vehicles, some of them out of reach, and over runs of scenes. Neither does it take
 # a compiler nor does it matter how that optimizes.
 gicgen=$1
@@ -105,12 +105,14 @@ grep -q 'parameter switches *[1-9]' "$work/said.played"
 check $? "the dependent parameter changes"
 
 # a failure on the way is the same one at the same time
-sed 's/^duration.*/duration: 2/; s/^step:.*/step: 0.02/; s/^output_step:.*/output_step: 0.02/; s/height: 0.06/height: 3/' \
+sed 's/^duration.*/duration: 2/; s/^step:.*/step: 0.02/; s/^output_step:.*/output_step: 0.02/
+    s/height: 0.06/height: 3/' \
     "$root/models/scenes/paper_run.scene" >"$work/hmmwv.scene"
 "$gicrun" --cc "sh $work/cc" -q "$root/models/hmmwv.veh" "$work/hmmwv.scene" -o "$work/compiled" 2>"$work/said.compiled"
 compiled=$?
 tape -q "$root/models/hmmwv.veh" "$work/hmmwv.scene" -o "$work/played" 2>"$work/said.played"
-[ $? -eq 1 ] && [ $compiled -eq 1 ] && cmp "$work/compiled" "$work/played" && cmp "$work/said.compiled" "$work/said.played"
+[ $? -eq 1 ] && [ $compiled -eq 1 ] && cmp "$work/compiled" "$work/played" &&
+    cmp "$work/said.compiled" "$work/said.played"
 check $? "a run that fails"
 
 "$gicrun" --engine taep "$root/models/hmmwv.veh" "$work/hmmwv.scene" 2>"$work/said"
