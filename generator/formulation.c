@@ -87,6 +87,13 @@ double coordinate_piece(const Formulation *f, int coordinate)
 
 void body_design(const Formulation *f, int body, double q[7])
 {
+    if (f->model->tuning) {
+        Ex c[3];
+        body_drawn(f->plan, body, c, q + 3);
+        for (int i = 0; i < 3; ++i)
+            q[i] = ex_value(f->model->tuning->dag, c[i], 0);
+        return;
+    }
     memcpy(q, sampling_pose(f->sampling, 0, 0, body), 3 * sizeof *q);
     euler_relative(f->model->body[BODY_BASE].euler, f->model->body[body].euler, q + 3);
 }

@@ -8,9 +8,6 @@
 /* The version of gic_runtime.h that emitted code is written for: GIC_ABI_VERSION. */
 enum { ABI_VERSION = 2 };
 
-/* Steps from the drawing to given lengths at set-up, as many as assemble.c takes. */
-enum { ASSEMBLY_PIECES = 64 };
-
 typedef struct Generation {
     Pool *pool;
     const Formulation *formulation;
@@ -435,25 +432,13 @@ static void write_pieces(Generation *g, Text *out, int indent)
         line(out, indent, "R(0.0)");
 }
 
-/* Pose of a body in the drawing; what follows parameters is set at set-up. */
-static void body_in_drawing(const Generation *g, int body, double q[7])
-{
-    Ex c[3];
-    body_drawn(g->plan, body, c, q + 3);
-    for (int i = 0; i < 3; ++i)
-        q[i] = ex_value(g->model->tuning->dag, c[i], 0);
-}
-
 static void write_design(Generation *g, Text *out, int indent)
 {
     for (int s = 0; s < g->sequence->subsets; ++s) {
         const Subset *subset = &g->sequence->subset[s];
         for (int b = 0; subset->class >= 0 && b < subset->bodies; ++b) {
             double q[7];
-            if (g->model->tuning)
-                body_in_drawing(g, subset->body[b], q);
-            else
-                body_design(g->formulation, subset->body[b], q);
+            body_design(g->formulation, subset->body[b], q);
             text_print(out, "%*s{%d, {", indent, "", g->plan->start_offset[s] + 7 * b);
             for (int i = 0; i < 7; ++i)
                 text_print(out, "%s%s", i ? ", " : "", emit_number(g->pool, q[i]));

@@ -905,6 +905,9 @@ void whole_angular_acceleration(Whole *whole, int body, const Ex alpha[3], const
 
 /* ---- derive.c: what follows geometric parameters, at set-up; models with a tuning only ----------------------------- */
 
+/* Steps from the drawing to given lengths at set-up, as many as assemble.c takes. */
+enum { ASSEMBLY_PIECES = 64 };
+
 /* derived[] from p[] and `rest`; checks what parameters must not violate. After all blocks that read derived[]. */
 const Block *derive_block(Pool *pool, const Plan *plan);
 /* What of state[], input[] and start[0] follows parameters, at the drawing. */
@@ -940,7 +943,8 @@ typedef struct StateNumber {
 StateNumber state_number(Pool *pool, const Formulation *f, int index);
 /* Change of a coordinate that is followed in one piece: no body turns by more than about a tenth of a radian. */
 double coordinate_piece(const Formulation *f, int coordinate);
-/* Design pose of a body relative to the base, as a Newton start has it: reference point, Euler parameters. */
+/* Design pose of a body relative to the base, as a Newton start has it: reference point, Euler parameters. Of a model
+ * with a tuning that in the drawing, from where set-up goes on. */
 void body_design(const Formulation *f, int body, double q[7]);
 /* "body" or "body + body". */
 const char *subset_title(Pool *pool, const Model *model, const Subset *subset);

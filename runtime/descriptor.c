@@ -96,6 +96,17 @@ static void set_names(Pool *pool, const Model *model, const Sequence *sequence, 
         subset[s] = subset_title(pool, model, &sequence->subset[s]);
     for (int b = 0; b < model->bodies; ++b)
         body[b] = model->body[b].name;
+    const int conditions = model->tuning ? model->tuning->conditions : 0;
+    const char **condition = pool_alloc(pool, ((size_t)conditions + 1) * sizeof *condition);
+    int32_t *geometric = pool_alloc(pool, ((size_t)model->tunables + 1) * sizeof *geometric);
+    for (int i = 0; i < conditions; ++i)
+        condition[i] = model->tuning->condition[i].text;
+    for (int i = 0; i < model->parameters; ++i)
+        if (model->parameter[i].tunable)
+            geometric[model->parameter[i].index] = model->parameter[i].geometric;
+    code->condition_count = conditions;
+    code->condition_text = condition;
+    code->parameter_geometric = geometric;
     code->subset_name = subset;
     code->body_name = body;
 }

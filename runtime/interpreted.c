@@ -268,6 +268,11 @@ Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *seq
     context->world = world_new(pool, model, sequence);
     context->profile = pool_alloc(pool, sizeof *context->profile);
     context->code = descriptor_new(pool, model, sequence);
+    context->standard = pool_alloc(pool, (size_t)(model->tunables + 1) * sizeof(double));
+    context->wanted = pool_alloc(pool, (size_t)(model->tunables + 1) * sizeof(double));
+    for (int i = 0; i < model->parameters; ++i)
+        if (model->parameter[i].tunable)
+            context->standard[model->parameter[i].index] = model->parameter[i].value;
     context->code.setup = any_setup;
     context->code.setup_with = any_setup_with;
     context->code.rhs = any_rhs;

@@ -114,10 +114,11 @@ static void place_constants(Recorder *r)
 /* `name[7]` or `name` as one number of one of the arrays. */
 static TapeMove place_of(const Recorder *r, const char *name)
 {
-    size_t length = strcspn(name, "[");
+    const char *bracket = strrchr(name, '[');
+    size_t length = bracket ? (size_t)(bracket - name) : strlen(name);
     for (int i = 0; i < r->arrays; ++i)
         if (!strncmp(r->array[i], name, length) && !r->array[i][length])
-            return (TapeMove){.array = i, .offset = name[length] ? atoi(name + length + 1) : 0, .count = 1};
+            return (TapeMove){.array = i, .offset = bracket ? atoi(bracket + 1) : 0, .count = 1};
     fprintf(stderr, "gicrun: error: the tape knows no '%s'\n", name);
     abort();
 }
@@ -154,7 +155,8 @@ static void place_inputs(Recorder *r)
     }
 }
 
-static void place_results(Recorder *r)
+/* What a check returns: a status, or what refuses a condition, `PREFIX_refuse(self, 3)`. */
+static TapeCheck check_of(const Recorder *r, const Check *check)
 {
     static const struct {
         const char *name;
@@ -164,16 +166,22 @@ static void place_results(Recorder *r)
         GIC_STATUS_LIST(STATUS)
 #undef STATUS
     };
+    const char *comma = strchr(check->status, ',');
+    TapeCheck out = {slot_of(r, check->value), check->least, check->magnitude, GIC_ERROR_GEOMETRY, 0};
+    if (comma)
+        out.condition = atoi(comma + 1);
+    for (size_t s = 0; s < sizeof status / sizeof *status; ++s)
+        if (!strcmp(status[s].name, check->status))
+            out.status = status[s].code;
+    return out;
+}
+
+static void place_results(Recorder *r)
+{
     const Block *block = r->block;
     Tape *tape = r->tape;
-    for (int i = 0; i < block->checks; ++i) {
-        const Check *check = &block->check[i];
-        size_t s = 0;
-        while (strcmp(status[s].name, check->status))
-            ++s;
-        *POOL_PUSH(r->pool, tape->check, tape->checks) =
-            (TapeCheck){slot_of(r, check->value), check->least, check->magnitude, status[s].code};
-    }
+    for (int i = 0; i < block->checks; ++i)
+        *POOL_PUSH(r->pool, tape->check, tape->checks) = check_of(r, &block->check[i]);
     for (int i = 0; i < block->stores; ++i) {
         TapeMove place = place_of(r, block->store[i].target);
         place.slot = slot_of(r, block->store[i].value);

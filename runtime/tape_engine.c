@@ -48,7 +48,7 @@ int tape_whole(Instance *self, const Tape *tape, double time, const double *y, c
 {
     const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
-    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time};
+    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, NULL};
     double *const array[WHOLE_COUNT] = {
         [WHOLE_time] = &time,
         [WHOLE_y] = (double *)y, /* blocks only read these two */
@@ -67,6 +67,7 @@ int tape_whole(Instance *self, const Tape *tape, double time, const double *y, c
         [WHOLE_pose] = out,
         [WHOLE_tau] = out,
         [WHOLE_energy] = out,
+        [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
         [WHOLE_lambda] = tape_array(self, engine->multiplier_offset),
     };
     return tape_play(tape, 0, array, &world, engine->frame);
@@ -83,6 +84,8 @@ static int evaluate(Instance *self, double time, const double *y, double e[4], d
         !gic_finite(tape_array(self, code->parameter_offset), code->parameter_count) ||
         !gic_finite(tape_array(self, code->port_offset), code->port_count))
         return self->head.status = GIC_ERROR_INPUT;
+    if (!tape_is_tuned(self))
+        return self->head.status = GIC_ERROR_TUNED;
     ++self->head.rhs_count;
     const double begun = profile_clock(engine->profile);
     int status = orient(self, y, e, turn);
@@ -161,7 +164,7 @@ static int poses(void *instance, double *pose)
     return status;
 }
 
-static int setup(void *instance)
+static int setup_with(void *instance, const double *wanted)
 {
     Instance *self = instance;
     const TapeEngine *engine = tape_of(self);
@@ -169,18 +172,19 @@ static int setup(void *instance)
     const Plan *plan = engine->formulation->plan;
     const Model *model = plan->model;
     double e[4], turn[3];
+    memcpy(engine->wanted, wanted, (size_t)code->parameter_count * sizeof *wanted); /* may be the instance's own */
     memset(self, 0, code->size);
     self->context = engine;
-    self->head.subset = -1;
+    self->head.subset = self->head.condition = -1;
     double *state = tape_array(self, code->state_offset), *input = tape_array(self, code->input_offset);
-    double *parameter = tape_array(self, code->parameter_offset), *x = tape_array(self, engine->x_offset);
+    double *x = tape_array(self, engine->x_offset);
     double *start = tape_start(self);
     memcpy(state, engine->initial, (size_t)code->slow_count * sizeof *state);
     for (int i = 0; i < model->inputs; ++i)
         input[i] = model->input[i].initial;
-    for (int i = 0; i < model->parameters; ++i)
-        if (model->parameter[i].tunable)
-            parameter[model->parameter[i].index] = model->parameter[i].value;
+    memcpy(tape_array(self, code->parameter_offset), engine->wanted, (size_t)code->parameter_count * sizeof *wanted);
+    if (!gic_finite(engine->wanted, code->parameter_count))
+        return self->head.status = GIC_ERROR_INPUT;
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (int i = 0; i < model->coordinates; ++i)
         start[i] = x[i] = model->coordinate[i].design;
@@ -191,17 +195,24 @@ static int setup(void *instance)
     }
     int status = orient(self, state, e, turn);
     if (status == GIC_OK)
-        status = tape_recover(self, turn, true);
+        status = engine->draw ? tape_assemble(self, turn) : tape_recover(self, turn, true);
     gather(self, state);
     if (status == GIC_OK)
         status = tape_recover(self, turn, false);
     return self->head.status = status;
 }
 
+static int setup(void *instance)
+{
+    const TapeEngine *engine = tape_of(instance);
+    return setup_with(instance, engine->standard);
+}
+
 const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *options)
 {
     TapeEngine *tape = tape_open(pool, model, options->solve);
     tape->code.setup = setup;
+    tape->code.setup_with = setup_with;
     tape->code.rhs = rhs;
     tape->code.settle = settle;
     tape->code.outputs = outputs;

@@ -30,12 +30,14 @@ typedef struct TapeEngine {
     TapeClass *class;
     int *member; /* [subsets] */
     const Tape *dynamics, *outputs, *poses, *inverse, *energy;
-    const Tape *wrenches; /* NULL: no reactions to find after the accelerations */
-    const bool *reacts;   /* [subsets] whose multipliers outputs need */
+    const Tape *wrenches;      /* NULL: no reactions to find after the accelerations */
+    const Tape *derive, *draw; /* NULL: no parameter is geometric */
+    const bool *reacts;        /* [subsets] whose multipliers outputs need */
     gic_table *table;
     double *piece, *initial; /* [coordinates], [states] */
-    size_t x_offset, xd_offset, start_offset[2], motion_offset, inertia_offset, multiplier_offset;
+    size_t x_offset, xd_offset, start_offset[2], motion_offset, inertia_offset, multiplier_offset, derived_offset;
     double *frame, *q, *first, *result, *out;
+    double *standard, *wanted;              /* [tunables] values in the file, and while one is set up */
     double *acc, *unit, *tau0, *tau, *mass; /* [unknowns], and squared */
     TapeLinks links;
 } TapeEngine;
@@ -59,14 +61,14 @@ static inline double *tape_start(Instance *self)
 /* Arrays of a class's blocks, with m0, m1, ... and as many w0, w1, ... behind, and of the blocks about the whole
  * mechanism; names as in Formula and Whole of gicgen.h. */
 #define CLASS_ARRAYS(X) \
-    X(q) X(x) X(rate) X(change) X(turn) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst) X(w)
+    X(q) X(x) X(rate) X(change) X(turn) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst) X(w) X(d)
 #define WHOLE_ARRAYS(X) \
     X(time) \
     X(y) X(e) X(x) X(xd) X(u) X(m) X(n) X(p) X(port) X(s) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda)
 #define CLASS_ENUM(name) CLASS_##name,
 #define WHOLE_ENUM(name) WHOLE_##name,
 enum { CLASS_ARRAYS(CLASS_ENUM) CLASS_KNOWN };
-enum { WHOLE_ARRAYS(WHOLE_ENUM) WHOLE_COUNT };
+enum { WHOLE_ARRAYS(WHOLE_ENUM) WHOLE_DERIVED, WHOLE_COUNT };
 #undef CLASS_ENUM
 #undef WHOLE_ENUM
 
@@ -80,6 +82,13 @@ double tape_residual(Instance *self);
 
 /* The same file: links->array filled as far as it is about what a subset is connected to. */
 void tape_link(Instance *self, TapeLinks *links, const Subset *subset);
+
+/* tape_derive.c: the design configuration with the instance's parameters, numbers that follow them, and whether they
+ * are those of set-up still. */
+int tape_assemble(Instance *self, const double turn[3]);
+bool tape_is_tuned(Instance *self);
+/* The tapes for that; after all others. */
+void tape_record_derived(Pool *pool, TapeEngine *engine);
 
 /* tape_react.c: multipliers of the subsets that outputs need, at the present rate; e: Euler parameters of the base. */
 int tape_react(Instance *self, const double e[4]);

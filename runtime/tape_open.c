@@ -43,7 +43,7 @@ static void record_whole(Pool *pool, TapeEngine *engine)
 {
     static const char *const array[] = {
 #define NAME(name) #name,
-        WHOLE_ARRAYS(NAME)
+        WHOLE_ARRAYS(NAME) "self->derived",
 #undef NAME
     };
     const Formulation *f = engine->formulation;
@@ -73,6 +73,8 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
     const Formulation *f = engine->formulation;
     const Tape *const whole[] = {engine->dynamics, engine->outputs, engine->poses, engine->inverse, engine->energy};
     int slots = engine->wrenches ? engine->wrenches->slots : 0, bodies = 0, unknowns = f->plan->unknowns;
+    if (engine->derive)
+        slots = GIC_MAX(slots, GIC_MAX(engine->derive->slots, engine->draw->slots));
     for (size_t i = 0; i < sizeof whole / sizeof *whole; ++i)
         slots = GIC_MAX(slots, whole[i]->slots);
     for (int c = 0; c < f->sequence->classes; ++c) {
@@ -87,6 +89,7 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
     engine->first = numbers(pool, f->model->coordinates);
     engine->result = numbers(pool, f->plan->states);
     engine->out = numbers(pool, f->model->output_components);
+    engine->wanted = numbers(pool, f->model->tunables);
     engine->acc = numbers(pool, unknowns);
     engine->unit = numbers(pool, unknowns);
     engine->tau0 = numbers(pool, unknowns);
@@ -112,6 +115,7 @@ static void lay_out(TapeEngine *engine)
     engine->start_offset[1] = descriptor_place(code, (size_t)plan->start_size);
     engine->motion_offset = descriptor_place(code, (size_t)plan->motion_size);
     engine->inertia_offset = descriptor_place(code, (size_t)plan->inertia_size);
+    engine->derived_offset = descriptor_place(code, (size_t)plan->derived->count);
     engine->multiplier_offset = descriptor_place(code, (size_t)plan->multipliers);
 }
 
@@ -131,8 +135,14 @@ TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve)
         engine->piece[i] = coordinate_piece(f, i);
     for (int i = 0; i < f->plan->states; ++i)
         engine->initial[i] = state_number(pool, f, i).initial;
+    engine->standard = numbers(pool, f->model->tunables);
+    for (int i = 0; i < f->model->parameters; ++i)
+        if (f->model->parameter[i].tunable)
+            engine->standard[f->model->parameter[i].index] = f->model->parameter[i].value;
     record_classes(pool, engine);
     record_whole(pool, engine);
+    if (f->model->tuning)
+        tape_record_derived(pool, engine);
     make_tables(pool, engine);
     make_scratch(pool, engine);
     lay_out(engine);

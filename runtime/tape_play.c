@@ -84,8 +84,11 @@ int tape_play(const Tape *tape, int member, double *const *array, const TapeWorl
     for (int i = 0; i < tape->checks; ++i) {
         const TapeCheck *check = &tape->check[i];
         const double value = frame[check->slot];
-        if (!((check->magnitude ? fabs(value) : value) > check->least))
+        if (!((check->magnitude ? fabs(value) : value) > check->least)) {
+            if (check->status == GIC_ERROR_GEOMETRY)
+                *world->condition = check->condition;
             return check->status;
+        }
     }
     if (!on_road)
         return GIC_ERROR_ROAD;

@@ -16,6 +16,8 @@ void tape_link(Instance *self, TapeLinks *links, const Subset *subset)
     array[CLASS_rate] = links->rate;
     array[CLASS_change] = links->change;
     array[CLASS_turn] = links->turn;
+    array[CLASS_d] =
+        tape_array(self, tape_of(self)->derived_offset) + plan->derived_offset[subset - plan->sequence->subset];
     for (int i = 0; i < subset->knowns; ++i)
         array[CLASS_KNOWN + i] = motion + plan->motion_offset[subset->known[i]];
 }

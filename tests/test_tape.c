@@ -35,14 +35,19 @@ typedef struct Memory {
     double a[INPUTS], b[INPUTS], out[RESULTS], alone;
 } Memory;
 
-static int play(Pool *pool, const Tape *tape, int member, Memory *m, const gic_road *road)
+static int play_about(Pool *pool, const Tape *tape, int member, Memory *m, const gic_road *road, int32_t *condition)
 {
     double *const array[ARRAYS] = {m->a, m->b, m->out, &m->alone};
     double *frame = pool_alloc(pool, (size_t)(tape->slots + 1) * sizeof *frame);
-    const TapeWorld world = {table, road, 4, 0.5};
+    const TapeWorld world = {table, road, 4, 0.5, condition};
     for (int i = 0; i < tape->slots; ++i)
         frame[i] = NAN; /* what was in it must not matter */
     return tape_play(tape, member, array, &world, frame);
+}
+
+static int play(Pool *pool, const Tape *tape, int member, Memory *m, const gic_road *road)
+{
+    return play_about(pool, tape, member, m, road, NULL);
 }
 
 /* ---- plain evaluation ---------------------------------------------------------------------------------------- */
@@ -247,6 +252,24 @@ static void test_checks(void **state)
     pool_free(pool);
 }
 
+static void test_conditions(void **state)
+{
+    (void)state;
+    Pool *pool = pool_new();
+    Block block = {.dag = dag_new(pool, 1, 1)};
+    block_check(&block, input(block.dag, "a[0]"), false, 0, "car_refuse(self, 3)");
+    block_check(&block, input(block.dag, "a[1]"), false, 0, "car_refuse(self, 14)");
+    const Tape *tape = tape_record(pool, &block, name, ARRAYS);
+    Memory m = {.a = {1, -1}};
+    int32_t condition = -1;
+    assert_int_equal(play_about(pool, tape, 0, &m, NULL, &condition), GIC_ERROR_GEOMETRY);
+    assert_int_equal(condition, 14);
+    m.a[0] = -1;
+    assert_int_equal(play_about(pool, tape, 0, &m, NULL, &condition), GIC_ERROR_GEOMETRY);
+    assert_int_equal(condition, 3);
+    pool_free(pool);
+}
+
 static void test_road(void **state)
 {
     (void)state;
@@ -313,9 +336,13 @@ static void test_loads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_graphs), cmocka_unit_test(test_two_roundings),
-        cmocka_unit_test(test_exchange),      cmocka_unit_test(test_checks),
-        cmocka_unit_test(test_road),          cmocka_unit_test(test_places_are_used_again),
+        cmocka_unit_test(test_random_graphs),
+        cmocka_unit_test(test_two_roundings),
+        cmocka_unit_test(test_exchange),
+        cmocka_unit_test(test_checks),
+        cmocka_unit_test(test_conditions),
+        cmocka_unit_test(test_road),
+        cmocka_unit_test(test_places_are_used_again),
         cmocka_unit_test(test_loads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

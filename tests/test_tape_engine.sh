@@ -40,6 +40,21 @@ spoil() {
         { print }' "$1"
 }
 
+# tuned MODEL FILE: the states in FILE with values of MODEL's tunable parameters from between the two numbers behind each,
+# in every fifth row a negative one, which some refuse
+tuned() {
+    awk -F '[ ,:]+' 'NR == FNR {
+            if (/tunable: true/) { low[++count] = $(NF - 1); high[count] = $NF; sub(/^ */, ""); name[count] = $1 }
+            next
+        }
+        FNR == 1 { srand(9); for (i = 1; i <= count; ++i) $0 = $0 "," name[i]; print; next }
+        { for (i = 1; i <= count; ++i) {
+              value = low[i] + rand() * (high[i] - low[i])
+              $0 = $0 "," (FNR % 5 == 0 && i == 1 + FNR / 5 % count ? -value : value)
+          }
+          print }' "$1" "$2"
+}
+
 # same_states MODEL LABEL [OPTION...]
 same_states() {
     rm -f "$work/compiled" "$work/played"
@@ -48,7 +63,7 @@ same_states() {
     shift 2
     "$gicgen" --dump-model "$model" >"$work/dump" 2>"$work/said" &&
         "$states" "$work/dump" --count "${ROWS:-30}" --seed 5 2>"$work/said" >"$work/plain" &&
-        spoil "$work/plain" >"$work/states" &&
+        spoil "$work/plain" >"$work/spoilt" && tuned "$model" "$work/spoilt" >"$work/states" &&
         "$gicrun" "$@" --cc "sh $work/cc" --eval "$work/states" "$model" -o "$work/compiled" 2>"$work/said.compiled" &&
         tape "$@" --eval "$work/states" "$model" -o "$work/played" 2>"$work/said.played" &&
         cmp "$work/said.compiled" "$work/said.played" >"$work/said" &&
@@ -70,7 +85,8 @@ same_run() {
 
 sed 's/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/' "$root/models/hmmwv.veh" \
     >"$work/steered.veh"
-for model in "$root"/models/*.veh "$work/steered.veh" "$root/tests/laws/cart.veh"; do
+for model in "$root"/models/*.veh "$work/steered.veh" "$root/tests/laws/cart.veh" \
+    "$root"/tests/tuning/car.veh "$root"/tests/tuning/rig.veh; do
     same_states "$model" "$(basename "$model")"
 done
 for name in hmmwv14 quarter_car; do # with reaction forces of all joints
