@@ -14,7 +14,6 @@ typedef struct Interpreted {
     World *world;
     EngineProfile *profile;
     size_t own_offset; /* bytes */
-    double *standard, *wanted; /* [tunables] values in the file, and while one is set up */
     /* start: the engine's numbers at setup, where `state`, `input` and `parameter` of the instance have their initial
      * values. evaluate: World and rate[] at a state, for which the instance's inputs are loaded. Both return a status
      * and may set head.subset. What the engine remembers changes only to what is good at some configuration on the way.
