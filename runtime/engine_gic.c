@@ -338,11 +338,8 @@ static int local_of(const Subset *subset, int body)
 static void add_tie(const World *world, const Subset *subset, Part *part, int index)
 {
     const Tie *tie = &world->tie[index];
-    for (int end = 0; end < 2; ++end) {
+    for (int end = 0; end < 2; ++end)
         part->end[part->ties][end] = local_of(subset, tie->body[end]);
-        if (part->end[part->ties][end] >= 0)
-            part->size = fmax(part->size, sqrt(dot3(tie->arm[end], tie->arm[end])));
-    }
     part->tie[part->ties++] = index;
 }
 
@@ -353,8 +350,7 @@ static Part part_of(Pool *pool, const World *world, const Subset *subset)
                  .bodies = subset->bodies,
                  .body = subset->body,
                  .tie = pool_alloc(pool, most * sizeof *part.tie),
-                 .end = pool_alloc(pool, most * sizeof *part.end),
-                 .size = 0.1 * world->size};
+                 .end = pool_alloc(pool, most * sizeof *part.end)};
     for (int i = 0; i < subset->joints; ++i)
         add_tie(world, subset, &part, subset->joint[i]);
     for (int i = 0; i < subset->coordinates; ++i)
@@ -375,19 +371,37 @@ static _Noreturn void design_fail(const Model *model, const Subset *subset, int 
               model->body[subset->body[0]].name);
 }
 
-/* A start at the design, and how far unit rates of the coordinates swing the bodies there. */
-static void find_design(const Interpreted *context, Instance *self)
+/* Largest arm of a part's bodies, but not much less than that of all. */
+static double part_size(const World *world, const Part *part)
+{
+    double size = 0.1 * world->size;
+    for (int t = 0; t < part->ties; ++t)
+        for (int end = 0; end < 2; ++end) {
+            const double *arm = world->tie[part->tie[t]].arm[end];
+            if (part->end[t][end] >= 0)
+                size = fmax(size, sqrt(dot3(arm, arm)));
+        }
+    return size;
+}
+
+/* A start at the design, its determinants, and how far unit rates of the coordinates swing the bodies there. */
+static int find_design(const Interpreted *context, Instance *self)
 {
     Gic *gic = context->engine;
     World *world = context->world;
     const Model *model = world->model;
     double *start = gic->design;
+    for (int s = 0; s < gic->parts; ++s) {
+        gic->part[s].size = part_size(world, &gic->part[s]);
+        gic->part[s].design = 0;
+    }
     for (int c = 0; c < model->coordinates; ++c)
         start[c] = world->x[c] = model->coordinate[c].design;
     memcpy(start_q(world, start), world->q_design, sizeof *world->q * (size_t)world->bodies);
-    int status = recover_piece(context, self, start, start, true);
+    world_set_q(world, BODY_BASE, world->q_design[BODY_BASE]);
+    const int status = recover_piece(context, self, start, start, true);
     if (status != GIC_OK)
-        design_fail(model, &world->sequence->subset[self->head.subset], status);
+        return status;
     for (int s = 0; s < gic->parts; ++s) {
         Part *part = &gic->part[s];
         if (part->n)
@@ -410,6 +424,7 @@ static void find_design(const Interpreted *context, Instance *self)
         const double whole = model->coordinate[c].range[1] - model->coordinate[c].range[0];
         gic->piece[c] = most > 0 ? swing_piece / most : whole;
     }
+    return GIC_OK;
 }
 
 const Engine *engine_gic(Pool *pool, const Model *drawn, const EngineOptions *options)
@@ -440,8 +455,12 @@ const Engine *engine_gic(Pool *pool, const Model *drawn, const EngineOptions *op
     gic->design = pool_alloc(pool, (size_t)gic->start_size * sizeof(double));
     context->engine = gic;
     context->start = start;
+    context->design = find_design;
     context->evaluate = evaluate;
     const Engine *engine = interpreted_engine(pool, "gic", context);
-    find_design(context, (Instance *)(void *)instance_new(pool, engine));
+    Instance *self = (Instance *)(void *)instance_new(pool, engine);
+    const int status = find_design(context, self);
+    if (status != GIC_OK)
+        design_fail(model, &sequence->subset[self->head.subset], status);
     return engine;
 }

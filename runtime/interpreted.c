@@ -133,15 +133,23 @@ static void load(const Instance *self, double time)
     world->lane = self->head.lane;
 }
 
-/* Interpreted engines have the geometry of the file. */
-static bool same_geometry(const Instance *self)
+/* The parameters that set-up was given: geometric ones must stay so. */
+static double *setup_parameter(const Instance *self)
 {
-    const Model *model = self->context->world->model;
-    const double *value = array_of(self, self->context->code.parameter_offset);
-    for (int i = 0; i < model->parameters; ++i)
-        if (model->parameter[i].geometric && value[model->parameter[i].index] != model->parameter[i].value)
-            return false;
-    return true;
+    return array_of(self, context_of(self)->setup_offset);
+}
+
+/* The World gets this instance's numbers, if it has another's. */
+static int match_geometry(Instance *self)
+{
+    const Interpreted *context = self->context;
+    const double *parameter = array_of(self, context->code.parameter_offset), *was = setup_parameter(self);
+    if (!context->geometry)
+        return GIC_OK;
+    for (int i = 0; i < context->code.parameter_count; ++i)
+        if (context->code.parameter_geometric[i] && parameter[i] != was[i])
+            return GIC_ERROR_TUNED;
+    return geometry_adopted(context, parameter) ? GIC_OK : geometry_adopt(context, self, parameter);
 }
 
 static int any_rhs(void *instance, double time, const double *state, double *rate)
@@ -156,11 +164,11 @@ static int any_rhs(void *instance, double time, const double *state, double *rat
         !finite(self, code->parameter_offset, code->parameter_count) ||
         !finite(self, code->port_offset, code->port_count))
         return self->head.status = GIC_ERROR_INPUT;
-    if (!same_geometry(self))
-        return self->head.status = GIC_ERROR_TUNED;
     ++self->head.rhs_count;
     load(self, time);
-    int status = context->evaluate(context, self, state, result);
+    int status = match_geometry(self);
+    if (status == GIC_OK)
+        status = context->evaluate(context, self, state, result);
     if (status == GIC_OK && !gic_finite(result, code->slow_count))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK)
@@ -224,37 +232,51 @@ static int any_settle(void *instance, double *state)
     return status;
 }
 
+/* State and inputs at their initial values. */
+static void set_initial(Instance *self)
+{
+    const Interpreted *context = self->context;
+    const Model *model = context->world->model;
+    const Body *base = &model->drawn[BODY_BASE];
+    double *state = array_of(self, context->code.state_offset), *input = array_of(self, context->code.input_offset);
+    if (context->code.free_base) {
+        memcpy(state, base->position, sizeof base->position);
+        memcpy(state + 3, base->euler, sizeof base->euler);
+    }
+    for (int i = 0; i < model->inputs; ++i)
+        input[i] = model->input[i].initial;
+    for (int c = 0; c < model->coordinates; ++c) {
+        const Coordinate *w = &model->coordinate[c];
+        *(w->driven ? &input[w->input] : &state[context->code.coordinate_state[c]]) = w->initial;
+    }
+}
+
 static int any_setup_with(void *instance, const double *parameter)
 {
     Instance *self = instance;
     const Interpreted *context = self->context;
     const gic_model *code = &context->code;
-    const Model *model = context->world->model;
-    double wanted[code->parameter_count + 1]; /* they may be the instance's own */
-    memcpy(wanted, parameter, sizeof *wanted * (size_t)code->parameter_count);
+    const size_t size = sizeof *parameter * (size_t)code->parameter_count;
+    double wanted[code->parameter_count + 1];
+    memcpy(wanted, parameter, size); /* they may be the instance's own */
     memset(self, 0, code->size);
     self->context = context;
     self->head.subset = self->head.condition = -1;
-    double *state = array_of(self, code->state_offset), *input = array_of(self, code->input_offset);
-    if (code->free_base) {
-        memcpy(state, model->body[BODY_BASE].position, sizeof model->body[BODY_BASE].position);
-        memcpy(state + 3, model->body[BODY_BASE].euler, sizeof model->body[BODY_BASE].euler);
-    }
-    for (int c = 0; c < model->coordinates; ++c)
-        if (context->code.coordinate_state[c] >= 0)
-            state[context->code.coordinate_state[c]] = model->coordinate[c].initial;
-    for (int i = 0; i < model->inputs; ++i)
-        input[i] = model->input[i].initial;
-    memcpy(array_of(self, code->parameter_offset), wanted, sizeof *wanted * (size_t)code->parameter_count);
-    if (!same_geometry(self))
-        return self->head.status = GIC_ERROR_TUNED;
+    memcpy(array_of(self, code->parameter_offset), wanted, size);
+    memcpy(setup_parameter(self), wanted, size);
+    if (!gic_finite(wanted, code->parameter_count))
+        return self->head.status = GIC_ERROR_INPUT;
+    int status = match_geometry(self);
+    set_initial(self);
     load(self, 0);
-    return self->head.status = context->start(context, self);
+    if (status == GIC_OK)
+        status = context->start(context, self);
+    return self->head.status = status;
 }
 
 static int any_setup(void *instance)
 {
-    const Model *model = ((Instance *)instance)->context->world->model;
+    const Model *model = context_of(instance)->world->model;
     double value[model->tunables + 1];
     for (int i = 0; i < model->parameters; ++i)
         if (model->parameter[i].tunable)
@@ -268,11 +290,6 @@ Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *seq
     context->world = world_new(pool, model, sequence);
     context->profile = pool_alloc(pool, sizeof *context->profile);
     context->code = descriptor_new(pool, model, sequence);
-    context->standard = pool_alloc(pool, (size_t)(model->tunables + 1) * sizeof(double));
-    context->wanted = pool_alloc(pool, (size_t)(model->tunables + 1) * sizeof(double));
-    for (int i = 0; i < model->parameters; ++i)
-        if (model->parameter[i].tunable)
-            context->standard[model->parameter[i].index] = model->parameter[i].value;
     context->code.setup = any_setup;
     context->code.setup_with = any_setup_with;
     context->code.rhs = any_rhs;
@@ -280,7 +297,9 @@ Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *seq
     context->code.outputs = any_outputs;
     context->code.poses = any_poses;
     context->code.self_test = any_self_test;
-    context->own_offset = descriptor_place(&context->code, own);
+    context->geometry = geometry_new(pool, model);
+    context->setup_offset = descriptor_place(&context->code, (size_t)model->tunables + own);
+    context->own_offset = context->setup_offset + sizeof(double) * (size_t)model->tunables;
     return context;
 }
 

@@ -13,7 +13,13 @@ typedef struct Interpreted {
     gic_model code; /* an engine may replace what differs */
     World *world;
     EngineProfile *profile;
-    size_t own_offset; /* bytes */
+    size_t own_offset; /* bytes; before it the tunable parameters as set-up was given them */
+    size_t setup_offset;
+    struct Geometry *geometry; /* NULL: no parameter acts on points, axes, masses and so on */
+    /* design: NULL where an engine knows the geometry of the file alone. The World's numbers are new, and its bodies
+     * stand where they were drawn, or at the solution for numbers nearby. Find the design configuration, and what the
+     * engine derives from it; the World is left there. */
+    int (*design)(const struct Interpreted *context, Instance *self);
     /* start: the engine's numbers at setup, where `state`, `input` and `parameter` of the instance have their initial
      * values. evaluate: World and rate[] at a state, for which the instance's inputs are loaded. Both return a status
      * and may set head.subset. What the engine remembers changes only to what is good at some configuration on the way.
@@ -37,5 +43,15 @@ void interpreted_place_base(const Interpreted *context, const double *state, con
 /* Forces and accelerations at the World's configuration, for which J, dual and vectors of all ties are there; then
  * rate[]. Rows A to C of the profile. */
 int interpreted_accelerate(const Interpreted *context, const double *state, const double e[4], double *rate);
+
+/* ---- geometry.c ------------------------------------------------------------------------------------------ */
+
+/* NULL where no tunable parameter is geometric. */
+struct Geometry *geometry_new(Pool *pool, const Model *model);
+/* The World's numbers and the engine's design for these values of the tunable parameters. GIC_ERROR_GEOMETRY, with
+ * head.condition, where they are impossible. */
+int geometry_adopt(const Interpreted *context, Instance *self, const double *parameter);
+/* Does the World have the numbers for these values? */
+bool geometry_adopted(const Interpreted *context, const double *parameter);
 
 #endif

@@ -84,48 +84,69 @@ static Tie tie_of_coordinate(const Model *model, int index)
     return tie;
 }
 
-static void set_design(World *world)
+/* Bodies where they stand in `body`. */
+static void set_design(World *world, const Body *body)
 {
     for (int b = 0; b < world->bodies; ++b) {
-        const Body *body = &world->model->body[b];
         double A[9], *q = world->q_design[b];
-        mat_from_euler(body->euler, A);
-        apply3(A, body->com, q);
-        add3(q, body->position, q);
-        memcpy(q + 3, body->euler, sizeof body->euler);
+        mat_from_euler(body[b].euler, A);
+        apply3(A, body[b].com, q);
+        add3(q, body[b].position, q);
+        memcpy(q + 3, body[b].euler, sizeof body[b].euler);
         world_set_q(world, b, q);
     }
 }
 
-static void add_tie(World *world, Tie *ties, Tie tie)
+static void set_size(World *world)
+{
+    world->size = 0.01;
+    for (int t = 0; t < world->ties; ++t)
+        for (int end = 0; end < 2; ++end)
+            if (world->tie[t].body[end] >= world->first)
+                world->size = fmax(world->size, sqrt(dot3(world->tie[t].arm[end], world->tie[t].arm[end])));
+}
+
+void world_adopt(World *world)
+{
+    for (int t = 0; t < world->ties; ++t) {
+        Tie *tie = &world->tie[t];
+        const int first = tie->first;
+        *tie =
+            tie->joint >= 0 ? tie_of_joint(world->model, tie->joint) : tie_of_coordinate(world->model, tie->coordinate);
+        tie->first = first;
+    }
+    set_size(world);
+    for (int b = world->first; b < world->bodies; ++b)
+        equations_mass(world->equations, b, world->model->body[b].mass, world->model->body[b].inertia);
+    set_design(world, world->model->drawn);
+}
+
+static void add_tie(World *world, Tie tie)
 {
     tie.first = world->rows;
     world->rows += tie.rows;
-    for (int end = 0; end < 2; ++end)
-        if (tie.body[end] >= world->first)
-            world->size = fmax(world->size, sqrt(dot3(tie.arm[end], tie.arm[end])));
     if (tie.coordinate >= 0)
         world->coordinate_tie[tie.coordinate] = world->ties;
-    ties[world->ties++] = tie;
+    world->tie[world->ties++] = tie;
 }
 
 /* Joints, driven coordinates, free ones. */
 static void make_ties(Pool *pool, World *world)
 {
     const Model *model = world->model;
-    Tie *tie = pool_alloc(pool, (size_t)(model->joints + model->coordinates + 1) * sizeof *tie);
+    world->tie = pool_alloc(pool, (size_t)(model->joints + model->coordinates + 1) * sizeof *world->tie);
     for (int i = 0; i < model->joints; ++i)
-        add_tie(world, tie, tie_of_joint(model, i));
+        add_tie(world, tie_of_joint(model, i));
     for (int driven = 1; driven >= 0; --driven) {
         for (int i = 0; i < model->coordinates; ++i)
             if (model->coordinate[i].driven == driven)
-                add_tie(world, tie, tie_of_coordinate(model, i));
+                add_tie(world, tie_of_coordinate(model, i));
         if (driven) {
             world->constraints = world->ties;
             world->constraint_rows = world->rows;
         }
     }
-    world->tie = tie;
+    set_size(world);
 }
 
 World *world_new(Pool *pool, const Model *model, const Sequence *sequence)
@@ -136,7 +157,6 @@ World *world_new(Pool *pool, const Model *model, const Sequence *sequence)
                      .sequence = sequence,
                      .bodies = model->bodies,
                      .first = model->free_base ? 0 : 1,
-                     .size = 0.01,
                      .coordinate_tie = pool_alloc(pool, coordinates * sizeof *world->coordinate_tie)};
     make_ties(pool, world);
     const size_t rows = (size_t)world->rows + 1;
@@ -160,7 +180,7 @@ World *world_new(Pool *pool, const Model *model, const Sequence *sequence)
     world->qdd = pool_alloc(pool, bodies * sizeof *world->qdd);
     world->alpha = pool_alloc(pool, bodies * sizeof *world->alpha);
     world->multiplier = pool_alloc(pool, rows * number);
-    set_design(world);
+    set_design(world, model->body);
     world_set_solver(pool, world, &topology_solver);
     return world;
 }

@@ -37,7 +37,7 @@ typedef struct World {
     int bodies, first;                /* first: 0 where the base moves, 1 where it is ground */
     int ties, rows;                   /* joints in the order of the file, driven coordinates, free coordinates */
     int constraints, constraint_rows; /* how many of them, from the first, are joints and driven coordinates */
-    const Tie *tie;
+    Tie *tie;
     int *coordinate_tie;        /* [coordinates] */
     double size;                /* largest distance of a tie's point from its body's centre of mass, at least 0.01 m */
     double (*q_design)[BODY_Q]; /* [bodies] at the assembled design */
@@ -81,6 +81,9 @@ typedef struct World {
 
 /* Everything that can be known before the first evaluation; bodies stand at the design. model: assembled. */
 World *world_new(Pool *pool, const Model *model, const Sequence *sequence);
+/* The model's numbers anew, after those that follow tunable parameters have changed: ties, masses, and as q_design the
+ * poses of the drawing. */
+void world_adopt(World *world);
 /* p must have unit length. */
 void world_set_q(World *world, int body, const double q[BODY_Q]);
 void world_set_rate(World *world, int body, const double qd[BODY_Q]);
