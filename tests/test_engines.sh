@@ -50,7 +50,7 @@ closed() {
 at_states() {
     "$gicgen" --dump-model "$1" >dump && "$states" dump --count "${ROWS:-5}" --seed "$2" -o states.csv &&
         sh "$root/tests/reactions.sh" dump "$(realpath "$1")" >variant.veh &&
-        "$reference" dump states.csv -o accelerations.csv 2>said || return 1
+        "$reference" dump states.csv -o accelerations.csv 2>said || { check 1 "reference at states of $1"; return; }
     for engine in $engines; do
         "$gicrun" --engine "$engine" --cc false --eval states.csv variant.veh -o results.csv >said 2>&1 &&
             "$agree" dump accelerations.csv results.csv --reactions --tolerance 1e-10 >said && closed >said
@@ -88,7 +88,7 @@ tuned() {
     sed "s|file: \.\./\.\.|file: $root|; s|^include: \.\./\.\.|include: $root|; s/^  $2: {value: [^,]*/  $2: {value: $3/" \
         "$model" >baked.veh
     "$gicgen" --dump-model baked.veh >dump && "$states" dump --count "${ROWS:-5}" --seed 1 -o states.csv &&
-        "$reference" dump states.csv -o accelerations.csv 2>said || return 1
+        "$reference" dump states.csv -o accelerations.csv 2>said || { check 1 "reference at states of $1"; return; }
     awk -v name="$2" -v value="$3" '{ print $0 "," (NR == 1 ? name : value) }' states.csv >tuned.csv
     for engine in $engines; do
         "$gicrun" --engine "$engine" --eval tuned.csv "$model" -o results.csv >said 2>&1 &&
