@@ -83,8 +83,8 @@ same_run() {
     check $? "run of $3"
 }
 
-sed 's/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/' "$root/models/hmmwv.veh" \
-    >"$work/steered.veh"
+sed "s|parts/|$root/models/parts/|g; s/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/" \
+    "$root/models/hmmwv.veh" >"$work/steered.veh"
 for model in "$root"/models/*.veh "$work/steered.veh" "$root/tests/laws/cart.veh" \
     "$root"/tests/tuning/car.veh "$root"/tests/tuning/rig.veh; do
     same_states "$model" "$(basename "$model")"
