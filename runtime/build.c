@@ -126,6 +126,6 @@ const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *opt
         diag_fail(gicrun_place, "does the compiler command change the number type or the target machine?",
                   "the compiled model does not fit: %s", gic_status_text(GIC_ERROR_ABI));
     Engine *engine = pool_alloc(pool, sizeof *engine);
-    *engine = (Engine){.name = "cc", .code = code};
+    *engine = (Engine){.name = "cc", .code = code, .standard = code->state, .standard_count = code->slow_count};
     return engine;
 }

@@ -7,9 +7,9 @@
 
 typedef const Engine *Open(Pool *pool, const Model *model, const EngineOptions *options);
 
-const char *const engine_name[] = {"cc", "gic", "tape", NULL};
+const char *const engine_name[] = {"cc", "gic", "gcp1", "gcp2", "tape", NULL};
 
-static Open *const engine_opener[] = {engine_cc, engine_gic, engine_tape};
+static Open *const engine_opener[] = {engine_cc, engine_gic, engine_gcp1, engine_gcp2, engine_tape};
 
 static int engine_index(const char *name)
 {
@@ -49,6 +49,36 @@ gic_head *instance_new(Pool *pool, const Engine *engine)
 double *instance_array(gic_head *self, size_t offset)
 {
     return (double *)(void *)((char *)self + offset);
+}
+
+int engine_enter(const Engine *engine, gic_head *self, const double *standard)
+{
+    if (engine->enter)
+        return engine->enter(self, standard);
+    memcpy(instance_array(self, engine->code->state_offset), standard,
+           sizeof *standard * (size_t)engine->standard_count);
+    return GIC_OK;
+}
+
+int engine_look(const Engine *engine, gic_head *self, double *standard, double *rate)
+{
+    const gic_model *code = engine->code;
+    const double *state = instance_array(self, code->state_offset);
+    double own[code->slow_count + 1];
+    const int status = code->rhs(self, gic_time(self), state, own);
+    if (status == GIC_OK && engine->leave) {
+        engine->leave(self, standard, rate);
+    } else if (status == GIC_OK) {
+        memcpy(standard, state, sizeof *state * (size_t)engine->standard_count);
+        memcpy(rate, own, sizeof *own * (size_t)engine->standard_count);
+    }
+    return status;
+}
+
+void engine_close(const Engine *engine)
+{
+    if (engine->close)
+        engine->close(engine);
 }
 
 const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status)

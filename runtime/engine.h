@@ -29,6 +29,14 @@ typedef struct Engine {
     const gic_model *code;
     const void *context;    /* interpreted: what every instance points to; NULL: generated code */
     EngineProfile *profile; /* NULL: generated code */
+    /* The state of FORMAT.md section 10, in which people and scenes speak; most engines integrate just that. */
+    const gic_signal *standard;
+    int standard_count;
+    /* From it to the engine's own state, and back, with rates, after a right-hand side at the instance's state. NULL: it
+     * is the state. */
+    int (*enter)(gic_head *self, const double *standard);
+    void (*leave)(const gic_head *self, double *standard, double *rate);
+    void (*close)(const struct Engine *engine); /* NULL: it has nothing but memory of the pool */
 } Engine;
 
 /* The engines' names, ended by NULL; the first is the default. */
@@ -58,6 +66,12 @@ size_t descriptor_place(gic_model *code, size_t count);
 /* Memory for one instance, not set up. It may be copied byte by byte. Instances of one interpreted engine share scratch:
  * one call at a time. */
 gic_head *instance_new(Pool *pool, const Engine *engine);
+/* Put a set-up instance into a state of FORMAT.md section 10; its inputs, ports and road are there. Returns a status. */
+int engine_enter(const Engine *engine, gic_head *self, const double *standard);
+/* Evaluate the right-hand side at the present state; state and rate as in FORMAT.md section 10. Returns a status. */
+int engine_look(const Engine *engine, gic_head *self, double *standard, double *rate);
+/* Give back what doesn't come from the pool. */
+void engine_close(const Engine *engine);
 /* "status text" or "status text: subset 'name'" of the last call. */
 const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status);
 /* An array of the instance at one of the descriptor's offsets. */
@@ -69,8 +83,9 @@ double *instance_array(gic_head *self, size_t offset);
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
 /* engine_gic.c: the method of Serban and Haug 2000, interpreted. */
 const Engine *engine_gic(Pool *pool, const Model *model, const EngineOptions *options);
-/* tape_engine.c: the expression graph of the generated code, interpreted. */
-const Engine *engine_gic(Pool *pool, const Model *model, const EngineOptions *options);
+/* engine_gcp.c: generalized coordinate partitioning, with the topology-based solver and with MUMPS. */
+const Engine *engine_gcp1(Pool *pool, const Model *model, const EngineOptions *options);
+const Engine *engine_gcp2(Pool *pool, const Model *model, const EngineOptions *options);
 /* tape_engine.c: the expression graph of the generated code, interpreted. */
 const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *options);
 

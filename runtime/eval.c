@@ -4,41 +4,46 @@
 
 #include <string.h>
 
-/* Which column of the table fills which number of the instance: states first, then inputs, then parameters; -1: keeps its
- * default. */
+/* Which column of the table fills which number of the instance: states first, then inputs, then parameters; -1: keeps
+ * its default. */
 typedef struct Columns {
     int states, inputs, parameters;
     int *column; /* [states + inputs + parameters] */
 } Columns;
 
-static const char *number_name(const gic_model *model, int i)
+static const char *number_name(const Engine *engine, int i)
 {
-    int input = i - model->slow_count, parameter = input - model->input_count;
-    return input < 0 ? model->state[i].name : parameter < 0 ? model->input[input].name : model->parameter[parameter].name;
+    const gic_model *model = engine->code;
+    int input = i - engine->standard_count, parameter = input - model->input_count;
+    return input < 0       ? engine->standard[i].name
+           : parameter < 0 ? model->input[input].name
+                           : model->parameter[parameter].name;
 }
 
 /* Must the table have it? All states, and what driven coordinates do. */
-static bool is_needed(const gic_model *model, int i)
+static bool is_needed(const Engine *engine, int i)
 {
-    if (i < model->slow_count)
+    const gic_model *model = engine->code;
+    if ((i -= engine->standard_count) < 0)
         return true;
     for (int k = 0; k < model->coordinate_count; ++k) {
         int first = model->coordinate_input[k];
-        if (first >= 0 && i - model->slow_count >= first && i - model->slow_count < first + 3)
+        if (first >= 0 && i >= first && i < first + 3)
             return true;
     }
     return false;
 }
 
-static Columns find_columns(Pool *pool, const gic_model *model, const States *table)
+static Columns find_columns(Pool *pool, const Engine *engine, const States *table)
 {
-    Columns columns = {.states = model->slow_count, .inputs = model->input_count,
-                       .parameters = model->parameter_count};
+    const gic_model *model = engine->code;
+    Columns columns = {
+        .states = engine->standard_count, .inputs = model->input_count, .parameters = model->parameter_count};
     const int numbers = columns.states + columns.inputs + columns.parameters;
     const char **name = pool_alloc(pool, sizeof *name * (size_t)(numbers + 1));
     columns.column = pool_alloc(pool, sizeof *columns.column * (size_t)(numbers + 1));
     for (int i = 0; i < numbers; ++i) {
-        name[i] = number_name(model, i);
+        name[i] = number_name(engine, i);
         columns.column[i] = -1;
     }
     for (int k = 0; k < table->columns; ++k) {
@@ -53,7 +58,7 @@ static Columns find_columns(Pool *pool, const gic_model *model, const States *ta
     }
     Text missing = {.pool = pool};
     for (int i = 0; i < numbers; ++i)
-        if (columns.column[i] < 0 && is_needed(model, i))
+        if (columns.column[i] < 0 && is_needed(engine, i))
             text_print(&missing, "%s%s", missing.size ? ", " : "add ", name[i]);
     if (missing.size)
         diag_fail(table->at[0], missing.s, "columns are missing");
@@ -67,10 +72,10 @@ static bool is_ground(const gic_model *model, int body)
 
 static void write_header(const gic_model *model, Csv *csv)
 {
-    static const char *const base[][2] = {{"a.x", "m/s^2"}, {"a.y", "m/s^2"}, {"a.z", "m/s^2"},
+    static const char *const base[][2] = {{"a.x", "m/s^2"},       {"a.y", "m/s^2"},       {"a.z", "m/s^2"},
                                           {"alpha.x", "rad/s^2"}, {"alpha.y", "rad/s^2"}, {"alpha.z", "rad/s^2"}};
-    static const char *const pose[][2] = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"e0", NULL}, {"e1", NULL}, {"e2", NULL},
-                                          {"e3", NULL}};
+    static const char *const pose[][2] = {{"x", "m"},   {"y", "m"},   {"z", "m"},  {"e0", NULL},
+                                          {"e1", NULL}, {"e2", NULL}, {"e3", NULL}};
     char name[128], unit[64];
     for (int i = 0; i < 6 && model->free_base; ++i)
         csv_name(csv, base[i][0], base[i][1]);
@@ -105,10 +110,11 @@ static void result(Csv *csv, int status, double value)
         csv_text(csv, NULL);
 }
 
-static void write_row(Pool *pool, const gic_model *model, Csv *csv, const gic_head *self, int status,
-                      const double *rate, const double *pose, const double *output, double constraint)
+static void write_row(Pool *pool, const Engine *engine, Csv *csv, const gic_head *self, int status, const double *rate,
+                      const double *pose, const double *output, double constraint)
 {
-    const int half = model->slow_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
+    const gic_model *model = engine->code;
+    const int half = engine->standard_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
     for (int i = 0; i < 6 && model->free_base; ++i)
         result(csv, status, rate[half + 1 + i]);
     for (int i = 0; i < model->coordinate_count; ++i)
@@ -129,11 +135,12 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
 {
     const gic_model *model = engine->code;
     const States *table = csv_read(pool, request->states);
-    const Columns columns = find_columns(pool, model, table);
+    const Columns columns = find_columns(pool, engine, table);
     gic_head *self = instance_new(pool, engine);
-    double *state = instance_array(self, model->state_offset), *input = instance_array(self, model->input_offset);
+    double *input = instance_array(self, model->input_offset);
     const double *output = instance_array(self, model->output_offset);
-    double *rate = pool_alloc(pool, sizeof *rate * (size_t)(model->slow_count + model->fast_count + 1));
+    double *state = pool_alloc(pool, sizeof *state * (size_t)(engine->standard_count + 1));
+    double *rate = pool_alloc(pool, sizeof *rate * (size_t)(engine->standard_count + 1));
     double *pose = pool_alloc(pool, sizeof *pose * 7 * (size_t)(model->body_count + 1));
     double *standard = pool_alloc(pool, sizeof *standard * (size_t)(model->parameter_count + 1));
     double *parameter = pool_alloc(pool, sizeof *parameter * (size_t)(model->parameter_count + 1));
@@ -157,7 +164,9 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
             if (columns.column[i] >= 0)
                 *(i < columns.states ? &state[i] : &input[i - columns.states]) = value[columns.column[i]];
         if (status == GIC_OK)
-            status = model->rhs(self, 0, state, rate);
+            status = engine_enter(engine, self, state);
+        if (status == GIC_OK)
+            status = engine_look(engine, self, state, rate);
         if (status == GIC_OK)
             status = model->poses(self, pose);
         if (status == GIC_OK)
@@ -165,10 +174,10 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
         if (status == GIC_OK)
             status = model->self_test(self, &test);
         failures += status != GIC_OK;
-        write_row(pool, model, &csv, self, status, rate, pose, output, test.constraint);
+        write_row(pool, engine, &csv, self, status, rate, pose, output, test.constraint);
     }
     csv_close(&csv);
     if (failures)
-        diag_warn((Place){table->source, 0, 0}, "their status and message tell why",
-                  "%d of %d rows have no result", failures, table->rows);
+        diag_warn((Place){table->source, 0, 0}, "their status and message tell why", "%d of %d rows have no result",
+                  failures, table->rows);
 }

@@ -141,6 +141,7 @@ int main(int count, char **word)
         evaluate(pool, engine, scene, &request);
     else
         simulate(pool, engine, scene, &request);
+    engine_close(engine);
     pool_free(pool);
     return 0;
 }

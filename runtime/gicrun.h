@@ -143,7 +143,7 @@ bool plot_known(const char *path); /* does `path` end in .svg or .png? */
 /* ---- simulate.c, eval.c --------------------------------------------------------------------------------- */
 
 /* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
-int scene_start(const gic_model *model, const Scene *scene, gic_head *self);
+int scene_start(const Engine *engine, const Scene *scene, gic_head *self);
 /* One step of a scene: a constant one, or where `variable` is given one towards `end` that stops at kinks of inputs. */
 int scene_step(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end);
 /* Run a scene: results, picture, summary. A failure on the way keeps what was computed and ends in diag_fail. */

@@ -42,7 +42,7 @@ int interpreted_orient(const Instance *self, const double *state, double e[4])
 void interpreted_gather(const Interpreted *context, const double *state)
 {
     World *world = context->world;
-    const int half = context->code.slow_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
+    const int half = context->standard_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
     for (int c = 0; c < world->model->coordinates; ++c) {
         const int at = context->code.coordinate_state[c];
         const double *input = world->input + world->model->coordinate[c].input;
@@ -55,7 +55,7 @@ void interpreted_gather(const Interpreted *context, const double *state)
 
 void interpreted_place_base(const Interpreted *context, const double *state, const double e[4])
 {
-    const int twist = context->code.slow_count / 2 + 1;
+    const int twist = context->standard_count / 2 + 1;
     if (context->code.free_base)
         world_set_base(context->world, state, e, state + twist, state + twist + 3);
 }
@@ -64,7 +64,7 @@ void interpreted_place_base(const Interpreted *context, const double *state, con
 static void base_rates(const Interpreted *context, const double *state, const double e[4], double *rate)
 {
     const World *world = context->world;
-    const int twist = context->code.slow_count / 2 + 1;
+    const int twist = context->standard_count / 2 + 1;
     const double *A = world->A[BODY_BASE], *omega = world->omega[BODY_BASE];
     double arm[3], swing[3], back[3], turn[3];
     copy3(state + twist, rate);
@@ -78,6 +78,31 @@ static void base_rates(const Interpreted *context, const double *state, const do
     add3(swing, turn, back);
     sub3(world->qdd[BODY_BASE], back, rate + twist);
     apply3_transposed(A, world->alpha[BODY_BASE], rate + twist + 3);
+}
+
+void interpreted_standard(const Interpreted *context, double *standard, double *rate)
+{
+    const World *world = context->world;
+    const int half = context->standard_count / 2;
+    for (int c = 0; c < world->model->coordinates; ++c) {
+        const int at = context->code.coordinate_state[c];
+        if (at < 0)
+            continue;
+        standard[at] = world->x[c];
+        standard[at + half] = rate[at] = world->xd[c];
+        rate[at + half] = world->xdd[c];
+    }
+    if (!context->code.free_base)
+        return;
+    const double *A = world->A[BODY_BASE], *omega = world->omega[BODY_BASE], *q = world->q[BODY_BASE];
+    double arm[3], turn[3];
+    apply3(A, world->model->body[BODY_BASE].com, arm);
+    sub3(q, arm, standard);
+    memcpy(standard + 3, q + 3, 4 * sizeof *q);
+    cross3(omega, arm, turn);
+    sub3(world->qd[BODY_BASE], turn, standard + half + 1);
+    apply3_transposed(A, omega, standard + half + 4);
+    base_rates(context, standard, q + 3, rate);
 }
 
 int interpreted_accelerate(const Interpreted *context, const double *state, const double e[4], double *rate)
@@ -96,7 +121,7 @@ int interpreted_accelerate(const Interpreted *context, const double *state, cons
     const double solved = profile_clock(profile);
     if (status != GIC_OK)
         return status;
-    const int half = context->code.slow_count / 2;
+    const int half = context->standard_count / 2;
     for (int c = 0; c < world->model->coordinates; ++c) {
         const int at = context->code.coordinate_state[c];
         if (at >= 0) {
@@ -290,6 +315,7 @@ Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *seq
     context->world = world_new(pool, model, sequence);
     context->profile = pool_alloc(pool, sizeof *context->profile);
     context->code = descriptor_new(pool, model, sequence);
+    context->standard_count = context->code.slow_count;
     context->code.setup = any_setup;
     context->code.setup_with = any_setup_with;
     context->code.rhs = any_rhs;
@@ -303,9 +329,14 @@ Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *seq
     return context;
 }
 
-const Engine *interpreted_engine(Pool *pool, const char *name, const Interpreted *context)
+Engine *interpreted_engine(Pool *pool, const char *name, const Interpreted *context)
 {
     Engine *engine = pool_alloc(pool, sizeof *engine);
-    *engine = (Engine){.name = name, .code = &context->code, .context = context, .profile = context->profile};
+    *engine = (Engine){.name = name,
+                       .code = &context->code,
+                       .context = context,
+                       .profile = context->profile,
+                       .standard = context->code.state,
+                       .standard_count = context->standard_count};
     return engine;
 }

@@ -13,6 +13,7 @@ typedef struct Interpreted {
     gic_model code; /* an engine may replace what differs */
     World *world;
     EngineProfile *profile;
+    int standard_count; /* numbers in a state of FORMAT.md section 10 */
     size_t own_offset; /* bytes; before it the tunable parameters as set-up was given them */
     size_t setup_offset;
     struct Geometry *geometry; /* NULL: no parameter acts on points, axes, masses and so on */
@@ -31,7 +32,9 @@ typedef struct Interpreted {
 
 /* A context with descriptor for an assembled model. own: how many numbers of its own an instance has. */
 Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *sequence, size_t own);
-const Engine *interpreted_engine(Pool *pool, const char *name, const Interpreted *context);
+Engine *interpreted_engine(Pool *pool, const char *name, const Interpreted *context);
+/* State and rate of FORMAT.md section 10 from the World; e of the base is its p. */
+void interpreted_standard(const Interpreted *context, double *standard, double *rate);
 double *instance_own(const Instance *self);
 
 /* For `evaluate`. orient: Euler parameters of the base with the dependent one recovered; 1, 0, 0, 0 of a fixed base. */

@@ -40,12 +40,16 @@ static double seconds(clockid_t clock_id)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Where the base stands in the state, and the free coordinates: FORMAT.md section 10. What the scene doesn't give stays as
- * set-up has it: geometric parameters may have moved it. */
-static void set_state(const gic_model *model, const Scene *scene, gic_head *self)
+/* Where the base stands in the state, and the free coordinates: FORMAT.md section 10. What the scene doesn't give stays
+ * as set-up has it: geometric parameters may have moved it. */
+static int set_state(const Engine *engine, const Scene *scene, gic_head *self)
 {
-    double *state = instance_array(self, model->state_offset);
-    const int half = model->slow_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
+    const gic_model *model = engine->code;
+    double state[engine->standard_count + 1], rate[engine->standard_count + 1];
+    const int status = engine_look(engine, self, state, rate);
+    if (status != GIC_OK)
+        return status;
+    const int half = engine->standard_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
     if (model->free_base) {
         if (scene->placed)
             memcpy(state, scene->position, sizeof scene->position);
@@ -61,6 +65,7 @@ static void set_state(const gic_model *model, const Scene *scene, gic_head *self
             state[at] = scene->value[i];
         state[at + half] = scene->rate[i];
     }
+    return engine_enter(engine, self, state);
 }
 
 /* ---- output times --------------------------------------------------------------------------------------- */
@@ -179,17 +184,17 @@ static const char *remedy_of(int status)
 
 /* ---- the run -------------------------------------------------------------------------------------------- */
 
-int scene_start(const gic_model *model, const Scene *scene, gic_head *self)
+int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
 {
+    const gic_model *model = engine->code;
     const int status = model->setup_with(self, scene->parameter);
     if (status != GIC_OK)
         return status;
-    set_state(model, scene, self);
     self->road = scene->road;
     self->input_function = scene_inputs;
     self->user = (void *)scene; /* only read */
     scene_inputs(self->user, 0, 0, instance_array(self, model->input_offset));
-    return GIC_OK;
+    return set_state(engine, scene, self);
 }
 
 /* Now and then: has someone asked to stop, and is someone watching? */
@@ -257,7 +262,7 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
     Run run = {.pool = pool, .model = model, .scene = scene, .request = request};
     run.self = instance_new(pool, engine);
     run.copy = instance_new(pool, engine);
-    int status = scene_start(model, scene, run.self);
+    int status = scene_start(engine, scene, run.self);
     if (status != GIC_OK)
         diag_fail(at, NULL, "the model can't be set up: %s", instance_status(pool, model, run.self, status));
     if (scene->method >= METHOD_ADAMS && !(run.variable = variable_open(model, scene->method, scene->tolerance)))

@@ -219,6 +219,11 @@ const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *o
     tape->code.poses = poses;
     tape->code.self_test = tape_self_test;
     Engine *engine = pool_alloc(pool, sizeof *engine);
-    *engine = (Engine){.name = "tape", .code = &tape->code, .context = tape, .profile = tape->profile};
+    *engine = (Engine){.name = "tape",
+                       .code = &tape->code,
+                       .context = tape,
+                       .profile = tape->profile,
+                       .standard = tape->code.state,
+                       .standard_count = tape->code.slow_count};
     return engine;
 }

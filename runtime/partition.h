@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Generalized coordinate partitioning (Wehage and Haug 1982): independent coordinates picked from q by Gaussian
+ * elimination of the constraint Jacobian with full pivoting, and the sparse factorization of the dependent block
+ * Phi_u that goes with the choice (KLU: block triangular form, symbolic work once a choice, no allocation between
+ * choices). */
+#ifndef PARTITION_H
+#define PARTITION_H
+
+#include "../generator/gicgen.h"
+
+/* Most coordinates in one equation: those of two bodies. */
+enum { PARTITION_WIDTH = 14 };
+
+typedef struct PartitionRow {
+    int count, column[PARTITION_WIDTH];
+    double value[PARTITION_WIDTH];
+} PartitionRow;
+
+typedef struct Partition {
+    int rows, columns; /* equations, coordinates; rows <= columns */
+    PartitionRow *row; /* Phi_q: the caller fills in the values */
+    int *dependent;    /* [rows] columns of the dependent coordinates, u */
+    double *chosen;    /* [columns] 1: independent, 0: dependent; what an instance remembers of a choice */
+    double usual;      /* largest partition_amplification() when it was chosen, at least 1 */
+    struct PartitionFactors *factors;
+    double *dense;
+    int *row_left, *column_left;
+} Partition;
+
+/* row: patterns, values to come. No choice is made yet. */
+Partition *partition_new(Pool *pool, int rows, int columns, PartitionRow *row);
+/* Choose by the present values, analyse and factor. False where the equations are dependent. */
+bool partition_choose(Partition *partition);
+/* Make the choice `chosen` [columns] of an earlier time. False where Phi_u is singular at the present values. */
+bool partition_adopt(Partition *partition, const double *chosen);
+/* Factor Phi_u of the present values with the pivots of the choice. False where it is singular. */
+bool partition_factor(Partition *partition);
+/* b [rows] becomes Phi_u^-1 b, in the order of `dependent`. */
+void partition_solve(Partition *partition, double *b);
+/* How much the dependent coordinates change with the i-th independent one (i counts on modulo their number): largest of
+ * a column of Phi_u^-1 Phi_v, by the present values and the last factors. It grows as Phi_u degrades, long before a
+ * pivot tells. */
+double partition_amplification(Partition *partition, int64_t i);
+/* As before the first choice. */
+void partition_forget(Partition *partition);
+/* Give back what doesn't come from the pool. */
+void partition_close(Partition *partition);
+
+#endif
