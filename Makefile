@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 #
-#   make                build/gicgen and build/gicrun
+#   make                build/gicgen, build/gicrun and build/gicbench
 #   make demo           the HMMWV over the paper's road: build/demo/
+#   make bench          engines and integrators, time against error: build/bench/ (QUICK=1: the short way)
 #   make test           every test
 #   make generated      generated/*.c and *.h from models/*.veh, and models/veh.schema.json
 #   make debug          the same programs with the sanitizers, in build/debug/
@@ -22,24 +23,31 @@ LIBRARIES := -lyaml -lgsl -lgslcblas -ldmumps_seq -lklu -lm -ldl
 
 models := $(basename $(notdir $(wildcard models/*.veh)))
 generator := $(filter-out generator/main.c generator/embed.c,$(wildcard generator/*.c))
-runtime := $(filter-out runtime/gicrun.c,$(wildcard runtime/*.c))
+benchmark := $(wildcard runtime/bench_*.c)
+runtime := $(filter-out runtime/gicrun.c runtime/gicbench.c $(benchmark),$(wildcard runtime/*.c))
 # gicgen carries what it copies into its output, gicrun what it compiles with it
 embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_runtime.c
 
 generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 
-.PHONY: all test test-programs list-tests demo generated debug deps clean
+.PHONY: all test test-programs list-tests demo bench generated debug deps clean
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: $(BUILD)/gicgen $(BUILD)/gicrun
+all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicbench
 
 $(BUILD)/gicgen: $(BUILD)/generator/main.o $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lm
 
 $(BUILD)/gicrun: $(BUILD)/runtime/gicrun.o $(runtime_objects) $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
+
+$(BUILD)/gicbench: $(BUILD)/runtime/gicbench.o $(benchmark:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_objects)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
+
+# the page says how the interpreted engines were compiled
+$(BUILD)/runtime/bench_machine.o: COMPILE += -DGICBENCH_FLAGS='"$(CFLAGS) -ffp-contract=off"'
 
 $(BUILD)/embed: $(BUILD)/generator/embed.o
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
@@ -157,6 +165,11 @@ demo: all
 	    --plot $(BUILD)/demo/hmmwv.svg
 	@echo "picture: $(BUILD)/demo/hmmwv.svg"
 	@echo "numbers: $(BUILD)/demo/hmmwv.csv"
+
+# QUICK=1: fewer repetitions and settings
+bench: all
+	$(BUILD)/gicbench $(if $(QUICK),--quick) -o $(BUILD)/bench models/hmmwv.veh models/scenes/paper_run.scene \
+	    models/scenes/spin.scene
 
 generated: $(BUILD)/gicgen
 	@mkdir -p generated

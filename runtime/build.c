@@ -41,17 +41,18 @@ static bool put_sources(Pool *pool, const char *folder, const Text *c, const Tex
     return good;
 }
 
+const char build_flags[] = "-std=c99 -O2 -fPIC -shared -ffp-contract=off -fno-math-errno";
+
 /* Words of the compiler command (a user may add options), then ours. */
 static char *const *compiler_command(Pool *pool, const char *compiler, const char *folder)
 {
     const char *const ours[] = {
-        "-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-math-errno",
         "-o", pool_print(pool, "%s/model.so", folder),
         pool_print(pool, "%s/model.c", folder), pool_print(pool, "%s/gic_runtime.c", folder), "-lm",
     };
     char **argv = NULL, *rest;
     int count = 0;
-    char *word = strtok_r(pool_print(pool, "%s", compiler), " \t", &rest);
+    char *word = strtok_r(pool_print(pool, "%s %s", compiler, build_flags), " \t", &rest);
     for (; word; word = strtok_r(NULL, " \t", &rest))
         *POOL_PUSH(pool, argv, count) = word;
     for (size_t i = 0; i < sizeof ours / sizeof *ours; ++i)

@@ -29,13 +29,13 @@ const Engine *engine_open(Pool *pool, const char *name, const Model *model, cons
     return engine_opener[engine_index(name)](pool, model, options);
 }
 
-double profile_clock(const EngineProfile *profile)
+double profile_clock(EngineProfile *profile)
 {
     struct timespec now;
     if (!profile->on)
         return 0;
     clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec - (double)profile->looks++ * profile->look;
 }
 
 gic_head *instance_new(Pool *pool, const Engine *engine)

@@ -12,6 +12,8 @@
  * engine looks at the clock only while `on`; whoever sets it clears the rest. Generated code fills nothing. */
 typedef struct EngineProfile {
     bool on;
+    double look;   /* s, what a look at the clock costs: taken off all that follows */
+    int64_t looks; /* at the clock */
     double acceleration;           /* (A) all of the acceleration analysis */
     double acceleration_functions; /* (B) forces, masses, right-hand sides */
     double acceleration_solver;    /* (C) linear solver */
@@ -22,7 +24,7 @@ typedef struct EngineProfile {
 } EngineProfile;
 
 /* The time, s; 0 while the profile is off. */
-double profile_clock(const EngineProfile *profile);
+double profile_clock(EngineProfile *profile);
 
 typedef struct Engine {
     const char *name;
@@ -81,6 +83,8 @@ double *instance_array(gic_head *self, size_t offset);
 
 /* build.c: generated code, compiled and loaded. */
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
+/* Our options of the compiler, behind the user's. */
+extern const char build_flags[];
 /* engine_gic.c: the method of Serban and Haug 2000, interpreted. */
 const Engine *engine_gic(Pool *pool, const Model *model, const EngineOptions *options);
 /* engine_gcp.c: generalized coordinate partitioning, with the topology-based solver and with MUMPS. */

@@ -39,6 +39,7 @@ typedef struct Memory {
     double *chosen;  /* [columns] of its partition */
     double *shift;   /* [2 columns] from the integrated q, q' to the recovered ones at the start of a step */
     double *shifted; /* 1: shift is there */
+    double *checks;  /* how often its partition was looked at */
     double *near;    /* [coordinates] last values: angles go on from there */
 } Memory;
 
@@ -48,7 +49,8 @@ static Memory memory_of(const Interpreted *context, const Instance *self)
     Memory memory = {.chosen = instance_own(self)};
     memory.shift = memory.chosen + gcp->columns;
     memory.shifted = memory.shift + 2 * gcp->columns;
-    memory.near = memory.shifted + 1;
+    memory.checks = memory.shifted + 1;
+    memory.near = memory.checks + 1;
     return memory;
 }
 
@@ -362,11 +364,11 @@ static int evaluate(const Interpreted *context, Instance *self, const double *st
 
 /* Has Phi_u come near to singular since its coordinates were chosen? One independent coordinate is looked at a step: a
  * choice stays good for much longer than that takes for all of them. */
-static bool degraded(const Instance *self, const World *world, Partition *partition)
+static bool degraded(const Memory *memory, const World *world, Partition *partition)
 {
     const double most = 2;
     load_jacobian(world, partition);
-    return !(partition_amplification(partition, self->head.steps) < most * partition->usual);
+    return !(partition_amplification(partition, (int64_t)(*memory->checks)++) < most * partition->usual);
 }
 
 static int choose(const Interpreted *context, const Memory *memory)
@@ -388,18 +390,23 @@ static int settle(void *instance, double *state)
     const Gcp *gcp = context->engine;
     const Memory memory = memory_of(context, self);
     take_share(context, self);
-    if (*memory.shifted > 0)
-        for (int j = 0; j < 2 * gcp->columns; ++j)
-            state[j] += memory.shift[j];
+    const bool shifted = *memory.shifted > 0;
+    for (int j = 0; shifted && j < 2 * gcp->columns; ++j)
+        state[j] += memory.shift[j];
     *memory.shifted = 0;
-    if (!degraded(self, context->world, gcp->partition))
+    if (!degraded(&memory, context->world, gcp->partition))
         return GIC_OK;
-    /* what becomes independent must fit what was, or the change would be felt */
-    const int status = recover(context, self, &memory, state);
-    if (status != GIC_OK)
-        return status;
-    memcpy(state, context->world->q[context->world->first], sizeof *state * (size_t)gcp->columns);
-    memcpy(state + gcp->columns, context->world->qd[context->world->first], sizeof *state * (size_t)gcp->columns);
+    /* What becomes independent must fit what was, or the change would be felt. An integrator of variable steps has no
+     * state here at their start, but the inputs of their end. */
+    if (!shifted) {
+        const int status = recover(context, self, &memory, state);
+        if (status != GIC_OK)
+            return status;
+        memcpy(state, context->world->q[context->world->first], sizeof *state * (size_t)gcp->columns);
+        memcpy(state + gcp->columns, context->world->qd[context->world->first], sizeof *state * (size_t)gcp->columns);
+    } else {
+        set_positions(context->world, state);
+    }
     ++self->head.switch_count;
     ++context->profile->repartitions;
     return choose(context, &memory);
@@ -557,7 +564,7 @@ static const Engine *open_gcp(Pool *pool, const char *name, const Model *drawn, 
     const Sequence *sequence = sequence_find(pool, drawn);
     const Model *model = model_assemble(pool, drawn, sequence);
     const int bodies = model->bodies - !model->free_base, columns = BODY_Q * bodies;
-    Interpreted *context = interpreted_new(pool, model, sequence, (size_t)(3 * columns + 1 + model->coordinates));
+    Interpreted *context = interpreted_new(pool, model, sequence, (size_t)(3 * columns + 2 + model->coordinates));
     World *world = context->world;
     Gcp *gcp = pool_alloc(pool, sizeof *gcp);
     const int rows = world->constraint_rows + bodies;

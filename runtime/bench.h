@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gicbench: how fast the engines and integrators are, at which error. Its parts, file by file, in the order in which
+ * they are used; conventions as in gicgen.h. */
+#ifndef BENCH_H
+#define BENCH_H
+
+#include "engine.h"
+#include "gicrun.h"
+
+#include <time.h>
+
+/* ---- gicbench.c: the command line ----------------------------------------------------------------------- */
+
+typedef struct Bench {
+    Pool *pool;
+    const char *model_path, *scene_path, *spin_path, *folder;
+    EngineOptions options;
+    const Model *model;
+    const Scene *scene, *spin; /* spin: makes coordinate partitions change; NULL: none */
+    int engines, repetitions;
+    const Engine **engine; /* the first is what the others are compared with */
+    gic_head **instance;   /* [engines] */
+    bool quick;
+    struct Report *report;
+} Bench;
+
+/* ---- bench_run.c: one engine, one integrator, one run ----------------------------------------------------- */
+
+/* s between samples of a trajectory; every run stops there, so that it is a multiple of all constant steps */
+static const double bench_sample = 0.04;
+
+/* How to integrate: with constant steps, or variable ones within a tolerance. */
+typedef struct Setting {
+    int32_t method;
+    double value; /* step, s, or tolerance */
+} Setting;
+
+/* World poses of all bodies at 0, bench_sample, ..: [samples][7 bodies]. */
+typedef struct Trajectory {
+    int samples, numbers;
+    double *pose;
+} Trajectory;
+
+/* What is known of an engine with a setting. */
+typedef struct Trial {
+    const Engine *engine;
+    Setting setting;
+    double *second; /* [repetitions] CPU time of the whole run; ascending repetition, engines alternating in each */
+    double error;   /* of the trajectory, see trajectory_error */
+    int status;     /* that ended it */
+    double end;     /* s, where it ended */
+    bool unstable;  /* it failed, or its error exceeds bench_unstable */
+    int64_t steps, evaluations;
+} Trial;
+
+static const double bench_unstable = 0.1;
+
+bool setting_constant(Setting setting);
+/* "5 ms" or "1e-06" */
+const char *setting_text(Pool *pool, Setting setting);
+/* CPU or elapsed seconds. */
+double bench_clock(clockid_t clock);
+int bench_samples(const Scene *scene);
+/* Scene with another integrator. */
+Scene bench_scene(const Scene *scene, Setting setting);
+/* Run trials side by side, one for each engine: once for the error, then `repetitions` times for time. */
+void trials_run(const Bench *bench, const Scene *scene, Setting setting, const Trajectory *reference, Trial *trial);
+/* The trajectory that all are compared with, and the distance to a second one made in another way. */
+Trajectory reference_run(const Bench *bench, const Scene *scene, double *uncertainty);
+/* Largest distance of two trajectories over samples and bodies: of a body frame's origin in m, or of its orientation
+ * in rad, whichever is larger (a lever of 1 m). INFINITY where one is not a number. */
+double trajectory_error(const Trajectory *a, const Trajectory *b);
+
+/* Median and extremes of some numbers. */
+typedef struct Spread {
+    double median, low, high;
+} Spread;
+
+Spread spread_of(Pool *pool, const double *value, int count);
+/* Of the ratios over / under, repetition by repetition. */
+Spread spread_of_ratio(Pool *pool, const double *over, const double *under, int count);
+/* A line for the person who waits. */
+void bench_progress(const Bench *bench, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* ---- bench_report.c, bench_chart.c: the folder --------------------------------------------------------------- */
+
+typedef struct Sheet {
+    const char *name, *title, *note; /* name: of its CSV file */
+    int columns, cells;
+    const char **cell; /* row by row, the first row holds the names of the columns */
+} Sheet;
+
+typedef struct Series {
+    const char *name;
+    int group, points; /* series of a group have the same colour */
+    double *x, *y;
+} Series;
+
+typedef struct Chart {
+    const char *name, *title, *x, *y, *note; /* name: of its picture; both axes are logarithmic */
+    int count;
+    Series *series;
+} Chart;
+
+/* A page in the making: paragraphs, tables and charts in their order. */
+typedef struct Piece {
+    const char *heading, *text;
+    Sheet *table;
+    Chart *chart;
+} Piece;
+
+typedef struct Report {
+    Pool *pool;
+    int pieces;
+    Piece *piece;
+} Report;
+
+void report_heading(Report *report, const char *text);
+void report_text(Report *report, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* columns: names separated by | */
+Sheet *report_table(Report *report, const char *name, const char *title, const char *columns);
+void table_cell(Pool *pool, Sheet *table, const char *format, ...) __attribute__((format(printf, 3, 4)));
+Chart *report_chart(Report *report, const char *name, const char *title, const char *x, const char *y);
+/* Numbers that are no points of a logarithmic axis are left out. */
+void chart_point(Pool *pool, Chart *chart, const char *series, int group, double x, double y);
+/* Picture as SVG by gnuplot. */
+void chart_write(Pool *pool, const Chart *chart, const char *path);
+/* index.html, bench.txt, a CSV file a table, a picture a chart. */
+void report_write(const Report *report, const char *folder);
+
+/* ---- the experiments -------------------------------------------------------------------------------------- */
+
+/* bench_machine.c: what all this was measured with. */
+void bench_machine(const Bench *bench);
+/* bench_sweep.c: time against error; Tables 1 and 2, Figs. 6 to 9 of Serban and Haug 2000. */
+void bench_sweep(const Bench *bench);
+/* bench_profile.c: where the time of a step goes; Table 3. */
+void bench_profile(const Bench *bench);
+/* bench_spin.c: what changes of the coordinate partition cost. */
+void bench_spin(const Bench *bench);
+/* bench_worst.c: the longest step. */
+void bench_worst(const Bench *bench);
+
+#endif

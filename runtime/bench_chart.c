@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT
+ * Charts with logarithmic axes, by gnuplot. */
+#include "bench.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+void chart_point(Pool *pool, Chart *chart, const char *series, int group, double x, double y)
+{
+    int i = 0;
+    if (!(x > 0 && y > 0 && isfinite(x) && isfinite(y)))
+        return;
+    while (i < chart->count && strcmp(chart->series[i].name, series))
+        ++i;
+    if (i == chart->count)
+        *POOL_PUSH(pool, chart->series, chart->count) = (Series){.name = series, .group = group};
+    Series *s = &chart->series[i];
+    int points = s->points;
+    *POOL_PUSH(pool, s->x, points) = x;
+    *POOL_PUSH(pool, s->y, s->points) = y;
+}
+
+static const char *chart_script(Pool *pool, const Chart *chart, const char *output)
+{
+    Text out = {.pool = pool};
+    text_print(&out, "set terminal svg size 900,560 noenhanced background 'white'\nset output '%s'\n", output);
+    text_print(&out, "set title '%s'\nset xlabel '%s'\nset ylabel '%s'\n", chart->title, chart->x, chart->y);
+    text_print(&out, "set logscale xy\nset format xy '%%g'\nset grid\nset key outside right\nset pointsize 0.7\n");
+    for (int i = 0; i < chart->count; ++i) {
+        const Series *s = &chart->series[i];
+        text_print(&out, "$data%d << END\n", i);
+        for (int k = 0; k < s->points; ++k)
+            text_print(&out, "%.9g %.9g\n", s->x[k], s->y[k]);
+        text_print(&out, "END\n");
+    }
+    for (int i = 0; i < chart->count; ++i) {
+        const Series *s = &chart->series[i];
+        int member = 1;
+        for (int k = 0; k < i; ++k)
+            member += chart->series[k].group == s->group;
+        text_print(&out, "%s$data%d with linespoints linecolor %d pointtype %d dashtype %d title '%s'",
+                   i ? ", " : "plot ", i, s->group + 1, 2 * member + 3, member, s->name);
+    }
+    text_print(&out, "\nset output\n");
+    return out.s;
+}
+
+void chart_write(Pool *pool, const Chart *chart, const char *path)
+{
+    const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid()), *said = "";
+    char *const argv[] = {"gnuplot", "-", NULL};
+    interrupt_hold();
+    int status = process_run(pool, argv, chart_script(pool, chart, temporary), &said);
+    if (!status && rename(temporary, path)) {
+        said = pool_print(pool, "%s\n", strerror(errno));
+        status = 1;
+    }
+    if (status)
+        unlink(temporary);
+    interrupt_release();
+    if (status)
+        diag_fail(gicrun_place, "gnuplot draws it (Debian: apt-get install gnuplot-nox)", "no picture %s: %s", path,
+                  said);
+}

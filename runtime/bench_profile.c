@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: MIT
+ * Where the time of a step goes: Table 3 of Serban and Haug 2000, rows A to F. Interpreted engines look at the clock
+ * themselves. Generated code has no place for a clock inside, so what it can be asked for is timed from outside: poses
+ * need the recovery (D), a right-hand side the recovery and the accelerations (A). */
+#include "bench.h"
+
+#include <math.h>
+#include <string.h>
+
+static const Setting setting = {GIC_AB3, 0.005};
+
+enum { ROWS = 6 }; /* A to F */
+
+/* Seconds a step, by rows; `fused` where B, C, E and F can't be told apart. */
+typedef struct Profile3 {
+    double row[ROWS], step;
+    bool fused, failed;
+} Profile3;
+
+/* Median of what a pair of looks at the clock takes. */
+static double clock_cost(Pool *pool)
+{
+    enum { LOOKS = 1001 };
+    double *seconds = pool_alloc(pool, sizeof *seconds * LOOKS);
+    for (int i = 0; i < LOOKS; ++i) {
+        const double before = bench_clock(CLOCK_MONOTONIC);
+        seconds[i] = bench_clock(CLOCK_MONOTONIC) - before;
+    }
+    return spread_of(pool, seconds, LOOKS).median;
+}
+
+/* Seconds of one run. */
+static double run_seconds(const Engine *engine, gic_head *self, const Scene *scene, int steps, bool *failed)
+{
+    *failed = scene_start(engine->code, scene, self) != GIC_OK;
+    const double before = bench_clock(CLOCK_MONOTONIC);
+    for (int i = 0; i < steps && !*failed; ++i)
+        *failed = scene_step(engine->code, scene, NULL, self, 0) != GIC_OK;
+    return bench_clock(CLOCK_MONOTONIC) - before;
+}
+
+/* The same with the engine's own clocks, of which each look takes `look` seconds. */
+static double clocked_seconds(const Engine *engine, gic_head *self, const Scene *scene, int steps, double look,
+                              bool *failed)
+{
+    *engine->profile = (EngineProfile){.on = true, .look = look};
+    const double seconds = run_seconds(engine, self, scene, steps, failed);
+    engine->profile->on = false;
+    return seconds;
+}
+
+/* By the engine's own clocks. There are hundreds of looks in a step of some microseconds: what they cost is found from
+ * a run with and one without. */
+static void profile_inside(const Engine *engine, gic_head *self, const Scene *scene, int steps, Profile3 *out)
+{
+    const EngineProfile *profile = engine->profile;
+    const double with = clocked_seconds(engine, self, scene, steps, 0, &out->failed);
+    const double looks = (double)profile->looks, without = run_seconds(engine, self, scene, steps, &out->failed);
+    clocked_seconds(engine, self, scene, steps, fmax(0, with - without) / looks, &out->failed);
+    const double row[ROWS] = {profile->acceleration, profile->acceleration_functions, profile->acceleration_solver,
+                              profile->recovery,     profile->recovery_functions,     profile->recovery_solver};
+    for (int i = 0; i < ROWS; ++i)
+        out->row[i] = row[i] / (double)profile->evaluations;
+}
+
+/* One run that stops at each step to time poses and right-hand side on copies of the instance. */
+static void profile_outside(const Engine *engine, gic_head *self, const Scene *scene, int steps, Profile3 *out)
+{
+    const gic_model *code = engine->code;
+    Pool *pool = pool_new();
+    gic_head *copy = instance_new(pool, engine);
+    double *recovery = pool_alloc(pool, sizeof *recovery * (size_t)steps);
+    double *all = pool_alloc(pool, sizeof *all * (size_t)steps);
+    double *pose = pool_alloc(pool, sizeof *pose * (size_t)(7 * code->body_count));
+    double *rate = pool_alloc(pool, sizeof *rate * (size_t)(code->slow_count + code->fast_count));
+    const double look = clock_cost(pool);
+    out->fused = true;
+    out->failed = scene_start(code, scene, self) != GIC_OK;
+    for (int i = 0; i < steps && !out->failed; ++i) {
+        out->failed = scene_step(code, scene, NULL, self, 0) != GIC_OK;
+        memcpy(copy, self, code->size);
+        double before = bench_clock(CLOCK_MONOTONIC);
+        out->failed |= code->poses(copy, pose) != GIC_OK;
+        recovery[i] = bench_clock(CLOCK_MONOTONIC) - before - look;
+        memcpy(copy, self, code->size);
+        before = bench_clock(CLOCK_MONOTONIC);
+        out->failed |= code->rhs(copy, gic_time(copy), instance_array(copy, code->state_offset), rate) != GIC_OK;
+        all[i] = bench_clock(CLOCK_MONOTONIC) - before - look;
+    }
+    out->row[3] = spread_of(pool, recovery, steps).median;
+    out->row[0] = spread_of(pool, all, steps).median - out->row[3];
+    pool_free(pool);
+}
+
+/* Row by row the median of some profiles. */
+static Profile3 profile_median(Pool *pool, const Profile3 *profile, int count)
+{
+    Profile3 out = profile[0];
+    double *value = pool_alloc(pool, sizeof *value * (size_t)count);
+    for (int row = 0; row <= ROWS; ++row) {
+        for (int i = 0; i < count; ++i)
+            value[i] = row < ROWS ? profile[i].row[row] : profile[i].step;
+        *(row < ROWS ? &out.row[row] : &out.step) = spread_of(pool, value, count).median;
+    }
+    for (int i = 0; i < count; ++i)
+        out.failed |= profile[i].failed;
+    return out;
+}
+
+static void profile_row(Pool *pool, Sheet *table, const Engine *engine, const Profile3 *profile)
+{
+    table_cell(pool, table, "%s", engine->name);
+    for (int row = 0; row < ROWS; ++row) {
+        if (profile->failed)
+            table_cell(pool, table, "unstable");
+        else if (profile->fused && row % 3)
+            table_cell(pool, table, "fused");
+        else
+            table_cell(pool, table, "%.3g", 1e6 * profile->row[row]);
+    }
+    table_cell(pool, table, "%.3g", 1e6 * (profile->row[0] + profile->row[3]));
+    table_cell(pool, table, "%.3g", 1e6 * profile->step);
+}
+
+/* How much faster the engine of a column is than that of a row: in the recovery (D), and over all (A + D). */
+static void ratio_table(const Bench *bench, const Profile3 *profile, const char *name, const char *title, bool overall)
+{
+    Pool *pool = bench->pool;
+    Text columns = {.pool = pool};
+    text_print(&columns, "time of .. over that of");
+    for (int e = 0; e < bench->engines; ++e)
+        text_print(&columns, "|%s", bench->engine[e]->name);
+    Sheet *table = report_table(bench->report, name, title, columns.s);
+    for (int over = 0; over < bench->engines; ++over) {
+        table_cell(pool, table, "%s", bench->engine[over]->name);
+        for (int under = 0; under < bench->engines; ++under) {
+            const Profile3 *a = &profile[over], *b = &profile[under];
+            if (a->failed || b->failed)
+                table_cell(pool, table, "unstable");
+            else
+                table_cell(pool, table, "%.3g",
+                           overall ? (a->row[0] + a->row[3]) / (b->row[0] + b->row[3]) : a->row[3] / b->row[3]);
+        }
+    }
+}
+
+/* ---- operations of generated code ------------------------------------------------------------------------------ */
+
+static void add_count(Count *sum, Count more)
+{
+    sum->add += more.add;
+    sum->multiply += more.multiply;
+    sum->divide += more.divide;
+    sum->root += more.root;
+    sum->function += more.function;
+}
+
+static void count_row(Pool *pool, Sheet *table, const char *what, Count count)
+{
+    table_cell(pool, table, "%s", what);
+    table_cell(pool, table, "%d", count.add);
+    table_cell(pool, table, "%d", count.multiply);
+    table_cell(pool, table, "%d", count.divide);
+    table_cell(pool, table, "%d", count.root);
+    table_cell(pool, table, "%d", count.function);
+}
+
+static void count_table(const Bench *bench)
+{
+    Pool *pool = bench->pool;
+    const Sequence *sequence = sequence_find(pool, bench->model);
+    const Formulation *f = formulate(pool, model_assemble(pool, bench->model, sequence), sequence);
+    Count start = {0}, correction = {0}, solution = {0};
+    for (int c = 0; c < f->sequence->classes; ++c)
+        for (int i = 0; i < f->sequence->class[c].members; ++i) {
+            add_count(&start, block_count(&f->plan->formula[c]->predict));
+            add_count(&correction, block_count(&f->plan->formula[c]->chord));
+            add_count(&solution, block_count(&f->plan->formula[c]->solve));
+        }
+    Sheet *table = report_table(bench->report, "operations", "Operations of generated code, one right-hand side",
+                                "part|add|multiply|divide|root|function");
+    count_row(pool, table, "D start of Newton's method", start);
+    count_row(pool, table, "D correction with old factors", correction);
+    count_row(pool, table, "D constraints; new factors; correction; velocities", solution);
+    count_row(pool, table, "A forces and equations of motion", block_count(f->dynamics));
+    table->note = "In generated code constraints, derivatives and factors are one piece of straight-line code, in which "
+                  "E and F share subexpressions; so do B and C.";
+}
+
+void bench_profile(const Bench *bench)
+{
+    Pool *pool = bench->pool;
+    const Scene scene = bench_scene(bench->scene, setting);
+    const int steps = (int)(scene.duration / setting.value * (1 + 1e-12));
+    Profile3 *all = pool_alloc(pool, sizeof *all * (size_t)(bench->engines * bench->repetitions));
+    Profile3 *profile = pool_alloc(pool, sizeof *profile * (size_t)bench->engines);
+    for (int r = 0; r < bench->repetitions; ++r)
+        for (int e = 0; e < bench->engines; ++e) {
+            const Engine *engine = bench->engine[e];
+            Profile3 *one = &all[e * bench->repetitions + r];
+            bench_progress(bench, "profile: repetition %d, %s", r + 1, engine->name);
+            (engine->profile ? profile_inside : profile_outside)(engine, bench->instance[e], &scene, steps, one);
+            one->step = run_seconds(engine, bench->instance[e], &scene, steps, &one->failed) / steps;
+        }
+    for (int e = 0; e < bench->engines; ++e)
+        profile[e] = profile_median(pool, all + e * bench->repetitions, bench->repetitions);
+
+    report_heading(bench->report, "Against the paper: Table 3");
+    report_text(bench->report,
+                "One right-hand side of AB3 with %s, microseconds. A acceleration computation, B its function "
+                "evaluations, C its linear solver; D recovery of dependent coordinates and velocities, E its function "
+                "evaluations, F its linear solver. Interpreted engines read the clock inside; what that costs is "
+                "measured and taken off. Generated code is timed from outside: D is a call for the poses of all "
+                "bodies, A what a right-hand side takes beyond that. The last column is a step without any clock "
+                "inside, the integrator included.",
+                setting_text(pool, setting));
+    Sheet *table = report_table(bench->report, "table3", "Table 3. Timing profile [us]", "engine|A|B|C|D|E|F|A + D|step");
+    for (int e = 0; e < bench->engines; ++e)
+        profile_row(pool, table, bench->engine[e], &profile[e]);
+    count_table(bench);
+    ratio_table(bench, profile, "recovery_ratio", "Recovery (D). The paper: gcp1 over gic 6.1", false);
+    ratio_table(bench, profile, "overall_ratio", "Recovery and accelerations (A + D). The paper: gcp1 over gic 4.9", true);
+}

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT
+ * A vehicle that turns: coordinate partitioning must choose other independent coordinates now and then, globally
+ * independent coordinates only another Euler parameter of the base. */
+#include "bench.h"
+
+#include <string.h>
+
+static const Setting setting = {GIC_AB3, 0.005};
+
+/* Steps of one run, sorted by whether the partition changed in them. */
+typedef struct Spin {
+    int status;
+    int64_t steps, changes, changing, switches; /* changing: steps with changes */
+    double *quiet, *busy;                       /* s, of steps without and with changes */
+    int quiets, busies;
+} Spin;
+
+static void spin_run(Pool *pool, const Engine *engine, gic_head *self, const Scene *scene, Spin *spin)
+{
+    EngineProfile *profile = engine->profile;
+    const int64_t steps = (int64_t)(scene->duration / scene->step * (1 + 1e-12));
+    if (profile)
+        memset(profile, 0, sizeof *profile);
+    spin->status = scene_start(engine->code, scene, self);
+    spin->changes = spin->changing = spin->steps = 0;
+    for (int64_t i = 0; i < steps && spin->status == GIC_OK; ++i, ++spin->steps) {
+        const int64_t changes = profile ? profile->repartitions : 0;
+        const double before = bench_clock(CLOCK_MONOTONIC);
+        spin->status = scene_step(engine->code, scene, NULL, self, 0);
+        const double seconds = bench_clock(CLOCK_MONOTONIC) - before;
+        if (profile && profile->repartitions > changes) {
+            spin->changes += profile->repartitions - changes;
+            ++spin->changing;
+            *POOL_PUSH(pool, spin->busy, spin->busies) = seconds;
+        } else if (i > 1) { /* the first two are of RK4 */
+            *POOL_PUSH(pool, spin->quiet, spin->quiets) = seconds;
+        }
+    }
+    spin->switches = self->switch_count;
+}
+
+static void spin_row(const Bench *bench, Sheet *table, const Engine *engine, const Spin *spin)
+{
+    Pool *pool = bench->pool;
+    table_cell(pool, table, "%s", engine->name);
+    if (spin->status != GIC_OK || !spin->quiets) {
+        for (int column = 1; column < table->columns; ++column)
+            table_cell(pool, table, "unstable");
+        return;
+    }
+    const double quiet = spread_of(pool, spin->quiet, spin->quiets).median;
+    table_cell(pool, table, "%lld", (long long)spin->steps);
+    table_cell(pool, table, "%lld", (long long)spin->switches);
+    table_cell(pool, table, "%lld", (long long)spin->changes);
+    table_cell(pool, table, "%.4g", 1e6 * quiet);
+    if (!spin->busies) {
+        for (int column = 5; column < table->columns; ++column)
+            table_cell(pool, table, "-");
+        return;
+    }
+    const double busy = spread_of(pool, spin->busy, spin->busies).median;
+    table_cell(pool, table, "%.4g", 1e6 * busy);
+    table_cell(pool, table, "%.4g", 1e6 * (busy - quiet) * (double)spin->changing / (double)spin->changes);
+    table_cell(pool, table, "%.2g", 100 * (busy - quiet) * (double)spin->changing / (quiet * (double)spin->steps));
+}
+
+void bench_spin(const Bench *bench)
+{
+    if (!bench->spin)
+        return;
+    const Scene scene = bench_scene(bench->spin, setting);
+    Spin *spin = pool_alloc(bench->pool, sizeof *spin * (size_t)bench->engines);
+    for (int r = 0; r < bench->repetitions; ++r)
+        for (int e = 0; e < bench->engines; ++e) {
+            bench_progress(bench, "turning vehicle: repetition %d, %s", r + 1, bench->engine[e]->name);
+            spin_run(bench->pool, bench->engine[e], bench->instance[e], &scene, &spin[e]);
+        }
+    report_heading(bench->report, "A vehicle that turns");
+    report_text(bench->report,
+                "%s, AB3 with %s. An engine of generalized coordinate partitioning chooses its independent coordinates "
+                "anew where the dependent ones have become ill-conditioned; globally independent coordinates stay, "
+                "and only the dependent Euler parameter of the base changes, at no cost.",
+                bench->spin_path, setting_text(bench->pool, setting));
+    Sheet *table = report_table(bench->report, "spin", "Changes of coordinates",
+                                "engine|steps|changes of Euler parameter|changes of partition|step without [us]|"
+                                "step with [us]|cost of a change [us]|cost in the run [%]");
+    for (int e = 0; e < bench->engines; ++e)
+        spin_row(bench, table, bench->engine[e], &spin[e]);
+}

@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: MIT
+ * gicbench: measure engines and integrators. This file: the command line. */
+#include "bench.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const char help[] =
+    "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCENE [TURNING_SCENE]\n"
+    "\n"
+    "Runs a scene with all engines and integrators and writes a folder: index.html with\n"
+    "tables and pictures, the same as text, a CSV file a table.\n"
+    "\n"
+    "  -o, --output FOLDER  default: gicbench\n"
+    "      --engines NAMES  some engines, separated by commas; the others are compared\n"
+    "                       with the first; default: all\n"
+    "      --quick          few repetitions, few settings\n"
+    "      --cc COMMAND     C compiler of generated code; default: $CC or cc\n"
+    "  -h, --help           this text\n"
+    "      --version        version\n"
+    "\n"
+    "Exit status: 0 good, 1 error in a file or during a run, 2 wrong usage.\n";
+
+static _Noreturn void usage_fail(const char *message, const char *word)
+{
+    fprintf(stderr, "gicbench: error: %s%s%s%s\n  remedy: `gicbench -h` shows how\n", message, word ? " '" : "",
+            word ? word : "", word ? "'" : "");
+    exit(2);
+}
+
+/* What the command line asks for, and the names of the engines, ended by NULL. */
+static Bench read_command_line(Pool *pool, int count, char **word, const char *const **names)
+{
+    enum { ENGINES = 256, QUICK, COMPILER, VERSION };
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"engines", required_argument, NULL, ENGINES},
+        {"quick", no_argument, NULL, QUICK},
+        {"cc", required_argument, NULL, COMPILER},
+        {"help", no_argument, NULL, 'h'},
+        {"version", no_argument, NULL, VERSION},
+        {NULL, 0, NULL, 0},
+    };
+    const char *compiler = getenv("CC");
+    Bench bench = {.pool = pool, .folder = "gicbench", .repetitions = 9};
+    bench.options.compiler = compiler && *compiler ? compiler : "cc";
+    *names = engine_name;
+    for (int option; (option = getopt_long(count, word, "o:h", options, NULL)) != -1;)
+        switch (option) {
+        case 'o': bench.folder = optarg; break;
+        case ENGINES: {
+            const char **list = NULL;
+            int engines = 0;
+            char *rest;
+            for (char *name = strtok_r(optarg, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
+                if (!engine_known(name))
+                    usage_fail("there is no engine", name);
+                *POOL_PUSH(pool, list, engines) = name;
+            }
+            *POOL_PUSH(pool, list, engines) = NULL;
+            *names = list;
+            break;
+        }
+        case QUICK:
+            bench.quick = true;
+            bench.repetitions = 3;
+            break;
+        case COMPILER: bench.options.compiler = optarg; break;
+        case 'h': fputs(help, stdout); exit(0);
+        case VERSION: puts("gicbench " GICGEN_VERSION); exit(0);
+        default: fputs("  remedy: `gicbench -h` shows how\n", stderr); exit(2);
+        }
+    if (count - optind < 2 || count - optind > 3)
+        usage_fail("a model and a scene, please, and perhaps one in which the vehicle turns", NULL);
+    bench.model_path = word[optind];
+    bench.scene_path = word[optind + 1];
+    bench.spin_path = word[optind + 2]; /* or the NULL at the end */
+    return bench;
+}
+
+/* The folder, before hours of work are done for it. */
+static void make_folder(const char *folder)
+{
+    struct stat there;
+    if (mkdir(folder, 0777) && !(errno == EEXIST && !stat(folder, &there) && S_ISDIR(there.st_mode)))
+        diag_fail(gicrun_place, "choose another place with -o", "can't make the folder %s: %s", folder,
+                  strerror(errno));
+}
+
+int main(int count, char **word)
+{
+    Pool *pool = pool_new();
+    const char *const *name;
+    Bench bench = read_command_line(pool, count, word, &name);
+    Report report = {.pool = pool};
+    bench.report = &report;
+    bench.model = model_read(pool, bench.model_path);
+    bench.scene = scene_read(pool, bench.scene_path, bench.model, NULL, 0);
+    bench.spin = bench.spin_path ? scene_read(pool, bench.spin_path, bench.model, NULL, 0) : NULL;
+    if (bench_samples(bench.scene) < 2)
+        diag_fail((Place){bench.scene->source, 0, 0}, "a longer duration", "a benchmark takes at least %g s",
+                  bench_sample);
+    make_folder(bench.folder);
+    for (int e = 0; name[e]; ++e) {
+        bench_progress(&bench, "engine %s", name[e]);
+        *POOL_PUSH(pool, bench.engine, bench.engines) = engine_open(pool, name[e], bench.model, &bench.options);
+    }
+    bench.instance = pool_alloc(pool, sizeof(gic_head *) * (size_t)bench.engines);
+    for (int e = 0; e < bench.engines; ++e)
+        bench.instance[e] = instance_new(pool, bench.engine[e]);
+
+    bench_machine(&bench);
+    bench_sweep(&bench);
+    bench_profile(&bench);
+    bench_spin(&bench);
+    bench_worst(&bench);
+    bench_progress(&bench, "writing %s", bench.folder);
+    report_write(&report, bench.folder);
+    bench_progress(&bench, "see %s/index.html", bench.folder);
+    fputc('\n', stderr);
+    pool_free(pool);
+    return 0;
+}
