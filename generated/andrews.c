@@ -2656,21 +2656,29 @@ static void andrews_place(const andrews *self, const gic_real *y, const gic_real
 
 /* ---- the functions of andrews.h ------------------------------------------------------------------------------------ */
 
-/* The state is recovered and its rate found; e: Euler parameters with the dependent one recovered. */
-static int andrews_evaluate(andrews *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+/* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
+static int andrews_locate(andrews *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real result[ANDREWS_STATE_ROOM], turn[3];
-    int i, status;
+    gic_real turn[3];
+    int status;
     self->head.subset = -1;
     if (!gic_finite(y, ANDREWS_STATES) || !gic_finite(&time, 1) || !gic_finite(self->input, ANDREWS_INPUTS) ||
         !gic_finite(self->parameter, ANDREWS_PARAMETERS) || !gic_finite(self->port, ANDREWS_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    ++self->head.rhs_count;
     status = andrews_orient(self, y, e, turn);
     if (status == GIC_OK) {
         andrews_gather(self, y);
         status = andrews_recover(self, turn, 0);
     }
+    return self->head.status = status;
+}
+
+/* The same, and the state's rate. */
+static int andrews_evaluate(andrews *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+{
+    gic_real result[ANDREWS_STATE_ROOM];
+    int i, status = andrews_locate(self, time, y, e);
+    self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = andrews_dynamics(self, time, y, e, result);
     if (status == GIC_OK && !gic_finite(result, ANDREWS_STATES))
@@ -2686,13 +2694,19 @@ int andrews_rhs(andrews *self, gic_real time, const gic_real *state, gic_real *r
     return andrews_evaluate(self, time, state, e, rate);
 }
 
-/* The present state, with the inputs of the present time. */
-static int andrews_refresh(andrews *self, gic_real e[4])
+/* The inputs of the present time, which it returns. */
+static gic_real andrews_present(andrews *self)
 {
     const gic_real time = andrews_time(self);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
-    return andrews_evaluate(self, time, self->state, e, self->rate);
+    return time;
+}
+
+/* The present state and its rate. */
+static int andrews_refresh(andrews *self, gic_real e[4])
+{
+    return andrews_evaluate(self, andrews_present(self), self->state, e, self->rate);
 }
 
 int andrews_outputs(andrews *self)
@@ -2711,7 +2725,7 @@ int andrews_outputs(andrews *self)
 int andrews_poses(andrews *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = andrews_refresh(self, e);
+    const int status = andrews_locate(self, andrews_present(self), self->state, e);
     if (status == GIC_OK)
         andrews_place(self, self->state, e, pose);
     return status;

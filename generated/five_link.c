@@ -3518,21 +3518,29 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
 
 /* ---- the functions of five_link.h ------------------------------------------------------------------------------------ */
 
-/* The state is recovered and its rate found; e: Euler parameters with the dependent one recovered. */
-static int five_link_evaluate(five_link *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+/* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
+static int five_link_locate(five_link *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real result[FIVE_LINK_STATE_ROOM], turn[3];
-    int i, status;
+    gic_real turn[3];
+    int status;
     self->head.subset = -1;
     if (!gic_finite(y, FIVE_LINK_STATES) || !gic_finite(&time, 1) || !gic_finite(self->input, FIVE_LINK_INPUTS) ||
         !gic_finite(self->parameter, FIVE_LINK_PARAMETERS) || !gic_finite(self->port, FIVE_LINK_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    ++self->head.rhs_count;
     status = five_link_orient(self, y, e, turn);
     if (status == GIC_OK) {
         five_link_gather(self, y);
         status = five_link_recover(self, turn, 0);
     }
+    return self->head.status = status;
+}
+
+/* The same, and the state's rate. */
+static int five_link_evaluate(five_link *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+{
+    gic_real result[FIVE_LINK_STATE_ROOM];
+    int i, status = five_link_locate(self, time, y, e);
+    self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = five_link_dynamics(self, time, y, e, result);
     if (status == GIC_OK && !gic_finite(result, FIVE_LINK_STATES))
@@ -3548,13 +3556,19 @@ int five_link_rhs(five_link *self, gic_real time, const gic_real *state, gic_rea
     return five_link_evaluate(self, time, state, e, rate);
 }
 
-/* The present state, with the inputs of the present time. */
-static int five_link_refresh(five_link *self, gic_real e[4])
+/* The inputs of the present time, which it returns. */
+static gic_real five_link_present(five_link *self)
 {
     const gic_real time = five_link_time(self);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
-    return five_link_evaluate(self, time, self->state, e, self->rate);
+    return time;
+}
+
+/* The present state and its rate. */
+static int five_link_refresh(five_link *self, gic_real e[4])
+{
+    return five_link_evaluate(self, five_link_present(self), self->state, e, self->rate);
 }
 
 int five_link_outputs(five_link *self)
@@ -3573,7 +3587,7 @@ int five_link_outputs(five_link *self)
 int five_link_poses(five_link *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = five_link_refresh(self, e);
+    const int status = five_link_locate(self, five_link_present(self), self->state, e);
     if (status == GIC_OK)
         five_link_place(self, self->state, e, pose);
     return status;

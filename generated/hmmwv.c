@@ -3508,21 +3508,29 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
 
 /* ---- the functions of hmmwv.h ------------------------------------------------------------------------------------ */
 
-/* The state is recovered and its rate found; e: Euler parameters with the dependent one recovered. */
-static int hmmwv_evaluate(hmmwv *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+/* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
+static int hmmwv_locate(hmmwv *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real result[HMMWV_STATE_ROOM], turn[3];
-    int i, status;
+    gic_real turn[3];
+    int status;
     self->head.subset = -1;
     if (!gic_finite(y, HMMWV_STATES) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV_INPUTS) ||
         !gic_finite(self->parameter, HMMWV_PARAMETERS) || !gic_finite(self->port, HMMWV_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    ++self->head.rhs_count;
     status = hmmwv_orient(self, y, e, turn);
     if (status == GIC_OK) {
         hmmwv_gather(self, y);
         status = hmmwv_recover(self, turn, 0);
     }
+    return self->head.status = status;
+}
+
+/* The same, and the state's rate. */
+static int hmmwv_evaluate(hmmwv *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+{
+    gic_real result[HMMWV_STATE_ROOM];
+    int i, status = hmmwv_locate(self, time, y, e);
+    self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = hmmwv_dynamics(self, time, y, e, result);
     if (status == GIC_OK && !gic_finite(result, HMMWV_STATES))
@@ -3538,13 +3546,19 @@ int hmmwv_rhs(hmmwv *self, gic_real time, const gic_real *state, gic_real *rate)
     return hmmwv_evaluate(self, time, state, e, rate);
 }
 
-/* The present state, with the inputs of the present time. */
-static int hmmwv_refresh(hmmwv *self, gic_real e[4])
+/* The inputs of the present time, which it returns. */
+static gic_real hmmwv_present(hmmwv *self)
 {
     const gic_real time = hmmwv_time(self);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
-    return hmmwv_evaluate(self, time, self->state, e, self->rate);
+    return time;
+}
+
+/* The present state and its rate. */
+static int hmmwv_refresh(hmmwv *self, gic_real e[4])
+{
+    return hmmwv_evaluate(self, hmmwv_present(self), self->state, e, self->rate);
 }
 
 int hmmwv_outputs(hmmwv *self)
@@ -3563,7 +3577,7 @@ int hmmwv_outputs(hmmwv *self)
 int hmmwv_poses(hmmwv *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = hmmwv_refresh(self, e);
+    const int status = hmmwv_locate(self, hmmwv_present(self), self->state, e);
     if (status == GIC_OK)
         hmmwv_place(self, self->state, e, pose);
     return status;

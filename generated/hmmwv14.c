@@ -4623,21 +4623,29 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
 
 /* ---- the functions of hmmwv14.h ------------------------------------------------------------------------------------ */
 
-/* The state is recovered and its rate found; e: Euler parameters with the dependent one recovered. */
-static int hmmwv14_evaluate(hmmwv14 *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+/* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
+static int hmmwv14_locate(hmmwv14 *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real result[HMMWV14_STATE_ROOM], turn[3];
-    int i, status;
+    gic_real turn[3];
+    int status;
     self->head.subset = -1;
     if (!gic_finite(y, HMMWV14_STATES) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV14_INPUTS) ||
         !gic_finite(self->parameter, HMMWV14_PARAMETERS) || !gic_finite(self->port, HMMWV14_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    ++self->head.rhs_count;
     status = hmmwv14_orient(self, y, e, turn);
     if (status == GIC_OK) {
         hmmwv14_gather(self, y);
         status = hmmwv14_recover(self, turn, 0);
     }
+    return self->head.status = status;
+}
+
+/* The same, and the state's rate. */
+static int hmmwv14_evaluate(hmmwv14 *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+{
+    gic_real result[HMMWV14_STATE_ROOM];
+    int i, status = hmmwv14_locate(self, time, y, e);
+    self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = hmmwv14_dynamics(self, time, y, e, result);
     if (status == GIC_OK && !gic_finite(result, HMMWV14_STATES))
@@ -4653,13 +4661,19 @@ int hmmwv14_rhs(hmmwv14 *self, gic_real time, const gic_real *state, gic_real *r
     return hmmwv14_evaluate(self, time, state, e, rate);
 }
 
-/* The present state, with the inputs of the present time. */
-static int hmmwv14_refresh(hmmwv14 *self, gic_real e[4])
+/* The inputs of the present time, which it returns. */
+static gic_real hmmwv14_present(hmmwv14 *self)
 {
     const gic_real time = hmmwv14_time(self);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
-    return hmmwv14_evaluate(self, time, self->state, e, self->rate);
+    return time;
+}
+
+/* The present state and its rate. */
+static int hmmwv14_refresh(hmmwv14 *self, gic_real e[4])
+{
+    return hmmwv14_evaluate(self, hmmwv14_present(self), self->state, e, self->rate);
 }
 
 int hmmwv14_outputs(hmmwv14 *self)
@@ -4678,7 +4692,7 @@ int hmmwv14_outputs(hmmwv14 *self)
 int hmmwv14_poses(hmmwv14 *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = hmmwv14_refresh(self, e);
+    const int status = hmmwv14_locate(self, hmmwv14_present(self), self->state, e);
     if (status == GIC_OK)
         hmmwv14_place(self, self->state, e, pose);
     return status;

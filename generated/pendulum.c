@@ -627,21 +627,29 @@ static void pendulum_place(const pendulum *self, const gic_real *y, const gic_re
 
 /* ---- the functions of pendulum.h ------------------------------------------------------------------------------------ */
 
-/* The state is recovered and its rate found; e: Euler parameters with the dependent one recovered. */
-static int pendulum_evaluate(pendulum *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+/* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
+static int pendulum_locate(pendulum *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real result[PENDULUM_STATE_ROOM], turn[3];
-    int i, status;
+    gic_real turn[3];
+    int status;
     self->head.subset = -1;
     if (!gic_finite(y, PENDULUM_STATES) || !gic_finite(&time, 1) || !gic_finite(self->input, PENDULUM_INPUTS) ||
         !gic_finite(self->parameter, PENDULUM_PARAMETERS) || !gic_finite(self->port, PENDULUM_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    ++self->head.rhs_count;
     status = pendulum_orient(self, y, e, turn);
     if (status == GIC_OK) {
         pendulum_gather(self, y);
         status = pendulum_recover(self, turn, 0);
     }
+    return self->head.status = status;
+}
+
+/* The same, and the state's rate. */
+static int pendulum_evaluate(pendulum *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+{
+    gic_real result[PENDULUM_STATE_ROOM];
+    int i, status = pendulum_locate(self, time, y, e);
+    self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = pendulum_dynamics(self, time, y, e, result);
     if (status == GIC_OK && !gic_finite(result, PENDULUM_STATES))
@@ -657,13 +665,19 @@ int pendulum_rhs(pendulum *self, gic_real time, const gic_real *state, gic_real 
     return pendulum_evaluate(self, time, state, e, rate);
 }
 
-/* The present state, with the inputs of the present time. */
-static int pendulum_refresh(pendulum *self, gic_real e[4])
+/* The inputs of the present time, which it returns. */
+static gic_real pendulum_present(pendulum *self)
 {
     const gic_real time = pendulum_time(self);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
-    return pendulum_evaluate(self, time, self->state, e, self->rate);
+    return time;
+}
+
+/* The present state and its rate. */
+static int pendulum_refresh(pendulum *self, gic_real e[4])
+{
+    return pendulum_evaluate(self, pendulum_present(self), self->state, e, self->rate);
 }
 
 int pendulum_outputs(pendulum *self)
@@ -682,7 +696,7 @@ int pendulum_outputs(pendulum *self)
 int pendulum_poses(pendulum *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = pendulum_refresh(self, e);
+    const int status = pendulum_locate(self, pendulum_present(self), self->state, e);
     if (status == GIC_OK)
         pendulum_place(self, self->state, e, pose);
     return status;

@@ -1928,21 +1928,29 @@ static void quarter_car_place(const quarter_car *self, const gic_real *y, const 
 
 /* ---- the functions of quarter_car.h ------------------------------------------------------------------------------------ */
 
-/* The state is recovered and its rate found; e: Euler parameters with the dependent one recovered. */
-static int quarter_car_evaluate(quarter_car *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+/* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
+static int quarter_car_locate(quarter_car *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real result[QUARTER_CAR_STATE_ROOM], turn[3];
-    int i, status;
+    gic_real turn[3];
+    int status;
     self->head.subset = -1;
     if (!gic_finite(y, QUARTER_CAR_STATES) || !gic_finite(&time, 1) || !gic_finite(self->input, QUARTER_CAR_INPUTS) ||
         !gic_finite(self->parameter, QUARTER_CAR_PARAMETERS) || !gic_finite(self->port, QUARTER_CAR_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    ++self->head.rhs_count;
     status = quarter_car_orient(self, y, e, turn);
     if (status == GIC_OK) {
         quarter_car_gather(self, y);
         status = quarter_car_recover(self, turn, 0);
     }
+    return self->head.status = status;
+}
+
+/* The same, and the state's rate. */
+static int quarter_car_evaluate(quarter_car *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+{
+    gic_real result[QUARTER_CAR_STATE_ROOM];
+    int i, status = quarter_car_locate(self, time, y, e);
+    self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = quarter_car_dynamics(self, time, y, e, result);
     if (status == GIC_OK && !gic_finite(result, QUARTER_CAR_STATES))
@@ -1958,13 +1966,19 @@ int quarter_car_rhs(quarter_car *self, gic_real time, const gic_real *state, gic
     return quarter_car_evaluate(self, time, state, e, rate);
 }
 
-/* The present state, with the inputs of the present time. */
-static int quarter_car_refresh(quarter_car *self, gic_real e[4])
+/* The inputs of the present time, which it returns. */
+static gic_real quarter_car_present(quarter_car *self)
 {
     const gic_real time = quarter_car_time(self);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
-    return quarter_car_evaluate(self, time, self->state, e, self->rate);
+    return time;
+}
+
+/* The present state and its rate. */
+static int quarter_car_refresh(quarter_car *self, gic_real e[4])
+{
+    return quarter_car_evaluate(self, quarter_car_present(self), self->state, e, self->rate);
 }
 
 int quarter_car_outputs(quarter_car *self)
@@ -1983,7 +1997,7 @@ int quarter_car_outputs(quarter_car *self)
 int quarter_car_poses(quarter_car *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = quarter_car_refresh(self, e);
+    const int status = quarter_car_locate(self, quarter_car_present(self), self->state, e);
     if (status == GIC_OK)
         quarter_car_place(self, self->state, e, pose);
     return status;

@@ -3494,21 +3494,29 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
 
 /* ---- the functions of solid_axle.h ------------------------------------------------------------------------------------ */
 
-/* The state is recovered and its rate found; e: Euler parameters with the dependent one recovered. */
-static int solid_axle_evaluate(solid_axle *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+/* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
+static int solid_axle_locate(solid_axle *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real result[SOLID_AXLE_STATE_ROOM], turn[3];
-    int i, status;
+    gic_real turn[3];
+    int status;
     self->head.subset = -1;
     if (!gic_finite(y, SOLID_AXLE_STATES) || !gic_finite(&time, 1) || !gic_finite(self->input, SOLID_AXLE_INPUTS) ||
         !gic_finite(self->parameter, SOLID_AXLE_PARAMETERS) || !gic_finite(self->port, SOLID_AXLE_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    ++self->head.rhs_count;
     status = solid_axle_orient(self, y, e, turn);
     if (status == GIC_OK) {
         solid_axle_gather(self, y);
         status = solid_axle_recover(self, turn, 0);
     }
+    return self->head.status = status;
+}
+
+/* The same, and the state's rate. */
+static int solid_axle_evaluate(solid_axle *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+{
+    gic_real result[SOLID_AXLE_STATE_ROOM];
+    int i, status = solid_axle_locate(self, time, y, e);
+    self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = solid_axle_dynamics(self, time, y, e, result);
     if (status == GIC_OK && !gic_finite(result, SOLID_AXLE_STATES))
@@ -3524,13 +3532,19 @@ int solid_axle_rhs(solid_axle *self, gic_real time, const gic_real *state, gic_r
     return solid_axle_evaluate(self, time, state, e, rate);
 }
 
-/* The present state, with the inputs of the present time. */
-static int solid_axle_refresh(solid_axle *self, gic_real e[4])
+/* The inputs of the present time, which it returns. */
+static gic_real solid_axle_present(solid_axle *self)
 {
     const gic_real time = solid_axle_time(self);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
-    return solid_axle_evaluate(self, time, self->state, e, self->rate);
+    return time;
+}
+
+/* The present state and its rate. */
+static int solid_axle_refresh(solid_axle *self, gic_real e[4])
+{
+    return solid_axle_evaluate(self, solid_axle_present(self), self->state, e, self->rate);
 }
 
 int solid_axle_outputs(solid_axle *self)
@@ -3549,7 +3563,7 @@ int solid_axle_outputs(solid_axle *self)
 int solid_axle_poses(solid_axle *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = solid_axle_refresh(self, e);
+    const int status = solid_axle_locate(self, solid_axle_present(self), self->state, e);
     if (status == GIC_OK)
         solid_axle_place(self, self->state, e, pose);
     return status;

@@ -3326,21 +3326,29 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
 
 /* ---- the functions of trailing_arm.h ------------------------------------------------------------------------------------ */
 
-/* The state is recovered and its rate found; e: Euler parameters with the dependent one recovered. */
-static int trailing_arm_evaluate(trailing_arm *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+/* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
+static int trailing_arm_locate(trailing_arm *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real result[TRAILING_ARM_STATE_ROOM], turn[3];
-    int i, status;
+    gic_real turn[3];
+    int status;
     self->head.subset = -1;
     if (!gic_finite(y, TRAILING_ARM_STATES) || !gic_finite(&time, 1) || !gic_finite(self->input, TRAILING_ARM_INPUTS) ||
         !gic_finite(self->parameter, TRAILING_ARM_PARAMETERS) || !gic_finite(self->port, TRAILING_ARM_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    ++self->head.rhs_count;
     status = trailing_arm_orient(self, y, e, turn);
     if (status == GIC_OK) {
         trailing_arm_gather(self, y);
         status = trailing_arm_recover(self, turn, 0);
     }
+    return self->head.status = status;
+}
+
+/* The same, and the state's rate. */
+static int trailing_arm_evaluate(trailing_arm *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+{
+    gic_real result[TRAILING_ARM_STATE_ROOM];
+    int i, status = trailing_arm_locate(self, time, y, e);
+    self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = trailing_arm_dynamics(self, time, y, e, result);
     if (status == GIC_OK && !gic_finite(result, TRAILING_ARM_STATES))
@@ -3356,13 +3364,19 @@ int trailing_arm_rhs(trailing_arm *self, gic_real time, const gic_real *state, g
     return trailing_arm_evaluate(self, time, state, e, rate);
 }
 
-/* The present state, with the inputs of the present time. */
-static int trailing_arm_refresh(trailing_arm *self, gic_real e[4])
+/* The inputs of the present time, which it returns. */
+static gic_real trailing_arm_present(trailing_arm *self)
 {
     const gic_real time = trailing_arm_time(self);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
-    return trailing_arm_evaluate(self, time, self->state, e, self->rate);
+    return time;
+}
+
+/* The present state and its rate. */
+static int trailing_arm_refresh(trailing_arm *self, gic_real e[4])
+{
+    return trailing_arm_evaluate(self, trailing_arm_present(self), self->state, e, self->rate);
 }
 
 int trailing_arm_outputs(trailing_arm *self)
@@ -3381,7 +3395,7 @@ int trailing_arm_outputs(trailing_arm *self)
 int trailing_arm_poses(trailing_arm *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = trailing_arm_refresh(self, e);
+    const int status = trailing_arm_locate(self, trailing_arm_present(self), self->state, e);
     if (status == GIC_OK)
         trailing_arm_place(self, self->state, e, pose);
     return status;

@@ -52,6 +52,6 @@ void bench_machine(const Bench *bench)
                 "gicgen %s, %s",
                 bench->model_path, bench->scene_path, bench->quick ? " (quick: few repetitions, few settings)" : "",
                 engines.s, processor(pool, system.machine), sysconf(_SC_NPROCESSORS_ONLN), system.sysname,
-                system.release, system.machine, compiler_version(pool, bench->options.compiler), build_flags, __VERSION__,
-                GICBENCH_FLAGS, GICGEN_VERSION, date);
+                system.release, system.machine, compiler_version(pool, bench->options.compiler), build_flags,
+                __VERSION__, GICBENCH_FLAGS, GICGEN_VERSION, date);
 }

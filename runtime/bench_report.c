@@ -146,11 +146,12 @@ static void table_html(Text *out, const Sheet *table)
 
 static void page_html(Text *out, const Report *report)
 {
-    text_print(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>gicbench</title>\n<style>\n"
-                    "body {font-family: sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; line-height: 1.4}\n"
-                    "table {border-collapse: collapse; margin: 1em 0}\ncaption {text-align: left; font-weight: bold}\n"
-                    "th, td {padding: 0.1em 0.6em; text-align: right; border-bottom: 1px solid #ccc}\n"
-                    "th:first-child, td:first-child {text-align: left}\nimg {max-width: 100%%}\n</style>\n");
+    text_print(out,
+               "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>gicbench</title>\n<style>\n"
+               "body {font-family: sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; line-height: 1.4}\n"
+               "table {border-collapse: collapse; margin: 1em 0}\ncaption {text-align: left; font-weight: bold}\n"
+               "th, td {padding: 0.1em 0.6em; text-align: right; border-bottom: 1px solid #ccc}\n"
+               "th:first-child, td:first-child {text-align: left}\nimg {max-width: 100%%}\n</style>\n");
     for (int i = 0; i < report->pieces; ++i) {
         const Piece *piece = &report->piece[i];
         if (piece->heading)

@@ -195,8 +195,8 @@ void trials_run(const Bench *bench, const Scene *scene, Setting setting, const T
         Trajectory trajectory = trajectory_new(bench->pool, scene, engine->code);
         trial[e] = (Trial){.engine = engine, .setting = setting};
         trial[e].second = pool_alloc(bench->pool, sizeof(double) * (size_t)bench->repetitions);
-        bench_progress(bench, "%s %s: error of %s", integrator_name(setting.method),
-                       setting_text(bench->pool, setting), engine->name);
+        bench_progress(bench, "%s %s: error of %s", integrator_name(setting.method), setting_text(bench->pool, setting),
+                       engine->name);
         run(engine, bench->instance[e], scene, &trial[e], &trajectory);
         trial[e].error = trajectory_error(&trajectory, reference);
         trial[e].unstable = trial[e].status != GIC_OK || trial[e].error > bench_unstable;

@@ -8,21 +8,20 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static const char help[] =
-    "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCENE [TURNING_SCENE]\n"
-    "\n"
-    "Runs a scene with all engines and integrators and writes a folder: index.html with\n"
-    "tables and pictures, the same as text, a CSV file a table.\n"
-    "\n"
-    "  -o, --output FOLDER  default: gicbench\n"
-    "      --engines NAMES  some engines, separated by commas; the others are compared\n"
-    "                       with the first; default: all\n"
-    "      --quick          few repetitions, few settings\n"
-    "      --cc COMMAND     C compiler of generated code; default: $CC or cc\n"
-    "  -h, --help           this text\n"
-    "      --version        version\n"
-    "\n"
-    "Exit status: 0 good, 1 error in a file or during a run, 2 wrong usage.\n";
+static const char help[] = "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCENE [TURNING_SCENE]\n"
+                           "\n"
+                           "Runs a scene with all engines and integrators and writes a folder: index.html with\n"
+                           "tables and pictures, the same as text, a CSV file a table.\n"
+                           "\n"
+                           "  -o, --output FOLDER  default: gicbench\n"
+                           "      --engines NAMES  some engines, separated by commas; the others are compared\n"
+                           "                       with the first; default: all\n"
+                           "      --quick          few repetitions, few settings\n"
+                           "      --cc COMMAND     C compiler of generated code; default: $CC or cc\n"
+                           "  -h, --help           this text\n"
+                           "      --version        version\n"
+                           "\n"
+                           "Exit status: 0 good, 1 error in a file or during a run, 2 wrong usage.\n";
 
 static _Noreturn void usage_fail(const char *message, const char *word)
 {

@@ -1,0 +1,107 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_bench.sh GICBENCH: a short benchmark from end to end: all files are there and whole, tables can be read, what is
+# unstable is called so, errors are those of the integrators. No time is tested.
+gicbench=$1
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+passed=0
+failed=0
+
+# check NAME CONDITION...: the command must succeed
+check() {
+    name=$1
+    shift
+    if "$@"; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAILED: $name"
+        sed 's/^/    /' "$work/err"
+    fi
+}
+
+# A cart on a spring: x'' + 2 d x' + w^2 x = 0 with w = 30 / s swings freely, and with d = 300 / s has a fast eigenvalue
+# of -598 / s. AB3 is stable on the negative real axis up to 6/11: h < 0.912 ms.
+vehicle() {
+    cat <<XXX
+gicgen: 1
+model: cart
+gravity: [0, 0, 0]
+base: ground
+bodies:
+  cart: {mass: 2, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  rail: {type: prismatic, bodies: [ground, cart], axis: [1, 0, 0]}
+coordinates:
+  x: {type: translation, bodies: [ground, cart], axis: [1, 0, 0], range: [-9, 9]}
+forces:
+  spring: {type: spring_damper, coordinate: x, stiffness: 1800, damping: $1}
+outputs:
+  x: {type: coordinate, coordinate: x}
+XXX
+}
+vehicle 1200 >"$work/stiff.veh"
+cat >"$work/cart.scene" <<'XXX'
+gicscene: 1
+duration: 0.4
+step: 0.01
+initial: {coordinates: {x: 0.1}}
+XXX
+
+"$gicbench" --quick -o "$work/page" "$work/stiff.veh" "$work/cart.scene" "$work/cart.scene" >"$work/out" 2>"$work/err"
+check 'a short benchmark ends well' [ $? -eq 0 ]
+for file in index.html bench.txt table1.csv table2.csv table3.csv work_precision.csv spin.csv worst.csv \
+    operations.csv fig6.svg fig8.svg work_precision.svg; do
+    check "$file is there" [ -s "$work/page/$file" ]
+done
+check 'no temporary file is left' [ -z "$(find "$work/page" -name '*.tmp')" ]
+check 'the page is whole' grep -q '^</html>' "$work/page/index.html"
+# shellcheck disable=SC2013  # names without spaces
+for file in $(sed -n 's/.*\(src\|href\)="\([^"]*\)".*/\2/p' "$work/page/index.html"); do
+    check "the page's $file exists" [ -s "$work/page/$file" ]
+done
+for file in "$work"/page/*.csv; do
+    check "$(basename "$file") has as many cells in each row" awk -F, 'NR == 1 {n = NF} NF != n {bad = 1}
+        END {exit bad || NR < 2 || n < 3}' "$file"
+done
+check 'machine, compiler and flags are stated' [ "$(grep -c -e '^Processor: .' -e '^Compiler .*: .' -e '^Its flags: .*-O2' \
+    "$work/page/bench.txt")" -eq 3 ]
+
+# every number is one, and each row has an engine
+check 'AB3 is unstable with 10 and 4 ms' awk -F, 'NR > 1 && ($1 == "10 ms" || $1 == "4 ms") {
+    ++n; for (i = 3; i <= NF; ++i) if ($i != "unstable") bad = 1} END {exit bad || n < 2}' "$work/page/table2.csv"
+check 'AB3 is stable with 0.5 ms' awk -F, '$1 == "0.5 ms" {++n; if (!($3 + 0 > 0 && $3 < 1e-3 && $4 + 0 > 0)) bad = 1}
+    END {exit bad || !n}' "$work/page/table2.csv"
+# local errors of 1e-9 (1 + 0.1) or less that damping forgets; 1e-7 leaves room for some hundred of them
+check 'Adams is stable, its error follows the tolerance' awk -F, 'NR > 1 {++n; if (!($3 + 0 > 0 && $3 < 100 * $1)) bad = 1}
+    END {exit bad || n < 3}' "$work/page/table1.csv"
+check 'faster than real time is yes or no' awk -F, 'NR > 1 && $10 !~ /^(yes|no|unstable)$/ {bad = 1} END {exit bad}' \
+    "$work/page/table1.csv"
+
+# an undamped one: the order of AB3 shows, eight times less error for half the step, so at least 100 times from 4 to 0.5 ms
+vehicle 0 >"$work/soft.veh"
+"$gicbench" --quick --engines cc -o "$work/page" "$work/soft.veh" "$work/cart.scene" >"$work/out" 2>"$work/err"
+check 'a folder may be there already' [ $? -eq 0 ]
+check 'the order of AB3 shows' awk -F, '$1 == "4 ms" {coarse = $3} $1 == "0.5 ms" {fine = $3}
+    END {exit !(fine > 0 && coarse > 100 * fine)}' "$work/page/table2.csv"
+check 'without a second scene there is no table of it' [ "$(grep -c 'A vehicle that turns' "$work/page/bench.txt")" -eq 0 ]
+
+# fails STATUS TEXT ARGUMENT...
+fails() {
+    status=$1
+    text=$2
+    shift 2
+    "$gicbench" "$@" >"$work/out" 2>"$work/err"
+    check "exit status $status: $text" [ $? -eq "$status" ]
+    check "message: $text" grep -q "error: .*$text" "$work/err"
+    check "remedy: $text" grep -q 'remedy: ' "$work/err"
+}
+fails 2 'a model and a scene' "$work/soft.veh"
+fails 2 "no engine 'fast'" --engines fast "$work/soft.veh" "$work/cart.scene"
+fails 1 "can't make the folder" -o "$work/no/page" "$work/soft.veh" "$work/cart.scene"
+sed 's/0.4$/0.03/' "$work/cart.scene" >"$work/short.scene"
+fails 1 'at least' -o "$work/page" "$work/soft.veh" "$work/short.scene"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
