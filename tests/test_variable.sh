@@ -95,14 +95,15 @@ for integrator in adams rkck; do
     done
 done
 
-# Turning freely on flat ground, the vehicle changes its dependent Euler parameter; nothing may come of it
+# Turning freely on flat ground, the vehicle changes its dependent Euler parameter; nothing may come of it. Nothing damps
+# the turn either, so that errors of 1e-8 a step add up; a jump would be of the size of the parameters, 0.1 and more
 { scene | sed '/^road/d; s/velocity/angular_velocity: [0, 0, 3], velocity/'; echo 'step: 0.0001'; echo 'integrator: rk4'; } \
     >"$work/fine.scene"
 run models/hmmwv.veh "$work/fine.scene" -o "$work/fine.csv"
 sed 's/rk4/adams/' "$work/fine.scene" >"$work/variable.scene"
 run models/hmmwv.veh "$work/variable.scene" --tolerance 1e-8 -o "$work/a.csv"
 check 'turning: the dependent parameter changes' says 'parameter switches *[1-9]'
-check 'turning: the error stays small' below "$(apart "$work/fine.csv" "$work/a.csv" 10)" 1e-7
+check 'turning: the error stays small' below "$(apart "$work/fine.csv" "$work/a.csv" 10)" 1e-6
 
 # A cart at rest and a push that lasts 2 ms in the middle of an output step of 1 s: without a stop at the knots a step
 # would pass over it. Quintics from 0 to 3000 N and back have the mean 1500 N: 3 N s, 1.5 m/s for 2 kg.
