@@ -29,22 +29,48 @@ static double clock_cost(Pool *pool)
     return spread_of(pool, seconds, LOOKS).median;
 }
 
-/* CPU seconds of one run. */
-static double run_seconds(const Engine *engine, gic_head *self, const Scene *scene, int steps, bool *failed)
+/* The rows so far. */
+static void read_rows(const EngineProfile *profile, double row[ROWS])
 {
+    const double now[ROWS] = {profile->acceleration, profile->acceleration_functions, profile->acceleration_solver,
+                              profile->recovery,     profile->recovery_functions,     profile->recovery_solver};
+    memcpy(row, now, sizeof now);
+}
+
+/* One run: the median step, elapsed seconds of which the rest of the machine takes nothing. rows: the same of what the
+ * engine's own clocks say of each step, or NULL where they are off. */
+static double median_step(const Engine *engine, gic_head *self, const Scene *scene, int steps, double *rows,
+                          bool *failed)
+{
+    Pool *pool = pool_new();
+    double *step = pool_alloc(pool, sizeof *step * (size_t)steps);
+    double *part = pool_alloc(pool, sizeof *part * (size_t)(ROWS * steps));
+    double before[ROWS], after[ROWS];
     *failed = scene_start(engine->code, scene, self) != GIC_OK;
-    const double before = bench_clock(CLOCK_PROCESS_CPUTIME_ID);
-    for (int i = 0; i < steps && !*failed; ++i)
+    for (int i = 0; i < steps && !*failed; ++i) {
+        if (rows)
+            read_rows(engine->profile, before);
+        const double begun = bench_clock(CLOCK_MONOTONIC);
         *failed = scene_step(engine->code, scene, NULL, self, 0) != GIC_OK;
-    return bench_clock(CLOCK_PROCESS_CPUTIME_ID) - before;
+        step[i] = bench_clock(CLOCK_MONOTONIC) - begun;
+        if (rows)
+            read_rows(engine->profile, after);
+        for (int k = 0; k < ROWS && rows; ++k)
+            part[k * steps + i] = after[k] - before[k];
+    }
+    for (int k = 0; k < ROWS && rows; ++k)
+        rows[k] = spread_of(pool, part + k * steps, steps).median;
+    const double median = spread_of(pool, step, steps).median;
+    pool_free(pool);
+    return median;
 }
 
 /* The same with the engine's own clocks, of which each look takes `look` seconds. */
-static double clocked_seconds(const Engine *engine, gic_head *self, const Scene *scene, int steps, double look,
-                              bool *failed)
+static double clocked_step(const Engine *engine, gic_head *self, const Scene *scene, int steps, double look,
+                           double *rows, bool *failed)
 {
     *engine->profile = (EngineProfile){.on = true, .look = look};
-    const double seconds = run_seconds(engine, self, scene, steps, failed);
+    const double seconds = median_step(engine, self, scene, steps, rows, failed);
     engine->profile->on = false;
     return seconds;
 }
@@ -53,14 +79,11 @@ static double clocked_seconds(const Engine *engine, gic_head *self, const Scene 
  * a run with and one without. */
 static void profile_inside(const Engine *engine, gic_head *self, const Scene *scene, int steps, Profile3 *out)
 {
-    const EngineProfile *profile = engine->profile;
-    const double with = clocked_seconds(engine, self, scene, steps, 0, &out->failed);
-    const double looks = (double)profile->looks, without = run_seconds(engine, self, scene, steps, &out->failed);
-    clocked_seconds(engine, self, scene, steps, fmax(0, with - without) / looks, &out->failed);
-    const double row[ROWS] = {profile->acceleration, profile->acceleration_functions, profile->acceleration_solver,
-                              profile->recovery,     profile->recovery_functions,     profile->recovery_solver};
-    for (int i = 0; i < ROWS; ++i)
-        out->row[i] = row[i] / (double)profile->evaluations;
+    const double with = clocked_step(engine, self, scene, steps, 0, out->row, &out->failed);
+    const double looks = (double)engine->profile->looks / steps;
+    const double without = median_step(engine, self, scene, steps, NULL, &out->failed);
+    clocked_step(engine, self, scene, steps, fmax(0, with - without) / looks, out->row, &out->failed);
+    out->fused = out->row[1] + out->row[2] + out->row[4] + out->row[5] <= 0;
 }
 
 /* One run that stops at each step to time poses and right-hand side on copies of the instance. */
@@ -202,7 +225,7 @@ void bench_profile(const Bench *bench)
             Profile3 *one = &all[e * bench->repetitions + r];
             bench_progress(bench, "profile: repetition %d, %s", r + 1, engine->name);
             (engine->profile ? profile_inside : profile_outside)(engine, bench->instance[e], &scene, steps, one);
-            one->step = run_seconds(engine, bench->instance[e], &scene, steps, &one->failed) / steps;
+            one->step = median_step(engine, bench->instance[e], &scene, steps, NULL, &one->failed);
         }
     for (int e = 0; e < bench->engines; ++e)
         profile[e] = profile_median(pool, all + e * bench->repetitions, bench->repetitions);
@@ -214,7 +237,8 @@ void bench_profile(const Bench *bench)
                 "evaluations, F its linear solver. Interpreted engines read the clock inside; what that costs is "
                 "measured and taken off. Generated code is timed from outside: D is a call for the poses of all "
                 "bodies, A what a right-hand side takes beyond that. The last column is a step without any clock "
-                "inside, the integrator included.",
+                "inside, the integrator included. All are medians over steps, then "
+                "over repetitions.",
                 setting_text(pool, setting));
     Sheet *table =
         report_table(bench->report, "table3", "Table 3. Timing profile [us]", "engine|A|B|C|D|E|F|A + D|step");
