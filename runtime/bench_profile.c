@@ -212,6 +212,35 @@ static void count_table(const Bench *bench)
         "E and F share subexpressions; so do B and C.";
 }
 
+/* Where ratios differ in kind from the paper's, for whoever wonders. */
+static void explain(const Bench *bench)
+{
+    bool gic = false, partitioning = false;
+    for (int e = 0; e < bench->engines; ++e) {
+        gic |= !strcmp(bench->engine[e]->name, "gic");
+        partitioning |= !strcmp(bench->engine[e]->name, "gcp1");
+    }
+    if (!gic || !partitioning)
+        return;
+    report_text(
+        bench->report,
+        "Why gcp1 is nearer to gic here than in the paper: both recover the same coordinates with the same code "
+        "for constraints, so that what is left is how the equations are solved, and that has changed. In the "
+        "paper all dependent coordinates of gcp1 (59 in the HMMWV) are one system. Ours is one too, but its solver "
+        "(KLU) brings it to block triangular form before it factors, and so finds by itself most of what the "
+        "computational sequence of gic knows beforehand, as long as the independent coordinates that "
+        "partitioning has picked allow it. Both keep factors between corrections. "
+        "A dense factorization of 59 equations would take some 60 times the operations of nine "
+        "of 7. What remains of the advantage of globally independent coordinates: none is ever chosen "
+        "anew (see below), and the sequence is known before the program runs.");
+    report_text(
+        bench->report,
+        "That the sequence is known beforehand is worth most where code is generated from it: straight-line code "
+        "of each subset, in the frame of the body it hangs on, without loops, indices and zeros. Compare the "
+        "first engine with gic: the method is the same. gcp2 spends its time in the general sparse solver (C), "
+        "which looks for pivots each time; the topology-based one of gic and gcp1 does not.");
+}
+
 void bench_profile(const Bench *bench)
 {
     Pool *pool = bench->pool;
@@ -248,4 +277,5 @@ void bench_profile(const Bench *bench)
     ratio_table(bench, profile, "recovery_ratio", "Recovery (D). The paper: gcp1 over gic 6.1", false);
     ratio_table(bench, profile, "overall_ratio", "Recovery and accelerations (A + D). The paper: gcp1 over gic 4.9",
                 true);
+    explain(bench);
 }

@@ -3,6 +3,7 @@
  * independent coordinates only another Euler parameter of the base. */
 #include "bench.h"
 
+#include <math.h>
 #include <string.h>
 
 static const Setting setting = {GIC_AB3, 0.005};
@@ -12,6 +13,7 @@ typedef struct Spin {
     int status;
     int64_t steps, changes, changing, switches; /* changing: steps with changes */
     double *quiet, *busy;                       /* s, of steps without and with changes */
+    Trajectory end;                             /* its last poses */
     int quiets, busies;
 } Spin;
 
@@ -37,9 +39,14 @@ static void spin_run(Pool *pool, const Engine *engine, gic_head *self, const Sce
         }
     }
     spin->switches = self->switch_count;
+    spin->end = (Trajectory){1, 7 * engine->code->body_count, NULL};
+    spin->end.pose = pool_alloc(pool, sizeof(double) * (size_t)spin->end.numbers);
+    if (spin->status == GIC_OK)
+        spin->status = engine->code->poses(self, spin->end.pose);
 }
 
-static void spin_row(const Bench *bench, Sheet *table, const Engine *engine, const Spin *spin)
+/* first: what the engine that others are compared with did */
+static void spin_row(const Bench *bench, Sheet *table, const Engine *engine, const Spin *spin, const Spin *first)
 {
     Pool *pool = bench->pool;
     table_cell(pool, table, "%s", engine->name);
@@ -50,11 +57,12 @@ static void spin_row(const Bench *bench, Sheet *table, const Engine *engine, con
     }
     const double quiet = spread_of(pool, spin->quiet, spin->quiets).median;
     table_cell(pool, table, "%lld", (long long)spin->steps);
+    table_cell(pool, table, "%.1e", first->status == GIC_OK ? trajectory_error(&spin->end, &first->end) : INFINITY);
     table_cell(pool, table, "%lld", (long long)spin->switches);
     table_cell(pool, table, "%lld", (long long)spin->changes);
     table_cell(pool, table, "%.4g", 1e6 * quiet);
     if (!spin->busies) {
-        for (int column = 5; column < table->columns; ++column)
+        for (int column = 6; column < table->columns; ++column)
             table_cell(pool, table, "-");
         return;
     }
@@ -76,14 +84,18 @@ void bench_spin(const Bench *bench)
             spin_run(bench->pool, bench->engine[e], bench->instance[e], &scene, &spin[e]);
         }
     report_heading(bench->report, "A vehicle that turns");
-    report_text(bench->report,
-                "%s, AB3 with %s. An engine of generalized coordinate partitioning chooses its independent coordinates "
-                "anew where the dependent ones have become ill-conditioned; globally independent coordinates stay, "
-                "and only the dependent Euler parameter of the base changes, at no cost.",
-                bench->spin_path, setting_text(bench->pool, setting));
-    Sheet *table = report_table(bench->report, "spin", "Changes of coordinates",
-                                "engine|steps|changes of Euler parameter|changes of partition|step without [us]|"
-                                "step with [us]|cost of a change [us]|cost in the run [%]");
+    report_text(
+        bench->report,
+        "%s, AB3 with %s. An engine of generalized coordinate partitioning chooses its independent coordinates "
+        "anew where the dependent ones have become ill-conditioned; globally independent coordinates stay, "
+        "and only the dependent "
+        "Euler parameter of the base changes, at no cost. Switches: what the engine counts of either. The third "
+        "column is the distance of any body from where the first engine leaves it.",
+        bench->spin_path, setting_text(bench->pool, setting));
+    Sheet *table =
+        report_table(bench->report, "spin", "Changes of coordinates",
+                     "engine|steps|away at the end [m or rad]|switches|changes of partition|step without [us]|"
+                     "step with [us]|cost of a change [us]|cost in the run [%]");
     for (int e = 0; e < bench->engines; ++e)
-        spin_row(bench, table, bench->engine[e], &spin[e]);
+        spin_row(bench, table, bench->engine[e], &spin[e], &spin[0]);
 }
