@@ -77,6 +77,7 @@ typedef struct Spread {
     double median, low, high;
 } Spread;
 
+void sort_ascending(double *value, int count);
 Spread spread_of(Pool *pool, const double *value, int count);
 /* Of the ratios over / under, repetition by repetition. */
 Spread spread_of_ratio(Pool *pool, const double *over, const double *under, int count);

@@ -61,11 +61,16 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+void sort_ascending(double *value, int count)
+{
+    qsort(value, (size_t)count, sizeof *value, ascending);
+}
+
 Spread spread_of(Pool *pool, const double *value, int count)
 {
     double *sorted = pool_alloc(pool, sizeof *sorted * (size_t)count);
     memcpy(sorted, value, sizeof *sorted * (size_t)count);
-    qsort(sorted, (size_t)count, sizeof *sorted, ascending);
+    sort_ascending(sorted, count);
     return (Spread){(sorted[(count - 1) / 2] + sorted[count / 2]) / 2, sorted[0], sorted[count - 1]};
 }
 

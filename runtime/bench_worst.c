@@ -3,8 +3,6 @@
 #include "bench.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const Setting setting = {GIC_AB3, 0.005};
 
@@ -25,12 +23,6 @@ static int time_steps(const Engine *engine, gic_head *self, const Scene *scene, 
             return i < START ? 0 : i - START;
     }
     return steps;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 /* The largest over steps of the smallest over repetitions. */
@@ -57,7 +49,7 @@ static void worst_row(const Bench *bench, Sheet *table, const Engine *engine, do
     }
     const double best = undisturbed(seconds, bench->repetitions, room, steps);
     const int count = room * bench->repetitions;
-    qsort(seconds, (size_t)count, sizeof *seconds, ascending);
+    sort_ascending(seconds, count);
     table_cell(pool, table, "%d", count);
     table_cell(pool, table, "%.4g", 1e6 * seconds[count / 2]);
     table_cell(pool, table, "%.4g", 1e6 * seconds[(int)ceil(0.999 * count) - 1]);
