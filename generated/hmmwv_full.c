@@ -3739,21 +3739,29 @@ static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gi
 
 /* ---- the functions of hmmwv_full.h ------------------------------------------------------------------------------------ */
 
-/* The state is recovered and its rate found; e: Euler parameters with the dependent one recovered. */
-static int hmmwv_full_evaluate(hmmwv_full *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+/* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
+static int hmmwv_full_locate(hmmwv_full *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real result[HMMWV_FULL_STATE_ROOM], turn[3];
-    int i, status;
+    gic_real turn[3];
+    int status;
     self->head.subset = -1;
     if (!gic_finite(y, HMMWV_FULL_STATES) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV_FULL_INPUTS) ||
         !gic_finite(self->parameter, HMMWV_FULL_PARAMETERS) || !gic_finite(self->port, HMMWV_FULL_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    ++self->head.rhs_count;
     status = hmmwv_full_orient(self, y, e, turn);
     if (status == GIC_OK) {
         hmmwv_full_gather(self, y);
         status = hmmwv_full_recover(self, turn, 0);
     }
+    return self->head.status = status;
+}
+
+/* The same, and the state's rate. */
+static int hmmwv_full_evaluate(hmmwv_full *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+{
+    gic_real result[HMMWV_FULL_STATE_ROOM];
+    int i, status = hmmwv_full_locate(self, time, y, e);
+    self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = hmmwv_full_dynamics(self, time, y, e, result);
     if (status == GIC_OK && !gic_finite(result, HMMWV_FULL_STATES))
@@ -3769,13 +3777,19 @@ int hmmwv_full_rhs(hmmwv_full *self, gic_real time, const gic_real *state, gic_r
     return hmmwv_full_evaluate(self, time, state, e, rate);
 }
 
-/* The present state, with the inputs of the present time. */
-static int hmmwv_full_refresh(hmmwv_full *self, gic_real e[4])
+/* The inputs of the present time, which it returns. */
+static gic_real hmmwv_full_present(hmmwv_full *self)
 {
     const gic_real time = hmmwv_full_time(self);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
-    return hmmwv_full_evaluate(self, time, self->state, e, self->rate);
+    return time;
+}
+
+/* The present state and its rate. */
+static int hmmwv_full_refresh(hmmwv_full *self, gic_real e[4])
+{
+    return hmmwv_full_evaluate(self, hmmwv_full_present(self), self->state, e, self->rate);
 }
 
 int hmmwv_full_outputs(hmmwv_full *self)
@@ -3794,7 +3808,7 @@ int hmmwv_full_outputs(hmmwv_full *self)
 int hmmwv_full_poses(hmmwv_full *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = hmmwv_full_refresh(self, e);
+    const int status = hmmwv_full_locate(self, hmmwv_full_present(self), self->state, e);
     if (status == GIC_OK)
         hmmwv_full_place(self, self->state, e, pose);
     return status;
