@@ -84,7 +84,7 @@ Spread spread_of(Pool *pool, const double *value, int count);
 /* Of the ratios over / under, repetition by repetition. */
 Spread spread_of_ratio(Pool *pool, const double *over, const double *under, int count);
 /* A line for the person who waits. */
-void bench_progress(const Bench *bench, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void bench_progress(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* ---- bench_report.c, bench_chart.c: the folder --------------------------------------------------------------- */
 

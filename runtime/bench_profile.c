@@ -254,7 +254,7 @@ void bench_profile(const Bench *bench)
         for (int e = 0; e < bench->engines; ++e) {
             const Engine *engine = bench->engine[e];
             Profile3 *one = &all[e * bench->repetitions + r];
-            bench_progress(bench, "profile: repetition %d, %s", r + 1, engine->name);
+            bench_progress("profile: repetition %d, %s", r + 1, engine->name);
             (engine->profile ? profile_inside : profile_outside)(engine, bench->instance[e], &scene, steps, one);
             one->step = median_step(engine, bench->instance[e], &scene, steps, NULL, &one->failed);
         }

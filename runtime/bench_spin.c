@@ -80,7 +80,7 @@ void bench_spin(const Bench *bench)
     Spin *spin = pool_alloc(bench->pool, sizeof *spin * (size_t)bench->engines);
     for (int r = 0; r < bench->repetitions; ++r)
         for (int e = 0; e < bench->engines; ++e) {
-            bench_progress(bench, "turning vehicle: repetition %d, %s", r + 1, bench->engine[e]->name);
+            bench_progress("turning vehicle: repetition %d, %s", r + 1, bench->engine[e]->name);
             spin_run(bench->pool, bench->engine[e], bench->instance[e], &scene, &spin[e]);
         }
     report_heading(bench->report, "A vehicle that turns");

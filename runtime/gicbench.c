@@ -104,7 +104,7 @@ int main(int count, char **word)
                   bench_sample);
     make_folder(bench.folder);
     for (int e = 0; name[e]; ++e) {
-        bench_progress(&bench, "engine %s", name[e]);
+        bench_progress("engine %s", name[e]);
         *POOL_PUSH(pool, bench.engine, bench.engines) = engine_open(pool, name[e], bench.model, &bench.options);
     }
     bench.instance = pool_alloc(pool, sizeof(gic_head *) * (size_t)bench.engines);
@@ -116,9 +116,9 @@ int main(int count, char **word)
     bench_profile(&bench);
     bench_spin(&bench);
     bench_worst(&bench);
-    bench_progress(&bench, "writing %s", bench.folder);
+    bench_progress("writing %s", bench.folder);
     report_write(&report, bench.folder);
-    bench_progress(&bench, "see %s/index.html", bench.folder);
+    bench_progress("see %s/index.html", bench.folder);
     fputc('\n', stderr);
     pool_free(pool);
     return 0;
