@@ -30,6 +30,23 @@ static _Noreturn void usage_fail(const char *message, const char *word)
     exit(2);
 }
 
+/* Names separated by commas. */
+static const char *const *engine_list(Pool *pool, char *names)
+{
+    const char **list = NULL;
+    int engines = 0;
+    char *rest;
+    for (char *name = strtok_r(names, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
+        if (!engine_known(name))
+            usage_fail("there is no engine", name);
+        *POOL_PUSH(pool, list, engines) = name;
+    }
+    if (!engines)
+        usage_fail("--engines needs at least one name", NULL);
+    *POOL_PUSH(pool, list, engines) = NULL;
+    return list;
+}
+
 /* What the command line asks for, and the names of the engines, ended by NULL. */
 static Bench read_command_line(Pool *pool, int count, char **word, const char *const **names)
 {
@@ -50,19 +67,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
     for (int option; (option = getopt_long(count, word, "o:h", options, NULL)) != -1;)
         switch (option) {
         case 'o': bench.folder = optarg; break;
-        case ENGINES: {
-            const char **list = NULL;
-            int engines = 0;
-            char *rest;
-            for (char *name = strtok_r(optarg, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
-                if (!engine_known(name))
-                    usage_fail("there is no engine", name);
-                *POOL_PUSH(pool, list, engines) = name;
-            }
-            *POOL_PUSH(pool, list, engines) = NULL;
-            *names = list;
-            break;
-        }
+        case ENGINES: *names = engine_list(pool, optarg); break;
         case QUICK:
             bench.quick = true;
             bench.repetitions = 3;
@@ -80,7 +85,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
     return bench;
 }
 
-/* The folder, before hours of work are done for it. */
+/* The folder, before minutes of work are done for it. */
 static void make_folder(const char *folder)
 {
     struct stat there;

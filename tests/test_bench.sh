@@ -102,6 +102,7 @@ fails() {
 }
 fails 2 'a model and a scene' "$work/soft.veh"
 fails 2 "no engine 'fast'" --engines fast "$work/soft.veh" "$work/cart.scene"
+fails 2 'at least one name' --engines '' "$work/soft.veh" "$work/cart.scene"
 fails 1 "can't make the folder" -o "$work/no/page" "$work/soft.veh" "$work/cart.scene"
 sed 's/0.4$/0.03/' "$work/cart.scene" >"$work/short.scene"
 fails 1 'at least' -o "$work/page" "$work/soft.veh" "$work/short.scene"
