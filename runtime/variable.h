@@ -9,7 +9,7 @@
 /* Beside the methods of gic_runtime.h (gic_method), which have constant steps. */
 enum {
     METHOD_ADAMS = 100, /* Adams-Moulton, variable step and order 1 to 12: the stand-in for the paper's DDABM */
-    METHOD_RKCK         /* Runge-Kutta after Cash and Karp, order 5: cheaper where errors of 1e-8 or more will do */
+    METHOD_RKCK         /* Runge-Kutta after Cash and Karp, order 5: cheaper than Adams down to errors of 1e-8 */
 };
 
 /* An integration in progress of one instance, whose history is kept here and not in the instance. */
