@@ -3,6 +3,8 @@
  * each other, whatever their order in the file. */
 #include "read.h"
 
+#include <string.h>
+
 enum {
     FILE_GICGEN,
     FILE_INCLUDE,
@@ -82,21 +84,17 @@ const Model *model_read(Pool *pool, const char *path)
     Reader reader = {.pool = pool, .model = model};
     const Item *file = file_mirrored(pool, file_included(pool, path));
     Value value[FILE_KEYS];
+    *model = (Model){.source = file->at.source, .gravity = {0, 0, -9.81}, .tuning = tuning_new(pool)};
+    /* any number may be a formula of these */
+    parameters_read(&reader, doc_find(file, file_key[FILE_PARAMETERS].name));
+    tables_read(&reader, doc_find(file, file_key[FILE_TABLES].name));
     section_read(&reader, &file_section, 0, &(Entry){"", "the model", file->at, file}, value);
-    *model = (Model){
-        .source = file->at.source,
-        .name = value[FILE_MODEL].text,
-        .description = value[FILE_DESCRIPTION].item ? value[FILE_DESCRIPTION].text : "",
-        .gravity = {0, 0, -9.81},
-        .tuning = tuning_new(pool),
-    };
+    model->name = value[FILE_MODEL].text;
+    model->description = value[FILE_DESCRIPTION].item ? value[FILE_DESCRIPTION].text : "";
     model_name_check(model->name, value[FILE_MODEL].item->at);
-    parameters_read(&reader, value[FILE_PARAMETERS].item);
-    tables_read(&reader, value[FILE_TABLES].item);
     if (value[FILE_GRAVITY].item) {
-        Ex tuned[3];
-        vector_read(&reader, value[FILE_GRAVITY].item, "gravity of the model", model->gravity, 3, tuned);
-        tuning_set(model->tuning, model->gravity, tuned, 3);
+        memcpy(model->gravity, value[FILE_GRAVITY].number, sizeof model->gravity);
+        tuning_set(model->tuning, model->gravity, value[FILE_GRAVITY].tuned, 3);
     }
     points_read(&reader, value[FILE_POINTS].item);
     bodies_read(&reader, value[FILE_BASE].item, value[FILE_BODIES].item);

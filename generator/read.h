@@ -24,7 +24,7 @@ typedef enum KeyKind {
     KEY_ODD,           /* the same as KEY_MEASURE; changes its sign in the mirror */
     KEY_FLAG,          /* flag */
     KEY_RANGE,         /* number[0] < number[1] */
-    KEY_VECTOR,        /* read by the section itself: three numbers */
+    KEY_VECTOR,        /* number[0..2] */
     KEY_AXIS,          /* number[0..2], unit length */
     KEY_TURN,          /* the same; an axis that something turns about, which the mirror reverses (axial) */
     KEY_DUAL_AXIS,     /* the same as KEY_TURN where the type is `angle`, else as KEY_AXIS */

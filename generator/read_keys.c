@@ -282,6 +282,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         if (!(value->number[0] < value->number[1]))
             diag_fail(item->at, "write [low, high]", "%s: the low end must be below the high end", what);
         break;
+    case KEY_VECTOR: vector_read(reader, item, what, value->number, 3, value->tuned); break;
     case KEY_AXIS:
     case KEY_TURN:
     case KEY_DUAL_AXIS: read_axis(reader, item, what, value->number, value->tuned); break;
@@ -329,7 +330,6 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         break;
     case KEY_TYPE:
     case KEY_ITEM:
-    case KEY_VECTOR:
     case KEY_FORMULA:
     case KEY_FORCE_VECTOR:
     case KEY_TORQUE_VECTOR:
