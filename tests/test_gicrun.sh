@@ -236,7 +236,7 @@ badstates() {
     check "bad states: $3 $4" grep -q "^$work/bad:$3: error: .*$4" "$work/err"
     check "bad states: no results for $4" [ ! -e "$work/never.csv" ]
 }
-badstates 'w,w.rat' '1,2' 1:3 "no state or input 'w.rat'"
+badstates 'w,w.rat' '1,2' 1:3 "no state, input or tunable parameter 'w.rat'"
 badstates 'w' '1' 1:1 'columns are missing'
 badstates 'w,w.rate' '1,2,3' 2:5 'more than'
 badstates 'w,w.rate' '1,1.5 mm' 2:3 'must be a number'
