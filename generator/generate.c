@@ -626,10 +626,9 @@ static void insert_header(void *context, const char *name, Text *out, int indent
         write_sizes(g, out, indent);
     else if (!strcmp(name, "derived")) {
         if (g->model->tuning)
-            line(out, indent, "gic_real derived[%s_DERIVED]; /* numbers that follow geometric parameters, those first */",
-                 g->upper);
-    }
-    else
+            line(out, indent,
+                 "gic_real derived[%s_DERIVED]; /* numbers that follow geometric parameters, those first */", g->upper);
+    } else
         write_places(g, out, indent);
 }
 
@@ -740,7 +739,8 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
         if (g->model->tuning)
             template_expand(g->pool, out, g->templates, "derive.c.in", g->model->name, NULL, insert_derive, g);
     } else if (!strcmp(name, "begin")) {
-        line(out, indent, "status = %s_%s;", g->model->name, g->model->tuning ? "assemble(self, turn)" : "recover(self, turn, 1)");
+        line(out, indent, "status = %s_%s;", g->model->name,
+             g->model->tuning ? "assemble(self, turn)" : "recover(self, turn, 1)");
     } else if (!strcmp(name, "identity")) {
         line(out, indent, "%s,", quoted(g->pool, g->model->name));
         line(out, indent, "%s,", quoted(g->pool, g->model->description));

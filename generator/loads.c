@@ -294,7 +294,8 @@ static void add_wheel(Whole *whole, Loads *loads, int index)
     Ex s = ex_op(dag, OP_MAX, ex_mul(dag, share, deflection), 0, 0);
     Ex viscous = ex_mul(dag, ex_mul(dag, whole_number(whole, &wheel->damping), fade_in(dag, s)), rate);
     /* without contact the deflection is negative and fades the damping to 0, so the limit at 0 says it all */
-    Ex fz = ex_op(dag, OP_MAX, ex_add(dag, ex_mul(dag, whole_number(whole, &wheel->stiffness), deflection), viscous), 0, 0);
+    Ex fz =
+        ex_op(dag, OP_MAX, ex_add(dag, ex_mul(dag, whole_number(whole, &wheel->stiffness), deflection), viscous), 0, 0);
     ex_scale3(dag, fz, whole->R + 6, F);
     push(whole, loads, wheel->body, &center, F);
     loads->power = ex_add(dag, loads->power, ex_mul(dag, fz, v[2]));

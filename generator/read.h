@@ -150,8 +150,8 @@ int section_type(Reader *reader, const Section *section, const Entry *entry);
 void section_read(Reader *reader, const Section *section, int form, const Entry *entry, Value *value);
 /* Does the text of a scalar mention a parameter? */
 bool mentions_parameter(const Reader *reader, const Item *item);
-/* A number, or a formula of parameters; a vector of such. tuned: what they follow, 0: no tunable parameter; NULL: tunable
- * parameters end in diag_fail. */
+/* A number, or a formula of parameters; a vector of such. tuned: what they follow, 0: no tunable parameter; NULL:
+ * tunable parameters end in diag_fail. */
 double number_read(Reader *reader, const Item *item, const char *what, Ex *tuned);
 void vector_read(Reader *reader, const Item *item, const char *what, double *out, int size, Ex *tuned);
 /* The prefix of all generated names must be an identifier that C and C++ leave free. */
@@ -187,12 +187,12 @@ void wheels_read(Reader *reader, const Item *map);
 void outputs_read(Reader *reader, const Item *map);
 
 /* The unit vector perpendicular to a unit axis that is as near as can be to the axis of the model frame to which it is
- * least parallel (e_1 of FORMAT.md section 5), fixed in both bodies; all in the model frame but `out`, its places in the
- * Model. */
+ * least parallel (e_1 of FORMAT.md section 5), fixed in both bodies; all in the model frame but `out`, its places in
+ * the Model. */
 void perpendicular_set(const Reader *reader, const double axis[3], const Ex tuned[3], const int body[2],
                        double out[2][3]);
-/* x_b - x_a of two points of the model frame and its norm; both ends in one place end in diag_fail. *tuned: what the norm
- * follows, 0: no parameter. */
+/* x_b - x_a of two points of the model frame and its norm; both ends in one place end in diag_fail. *tuned: what the
+ * norm follows, 0: no parameter. */
 double points_distance(const Reader *reader, const Value *points, const char *what, double d[3], Ex *tuned);
 
 /* ---- read_tuned.c: the same steps as formulas, for numbers that follow tunable parameters ---- */
@@ -206,7 +206,8 @@ void tuned_reduce(const Reader *reader, Ex *formula, int count);
 void axis_tune(const Reader *reader, const double u[3], Ex tuned[3], const char *what);
 /* The perpendicular to a unit axis of FORMAT.md section 5, e_1. */
 void perpendicular_tune(const Reader *reader, const double axis[3], const Ex tuned[3], Ex out[3]);
-/* What is perpendicular to the axis of a joint: as near as can be to `side`, which is so in the file, lest pivots go. */
+/* What is perpendicular to the axis of a joint: as near as can be to `side`, which is so in the file, lest pivots go.
+ */
 void side_tune(const Reader *reader, const double axis[3], const Ex tuned[3], const double side[3], const char *what,
                Ex out[3]);
 /* The second of two unit axes becomes its part perpendicular to the first; tolerance: largest cosine between them. */

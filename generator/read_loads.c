@@ -402,7 +402,7 @@ void wheels_read(Reader *reader, const Item *map)
         if (!model->free_base && wheel->body == BODY_BASE)
             diag_fail(value[TIRE_BODY].item->at, "name the body that carries it", "%s: ground can't roll on the road",
                       entry[i].what);
-        body_point(reader, wheel->body, value[TIRE_CENTER].number, value[TIRE_CENTER].tuned, value[TIRE_CENTER].item->at,
-                   wheel->center);
+        body_point(reader, wheel->body, value[TIRE_CENTER].number, value[TIRE_CENTER].tuned,
+                   value[TIRE_CENTER].item->at, wheel->center);
     }
 }

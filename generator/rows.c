@@ -101,8 +101,7 @@ static void tuned_points(const Model *model, const int body[2], const double poi
             formula[NUMBER_POINT + 3 * end + i] = tuned_difference(model, &point[end][i], &origin[body[end]][i]);
 }
 
-void fixture_tuned_joint(const Model *model, const Joint *joint, const double (*origin)[3],
-                         Ex formula[FIXTURE_NUMBERS])
+void fixture_tuned_joint(const Model *model, const Joint *joint, const double (*origin)[3], Ex formula[FIXTURE_NUMBERS])
 {
     memset(formula, 0, FIXTURE_NUMBERS * sizeof formula[0]);
     if (!model->tuning)

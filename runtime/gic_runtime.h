@@ -137,7 +137,8 @@ typedef struct gic_model {
     const int32_t *coordinate_state; /* index of w in state[] (its rate: slow_count / 2 further on), -1: driven */
     const int32_t *coordinate_input; /* driven: index of value in input[], rate and acceleration follow; else -1 */
     const char *const *subset_name, *const *body_name;
-    const int32_t *parameter_geometric; /* 1: acts at set-up only, points, axes, masses and so on depend on it; 0: at once */
+    const int32_t
+        *parameter_geometric; /* 1: acts at set-up only, points, axes, masses and so on depend on it; 0: at once */
     int32_t condition_count;
     const char *const *condition_text; /* what geometric parameters must not violate */
     /* the functions; `self` is the instance, `parameter` has parameter_count numbers */
