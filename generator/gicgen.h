@@ -744,7 +744,8 @@ enum { INERTIA_FIRST = 0, INERTIA_SECOND = 3, INERTIA_FORCE = 9, INERTIA_MOMENT 
 
 int inertia_mass(int deps, int j, int k); /* place of M_jk, j <= k */
 
-/* The formulas of a class. C names: k constants of the member, d those of them that tunable parameters change, m0, m1, ... motions of the knowns, x, rate, change:
+/* The formulas of a class. C names: k constants of the member, d those of them that tunable parameters change, m0, m1,
+ * ... motions of the knowns, x, rate, change:
  * value, rate and change since the start of the deps, turn: angular velocity of the base, q: pose, s and f: S and
  * factors of the start. */
 typedef struct Formula {
@@ -827,7 +828,8 @@ Whole *whole_new(Pool *pool, const Plan *plan);
 /* A number of the model, a difference of two. */
 Ex whole_number(Whole *whole, const double *at);
 Ex whole_difference(Whole *whole, const double *a, const double *b);
-/* A point of a body (or of ground) relative to the base, in the base frame; s in the body frame: numbers of the model. */
+/* A point of a body (or of ground) relative to the base, in the base frame; s in the body frame: numbers of the model.
+ */
 Vector whole_point(Whole *whole, int body, const double s[3]);
 /* Fixtures; origin: reference points. */
 Fixture whole_joint_fixture(Whole *whole, const Joint *joint, const double (*origin)[3]);
@@ -903,7 +905,7 @@ void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex al
                         Ex out[3]);
 void whole_angular_acceleration(Whole *whole, int body, const Ex alpha[3], const Ex *w2, Ex out[3]);
 
-/* ---- derive.c: what follows geometric parameters, at set-up; models with a tuning only ----------------------------- */
+/* ---- derive.c: what follows geometric parameters, at set-up; models with a tuning only ------------------------- */
 
 /* Steps from the drawing to given lengths at set-up, as many as assemble.c takes. */
 enum { ASSEMBLY_PIECES = 64 };
