@@ -64,8 +64,6 @@ double bench_clock(clockid_t clock);
 int bench_samples(const Scene *scene);
 /* Scene with another integrator. */
 Scene bench_scene(const Scene *scene, Setting setting);
-/* Bring an instance to a scene's beginning. Returns a status. */
-int bench_start(const Engine *engine, const Scene *scene, gic_head *self);
 /* Run trials side by side, one for each engine: once for the error, then `repetitions` times for time. */
 void trials_run(const Bench *bench, const Scene *scene, Setting setting, const Trajectory *reference, Trial *trial);
 /* The trajectory that all are compared with, and the distance to a second one made in another way. */

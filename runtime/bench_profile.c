@@ -46,7 +46,7 @@ static double median_step(const Engine *engine, gic_head *self, const Scene *sce
     double *step = pool_alloc(pool, sizeof *step * (size_t)steps);
     double *part = pool_alloc(pool, sizeof *part * (size_t)(ROWS * steps));
     double before[ROWS], after[ROWS];
-    *failed = bench_start(engine, scene, self) != GIC_OK;
+    *failed = scene_start(engine, scene, self) != GIC_OK;
     for (int i = 0; i < steps && !*failed; ++i) {
         if (rows)
             read_rows(engine->profile, before);
@@ -98,7 +98,7 @@ static void profile_outside(const Engine *engine, gic_head *self, const Scene *s
     double *rate = pool_alloc(pool, sizeof *rate * (size_t)(code->slow_count + code->fast_count));
     const double look = clock_cost(pool);
     out->fused = true;
-    out->failed = bench_start(engine, scene, self) != GIC_OK;
+    out->failed = scene_start(engine, scene, self) != GIC_OK;
     for (int i = 0; i < steps && !out->failed; ++i) {
         out->failed = scene_step(code, scene, NULL, self, 0) != GIC_OK;
         memcpy(copy, self, code->size);

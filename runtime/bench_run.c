@@ -52,11 +52,6 @@ void bench_progress(const char *format, ...)
     va_end(arguments);
 }
 
-int bench_start(const Engine *engine, const Scene *scene, gic_head *self)
-{
-    return scene_start(engine->code, scene, self);
-}
-
 /* ---- statistics ------------------------------------------------------------------------------------------- */
 
 static int ascending(const void *a, const void *b)
@@ -159,7 +154,7 @@ static double run(const Engine *engine, gic_head *self, const Scene *scene, Tria
     const int samples = bench_samples(scene);
     Pool *pool = pool_new();
     trial->steps = 0;
-    trial->status = bench_start(engine, &changed, self);
+    trial->status = scene_start(engine, &changed, self);
     Variable *variable =
         setting_constant(trial->setting) ? NULL : variable_open(code, changed.method, changed.tolerance);
     if (trajectory && trial->status == GIC_OK)

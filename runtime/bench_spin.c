@@ -23,7 +23,7 @@ static void spin_run(Pool *pool, const Engine *engine, gic_head *self, const Sce
     const int64_t steps = (int64_t)(scene->duration / scene->step * (1 + 1e-12));
     if (profile)
         memset(profile, 0, sizeof *profile);
-    spin->status = bench_start(engine, scene, self);
+    spin->status = scene_start(engine, scene, self);
     spin->changes = spin->changing = spin->steps = 0;
     for (int64_t i = 0; i < steps && spin->status == GIC_OK; ++i, ++spin->steps) {
         const int64_t changes = profile ? profile->repartitions : 0;

@@ -12,7 +12,7 @@ enum { START = 2 };
 /* Elapsed seconds of each step after the first ones, [steps]. Returns how many there are. */
 static int time_steps(const Engine *engine, gic_head *self, const Scene *scene, double *seconds, int steps)
 {
-    if (bench_start(engine, scene, self) != GIC_OK)
+    if (scene_start(engine, scene, self) != GIC_OK)
         return 0;
     for (int i = 0; i < START + steps; ++i) {
         const double before = bench_clock(CLOCK_MONOTONIC);

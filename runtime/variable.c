@@ -19,7 +19,9 @@ struct Variable {
     int status;        /* of the right-hand side that failed last in this step */
     double first_step; /* s, after a restart, when nothing is known yet */
     double step;       /* s, that the error control suggests */
-    bool fresh;        /* the history is empty: go on from the instance's state */
+    bool jumped;       /* the last step ended with a change of what is integrated */
+    double tolerance;
+    bool fresh; /* the history is empty: go on from the instance's state */
     gsl_odeiv2_system system;
     gsl_odeiv2_driver *driver;
     double *integrated, *settled; /* states */
@@ -75,6 +77,7 @@ Variable *variable_open(const gic_model *model, int32_t method, double tolerance
     gsl_set_error_handler_off();
     variable->model = model;
     /* the first step is of first order: its error is half its square times the second derivative, about 1e3 here */
+    variable->tolerance = tolerance;
     variable->first_step = 0.03 * sqrt(tolerance);
     variable->system = (gsl_odeiv2_system){right_hand_side, NULL, states(model), variable};
     variable->integrated = calloc(states(model), sizeof(double));
@@ -112,6 +115,17 @@ int64_t variable_steps(const Variable *variable)
 }
 
 /* One step of the stepper from the instance's time to *time. */
+/* Numbers that the right-hand side does not use drift from those that they depend on. Where they come into use by more
+ * than the tolerance, the history is not theirs. */
+static bool jumps(const Variable *variable)
+{
+    for (size_t i = 0; i < states(variable->model); ++i)
+        if (!(fabs(variable->settled[i] - variable->integrated[i]) <=
+              variable->tolerance * (1 + fabs(variable->settled[i]))))
+            return true;
+    return false;
+}
+
 static int advance(Variable *variable, double *time, double end)
 {
     gsl_odeiv2_driver *driver = variable->driver;
@@ -123,7 +137,10 @@ static int advance(Variable *variable, double *time, double end)
     const size_t size = sizeof(double) * states(variable->model);
     memcpy(variable->settled, variable->integrated, size);
     variable->self->subset = -1;
-    return variable->model->settle(variable->self, variable->settled);
+    const int64_t switches = variable->self->switch_count;
+    const int status = variable->model->settle(variable->self, variable->settled);
+    variable->jumped = variable->self->switch_count != switches && jumps(variable);
+    return status;
 }
 
 int variable_step(Variable *variable, void *instance, double end)
@@ -141,7 +158,7 @@ int variable_step(Variable *variable, void *instance, double end)
     memcpy(variable->before, self, model->size);
     const int status = advance(variable, &time, end);
     self->status = status;
-    variable->fresh = status != GIC_OK;
+    variable->fresh = status != GIC_OK || variable->jumped;
     if (status == GIC_OK) {
         memcpy(state, variable->settled, size);
         gic_restart(self, time);
