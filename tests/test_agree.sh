@@ -21,7 +21,7 @@ cat >"$dump" <<'END'
    "reference_a": [0, 1, 0], "reference_b": [1, 0, 0], "design": 0, "offset": null, "range": [-1, 2], "driven": false}],
  "forces": [
   {"name": "spring", "type": "coordinate", "coordinate": 0, "a": null, "b": null, "point_a": null, "point_b": null,
-   "stiffness": 300, "damping": 5, "free": 0, "law": []}],
+   "stiffness": 300, "damping": 5, "free": 0, "low": null, "high": null, "fade": null, "table": null, "law": []}],
  "wheels": [{"name": "tire", "body": 0, "center": [0, 0, 0], "radius": 0.5, "stiffness": 5000, "damping": 50, "fade": 0.01}],
  "inputs": [], "tables": [], "outputs": [],
  "sequence": [{"stage": 1, "class": null, "bodies": [0], "joints": [], "coordinates": []},
