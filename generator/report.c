@@ -321,12 +321,54 @@ static bool force_uses(const Force *force, int parameter)
     return uses;
 }
 
-/* What takes numbers from a tunable parameter. */
+/* What a number of the model belongs to: its kind and name, or NULL. */
+static const char *owner_of(const Report *r, const double *at)
+{
+    const Model *m = r->model;
+    const struct {
+        const char *kind;
+        const void *first;
+        int count;
+        size_t size; /* each begins with its name */
+    } group[] = {{"body", m->body, m->bodies, sizeof *m->body},
+                 {"body", m->drawn, m->drawn ? m->bodies : 0, sizeof *m->drawn},
+                 {"joint", m->joint, m->joints, sizeof *m->joint},
+                 {"coordinate", m->coordinate, m->coordinates, sizeof *m->coordinate},
+                 {"force", m->force, m->forces, sizeof *m->force},
+                 {"wheel", m->wheel, m->wheels, sizeof *m->wheel},
+                 {"port", m->port, m->ports, sizeof *m->port},
+                 {"output", m->output, m->outputs, sizeof *m->output}};
+    const char *number = (const char *)at;
+    for (size_t i = 0; i < sizeof group / sizeof *group; ++i)
+        for (int k = 0; k < group[i].count; ++k) {
+            const char *thing = (const char *)group[i].first + (size_t)k * group[i].size;
+            if (number >= thing && number < thing + group[i].size)
+                return pool_print(r->pool, "%s %s", group[i].kind, *(const char *const *)(const void *)thing);
+        }
+    return at >= m->gravity && at < m->gravity + 3 ? "gravity" : NULL;
+}
+
+/* What takes numbers from a tunable parameter, each once. */
 static void users_list(const Report *r, int parameter, Text *users)
 {
-    for (int k = 0; k < r->model->forces; ++k)
-        if (force_uses(&r->model->force[k], parameter))
-            listed(users, "force %s", r->model->force[k].name);
+    const Model *m = r->model;
+    for (int k = 0; k < m->forces; ++k)
+        if (force_uses(&m->force[k], parameter))
+            listed(users, "force %s", m->force[k].name);
+    const char *input = pool_print(r->pool, "p[%d]", m->parameter[parameter].index), **seen = NULL;
+    int owners = 0;
+    for (int i = 0; m->tuning && i < m->tuning->numbers; ++i) {
+        const Dag *dag = m->tuning->dag;
+        const bool *needed = dag_needed(dag, &m->tuning->number[i].formula, 1);
+        const char *owner = owner_of(r, m->tuning->number[i].at);
+        bool uses = false;
+        for (int e = 0; e < dag->nodes; ++e)
+            uses = uses || (needed[e] && dag->node[e].op == OP_INPUT && !strcmp(dag->node[e].name, input));
+        for (int k = 0; k < owners && owner; ++k)
+            uses = uses && strcmp(seen[k], owner);
+        if (uses && owner)
+            listed(users, "%s", *POOL_PUSH(r->pool, seen, owners) = owner);
+    }
 }
 
 /* A section of signals, or that the model has none. */
