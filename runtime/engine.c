@@ -64,15 +64,20 @@ int engine_look(const Engine *engine, gic_head *self, double *standard, double *
 {
     const gic_model *code = engine->code;
     const double *state = instance_array(self, code->state_offset);
-    double own[code->slow_count + 1];
-    const int status = code->rhs(self, gic_time(self), state, own);
-    if (status == GIC_OK && engine->leave) {
-        engine->leave(self, standard, rate);
-    } else if (status == GIC_OK) {
-        memcpy(standard, state, sizeof *state * (size_t)engine->standard_count);
-        memcpy(rate, own, sizeof *own * (size_t)engine->standard_count);
+    double own[code->slow_count + 1], other[engine->standard_count + 1];
+    int status = GIC_OK;
+    if (rate || engine->leave)
+        status = code->rhs(self, gic_time(self), state, own);
+    if (status != GIC_OK)
+        return status;
+    if (engine->leave) {
+        engine->leave(self, standard, rate ? rate : other);
+        return GIC_OK;
     }
-    return status;
+    memcpy(standard, state, sizeof *state * (size_t)engine->standard_count);
+    if (rate)
+        memcpy(rate, own, sizeof *own * (size_t)engine->standard_count);
+    return GIC_OK;
 }
 
 void engine_close(const Engine *engine)

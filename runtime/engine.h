@@ -12,8 +12,8 @@
  * engine looks at the clock only while `on`; whoever sets it clears the rest. Generated code fills nothing. */
 typedef struct EngineProfile {
     bool on;
-    double look;   /* s, what a look at the clock costs: taken off all that follows */
-    int64_t looks; /* at the clock */
+    double look;                   /* s, what a look at the clock costs: taken off all that follows */
+    int64_t looks;                 /* at the clock */
     double acceleration;           /* (A) all of the acceleration analysis */
     double acceleration_functions; /* (B) forces, masses, right-hand sides */
     double acceleration_solver;    /* (C) linear solver */
@@ -34,8 +34,8 @@ typedef struct Engine {
     /* The state of FORMAT.md section 10, in which people and scenes speak; most engines integrate just that. */
     const gic_signal *standard;
     int standard_count;
-    /* From it to the engine's own state, and back, with rates, after a right-hand side at the instance's state. NULL: it
-     * is the state. */
+    /* From it to the engine's own state, and back, with rates, after a right-hand side at the instance's state. NULL:
+     * it is the state. */
     int (*enter)(gic_head *self, const double *standard);
     void (*leave)(const gic_head *self, double *standard, double *rate);
     void (*close)(const struct Engine *engine); /* NULL: it has nothing but memory of the pool */
@@ -54,7 +54,8 @@ typedef struct EngineOptions {
 /* Open an engine, one of engine_name, for a model. Every failure ends in diag_fail. */
 const Engine *engine_open(Pool *pool, const char *name, const Model *model, const EngineOptions *options);
 
-/* Every instance of an interpreted engine begins so, with the descriptor's arrays and then the engine's own behind it. */
+/* Every instance of an interpreted engine begins so, with the descriptor's arrays and then the engine's own behind it.
+ */
 typedef struct Instance {
     gic_head head;
     const void *context;
@@ -65,12 +66,14 @@ typedef struct Instance {
 gic_model descriptor_new(Pool *pool, const Model *model, const Sequence *sequence);
 size_t descriptor_place(gic_model *code, size_t count);
 
-/* Memory for one instance, not set up. It may be copied byte by byte. Instances of one interpreted engine share scratch:
- * one call at a time. */
+/* Memory for one instance, not set up. It may be copied byte by byte. Instances of one interpreted engine share
+ * scratch: one call at a time. */
 gic_head *instance_new(Pool *pool, const Engine *engine);
-/* Put a set-up instance into a state of FORMAT.md section 10; its inputs, ports and road are there. Returns a status. */
+/* Put a set-up instance into a state of FORMAT.md section 10; its inputs, ports and road are there. Returns a status.
+ */
 int engine_enter(const Engine *engine, gic_head *self, const double *standard);
-/* Evaluate the right-hand side at the present state; state and rate as in FORMAT.md section 10. Returns a status. */
+/* The present state as in FORMAT.md section 10, and its rate, by one right-hand side; rate may be NULL. Returns a
+ * status. */
 int engine_look(const Engine *engine, gic_head *self, double *standard, double *rate);
 /* Give back what doesn't come from the pool. */
 void engine_close(const Engine *engine);

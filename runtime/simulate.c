@@ -45,8 +45,8 @@ static double seconds(clockid_t clock_id)
 static int set_state(const Engine *engine, const Scene *scene, gic_head *self)
 {
     const gic_model *model = engine->code;
-    double state[engine->standard_count + 1], rate[engine->standard_count + 1];
-    const int status = engine_look(engine, self, state, rate);
+    double state[engine->standard_count + 1];
+    const int status = engine_look(engine, self, state, NULL);
     if (status != GIC_OK)
         return status;
     const int half = engine->standard_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
