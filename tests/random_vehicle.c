@@ -293,30 +293,21 @@ static void add_wheel(Vehicle *v, const Place *place, int carrier)
     }
     Entry *wheel = add(v, WHEEL, "wheel");
     SAY(wheel, "body: %s", body_name(v, carrier));
-    say_vector(wheel, ", center: ", center);
-    SAY(wheel, ", radius: %.3g", uniform(v, 0.3, 0.36));
-    SAY(wheel, ", stiffness: %.4g", uniform(v, 1e5, 3e5));
-    SAY(wheel, ", damping: %.3g", uniform(v, 0, 800));
+    say_vector(v, wheel, ", center: ", center);
+    say_number(v, wheel, ", radius: ", uniform(v, 0.3, 0.36));
+    say_number(v, wheel, ", stiffness: ", uniform(v, 1e5, 3e5));
+    say_number(v, wheel, ", damping: ", uniform(v, 0, 800));
 }
 
 static void add_corner(Vehicle *v, const Place *place)
 {
     int kind = pick(v, v->mistake == TIE_ROD_ON_KINGPIN ? 2 : v->mistake == SPRING_THROUGH_HINGE ? 4 : 5), carrier;
     switch (kind) {
-    case 0:
-        carrier = wishbones(v, place);
-        break;
-    case 1:
-        carrier = strut(v, place);
-        break;
-    case 2:
-        carrier = trailing_arm(v, place);
-        break;
-    case 3:
-        carrier = swing_axle(v, place);
-        break;
-    default:
-        carrier = five_links(v, place);
+    case 0: carrier = wishbones(v, place); break;
+    case 1: carrier = strut(v, place); break;
+    case 2: carrier = trailing_arm(v, place); break;
+    case 3: carrier = swing_axle(v, place); break;
+    default: carrier = five_links(v, place);
     }
     if (chance(v, 0.2))
         add_shaft(v, place, carrier);
@@ -349,8 +340,8 @@ static void solid_axle(Vehicle *v, int carrier, double x)
 /* A planar linkage somewhere on a carrier, closed by a point on a line. */
 static void four_bar(Vehicle *v, int carrier)
 {
-    Vec u = direction(v, 0, 1, 0), p[4] = {point(v, 0, 0.2, 1), point(v, 0.02, 0.2, 1.2), point(v, 0.4, 0.2, 1.3),
-                                           point(v, 0.45, 0.2, 1)};
+    Vec u = direction(v, 0, 1, 0),
+        p[4] = {point(v, 0, 0.2, 1), point(v, 0.02, 0.2, 1.2), point(v, 0.4, 0.2, 1.3), point(v, 0.45, 0.2, 1)};
     int crank = add_body(v, "crank", combine(0.5, p[0], 0.5, p[1]), 2, 0.1),
         coupler = add_body(v, "coupler", combine(0.5, p[1], 0.5, p[2]), 3, 0.15),
         rocker = add_body(v, "rocker", combine(0.5, p[2], 0.5, p[3]), 3, 0.1);
@@ -381,20 +372,29 @@ static void add_axle(Vehicle *v, double x)
 
 /* ---- the whole vehicle ---- */
 
-static void point_spring(Vehicle *v)
+/* Between any two bodies. */
+static void add_element(Vehicle *v)
 {
     int count = v->section[BODY].count, b = BASE + 1 + pick(v, count - 1), a = pick(v, b + 1) - 1;
-    Entry *force = add(v, FORCE, "tie");
-    say_connection(v, force, "spring_damper", a, b,
-                   &(Geometry){.points = {&(Vec){{0.1, 0.2, 0.3}}, &(Vec){{0.8, uniform(v, -1, 1), 0.9}}}});
-    SAY(force, ", stiffness: %.4g", uniform(v, 0, 5000));
-    SAY(force, ", damping: %.4g", uniform(v, 0, 500));
+    Vec end = {{0.8, uniform(v, -1, 1), 0.9}};
+    element(v, a, b, &(Geometry){.points = {&(Vec){{0.1, 0.2, 0.3}}, &end}}, 5000);
+}
+
+/* A force and a torque on a body, in the frame of another or of the world. */
+static void add_load(Vehicle *v)
+{
+    int body = BASE + 1 + pick(v, v->section[BODY].count - 1), in = pick(v, body + 1);
+    Entry *force = add(v, FORCE, "load");
+    SAY(force, "type: load, body: %s, in: %s", body_name(v, body), in == BASE ? "world" : body_name(v, in));
+    say_vector(v, force, ", point: ", point(v, 0, 0, 0.5));
+    say_vector(v, force, ", force: ", near_to(v, 0, 0, 0, 200));
+    say_vector(v, force, ", torque: ", near_to(v, 0, 0, 0, 50));
 }
 
 static void add_outputs(Vehicle *v)
 {
-    static const char *const type[] = {"position", "velocity", "acceleration", "orientation", "roll_pitch_yaw",
-                                       "angular_velocity"};
+    static const char *const type[] = {"position",    "velocity",       "acceleration",
+                                       "orientation", "roll_pitch_yaw", "angular_velocity"};
     for (int i = 0; i < 4; ++i) {
         int body = (v->fixed ? 1 : 0) + pick(v, v->section[BODY].count - (v->fixed ? 1 : 0));
         SAY(add(v, OUTPUT, "out"), "type: %s, body: %s", type[pick(v, 6)], body_name(v, body));
@@ -409,6 +409,7 @@ static void build(Vehicle *v)
 {
     static const double x[] = {1.4, -1.4, -2.4};
     v->fixed = chance(v, 0.15);
+    v->tuned = chance(v, 0.3);
     Vec com = point(v, 0, 0, 0.6);
     int base = add_body(v, "chassis", com, 1500, 0.9), axles = 1 + pick(v, 2) + chance(v, 0.2);
     if (v->fixed) {
@@ -421,7 +422,9 @@ static void build(Vehicle *v)
     if (chance(v, 0.2))
         four_bar(v, BASE);
     for (int i = pick(v, 3); i > 0; --i)
-        point_spring(v);
+        add_element(v);
+    if (chance(v, 0.3))
+        add_load(v);
 }
 
 static void drop(Vehicle *v, Kind kind)
@@ -443,23 +446,14 @@ static void make_mistake(Vehicle *v, Mistake mistake)
     Vec p = near_to(v, 0, 0, 0.5, 1), q = near_to(v, 0, 0, 1.5, 1);
     Entry *extra = NULL;
     switch (mistake) {
-    case JOINT_MISSING:
-        drop(v, JOINT);
-        break;
-    case COORDINATE_MISSING:
-        drop(v, COORDINATE);
-        break;
-    case JOINT_TOO_MANY:
-        extra = rod(v, BASE, body, p, q);
-        break;
+    case JOINT_MISSING: drop(v, JOINT); break;
+    case COORDINATE_MISSING: drop(v, COORDINATE); break;
+    case JOINT_TOO_MANY: extra = rod(v, BASE, body, p, q); break;
     case COORDINATE_TOO_MANY:
         extra = coordinate(v, "extra", "length", BASE, body, &(Geometry){.points = {&p, &q}}, 0.05, 1000, false);
         break;
-    case BODY_LOOSE:
-        culprit(v, body_name(v, add_body(v, "loose", p, 5, 0.2)));
-        break;
-    default:
-        break;
+    case BODY_LOOSE: culprit(v, body_name(v, add_body(v, "loose", p, 5, 0.2))); break;
+    default: break;
     }
     if (extra) {
         culprit(v, extra->name);
@@ -488,7 +482,8 @@ static void print_section(Vehicle *v, Kind kind, const char *title)
 
 int main(int argc, char **argv)
 {
-    static const char *const title[KINDS] = {"bodies", "joints", "coordinates", "forces", "wheels", "outputs"};
+    static const char *const title[KINDS] = {"parameters",  "tables", "bodies", "joints",
+                                             "coordinates", "forces", "wheels", "outputs"};
     double seed = -1;
     bool broken = false;
     for (int i = 1; i < argc; ++i) {
@@ -513,7 +508,7 @@ int main(int argc, char **argv)
     make_mistake(v, mistake);
     add_outputs(v);
     printf("gicgen: 1\nmodel: random_%.0f\nbase: %s\n", seed, body_name(v, BASE));
-    for (Kind kind = BODY; kind < KINDS; ++kind)
+    for (Kind kind = PARAMETER; kind < KINDS; ++kind)
         print_section(v, kind, title[kind]);
     if (broken)
         fprintf(stderr, "%s\n", v->culprits);

@@ -114,11 +114,6 @@ void append(char *text, size_t size, const char *format, ...)
         fail("an entry is too long: %s", text);
 }
 
-void say_vector(Entry *entry, const char *lead, Vec u)
-{
-    SAY(entry, "%s[%.9g, %.9g, %.9g]", lead, u.x[0], u.x[1], u.x[2]);
-}
-
 Entry *add(Vehicle *v, Kind kind, const char *prefix)
 {
     Section *section = &v->section[kind];
@@ -128,6 +123,30 @@ Entry *add(Vehicle *v, Kind kind, const char *prefix)
     snprintf(entry->name, sizeof entry->name, "%s_%d", prefix, ++v->names);
     entry->end[0] = entry->end[1] = entry->coordinate = NOTHING;
     return entry;
+}
+
+void say_number(Vehicle *v, Entry *entry, const char *lead, double value)
+{
+    if (!v->tuned || !chance(v, 0.04)) {
+        SAY(entry, "%s%.9g", lead, value);
+        return;
+    }
+    Entry *parameter = add(v, PARAMETER, "number");
+    SAY(parameter, "value: %.9g, tunable: true", value);
+    SAY(entry, "%s%s", lead, parameter->name);
+}
+
+void say_vector(Vehicle *v, Entry *entry, const char *lead, Vec u)
+{
+    SAY(entry, "%s", lead);
+    for (int i = 0; i < 3; ++i)
+        say_number(v, entry, i ? ", " : "[", u.x[i]);
+    SAY(entry, "]");
+}
+
+void say_fixed_vector(Entry *entry, const char *lead, Vec u)
+{
+    SAY(entry, "%s[%.9g, %.9g, %.9g]", lead, u.x[0], u.x[1], u.x[2]);
 }
 
 const char *body_name(const Vehicle *v, int body)
@@ -175,16 +194,14 @@ static void say_orientation(Vehicle *v, Entry *body)
     double p[4], A[3][3];
     any_rotation(v, p, A);
     switch (pick(v, 4)) {
-    case 0:
-        SAY(body, ", orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}", p[0], p[1], p[2], p[3]);
-        break;
+    case 0: SAY(body, ", orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}", p[0], p[1], p[2], p[3]); break;
     case 1:
         SAY(body, ", orientation: {axis: [%.6g, %.6g, %.6g], angle: %.6g}", p[1], p[2], p[3], uniform(v, -3, 3));
         break;
     case 2: {
         Vec x = near_to(v, 0.5, 0.5, 0.5, 0.45);
-        say_vector(body, ", orientation: {x: ", x);
-        say_vector(body, ", z: ", across(v, x));
+        say_fixed_vector(body, ", orientation: {x: ", x);
+        say_fixed_vector(body, ", z: ", across(v, x));
         SAY(body, "}");
         break;
     }
@@ -205,12 +222,12 @@ int add_body(Vehicle *v, const char *prefix, Vec com, double mass, double size)
             for (int j = 0; j < 3; ++j)
                 J[i][j] += principal * A[i][k] * A[j][k];
     }
-    SAY(body, "mass: %.4g", mass);
-    say_vector(body, ", com: ", com);
+    say_number(v, body, "mass: ", mass);
+    say_vector(v, body, ", com: ", com);
     SAY(body, ", inertia: {xx: %.9g, yy: %.9g, zz: %.9g, xy: %.9g, xz: %.9g, yz: %.9g}", J[0][0], J[1][1], J[2][2],
         J[0][1], J[0][2], J[1][2]);
     if (chance(v, 0.7))
-        say_vector(body, ", position: ", near_to(v, com.x[0], com.x[1], com.x[2], 0.2));
+        say_vector(v, body, ", position: ", near_to(v, com.x[0], com.x[1], com.x[2], 0.2));
     say_orientation(v, body);
     return v->section[BODY].count - 1;
 }
@@ -224,17 +241,17 @@ void say_connection(Vehicle *v, Entry *entry, const char *type, int a, int b, co
     entry->end[1] = b;
     SAY(entry, "type: %s, bodies: [%s, %s]", type, body_name(v, swap ? b : a), body_name(v, swap ? a : b));
     if (with->point)
-        say_vector(entry, ", point: ", *with->point);
+        say_vector(v, entry, ", point: ", *with->point);
     if (with->points[0]) {
-        say_vector(entry, ", points: [", *with->points[swap]);
-        say_vector(entry, ", ", *with->points[!swap]);
+        say_vector(v, entry, ", points: [", *with->points[swap]);
+        say_vector(v, entry, ", ", *with->points[!swap]);
         SAY(entry, "]");
     }
     if (with->axis)
-        say_vector(entry, ", axis: ", *with->axis);
+        say_vector(v, entry, ", axis: ", *with->axis);
     if (with->axes[0]) {
-        say_vector(entry, ", axes: [", *with->axes[swap]);
-        say_vector(entry, ", ", *with->axes[!swap]);
+        say_vector(v, entry, ", axes: [", *with->axes[swap]);
+        say_vector(v, entry, ", ", *with->axes[!swap]);
         SAY(entry, "]");
     }
 }
@@ -249,6 +266,10 @@ Entry *join(Vehicle *v, const char *prefix, const char *type, int a, int b, cons
 Entry *hinge(Vehicle *v, int a, int b, Vec p, Vec u)
 {
     Entry *first;
+    if (chance(v, 0.15)) {
+        Vec near = combine(1, u, 0.05 * norm(u), near_to(v, 0, 0, 0, 1));
+        element(v, a, b, &(Geometry){.axis = &near}, 500);
+    }
     switch (chance(v, 0.7) ? 0 : 1 + pick(v, 2)) {
     case 1:
         first = join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
@@ -258,8 +279,7 @@ Entry *hinge(Vehicle *v, int a, int b, Vec p, Vec u)
         first = join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
         join(v, "same", "parallel", a, b, &(Geometry){.axis = &u});
         return first;
-    default:
-        return join(v, "hinge", "revolute", a, b, &(Geometry){.point = &p, .axis = &u});
+    default: return join(v, "hinge", "revolute", a, b, &(Geometry){.point = &p, .axis = &u});
     }
 }
 
@@ -293,11 +313,75 @@ Entry *rod(Vehicle *v, int a, int b, Vec p_a, Vec p_b)
 {
     Entry *joint = join(v, "rod", "distance", a, b, &(Geometry){.points = {&p_a, &p_b}});
     if (chance(v, 0.1))
-        SAY(joint, ", length: %.6g", norm(combine(1, p_a, -1, p_b)) * uniform(v, 0.985, 1.015));
+        say_number(v, joint, ", length: ", norm(combine(1, p_a, -1, p_b)) * uniform(v, 0.985, 1.015));
     return joint;
 }
 
 /* ---- coordinates ---- */
+
+/* A table of forces over `width` on either side of 0, where it is 0. */
+static const char *add_table(Vehicle *v, double width, double force)
+{
+    Entry *table = add(v, TABLE, "curve");
+    SAY(table, "x: [%.6g, %.6g, 0, %.6g, %.6g]", -width, -0.4 * width, 0.3 * width, width);
+    SAY(table, ", y: [%.6g, %.6g, 0, %.6g, %.6g]", -force, -0.6 * force, 0.1 * force, force);
+    SAY(table, ", interpolation: %s", chance(v, 0.5) ? "cubic" : "linear");
+    SAY(table, ", beyond: %s", chance(v, 0.5) ? "constant" : "linear");
+    return table->name;
+}
+
+/* Laws of all kinds behind where an element acts: `x` and `rate` are what formulas call its value, which is `design` in
+ * the drawing and moves by `reach`. */
+static void say_law(Vehicle *v, Entry *force, const char *place, const char *x, const char *rate, double design,
+                    double reach, double stiffness)
+{
+    double strength = stiffness * reach;
+    switch (pick(v, 5)) {
+    case 0:
+        SAY(force, "type: force, %s, value: \"%.4g * (%s - %.6g)", place, -0.1 * stiffness, x, design);
+        SAY(force, " - %.4g * tanh(10 * %s) + %s(%s)\"", 0.1 * strength, rate, add_table(v, 1, 0.1 * strength), rate);
+        break;
+    case 1:
+        SAY(force, "type: stop, %s", place);
+        say_number(v, force, ", low: ", design - reach * uniform(v, 0.1, 0.9));
+        if (chance(v, 0.6))
+            say_number(v, force, ", high: ", design + reach * uniform(v, 0.1, 0.9));
+        say_number(v, force, ", stiffness: ", stiffness * uniform(v, 0.5, 2));
+        say_number(v, force, ", damping: ", stiffness * uniform(v, 0, 0.05));
+        if (chance(v, 0.5))
+            say_number(v, force, ", fade: ", reach * uniform(v, 0.1, 0.5));
+        break;
+    case 2:
+        SAY(force, "type: stop, %s", place);
+        say_number(v, force, ", high: ", design + reach * uniform(v, -0.5, 0.5));
+        SAY(force, ", table: %s, fade: %.4g", add_table(v, reach, strength), 0.3 * reach);
+        break;
+    case 3:
+        SAY(force, "type: spring_damper, %s, table: %s", place, add_table(v, reach, strength));
+        say_number(v, force, ", free: ", design + reach * uniform(v, -1, 1));
+        break;
+    default:
+        SAY(force, "type: spring_damper, %s", place);
+        say_number(v, force, ", stiffness: ", stiffness * uniform(v, 0, 1));
+        say_number(v, force, ", damping: ", stiffness * uniform(v, 0, 0.1));
+    }
+}
+
+void element(Vehicle *v, int a, int b, const Geometry *with, double stiffness)
+{
+    Entry *force = add(v, FORCE, "element"), place = {"", "", {NOTHING, NOTHING}, NOTHING, false};
+    SAY(&place, "bodies: [%s, %s]", body_name(v, a), body_name(v, b));
+    if (with->axis) {
+        say_vector(v, &place, ", axis: ", *with->axis);
+        say_law(v, force, place.text, "angle", "speed", 0, 0.2, stiffness);
+        return;
+    }
+    say_vector(v, &place, ", points: [", *with->points[0]);
+    say_vector(v, &place, ", ", *with->points[1]);
+    SAY(&place, "]");
+    say_law(v, force, place.text, "length", "speed", norm(combine(1, *with->points[0], -1, *with->points[1])), 0.02,
+            stiffness);
+}
 
 static void add_spring(Vehicle *v, int coordinate, double stiffness, double free)
 {
@@ -308,8 +392,22 @@ static void add_spring(Vehicle *v, int coordinate, double stiffness, double free
         SAY(force, "type: force, coordinate: %s, value: %.4g", name, uniform(v, -0.02, 0.02) * stiffness);
         return;
     }
-    SAY(force, "type: spring_damper, coordinate: %s, stiffness: %.4g", name, stiffness * uniform(v, 0.5, 2));
-    SAY(force, ", damping: %.4g, free: %.6g", stiffness * uniform(v, 0, 0.1), free);
+    SAY(force, "type: spring_damper, coordinate: %s", name);
+    say_number(v, force, ", stiffness: ", stiffness * uniform(v, 0.5, 2));
+    say_number(v, force, ", damping: ", stiffness * uniform(v, 0, 0.1));
+    say_number(v, force, ", free: ", free);
+}
+
+/* One more element along a coordinate. */
+static void add_law(Vehicle *v, int coordinate, double design, double reach, double stiffness)
+{
+    Entry *force = add(v, FORCE, "law");
+    force->coordinate = coordinate;
+    const char *name = v->section[COORDINATE].entry[coordinate].name;
+    char place[48] = "", rate[48] = "";
+    append(place, sizeof place, "coordinate: %s", name);
+    append(rate, sizeof rate, "rate(%s)", name);
+    say_law(v, force, place, name, rate, design, reach, stiffness);
 }
 
 Entry *coordinate(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with, double reach,
@@ -332,5 +430,7 @@ Entry *coordinate(Vehicle *v, const char *prefix, const char *type, int a, int b
         SAY(entry, ", driven: true");
     if (stiffness > 0 && chance(v, 0.9))
         add_spring(v, index, stiffness, design + reach * uniform(v, -1, 1));
+    if (stiffness > 0 && chance(v, 0.25))
+        add_law(v, index, design, reach, stiffness);
     return entry;
 }

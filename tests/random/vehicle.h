@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef enum Kind { BODY, JOINT, COORDINATE, FORCE, WHEEL, OUTPUT, KINDS } Kind;
+typedef enum Kind { PARAMETER, TABLE, BODY, JOINT, COORDINATE, FORCE, WHEEL, OUTPUT, KINDS } Kind;
 
 typedef enum Mistake {
     NO_MISTAKE,
@@ -40,6 +40,7 @@ typedef struct Section {
 typedef struct Vehicle {
     uint64_t random, seed; /* random numbers: as they stand, as they started */
     bool fixed;            /* the base is the ground */
+    bool tuned;            /* some of its numbers are tunable parameters */
     int names;             /* given so far */
     Mistake mistake;       /* still to be made while the vehicle is put together */
     char culprits[300];
@@ -78,7 +79,11 @@ void append(char *text, size_t size, const char *format, ...) __attribute__((for
 
 #define SAY(entry, ...) append((entry)->text, sizeof(entry)->text, __VA_ARGS__)
 
-void say_vector(Entry *entry, const char *lead, Vec u);
+/* A number, or in its place the name of a tunable parameter that has its value. */
+void say_number(Vehicle *v, Entry *entry, const char *lead, double value);
+void say_vector(Vehicle *v, Entry *entry, const char *lead, Vec u);
+/* The same where no parameter may stand. */
+void say_fixed_vector(Entry *entry, const char *lead, Vec u);
 /* A new entry of a section with a name of its own. */
 Entry *add(Vehicle *v, Kind kind, const char *prefix);
 const char *body_name(const Vehicle *v, int body);
@@ -107,6 +112,8 @@ Entry *guide(Vehicle *v, int a, int b, Vec p, Vec u, bool plain);
 /* b is fixed on a, by a joint or by what is equal to it. */
 void weld(Vehicle *v, int a, int b, Vec p);
 Entry *ball(Vehicle *v, int a, int b, Vec p);
+/* An element of some kind between two points of two bodies or, with an axis, about that. */
+void element(Vehicle *v, int a, int b, const Geometry *with, double stiffness);
 /* A rod, sometimes of another length than drawn. */
 Entry *rod(Vehicle *v, int a, int b, Vec p_a, Vec p_b);
 /* A dual coordinate, mostly with a spring. `reach` is half the width of its range; stiffness 0: no spring. */
