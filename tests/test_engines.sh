@@ -189,6 +189,16 @@ parameters: {k: 5500}
 inputs: {gust: {sine: {amplitude: 20, frequency: 3}}}
 END
 along "$root/tests/laws/cart.veh" cart.scene
+# a scene that sets geometric parameters
+sed "s|^include: \.\./\.\.|include: $root|" "$root/tests/tuning/car.veh" >car.veh
+cat >tuned.scene <<'END'
+gicscene: 1
+duration: 0.3
+step: 0.002
+integrator: rk4
+parameters: {length: 1.605, upper: 0.703, load: 1800, radius_l: 0.46, toe: 0.012, bump: 0.285}
+END
+along car.veh tuned.scene
 along "$root/models/hmmwv.veh" paper_run.scene --integrator rkck --tolerance 1e-6
 
 # copies of an instance go their own ways: how often outputs are written leaves no trace
