@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * gicgen: every type of the generator and, file by file in the order of the pipeline, every function
- * that one file offers to another. Dependencies run downwards only: a file uses what stands above it.
+ * that one file offers to another. Dependencies run downwards only: a file uses what stands above it. It begins in
+ * support.h (memory, text, messages, YAML) and model.h (what a file says), and goes on here.
  *
  *     .veh -> document -> model -> graph -> sequence -> formulation -> expressions -> emission -> .c/.h
  *
@@ -12,362 +13,9 @@
 #ifndef GICGEN_H
 #define GICGEN_H
 
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
+#include "model.h"
 
 #define GICGEN_VERSION "0.1.0"
-
-/* ---- util.c: memory, text, random numbers, small vector algebra ------------------------------- */
-
-typedef struct Pool Pool;
-
-Pool *pool_new(void);                      /* an empty pool; exits with a message when memory is out */
-void pool_free(Pool *pool);                /* frees the pool and all that came from it */
-void *pool_alloc(Pool *pool, size_t size); /* zeroed, aligned for any type */
-void *pool_grow(Pool *pool, void *old, size_t old_size, size_t size); /* copy into a larger block */
-char *pool_print(Pool *pool, const char *format, ...) __attribute__((format(printf, 2, 3)));
-char *pool_vprint(Pool *pool, const char *format, va_list args);
-
-/* Make room for one more element behind the first `count` of `array`; sizes double. */
-#define POOL_PUSH(pool, array, count) \
-    ((((count) & ((count)-1)) == 0 \
-          ? (void)((array) = pool_grow((pool), (array), (size_t)(count) * sizeof *(array), \
-                                       (size_t)((count) ? 2 * (count) : 1) * sizeof *(array))) \
-          : (void)0), \
-     &(array)[(count)++])
-
-/* A growing text; `s` is always terminated. */
-typedef struct Text {
-    Pool *pool;
-    char *s;
-    size_t size, room;
-} Text;
-
-void text_print(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void text_add(Text *text, const char *s, size_t size);
-
-/* splitmix64: the same sequence on every machine. */
-typedef struct Random {
-    uint64_t state;
-} Random;
-
-uint64_t random_bits(Random *random);
-double random_uniform(Random *random, double low, double high);
-
-double vec_dot(const double a[3], const double b[3]);
-void vec_cross(const double a[3], const double b[3], double out[3]); /* out may not alias */
-double vec_norm(const double a[3]);
-void mat_from_euler(const double p[4], double A[9]);                            /* A(p) of FORMAT.md section 1 */
-void euler_relative(const double p0[4], const double p[4], double out[4]);      /* of A(p0)^T A(p) */
-void mat_apply(const double A[9], const double x[3], double out[3]);            /* A x */
-void mat_apply_transposed(const double A[9], const double x[3], double out[3]); /* A^T x */
-
-/* Write a whole file under a temporary name beside it and rename it: readers see all of it or the old one.
- * "-" is standard output. Exits with a message naming the file when it can't be written. */
-void file_write(const char *path, const char *bytes, size_t size);
-/* Is there something at `path` that is no file, a device or pipe? It is written to as it is: a rename would replace it. */
-bool file_is_special(const char *path);
-/* All bytes of a file ("-": standard input), terminated. Exits with a message when it can't be read. */
-char *file_read(Pool *pool, const char *path, size_t *size);
-
-/* ---- diag.c: messages for people ---------------------------------------------------------------- */
-
-/* A place in an input file. line and column count from 1; 0: the file as a whole. */
-typedef struct Place {
-    const struct Source *source;
-    int line, column;
-} Place;
-
-typedef struct Source {
-    const char *path; /* as the user gave it */
-    const char *bytes;
-    size_t size;
-    const char *mirrored; /* its places stand for the mirror image of this entry; NULL: for what is written there */
-} Source;
-
-/* Print `path:line:col: error: <message>`, the source line with a caret under the column, in a mirror image
- * `  note: mirrored from '<entry>'`, and `  remedy: <remedy>` (remedy may be NULL), all to stderr; exit with status 1.
- */
-_Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* The same as a warning; returns. */
-void diag_warn(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* The place of a byte of a source: its line, and its column in characters (UTF-8). */
-Place diag_place(const Source *source, size_t offset);
-/* Of `count` words the one most like `word` (edit distance), or NULL when none is near. */
-const char *diag_nearest(const char *word, const char *const *words, int count);
-
-/* ---- doc.c: YAML into a tree that knows its places ---------------------------------------------- */
-
-typedef enum ItemKind { ITEM_SCALAR, ITEM_LIST, ITEM_MAP } ItemKind;
-
-typedef struct Item {
-    ItemKind kind;
-    Place at;
-    const char *text;    /* scalar: its text (may hold any byte but is terminated) */
-    bool quoted;         /* scalar: quoted, so never a number */
-    bool negated;        /* scalar: of a mirror image; its number is -(written + shift) */
-    double shift;        /* scalar: of a moved file; its number is written + shift */
-    int count;           /* list: elements; map: pairs */
-    struct Item **value; /* list: the elements; map: the values */
-    struct Item **key;   /* map: the keys, all scalars */
-} Item;
-
-/* Parse a file ("-": standard input) into a tree. YAML errors, aliases to ancestors, duplicate keys, nesting deeper
- * than 64 and more than one document end in diag_fail. */
-const Item *doc_read(Pool *pool, const char *path);
-/* Value of a key of a map, or NULL. */
-const Item *doc_find(const Item *map, const char *key);
-
-/* Checked access for readers of `.veh` and scene files; each ends in diag_fail naming what was expected. `what` names
- * the thing in messages ("mass of body 'chassis'"). */
-double doc_number(const Item *item, const char *what);
-bool doc_bool(const Item *item, const char *what);
-const char *doc_word(const Item *item, const char *what);
-void doc_vector(const Item *item, const char *what, double *out, int size);
-/* Every key of `map` must be one of `allowed`; the message lists them and suggests the nearest. */
-void doc_check_keys(const Item *map, const char *what, const char *const *allowed, int count);
-
-/* ---- law.c: formulas of force laws, as FORMAT.md section 10 defines them ------------------------------------ */
-
-typedef enum LawOp {
-    LAW_NUMBER,    /* number */
-    LAW_PARAMETER, /* index */
-    LAW_INPUT,     /* index */
-    LAW_VALUE,     /* of coordinate index */
-    LAW_RATE,
-    LAW_TIME,
-    LAW_LOCAL, /* index: what the place of the formula offers, such as `length` */
-    LAW_TABLE, /* index, arg[0] */
-    LAW_CALL   /* op `call` of the expression graph with arguments */
-} LawOp;
-
-typedef struct Law {
-    LawOp op;
-    int call; /* an Op */
-    double number;
-    int index;
-    const struct Law *arg[3];
-    const char *name; /* as written, for the dump */
-} Law;
-
-/* What the names in a formula mean. */
-typedef struct LawNames {
-    const struct Model *model; /* coordinates, inputs, parameters, tables */
-    const char *const *local;  /* names of this place, or NULL */
-    int locals;
-    bool constant;      /* nothing but numbers and parameters is allowed */
-    const char *remedy; /* why, when that is broken */
-} LawNames;
-
-/* Parse a scalar of the file as a formula; mistakes end in diag_fail at their place inside the text. */
-const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNames *names);
-/* Does the law change through a tunable parameter? */
-bool law_is_tunable(const Law *law, const struct Model *model);
-/* Its value with parameters at their file's values, for laws of numbers and parameters alone. */
-double law_number(const Law *law, const struct Model *model);
-
-/* ---- read.c, dump.c: the model, as models/FORMAT.md defines it ----------------------------------- */
-
-enum { BODY_BASE = 0, BODY_GROUND = -1 };
-
-typedef struct Body {
-    const char *name;
-    Place at;
-    double mass, com[3] /* own frame */, inertia[6] /* xx yy zz xy xz yz, own axes, about com */;
-    double position[3], euler[4]; /* body frame at design, model frame */
-} Body;
-
-typedef enum JointType {
-    JOINT_REVOLUTE,
-    JOINT_SPHERICAL,
-    JOINT_PRISMATIC,
-    JOINT_CYLINDRICAL,
-    JOINT_UNIVERSAL,
-    JOINT_FIXED,
-    JOINT_DISTANCE,
-    JOINT_REVOLUTE_SPHERICAL,
-    JOINT_POINT_ON_LINE,
-    JOINT_POINT_IN_PLANE,
-    JOINT_PARALLEL,
-    JOINT_PERPENDICULAR,
-    JOINT_TYPES
-} JointType;
-
-typedef struct Joint {
-    const char *name;
-    Place at;
-    JointType type;
-    int body[2];
-    double point[2][3], axis[2][3]; /* each in the frame of its body; axes are unit vectors */
-    double side[2][3];     /* a direction perpendicular to the axis of body[0] in the drawing, in both bodies */
-    double length, offset; /* as the equations have them, where the type does */
-    bool drawn;            /* length and offset are those of the drawing: nothing to assemble */
-} Joint;
-
-typedef enum CoordinateType {
-    COORDINATE_LENGTH,
-    COORDINATE_TRANSLATION,
-    COORDINATE_ANGLE,
-    COORDINATE_TYPES
-} CoordinateType;
-
-typedef struct Coordinate {
-    const char *name;
-    Place at;
-    CoordinateType type;
-    int body[2];
-    double point[2][3], axis[3] /* frame of body[0] */;
-    double reference[2][3]; /* angle: e_1 in the frame of body[0], f_1 in that of body[1] */
-    double design, initial, offset, range[2];
-    bool driven;
-    int input; /* driven: index of its value in inputs; rate and acceleration follow */
-} Coordinate;
-
-typedef struct Input {
-    const char *name, *unit;
-    double initial;
-} Input;
-
-typedef struct Parameter {
-    const char *name, *unit;
-    Place at;
-    double value;
-    bool tunable;
-    int index;         /* tunable: place among parameters at run time */
-    const Law *law;    /* what it is made of, where tunable ones are among that; else NULL */
-    bool geometric;    /* tunable: points, axes, masses and so on depend on it, so that it acts at set-up */
-} Parameter;
-
-/* y over rising x; slopes make it a monotone cubic (FORMAT.md section 7). */
-typedef struct Table {
-    const char *name;
-    Place at;
-    int count;
-    double *x, *y, *slope;
-    bool cubic;
-    bool onward; /* beyond the ends: goes on straight; else constant */
-} Table;
-
-/* An external force and torque on a body, supplied at run time. */
-typedef struct Port {
-    const char *name;
-    Place at;
-    int body, in;
-    double point[3];
-} Port;
-
-/* Three laws in three places: along a coordinate, between points, about an axis. */
-typedef enum ForceType {
-    FORCE_COORDINATE, /* spring and damper */
-    FORCE_POINTS,
-    FORCE_AXIS,
-    FORCE_COORDINATE_LAW, /* a formula */
-    FORCE_POINTS_LAW,
-    FORCE_AXIS_LAW,
-    FORCE_COORDINATE_STOP, /* one-sided contact */
-    FORCE_POINTS_STOP,
-    FORCE_AXIS_STOP,
-    FORCE_LOAD, /* force and torque on a body */
-    FORCE_TYPES
-} ForceType;
-
-typedef struct Force {
-    const char *name;
-    Place at;
-    ForceType type;
-    int coordinate; /* along a coordinate, else -1 */
-    int body[2];    /* of points or axis, BODY_GROUND possible; FORCE_LOAD: body, and in whose frame */
-    double point[2][3];
-    double axis[3], reference[2][3];              /* as in Coordinate */
-    const struct Law *stiffness, *damping, *free; /* of numbers and parameters */
-    const struct Law *low, *high, *fade;          /* the same, of a stop; without one end NULL */
-    int table;                                    /* takes the place of stiffness, else -1 */
-    const struct Law *law[6]; /* [0]: generalised force, tension or torque; FORCE_LOAD: force, torque, NULL: 0 */
-} Force;
-
-bool force_is_spring(const Force *force);
-bool force_is_stop(const Force *force);
-bool force_is_law(const Force *force);
-/* About an axis of its own. */
-bool force_is_torque(const Force *force);
-
-enum { FORCE_LOCALS = 2 }; /* of FORCE_POINTS_LAW: length, speed; of FORCE_AXIS_LAW: angle, speed */
-
-typedef struct Wheel {
-    const char *name;
-    Place at;
-    int body;
-    double center[3]; /* frame of body */
-    double radius, stiffness, damping, fade;
-} Wheel;
-
-typedef enum OutputType {
-    OUTPUT_POSITION,
-    OUTPUT_VELOCITY,
-    OUTPUT_ACCELERATION,
-    OUTPUT_ORIENTATION,
-    OUTPUT_ROLL_PITCH_YAW,
-    OUTPUT_ANGULAR_VELOCITY,
-    OUTPUT_COORDINATE,
-    OUTPUT_FORCE,
-    OUTPUT_DRIVE_FORCE,
-    OUTPUT_REACTION,
-    OUTPUT_WHEEL,
-    OUTPUT_ENERGY,
-    OUTPUT_TYPES
-} OutputType;
-
-enum { OUTPUT_MAX_COMPONENTS = 6 };
-
-typedef struct Output {
-    const char *name;
-    Place at;
-    OutputType type;
-    int body;                                     /* where the type has one */
-    double point[3];                              /* frame of body */
-    int in;                                       /* body in whose frame components are given, BODY_GROUND: world */
-    int index;                                    /* coordinate, force element, joint or wheel */
-    int count;                                    /* components */
-    const char *component[OUTPUT_MAX_COMPONENTS]; /* full names: "chassis.x" */
-    const char *unit[OUTPUT_MAX_COMPONENTS];
-} Output;
-
-typedef struct Model {
-    const Source *source;
-    const char *name, *description;
-    double gravity[3];
-    bool free_base; /* body 0 is the base: the chassis, or ground with mass 0 */
-    int bodies, joints, coordinates, forces, wheels, inputs, outputs, output_components;
-    int parameters, tunables, tables, ports;
-    Body *body;
-    Joint *joint;
-    Coordinate *coordinate;
-    Force *force;
-    Wheel *wheel;
-    Input *input;
-    Output *output;
-    Parameter *parameter;
-    Table *table;
-    Port *port;
-    struct Tuning *tuning; /* tune.c; NULL: no number but those of force laws is tunable */
-    const Body *drawn;     /* [bodies] where they stand in the drawing; `body` is assembled */
-} Model;
-
-extern const char *const joint_type_name[JOINT_TYPES]; /* as in the file: "revolute" */
-extern const int joint_equations[JOINT_TYPES];         /* FORMAT.md section 4 */
-extern const char *const coordinate_type_name[COORDINATE_TYPES];
-extern const char *const output_type_name[OUTPUT_TYPES];
-
-/* schema.c: a JSON Schema of `.veh` files for editors, and all their keys as a table for people; both from the reader's
- * own tables. */
-void schema_print(Text *out);
-void keys_print(Text *out);
-
-/* Read and resolve a `.veh` file. Any mistake ends in diag_fail. */
-const Model *model_read(Pool *pool, const char *path);
 
 /* ---- graph.c, sequence.c, draw.c: which subsets can be solved, and in which order ------------------ */
 
@@ -717,11 +365,10 @@ Count block_count(const Block *block);
 /* Does it read an input `array[...]`? */
 bool block_reads(const Block *block, const char *array);
 
-/* ---- subset.c, follow.c, inertia.c: recovery of one class of decoupled subsets
- * ------------------------------------------------------- */
+/* ---- subset.c, follow.c, inertia.c: recovery of one class of decoupled subsets ----------------------------- */
 
-/* How accelerations are found: in the reduced form of Proposition 2.1 of Serban and Haug 2000, or in the augmented form of
- * their eq. 16. */
+/* How accelerations are found: in the reduced form of Proposition 2.1 of Serban and Haug 2000, or in the augmented form
+ * of their eq. 16. */
 typedef enum Solve { SOLVE_REDUCED, SOLVE_AUGMENTED, SOLVES } Solve;
 
 extern const char *const solve_name[SOLVES]; /* as on the command line: "reduced" */
@@ -796,7 +443,7 @@ typedef struct Plan {
     const double (*origin)[3];
     int *start_offset, *inertia_offset; /* [subsets] */
     int *motion_offset;                 /* [bodies] */
-    int multipliers; /* kept for outputs; 0: none needs them */
+    int multipliers;                    /* kept for outputs; 0: none needs them */
     int *multiplier_offset;             /* [bodies] six places a body; those of a subset's bodies are its equations' */
     int *derived_offset;                /* [subsets] where d[] begins in derived[] */
     Derived *derived;                   /* grows with the blocks that are made */
@@ -812,7 +459,8 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve s
                const double (*origin)[3]);
 
 /* Inputs of every global block, as C names: y state, e recovered Euler parameters of the base, x and xd values and
- * rates of all coordinates, u inputs, m motions, n inertias, lambda multipliers (Plan.multiplier_offset). Fixed base: r, v, turn are 0 and R the identity. */
+ * rates of all coordinates, u inputs, m motions, n inertias, lambda multipliers (Plan.multiplier_offset). Fixed base:
+ * r, v, turn are 0 and R the identity. */
 typedef struct Whole {
     const Plan *plan;
     const Model *model;
@@ -857,8 +505,8 @@ double table_value(const Table *table, double x);
 /* Applied forces body by body, and from them generalised forces: moment about the base origin and force on everything,
  * base frame; force along every coordinate. */
 typedef struct Loads {
-    Ex (*wrench)[6];                     /* [bodies] moment about the reference point, force; base frame */
-    Ex *own;                             /* [coordinates] of the elements along a coordinate, not among the wrenches */
+    Ex (*wrench)[6]; /* [bodies] moment about the reference point, force; base frame */
+    Ex *own;         /* [coordinates] of the elements along a coordinate, not among the wrenches */
     Ex moment[3], force[3];
     Ex *along;                           /* [coordinates] of all */
     Ex *element;                         /* [forces] Q or T of FORMAT.md section 7 */
@@ -882,8 +530,8 @@ Block *augmented_block(Whole *whole);
 Block *outputs_block(Whole *whole);
 /* pose[7 i]: world poses of all body frames. s: the Newton start. */
 Block *poses_block(Whole *whole);
-/* reaction.c: lambda[] of the subsets whose multipliers are needed: the wrenches that the joints of their bodies must add
- * up to, moment about the reference point and force, base frame, at rate[]. */
+/* reaction.c: lambda[] of the subsets whose multipliers are needed: the wrenches that the joints of their bodies must
+ * add up to, moment about the reference point and force, base frame, at rate[]. */
 Block *wrenches_block(Whole *whole);
 /* reaction.c: force and torque of a joint on its second body at its point of that, base frame, from lambda[]. */
 void whole_reaction(Whole *whole, int joint, Ex force[3], Ex torque[3]);
@@ -926,7 +574,7 @@ typedef struct Formulation {
     const Plan *plan;
     const char *hash; /* of the model, in hexadecimal digits */
     const Block *dynamics, *outputs, *poses, *inverse, *energy;
-    const Block *wrenches; /* of the reduced form */
+    const Block *wrenches;           /* of the reduced form */
     int known_most, dependence_most; /* knowns and deps of a subset, at most */
 } Formulation;
 
@@ -951,8 +599,7 @@ void body_design(const Formulation *f, int body, double q[7]);
 /* "body" or "body + body". */
 const char *subset_title(Pool *pool, const Model *model, const Subset *subset);
 
-/* ---- emit.c: blocks as C text
- * ------------------------------------------------------------------------------------------ */
+/* ---- emit.c: blocks as C text ------------------------------------------------------------------------------ */
 
 /* Constants of a class in the order of their slots in k[]. */
 typedef struct Constants {
@@ -967,8 +614,7 @@ void block_emit(Text *out, const Block *block, Constants *constants, int indent)
 /* A number as C source that reads back bit-exactly: R(0.5). */
 const char *emit_number(Pool *pool, double value);
 
-/* ---- template.c: fixed text with insertion points
- * -------------------------------------------------------------------------- */
+/* ---- template.c: fixed text with insertion points ---------------------------------------------------------- */
 
 /* Files built into the program: templates and the freestanding runtime. Ends with name NULL. */
 typedef struct Embedded {
@@ -998,10 +644,10 @@ typedef struct Figures {
     const Sequence *sequence;
     ClassFigures *class; /* [classes] */
     Count dynamics;
-    Count outputs;       /* of what outputs are made of; where they need multipliers that the dynamics don't give: */
-    Count wrenches;      /* what they follow from */
-    Count *react;        /* [classes] multipliers of one subset */
-    int *reacting;       /* [classes] of so many members */
+    Count outputs;  /* of what outputs are made of; where they need multipliers that the dynamics don't give: */
+    Count wrenches; /* what they follow from */
+    Count *react;   /* [classes] multipliers of one subset */
+    int *reacting;  /* [classes] of so many members */
 } Figures;
 
 const Figures *figures_new(Pool *pool, const Formulation *f);
@@ -1014,8 +660,7 @@ Count figures_rhs(const Figures *figures, int chords, int passes);
 /* Of all outputs, on top of a right-hand side. */
 Count figures_outputs(const Figures *figures);
 
-/* ---- generate.c: all of it
- * ------------------------------------------------------------------------------------------------- */
+/* ---- generate.c: all of it --------------------------------------------------------------------------------- */
 
 /* The generated C and its header. `header`: the name by which the C includes it, NULL: it doesn't. `templates` as
  * above. */

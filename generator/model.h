@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The model: what a `.veh` file says, resolved. */
+#ifndef GICGEN_MODEL_H
+#define GICGEN_MODEL_H
+
+#include "support.h"
+
+/* ---- law.c: formulas of force laws, as FORMAT.md section 6 defines them ------------------------------------ */
+
+typedef enum LawOp {
+    LAW_NUMBER,    /* number */
+    LAW_PARAMETER, /* index */
+    LAW_INPUT,     /* index */
+    LAW_VALUE,     /* of coordinate index */
+    LAW_RATE,
+    LAW_TIME,
+    LAW_LOCAL, /* index: what the place of the formula offers, such as `length` */
+    LAW_TABLE, /* index, arg[0] */
+    LAW_CALL   /* op `call` of the expression graph with arguments */
+} LawOp;
+
+typedef struct Law {
+    LawOp op;
+    int call; /* an Op */
+    double number;
+    int index;
+    const struct Law *arg[3];
+    const char *name; /* as written, for the dump */
+} Law;
+
+/* What the names in a formula mean. */
+typedef struct LawNames {
+    const struct Model *model; /* coordinates, inputs, parameters, tables */
+    const char *const *local;  /* names of this place, or NULL */
+    int locals;
+    bool constant;      /* nothing but numbers and parameters is allowed */
+    const char *remedy; /* why, when that is broken */
+} LawNames;
+
+/* Parse a scalar of the file as a formula; mistakes end in diag_fail at their place inside the text. */
+const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNames *names);
+/* Does the law change through a tunable parameter? */
+bool law_is_tunable(const Law *law, const struct Model *model);
+/* Its value with parameters at their file's values, for laws of numbers and parameters alone. */
+double law_number(const Law *law, const struct Model *model);
+
+/* ---- read.c, dump.c: the model, as models/FORMAT.md defines it ----------------------------------- */
+
+enum { BODY_BASE = 0, BODY_GROUND = -1 };
+
+typedef struct Body {
+    const char *name;
+    Place at;
+    double mass, com[3] /* own frame */, inertia[6] /* xx yy zz xy xz yz, own axes, about com */;
+    double position[3], euler[4]; /* body frame at design, model frame */
+} Body;
+
+typedef enum JointType {
+    JOINT_REVOLUTE,
+    JOINT_SPHERICAL,
+    JOINT_PRISMATIC,
+    JOINT_CYLINDRICAL,
+    JOINT_UNIVERSAL,
+    JOINT_FIXED,
+    JOINT_DISTANCE,
+    JOINT_REVOLUTE_SPHERICAL,
+    JOINT_POINT_ON_LINE,
+    JOINT_POINT_IN_PLANE,
+    JOINT_PARALLEL,
+    JOINT_PERPENDICULAR,
+    JOINT_TYPES
+} JointType;
+
+typedef struct Joint {
+    const char *name;
+    Place at;
+    JointType type;
+    int body[2];
+    double point[2][3], axis[2][3]; /* each in the frame of its body; axes are unit vectors */
+    double side[2][3];     /* a direction perpendicular to the axis of body[0] in the drawing, in both bodies */
+    double length, offset; /* as the equations have them, where the type does */
+    bool drawn;            /* length and offset are those of the drawing: nothing to assemble */
+} Joint;
+
+typedef enum CoordinateType {
+    COORDINATE_LENGTH,
+    COORDINATE_TRANSLATION,
+    COORDINATE_ANGLE,
+    COORDINATE_TYPES
+} CoordinateType;
+
+typedef struct Coordinate {
+    const char *name;
+    Place at;
+    CoordinateType type;
+    int body[2];
+    double point[2][3], axis[3] /* frame of body[0] */;
+    double reference[2][3]; /* angle: e_1 in the frame of body[0], f_1 in that of body[1] */
+    double design, initial, offset, range[2];
+    bool driven;
+    int input; /* driven: index of its value in inputs; rate and acceleration follow */
+} Coordinate;
+
+typedef struct Input {
+    const char *name, *unit;
+    double initial;
+} Input;
+
+typedef struct Parameter {
+    const char *name, *unit;
+    Place at;
+    double value;
+    bool tunable;
+    int index;      /* tunable: place among parameters at run time */
+    const Law *law; /* what it is made of, where tunable ones are among that; else NULL */
+    bool geometric; /* tunable: points, axes, masses and so on depend on it, so that it acts at set-up */
+} Parameter;
+
+/* y over rising x; slopes make it a monotone cubic (FORMAT.md section 7). */
+typedef struct Table {
+    const char *name;
+    Place at;
+    int count;
+    double *x, *y, *slope;
+    bool cubic;
+    bool onward; /* beyond the ends: goes on straight; else constant */
+} Table;
+
+/* An external force and torque on a body, supplied at run time. */
+typedef struct Port {
+    const char *name;
+    Place at;
+    int body, in;
+    double point[3];
+} Port;
+
+/* Three laws in three places: along a coordinate, between points, about an axis. */
+typedef enum ForceType {
+    FORCE_COORDINATE, /* spring and damper */
+    FORCE_POINTS,
+    FORCE_AXIS,
+    FORCE_COORDINATE_LAW, /* a formula */
+    FORCE_POINTS_LAW,
+    FORCE_AXIS_LAW,
+    FORCE_COORDINATE_STOP, /* one-sided contact */
+    FORCE_POINTS_STOP,
+    FORCE_AXIS_STOP,
+    FORCE_LOAD, /* force and torque on a body */
+    FORCE_TYPES
+} ForceType;
+
+typedef struct Force {
+    const char *name;
+    Place at;
+    ForceType type;
+    int coordinate; /* along a coordinate, else -1 */
+    int body[2];    /* of points or axis, BODY_GROUND possible; FORCE_LOAD: body, and in whose frame */
+    double point[2][3];
+    double axis[3], reference[2][3];              /* as in Coordinate */
+    const struct Law *stiffness, *damping, *free; /* of numbers and parameters */
+    const struct Law *low, *high, *fade;          /* the same, of a stop; without one end NULL */
+    int table;                                    /* takes the place of stiffness, else -1 */
+    const struct Law *law[6]; /* [0]: generalised force, tension or torque; FORCE_LOAD: force, torque, NULL: 0 */
+} Force;
+
+bool force_is_spring(const Force *force);
+bool force_is_stop(const Force *force);
+bool force_is_law(const Force *force);
+/* About an axis of its own. */
+bool force_is_torque(const Force *force);
+
+enum { FORCE_LOCALS = 2 }; /* of FORCE_POINTS_LAW: length, speed; of FORCE_AXIS_LAW: angle, speed */
+
+typedef struct Wheel {
+    const char *name;
+    Place at;
+    int body;
+    double center[3]; /* frame of body */
+    double radius, stiffness, damping, fade;
+} Wheel;
+
+typedef enum OutputType {
+    OUTPUT_POSITION,
+    OUTPUT_VELOCITY,
+    OUTPUT_ACCELERATION,
+    OUTPUT_ORIENTATION,
+    OUTPUT_ROLL_PITCH_YAW,
+    OUTPUT_ANGULAR_VELOCITY,
+    OUTPUT_COORDINATE,
+    OUTPUT_FORCE,
+    OUTPUT_DRIVE_FORCE,
+    OUTPUT_REACTION,
+    OUTPUT_WHEEL,
+    OUTPUT_ENERGY,
+    OUTPUT_TYPES
+} OutputType;
+
+enum { OUTPUT_MAX_COMPONENTS = 6 };
+
+typedef struct Output {
+    const char *name;
+    Place at;
+    OutputType type;
+    int body;                                     /* where the type has one */
+    double point[3];                              /* frame of body */
+    int in;                                       /* body in whose frame components are given, BODY_GROUND: world */
+    int index;                                    /* coordinate, force element, joint or wheel */
+    int count;                                    /* components */
+    const char *component[OUTPUT_MAX_COMPONENTS]; /* full names: "chassis.x" */
+    const char *unit[OUTPUT_MAX_COMPONENTS];
+} Output;
+
+typedef struct Model {
+    const Source *source;
+    const char *name, *description;
+    double gravity[3];
+    bool free_base; /* body 0 is the base: the chassis, or ground with mass 0 */
+    int bodies, joints, coordinates, forces, wheels, inputs, outputs, output_components;
+    int parameters, tunables, tables, ports;
+    Body *body;
+    Joint *joint;
+    Coordinate *coordinate;
+    Force *force;
+    Wheel *wheel;
+    Input *input;
+    Output *output;
+    Parameter *parameter;
+    Table *table;
+    Port *port;
+    struct Tuning *tuning; /* tune.c; NULL: no number but those of force laws is tunable */
+    const Body *drawn;     /* [bodies] where they stand in the drawing; `body` is assembled */
+} Model;
+
+extern const char *const joint_type_name[JOINT_TYPES]; /* as in the file: "revolute" */
+extern const int joint_equations[JOINT_TYPES];         /* FORMAT.md section 4 */
+extern const char *const coordinate_type_name[COORDINATE_TYPES];
+extern const char *const output_type_name[OUTPUT_TYPES];
+
+/* schema.c: a JSON Schema of `.veh` files for editors, and all their keys as a table for people; both from the reader's
+ * own tables. */
+void schema_print(Text *out);
+void keys_print(Text *out);
+
+/* Read and resolve a `.veh` file. Any mistake ends in diag_fail. */
+const Model *model_read(Pool *pool, const char *path);
+
+#endif

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What every stage of the generator stands on: memory, text, messages, and YAML as a tree. */
+#ifndef GICGEN_SUPPORT_H
+#define GICGEN_SUPPORT_H
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* ---- util.c: memory, text, random numbers, small vector algebra ------------------------------- */
+
+typedef struct Pool Pool;
+
+Pool *pool_new(void);                      /* an empty pool; exits with a message when memory is out */
+void pool_free(Pool *pool);                /* frees the pool and all that came from it */
+void *pool_alloc(Pool *pool, size_t size); /* zeroed, aligned for any type */
+void *pool_grow(Pool *pool, void *old, size_t old_size, size_t size); /* copy into a larger block */
+char *pool_print(Pool *pool, const char *format, ...) __attribute__((format(printf, 2, 3)));
+char *pool_vprint(Pool *pool, const char *format, va_list args);
+
+/* Make room for one more element behind the first `count` of `array`; sizes double. */
+#define POOL_PUSH(pool, array, count) \
+    ((((count) & ((count)-1)) == 0 \
+          ? (void)((array) = pool_grow((pool), (array), (size_t)(count) * sizeof *(array), \
+                                       (size_t)((count) ? 2 * (count) : 1) * sizeof *(array))) \
+          : (void)0), \
+     &(array)[(count)++])
+
+/* A growing text; `s` is always terminated. */
+typedef struct Text {
+    Pool *pool;
+    char *s;
+    size_t size, room;
+} Text;
+
+void text_print(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void text_add(Text *text, const char *s, size_t size);
+
+/* splitmix64: the same sequence on every machine. */
+typedef struct Random {
+    uint64_t state;
+} Random;
+
+uint64_t random_bits(Random *random);
+double random_uniform(Random *random, double low, double high);
+
+double vec_dot(const double a[3], const double b[3]);
+void vec_cross(const double a[3], const double b[3], double out[3]); /* out may not alias */
+double vec_norm(const double a[3]);
+void mat_from_euler(const double p[4], double A[9]);                            /* A(p) of FORMAT.md section 1 */
+void euler_relative(const double p0[4], const double p[4], double out[4]);      /* of A(p0)^T A(p) */
+void mat_apply(const double A[9], const double x[3], double out[3]);            /* A x */
+void mat_apply_transposed(const double A[9], const double x[3], double out[3]); /* A^T x */
+
+/* Write a whole file under a temporary name beside it and rename it: readers see all of it or the old one.
+ * "-" is standard output. Exits with a message naming the file when it can't be written. */
+void file_write(const char *path, const char *bytes, size_t size);
+/* Is there something at `path` that is no file, a device or pipe? It is written to as it is: a rename would replace it.
+ */
+bool file_is_special(const char *path);
+/* All bytes of a file ("-": standard input), terminated. Exits with a message when it can't be read. */
+char *file_read(Pool *pool, const char *path, size_t *size);
+
+/* ---- diag.c: messages for people ---------------------------------------------------------------- */
+
+/* A place in an input file. line and column count from 1; 0: the file as a whole. */
+typedef struct Place {
+    const struct Source *source;
+    int line, column;
+} Place;
+
+typedef struct Source {
+    const char *path; /* as the user gave it */
+    const char *bytes;
+    size_t size;
+    const char *mirrored; /* its places stand for the mirror image of this entry; NULL: for what is written there */
+} Source;
+
+/* Print `path:line:col: error: <message>`, the source line with a caret under the column, in a mirror image
+ * `  note: mirrored from '<entry>'`, and `  remedy: <remedy>` (remedy may be NULL), all to stderr; exit with status 1.
+ */
+_Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The same as a warning; returns. */
+void diag_warn(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The place of a byte of a source: its line, and its column in characters (UTF-8). */
+Place diag_place(const Source *source, size_t offset);
+/* Of `count` words the one most like `word` (edit distance), or NULL when none is near. */
+const char *diag_nearest(const char *word, const char *const *words, int count);
+
+/* ---- doc.c: YAML into a tree that knows its places ---------------------------------------------- */
+
+typedef enum ItemKind { ITEM_SCALAR, ITEM_LIST, ITEM_MAP } ItemKind;
+
+typedef struct Item {
+    ItemKind kind;
+    Place at;
+    const char *text;    /* scalar: its text (may hold any byte but is terminated) */
+    bool quoted;         /* scalar: quoted, so never a number */
+    bool negated;        /* scalar: of a mirror image; its number is -(written + shift) */
+    double shift;        /* scalar: of a moved file; its number is written + shift */
+    int count;           /* list: elements; map: pairs */
+    struct Item **value; /* list: the elements; map: the values */
+    struct Item **key;   /* map: the keys, all scalars */
+} Item;
+
+/* Parse a file ("-": standard input) into a tree. YAML errors, aliases to ancestors, duplicate keys, nesting deeper
+ * than 64 and more than one document end in diag_fail. */
+const Item *doc_read(Pool *pool, const char *path);
+/* Value of a key of a map, or NULL. */
+const Item *doc_find(const Item *map, const char *key);
+
+/* Checked access for readers of `.veh` and scene files; each ends in diag_fail naming what was expected. `what` names
+ * the thing in messages ("mass of body 'chassis'"). */
+double doc_number(const Item *item, const char *what);
+bool doc_bool(const Item *item, const char *what);
+const char *doc_word(const Item *item, const char *what);
+void doc_vector(const Item *item, const char *what, double *out, int size);
+/* Every key of `map` must be one of `allowed`; the message lists them and suggests the nearest. */
+void doc_check_keys(const Item *map, const char *what, const char *const *allowed, int count);
+
+#endif
