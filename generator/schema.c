@@ -220,17 +220,27 @@ static void types_of(Text *out, const Section *section, unsigned forms)
         }
 }
 
+/* Is it required only where another key of its section has selected a form that its type shares with others? */
+static bool by_choice(const Section *section, const Key *key)
+{
+    for (int t = 0; t < section->types && section->type_forms; ++t)
+        if (key->required & section->type_forms[t] && section->type_forms[t] & ~key->required)
+            return true;
+    return false;
+}
+
 static void section_keys(Text *out, const char *name, const Section *section)
 {
     text_print(out, "\n%s\n", name);
     for (int k = 0; k < section->keys; ++k) {
         const Key *key = &section->key[k];
-        text_print(out, "  %-15s %-22s", key->name, kind_example[key->kind]);
+        text_print(out, "  %-15s %-22s", key->name,
+                   section == &table_section && key->kind == KEY_ITEM ? "[...]" : kind_example[key->kind]);
         if (key->kind == KEY_TYPE) {
             for (int t = 0; t < section->types; ++t)
                 text_print(out, "%s%s", t ? ", " : " one of: ", section->type[t]);
         } else {
-            text_print(out, " %s", key->required ? "required" : "optional");
+            text_print(out, " %s", !key->required ? "optional" : by_choice(section, key) ? "one way" : "required");
             types_of(out, section, key->required ? key->required : key->allowed);
             if (key->required && key->required != key->allowed)
                 text_print(out, "; optional otherwise"), types_of(out, section, key->allowed & ~key->required);
