@@ -2,7 +2,6 @@
  * Charts with logarithmic axes, by gnuplot. */
 #include "bench.h"
 
-#include <errno.h>
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
@@ -50,16 +49,7 @@ static const char *chart_script(Pool *pool, const Chart *chart, const char *outp
 void chart_write(Pool *pool, const Chart *chart, const char *path)
 {
     const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid()), *said = "";
-    char *const argv[] = {"gnuplot", "-", NULL};
-    interrupt_hold();
-    int status = process_run(pool, argv, chart_script(pool, chart, temporary), &said);
-    if (!status && rename(temporary, path)) {
-        said = pool_print(pool, "%s\n", strerror(errno));
-        status = 1;
-    }
-    if (status)
-        unlink(temporary);
-    interrupt_release();
+    int status = gnuplot_run(pool, chart_script(pool, chart, temporary), temporary, path, &said);
     if (status)
         diag_fail(gicrun_place, "gnuplot draws it (Debian: apt-get install gnuplot-nox)", "no picture %s: %s", path,
                   said);

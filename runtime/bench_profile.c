@@ -169,15 +169,6 @@ static void ratio_table(const Bench *bench, const Profile3 *profile, const char 
 
 /* ---- operations of generated code ------------------------------------------------------------------------------ */
 
-static void add_count(Count *sum, Count more)
-{
-    sum->add += more.add;
-    sum->multiply += more.multiply;
-    sum->divide += more.divide;
-    sum->root += more.root;
-    sum->function += more.function;
-}
-
 static void count_row(Pool *pool, Sheet *table, const char *what, Count count)
 {
     table_cell(pool, table, "%s", what);
@@ -197,9 +188,9 @@ static void count_table(const Bench *bench)
     Count start = {0}, correction = {0}, solution = {0};
     for (int c = 0; c < f->sequence->classes; ++c)
         for (int i = 0; i < f->sequence->class[c].members; ++i) {
-            add_count(&start, block_count(&f->plan->formula[c]->predict));
-            add_count(&correction, block_count(&f->plan->formula[c]->chord));
-            add_count(&solution, block_count(&f->plan->formula[c]->solve));
+            count_add(&start, block_count(&f->plan->formula[c]->predict), 1);
+            count_add(&correction, block_count(&f->plan->formula[c]->chord), 1);
+            count_add(&solution, block_count(&f->plan->formula[c]->solve), 1);
         }
     Sheet *table = report_table(bench->report, "operations", "Operations of generated code, one right-hand side",
                                 "part|add|multiply|divide|root|function");

@@ -138,6 +138,9 @@ typedef struct Plot {
 
 /* Picture by gnuplot, SVG or PNG by the ending of `path`; curves of the same unit share a panel. */
 void plot_write(Pool *pool, const Plot *plot, const char *path);
+/* Let gnuplot run a script that writes the file `temporary`, which then becomes `path`. Returns what process_run does, 1 when
+ * the file could not be renamed; *said: why. */
+int gnuplot_run(Pool *pool, const char *script, const char *temporary, const char *path, const char **said);
 bool plot_known(const char *path); /* does `path` end in .svg or .png? */
 
 /* ---- simulate.c, eval.c --------------------------------------------------------------------------------- */

@@ -70,8 +70,10 @@ static const char *plot_script(Pool *pool, const Plot *plot, const char *path, c
     text_print(&script, "set terminal %s size %d,%d noenhanced\nset output ",
                ends_with(path, ".svg") ? "svg background 'white'" : "pngcairo", WIDTH, PANEL_HEIGHT * panels + 40);
     quoted(&script, temporary);
-    text_print(&script, "\nset grid\nset key outside center top horizontal\nset lmargin 10\nset tmargin 4\n"
-                        "set multiplot layout %d,1 title ", panels);
+    text_print(&script,
+               "\nset grid\nset key outside center top horizontal\nset lmargin 10\nset tmargin 4\n"
+               "set multiplot layout %d,1 title ",
+               panels);
     quoted(&script, plot->title);
     text_print(&script, "\n");
     for (int i = 0; i < plot->curves; ++i)
@@ -81,23 +83,29 @@ static const char *plot_script(Pool *pool, const Plot *plot, const char *path, c
     return script.s;
 }
 
-void plot_write(Pool *pool, const Plot *plot, const char *path)
+int gnuplot_run(Pool *pool, const char *script, const char *temporary, const char *path, const char **said)
 {
-    const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid()), *said = "";
     char *const argv[] = {"gnuplot", "-", NULL};
-    FILE *file = fopen(temporary, "w"); /* where gnuplot can't write it goes on with standard output */
-    if (!file)
-        diag_fail(gicrun_place, "choose another place with --plot", "can't create %s: %s", path, strerror(errno));
-    fclose(file);
     interrupt_hold();
-    int status = process_run(pool, argv, plot_script(pool, plot, path, temporary), &said);
+    int status = process_run(pool, argv, script, said);
     if (!status && rename(temporary, path)) {
-        said = pool_print(pool, "%s\n", strerror(errno));
+        *said = pool_print(pool, "%s\n", strerror(errno));
         status = 1;
     }
     if (status)
         unlink(temporary);
     interrupt_release();
+    return status;
+}
+
+void plot_write(Pool *pool, const Plot *plot, const char *path)
+{
+    const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid()), *said = "";
+    FILE *file = fopen(temporary, "w"); /* where gnuplot can't write it goes on with standard output */
+    if (!file)
+        diag_fail(gicrun_place, "choose another place with --plot", "can't create %s: %s", path, strerror(errno));
+    fclose(file);
+    int status = gnuplot_run(pool, plot_script(pool, plot, path, temporary), temporary, path, &said);
     if (status == PROCESS_NOT_STARTED)
         diag_fail(gicrun_place, "install it (Debian: apt-get install gnuplot-nox), or run without --plot",
                   "no picture: gnuplot can't be started: %s", said);
