@@ -61,48 +61,26 @@ static int column_of(const World *world, int body)
     return BODY_Q * (body - world->first);
 }
 
-static double *blocks_of(const World *world, const Tie *tie)
-{
-    return world->J + ROW_J * tie->first;
-}
-
-/* Phi_q at the World's configuration, from J there. */
-static void load_jacobian(const World *world, Partition *partition)
-{
-    PartitionRow *row = partition->row;
-    for (int t = 0; t < world->constraints; ++t) {
-        const Tie *tie = &world->tie[t];
-        for (int r = 0; r < tie->rows; ++r, ++row)
-            for (int k = 0; k < row->count; ++k) {
-                const int body = row->column[k] / BODY_Q + world->first, end = body == tie->body[1];
-                row->value[k] = blocks_of(world, tie)[BODY_Q * (tie->rows * end + r) + row->column[k] % BODY_Q];
-            }
-    }
-    for (int body = world->first; body < world->bodies; ++body, ++row)
-        for (int k = 0; k < row->count; ++k)
-            row->value[k] = 2 * world->q[body][3 + k];
-}
-
-static bool find_jacobian(World *world, Partition *partition)
+/* Phi_q at the World's configuration, of which the partition reads the numbers. */
+static bool find_jacobian(World *world)
 {
     bool right = true;
     for (int t = 0; t < world->constraints; ++t)
         right = world_rows(world, t) && right;
-    load_jacobian(world, partition);
     return right;
 }
 
 static bool refactor(World *world, Partition *partition, EngineProfile *profile)
 {
     ++profile->factorizations;
-    find_jacobian(world, partition);
+    find_jacobian(world);
     const double begun = profile_clock(profile);
     const bool good = partition_factor(partition);
     profile->recovery_solver += profile_clock(profile) - begun;
     return good;
 }
 
-/* Phi at the present q, normalizations behind it. */
+/* Phi at the present q, normalizations (p^T p - 1) / 2 behind it. */
 static void find_values(World *world, double *b)
 {
     for (int t = 0; t < world->constraints; ++t)
@@ -111,7 +89,7 @@ static void find_values(World *world, double *b)
     b += world->constraint_rows;
     for (int body = world->first; body < world->bodies; ++body) {
         const double *p = world->q[body] + 3;
-        *b++ = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3] - 1;
+        *b++ = 0.5 * (p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3] - 1);
     }
 }
 
@@ -127,7 +105,7 @@ static void find_rates(const World *world, double *b)
     }
     for (int body = world->first; body < world->bodies; ++body) {
         const double *p = world->q[body] + 3, *pd = world->qd[body] + 3;
-        *b++ = 2 * (p[0] * pd[0] + p[1] * pd[1] + p[2] * pd[2] + p[3] * pd[3]);
+        *b++ = p[0] * pd[0] + p[1] * pd[1] + p[2] * pd[2] + p[3] * pd[3];
     }
 }
 
@@ -171,7 +149,8 @@ static double solved(Partition *partition, EngineProfile *profile, const World *
 
 enum { CORRECTIONS = 16 };
 
-static const double slow = 0.1;       /* a correction that shrinks less wants new factors */
+static const double slow =
+    0.02; /* a correction that shrinks less wants new factors: they cost about three corrections */
 static const double leap = 0.5;       /* a larger one may lead to another assembly mode */
 static const double rounding = 1e-14; /* relative to the mechanism's size */
 
@@ -229,7 +208,6 @@ static int recover_rates(const Interpreted *context)
             return GIC_OK;
         }
         if (ratio > slow) {
-            load_jacobian(world, gcp->partition);
             ++context->profile->factorizations;
             if (!partition_factor(gcp->partition))
                 return GIC_ERROR_SINGULAR;
@@ -287,7 +265,7 @@ static int use_partition(const Interpreted *context, const Instance *self, const
     Partition *partition = gcp->partition;
     if (!memcmp(partition->chosen, memory->chosen, sizeof(double) * (size_t)gcp->columns))
         return GIC_OK;
-    find_jacobian(context->world, partition);
+    find_jacobian(context->world);
     return partition_adopt(partition, memory->chosen) ? GIC_OK : GIC_ERROR_SINGULAR;
 }
 
@@ -301,11 +279,8 @@ static int recover(const Interpreted *context, Instance *self, const Memory *mem
     int status = use_partition(context, self, memory);
     if (status == GIC_OK)
         status = recover_positions(context, self);
-    bool right = true;
-    for (int t = 0; t < world->constraints && status == GIC_OK; ++t)
-        right = world_rows(world, t) && right;
     if (status == GIC_OK)
-        status = right ? recover_rates(context) : GIC_ERROR_NEWTON;
+        status = find_jacobian(world) ? recover_rates(context) : GIC_ERROR_NEWTON;
     if (status == GIC_OK)
         find_coordinates(world, memory);
     return status;
@@ -364,17 +339,16 @@ static int evaluate(const Interpreted *context, Instance *self, const double *st
 
 /* Has Phi_u come near to singular since its coordinates were chosen? One independent coordinate is looked at a step: a
  * choice stays good for much longer than that takes for all of them. */
-static bool degraded(const Memory *memory, const World *world, Partition *partition)
+static bool degraded(const Memory *memory, Partition *partition)
 {
     const double most = 2;
-    load_jacobian(world, partition);
     return !(partition_amplification(partition, (int64_t)(*memory->checks)++) < most * partition->usual);
 }
 
 static int choose(const Interpreted *context, const Memory *memory)
 {
     const Gcp *gcp = context->engine;
-    find_jacobian(context->world, gcp->partition);
+    find_jacobian(context->world);
     if (!partition_choose(gcp->partition))
         return GIC_ERROR_SINGULAR;
     memcpy(memory->chosen, gcp->partition->chosen, sizeof(double) * (size_t)gcp->columns);
@@ -394,7 +368,7 @@ static int settle(void *instance, double *state)
     for (int j = 0; shifted && j < 2 * gcp->columns; ++j)
         state[j] += memory.shift[j];
     *memory.shifted = 0;
-    if (!degraded(&memory, context->world, gcp->partition))
+    if (!degraded(&memory, gcp->partition))
         return GIC_OK;
     /* What becomes independent must fit what was, or the change would be felt. An integrator of variable steps has no
      * state here at their start, but the inputs of their end. */
@@ -484,6 +458,14 @@ static int start(const Interpreted *context, Instance *self)
 
 /* ---- opening ---------------------------------------------------------------------------------------------------- */
 
+static void add_entry(PartitionRow *row, int column, const double *value)
+{
+    if (*value == 0)
+        return;
+    row->column[row->count] = column;
+    row->value[row->count++] = value;
+}
+
 /* Which derivatives can be other than 0: those that are not, at some placement of the bodies without any symmetry. */
 static PartitionRow *find_pattern(Pool *pool, World *world)
 {
@@ -506,12 +488,12 @@ static PartitionRow *find_pattern(Pool *pool, World *world)
         for (int r = 0; r < tie->rows; ++r, ++next)
             for (int end = 0; end < 2; ++end)
                 for (int i = 0; i < BODY_Q && tie->body[end] >= world->first; ++i)
-                    if (blocks_of(world, tie)[BODY_Q * (tie->rows * end + r) + i] != 0)
-                        next->column[next->count++] = column_of(world, tie->body[end]) + i;
+                    add_entry(next, column_of(world, tie->body[end]) + i,
+                              world->J + ROW_J * tie->first + BODY_Q * (tie->rows * end + r) + i);
     }
     for (int body = world->first; body < world->bodies; ++body, ++next)
         for (int i = 3; i < BODY_Q; ++i)
-            next->column[next->count++] = column_of(world, body) + i;
+            add_entry(next, column_of(world, body) + i, &world->q[body][i]);
     return row;
 }
 

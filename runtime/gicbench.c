@@ -125,6 +125,8 @@ int main(int count, char **word)
     report_write(&report, bench.folder);
     bench_progress("see %s/index.html", bench.folder);
     fputc('\n', stderr);
+    for (int e = 0; e < bench.engines; ++e)
+        engine_close(bench.engine[e]);
     pool_free(pool);
     return 0;
 }

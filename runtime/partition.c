@@ -6,18 +6,43 @@
 #include <string.h>
 #include <suitesparse/klu.h>
 
-/* Phi_u by columns, as KLU wants it; `from` tells which entry of which row each number is. */
+/* Part of Phi_q by columns: where the numbers are. */
+typedef struct Columns {
+    int *start, *row; /* [columns + 1], [entries] */
+    const double **value;
+} Columns;
+
+/* All of Phi_q; and Phi_u, as KLU wants it. */
 typedef struct PartitionFactors {
     klu_common common;
     klu_symbolic *symbolic;
     klu_numeric *numeric;
-    int *start, *index; /* [rows + 1], [entries] */
-    double *value;      /* [entries] */
-    const double **from;
-    int *place; /* [columns] of a coordinate among the dependent ones, or -1 */
+    Columns all, dependent;
+    double *value; /* [entries] of `dependent` */
 } PartitionFactors;
 
-Partition *partition_new(Pool *pool, int rows, int columns, PartitionRow *row)
+static Columns columns_new(Pool *pool, int columns, size_t entries)
+{
+    return (Columns){pool_alloc(pool, ((size_t)columns + 1) * sizeof(int)), pool_alloc(pool, entries * sizeof(int)),
+                     pool_alloc(pool, entries * sizeof(double *))};
+}
+
+static void gather_all(const Partition *partition, Columns *all)
+{
+    int entries = 0;
+    for (int j = 0; j < partition->columns; ++j) {
+        all->start[j] = entries;
+        for (int i = 0; i < partition->rows; ++i)
+            for (int k = 0; k < partition->row[i].count; ++k)
+                if (partition->row[i].column[k] == j) {
+                    all->row[entries] = i;
+                    all->value[entries++] = partition->row[i].value[k];
+                }
+    }
+    all->start[partition->columns] = entries;
+}
+
+Partition *partition_new(Pool *pool, int rows, int columns, const PartitionRow *row)
 {
     Partition *partition = pool_alloc(pool, sizeof *partition);
     PartitionFactors *factors = pool_alloc(pool, sizeof *factors);
@@ -30,12 +55,13 @@ Partition *partition_new(Pool *pool, int rows, int columns, PartitionRow *row)
                              .factors = factors,
                              .dense = pool_alloc(pool, m * n * sizeof(double)),
                              .row_left = pool_alloc(pool, m * sizeof(int)),
-                             .column_left = pool_alloc(pool, n * sizeof(int))};
-    factors->start = pool_alloc(pool, m * sizeof(int));
-    factors->index = pool_alloc(pool, entries * sizeof(int));
+                             .column_left = pool_alloc(pool, n * sizeof(int)),
+                             .largest_at = pool_alloc(pool, m * sizeof(int)),
+                             .largest = pool_alloc(pool, m * sizeof(double))};
+    factors->all = columns_new(pool, columns, entries);
+    factors->dependent = columns_new(pool, rows, entries);
     factors->value = pool_alloc(pool, entries * sizeof(double));
-    factors->from = pool_alloc(pool, entries * sizeof(double *));
-    factors->place = pool_alloc(pool, n * sizeof(int));
+    gather_all(partition, &factors->all);
     klu_defaults(&factors->common);
     factors->common.scale = -1; /* rows are lengths and directions of about the same size */
     factors->common.tol = 0.5;  /* pivots must stay good while the mechanism moves */
@@ -45,20 +71,28 @@ Partition *partition_new(Pool *pool, int rows, int columns, PartitionRow *row)
 /* ---- the choice ---------------------------------------------------------------------------------------------------
  */
 
-/* Largest entry of what is left; its place in row_left and column_left. */
-static double largest_left(const Partition *partition, int done, int *row, int *column)
+/* The largest entry that is left in a row. */
+static void search_row(Partition *partition, int row, int done)
 {
-    double largest = 0;
-    for (int i = done; i < partition->rows; ++i) {
-        const double *a = partition->dense + partition->row_left[i] * partition->columns;
-        for (int j = done; j < partition->columns; ++j)
-            if (fabs(a[partition->column_left[j]]) > largest) {
-                largest = fabs(a[partition->column_left[j]]);
-                *row = i;
-                *column = j;
-            }
+    const double *a = partition->dense + row * partition->columns;
+    partition->largest[row] = 0;
+    for (int j = done; j < partition->columns; ++j) {
+        const double size = fabs(a[partition->column_left[j]]);
+        if (size > partition->largest[row]) {
+            partition->largest[row] = size;
+            partition->largest_at[row] = partition->column_left[j];
+        }
     }
-    return largest;
+}
+
+/* Which of the rows left has the largest entry: its place in row_left. */
+static int largest_left(const Partition *partition, int done)
+{
+    int best = done;
+    for (int i = done + 1; i < partition->rows; ++i)
+        if (partition->largest[partition->row_left[i]] > partition->largest[partition->row_left[best]])
+            best = i;
+    return best;
 }
 
 static void swap(int *list, int i, int j)
@@ -68,6 +102,7 @@ static void swap(int *list, int i, int j)
     list[j] = kept;
 }
 
+/* Take the pivot's row from the others; only those that change are searched again. */
 static void eliminate(Partition *partition, int done)
 {
     const double *pivot_row = partition->dense + partition->row_left[done] * partition->columns;
@@ -79,6 +114,7 @@ static void eliminate(Partition *partition, int done)
         const double factor = a[pivot_column] / pivot_row[pivot_column];
         for (int j = done + 1; j < partition->columns; ++j)
             a[partition->column_left[j]] -= factor * pivot_row[partition->column_left[j]];
+        search_row(partition, partition->row_left[i], done + 1);
     }
 }
 
@@ -88,26 +124,29 @@ static bool choose_columns(Partition *partition)
     const double least = 1e-10; /* of the first pivot: the equations say nothing new */
     double first = 0;
     memset(partition->dense, 0, (size_t)(partition->rows * partition->columns) * sizeof(double));
-    for (int i = 0; i < partition->rows; ++i) {
-        const PartitionRow *row = &partition->row[i];
-        partition->row_left[i] = i;
-        for (int k = 0; k < row->count; ++k)
-            partition->dense[i * partition->columns + row->column[k]] = row->value[k];
-    }
     for (int j = 0; j < partition->columns; ++j) {
         partition->column_left[j] = j;
         partition->chosen[j] = 1;
     }
+    for (int i = 0; i < partition->rows; ++i) {
+        const PartitionRow *row = &partition->row[i];
+        partition->row_left[i] = i;
+        for (int k = 0; k < row->count; ++k)
+            partition->dense[i * partition->columns + row->column[k]] = *row->value[k];
+        search_row(partition, i, 0);
+    }
     for (int done = 0; done < partition->rows; ++done) {
-        int row = done, column = done;
-        const double pivot = largest_left(partition, done, &row, &column);
+        swap(partition->row_left, done, largest_left(partition, done));
+        const int row = partition->row_left[done], column = partition->largest_at[row];
         if (!done)
-            first = pivot;
-        if (!(pivot > least * first))
+            first = partition->largest[row];
+        if (!(partition->largest[row] > least * first))
             return false;
-        swap(partition->row_left, done, row);
-        swap(partition->column_left, done, column);
-        partition->chosen[partition->column_left[done]] = 0;
+        int place = done;
+        while (partition->column_left[place] != column)
+            ++place;
+        swap(partition->column_left, done, place);
+        partition->chosen[column] = 0;
         eliminate(partition, done);
     }
     return true;
@@ -122,45 +161,41 @@ static void forget(PartitionFactors *factors)
     klu_free_symbolic(&factors->symbolic, &factors->common);
 }
 
-static void gather_columns(Partition *partition)
+static void gather_dependent(Partition *partition)
 {
-    PartitionFactors *factors = partition->factors;
+    const Columns *all = &partition->factors->all, *dependent = &partition->factors->dependent;
     int count = 0, entries = 0;
     for (int j = 0; j < partition->columns; ++j) {
-        factors->place[j] = partition->chosen[j] > 0 ? -1 : count;
-        if (factors->place[j] >= 0)
-            partition->dependent[count++] = j;
+        if (partition->chosen[j] > 0)
+            continue;
+        partition->dependent[count] = j;
+        dependent->start[count++] = entries;
+        for (int i = all->start[j]; i < all->start[j + 1]; ++i) {
+            dependent->row[entries] = all->row[i];
+            dependent->value[entries++] = all->value[i];
+        }
     }
-    for (int u = 0; u < count; ++u) {
-        factors->start[u] = entries;
-        for (int i = 0; i < partition->rows; ++i)
-            for (int k = 0; k < partition->row[i].count; ++k)
-                if (partition->row[i].column[k] == partition->dependent[u]) {
-                    factors->index[entries] = i;
-                    factors->from[entries++] = &partition->row[i].value[k];
-                }
-    }
-    factors->start[count] = entries;
+    dependent->start[count] = entries;
 }
 
-static void load(Partition *partition)
+static void load(PartitionFactors *factors, int rows)
 {
-    PartitionFactors *factors = partition->factors;
-    const int entries = factors->start[partition->rows];
+    const int entries = factors->dependent.start[rows];
     for (int i = 0; i < entries; ++i)
-        factors->value[i] = *factors->from[i];
+        factors->value[i] = *factors->dependent.value[i];
 }
 
 static bool analyse(Partition *partition)
 {
     PartitionFactors *factors = partition->factors;
+    int *start = factors->dependent.start, *row = factors->dependent.row;
     forget(factors);
-    gather_columns(partition);
-    load(partition);
-    factors->symbolic = klu_analyze(partition->rows, factors->start, factors->index, &factors->common);
+    gather_dependent(partition);
+    load(factors, partition->rows);
+    factors->symbolic = klu_analyze(partition->rows, start, row, &factors->common);
     if (!factors->symbolic)
         return false;
-    factors->numeric = klu_factor(factors->start, factors->index, factors->value, factors->symbolic, &factors->common);
+    factors->numeric = klu_factor(start, row, factors->value, factors->symbolic, &factors->common);
     if (!factors->numeric)
         return false;
     partition->usual = 1;
@@ -183,9 +218,9 @@ bool partition_adopt(Partition *partition, const double *chosen)
 bool partition_factor(Partition *partition)
 {
     PartitionFactors *factors = partition->factors;
-    load(partition);
-    return klu_refactor(factors->start, factors->index, factors->value, factors->symbolic, factors->numeric,
-                        &factors->common);
+    load(factors, partition->rows);
+    return klu_refactor(factors->dependent.start, factors->dependent.row, factors->value, factors->symbolic,
+                        factors->numeric, &factors->common);
 }
 
 void partition_solve(Partition *partition, double *b)
@@ -196,18 +231,15 @@ void partition_solve(Partition *partition, double *b)
 
 double partition_amplification(Partition *partition, int64_t i)
 {
+    const Columns *all = &partition->factors->all;
     double *b = partition->dense, largest = 0;
     int64_t left = i % (partition->columns - partition->rows);
     int column = 0;
     while (partition->chosen[column] == 0 || left-- > 0)
         ++column;
-    for (int r = 0; r < partition->rows; ++r) {
-        const PartitionRow *row = &partition->row[r];
-        b[r] = 0;
-        for (int k = 0; k < row->count; ++k)
-            if (row->column[k] == column)
-                b[r] = row->value[k];
-    }
+    memset(b, 0, (size_t)partition->rows * sizeof *b);
+    for (int k = all->start[column]; k < all->start[column + 1]; ++k)
+        b[all->row[k]] = *all->value[k];
     partition_solve(partition, b);
     for (int r = 0; r < partition->rows; ++r)
         largest = fmax(largest, fabs(b[r]));

@@ -12,24 +12,26 @@
 /* Most coordinates in one equation: those of two bodies. */
 enum { PARTITION_WIDTH = 14 };
 
+/* value: where the caller keeps the numbers; they are read whenever they are needed. */
 typedef struct PartitionRow {
     int count, column[PARTITION_WIDTH];
-    double value[PARTITION_WIDTH];
+    const double *value[PARTITION_WIDTH];
 } PartitionRow;
 
 typedef struct Partition {
-    int rows, columns; /* equations, coordinates; rows <= columns */
-    PartitionRow *row; /* Phi_q: the caller fills in the values */
-    int *dependent;    /* [rows] columns of the dependent coordinates, u */
-    double *chosen;    /* [columns] 1: independent, 0: dependent; what an instance remembers of a choice */
-    double usual;      /* largest partition_amplification() when it was chosen, at least 1 */
+    int rows, columns;       /* equations, coordinates; rows <= columns */
+    const PartitionRow *row; /* Phi_q */
+    int *dependent;          /* [rows] columns of the dependent coordinates, u */
+    double *chosen;          /* [columns] 1: independent, 0: dependent; what an instance remembers of a choice */
+    double usual;            /* largest partition_amplification() when it was chosen, at least 1 */
     struct PartitionFactors *factors;
-    double *dense;
-    int *row_left, *column_left;
+    double *dense; /* [rows][columns], and in the search for pivots the largest of each row that is left, its column */
+    int *row_left, *column_left, *largest_at;
+    double *largest;
 } Partition;
 
-/* row: patterns, values to come. No choice is made yet. */
-Partition *partition_new(Pool *pool, int rows, int columns, PartitionRow *row);
+/* No choice is made yet. `row` is kept. */
+Partition *partition_new(Pool *pool, int rows, int columns, const PartitionRow *row);
 /* Choose by the present values, analyse and factor. False where the equations are dependent. */
 bool partition_choose(Partition *partition);
 /* Make the choice `chosen` [columns] of an earlier time. False where Phi_u is singular at the present values. */

@@ -114,7 +114,6 @@ int64_t variable_steps(const Variable *variable)
     return (int64_t)variable->driver->e->count;
 }
 
-/* One step of the stepper from the instance's time to *time. */
 /* Numbers that the right-hand side does not use drift from those that they depend on. Where they come into use by more
  * than the tolerance, the history is not theirs. */
 static bool jumps(const Variable *variable)
@@ -126,6 +125,7 @@ static bool jumps(const Variable *variable)
     return false;
 }
 
+/* One step of the stepper from the instance's time to *time. */
 static int advance(Variable *variable, double *time, double end)
 {
     gsl_odeiv2_driver *driver = variable->driver;
