@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * From model file to callable code: generate in this process, compile in a private folder, load, tidy up. The folder is
- * gone in any case; the code stays loaded until the program ends. */
+ * From model file to callable code: generate in this process, take the object that an earlier run kept, else compile in
+ * a private folder, load, keep a copy, tidy up. The folder is gone in any case; the code stays loaded until the program
+ * ends. */
+#include "cache.h"
 #include "gicrun.h"
 
 #include <dirent.h>
@@ -41,91 +43,147 @@ static bool put_sources(Pool *pool, const char *folder, const Text *c, const Tex
     return good;
 }
 
-const char build_flags[] = "-std=c99 -O2 -fPIC -shared -ffp-contract=off -fno-math-errno";
-
-/* Words of the compiler command (a user may add options), then ours. */
-static char *const *compiler_command(Pool *pool, const char *compiler, const char *folder)
-{
-    const char *const ours[] = {
-        "-o", pool_print(pool, "%s/model.so", folder),
-        pool_print(pool, "%s/model.c", folder), pool_print(pool, "%s/gic_runtime.c", folder), "-lm",
-    };
-    char **argv = NULL, *rest;
-    int count = 0;
-    char *word = strtok_r(pool_print(pool, "%s %s", compiler, build_flags), " \t", &rest);
-    for (; word; word = strtok_r(NULL, " \t", &rest))
-        *POOL_PUSH(pool, argv, count) = word;
-    for (size_t i = 0; i < sizeof ours / sizeof *ours; ++i)
-        *POOL_PUSH(pool, argv, count) = pool_print(pool, "%s", ours[i]);
-    *POOL_PUSH(pool, argv, count) = NULL;
-    return argv;
-}
-
 /* What went wrong between the two texts and loaded code, to be told once the folder is gone. */
 typedef struct Failure {
     const char *message, *remedy;
 } Failure;
 
-static void *compile_and_load(Pool *pool, const char *folder, const char *compiler, const Text *c, const Text *h,
-                              Failure *failure)
+typedef struct Build {
+    Pool *pool;
+    const char *model; /* its name */
+    Text c, h;
+    const char **words;      /* compiler and options */
+    int count;               /* of words */
+    const char *shelf, *key; /* where objects are kept, NULL: nowhere; and as what */
+    const char *unkept;      /* why the object isn't kept, or NULL */
+    Failure failure;
+} Build;
+
+/* Everything that decides what is in the object. */
+static const char *build_key(Build *b)
 {
-    if (!put_sources(pool, folder, c, h)) {
-        *failure = (Failure){pool_print(pool, "can't write to %s: %s", folder, strerror(errno)),
-                             "make room there, or set TMPDIR to another folder"};
+    const char **text = NULL;
+    int count = 0;
+    *POOL_PUSH(b->pool, text, count) = b->c.s;
+    *POOL_PUSH(b->pool, text, count) = b->h.s;
+    for (const Embedded *file = embedded; file->name; ++file)
+        if (!strncmp(file->name, "gic_runtime.", strlen("gic_runtime.")))
+            *POOL_PUSH(b->pool, text, count) = file->bytes;
+    for (int i = 0; i < b->count; ++i)
+        *POOL_PUSH(b->pool, text, count) = b->words[i];
+    *POOL_PUSH(b->pool, text, count) = compiler_identity(b->pool, b->words, b->count);
+    *POOL_PUSH(b->pool, text, count) = NULL;
+    return cache_key(b->pool, text);
+}
+
+/* The descriptor in an object, which stays loaded; NULL: see failure. */
+static const gic_model *load(Build *b, const char *path)
+{
+    void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    if (!library) {
+        b->failure = (Failure){pool_print(b->pool, "the compiled model can't be loaded: %s", dlerror()),
+                               "if the folder forbids execution, set TMPDIR to one that allows it"};
         return NULL;
     }
-    char *const *argv = compiler_command(pool, compiler, folder);
-    const char *said;
-    int status = process_run(pool, argv, "", &said);
+    const gic_model *code = dlsym(library, pool_print(b->pool, "%s_model", b->model));
+    if (code && code->abi_version == GIC_ABI_VERSION && code->real_size == sizeof(gic_real))
+        return code;
+    b->failure = (Failure){pool_print(b->pool, "the compiled model does not fit: %s", gic_status_text(GIC_ERROR_ABI)),
+                           "does the compiler command change the number type or the target machine?"};
+    dlclose(library);
+    return NULL;
+}
+
+/* Compile in a folder and load. */
+static const gic_model *compile(Build *b, const char *folder)
+{
+    Pool *pool = b->pool;
+    if (!put_sources(pool, folder, &b->c, &b->h)) {
+        b->failure = (Failure){pool_print(pool, "can't write to %s: %s", folder, strerror(errno)),
+                               "make room there, or set TMPDIR to another folder"};
+        return NULL;
+    }
+    const char *object = pool_print(pool, "%s/model.so", folder), *said;
+    const char *const ours[] = {
+        "-o",  object, pool_print(pool, "%s/model.c", folder), pool_print(pool, "%s/gic_runtime.c", folder),
+        "-lm", NULL};
+    char **argv = NULL;
+    int count = 0;
+    for (int i = 0; i < b->count; ++i)
+        *POOL_PUSH(pool, argv, count) = pool_print(pool, "%s", b->words[i]);
+    for (size_t i = 0; i < sizeof ours / sizeof *ours; ++i)
+        *POOL_PUSH(pool, argv, count) = ours[i] ? pool_print(pool, "%s", ours[i]) : NULL;
+    const int status = process_run(pool, argv, "", &said);
     if (status == PROCESS_INTERRUPTED)
         return NULL;
     if (status == PROCESS_NOT_STARTED) {
-        *failure = (Failure){pool_print(pool, "the C compiler '%s' can't be started: %s", argv[0], said),
-                             "install one (Debian: apt-get install gcc libc6-dev), or name yours: --cc, or set CC"};
+        b->failure = (Failure){pool_print(pool, "the C compiler '%s' can't be started: %s", argv[0], said),
+                               "install one (Debian: apt-get install gcc libc6-dev), or name yours: --cc, or set CC"};
         return NULL;
     }
     if (status) {
         fputs(said, stderr);
-        *failure = (Failure){pool_print(pool, "the C compiler '%s' failed on the generated code (status %d); its "
-                                              "messages are above", argv[0], status),
-                             "is it a C99 compiler with libc headers (Debian: libc6-dev)? Try another one with --cc"};
+        b->failure = (Failure){pool_print(pool,
+                                          "the C compiler '%s' failed on the generated code (status %d); its "
+                                          "messages are above",
+                                          argv[0], status),
+                               "is it a C99 compiler with libc headers (Debian: libc6-dev)? Try another one with --cc, "
+                               "or other options"};
         return NULL;
     }
-    void *library = dlopen(pool_print(pool, "%s/model.so", folder), RTLD_NOW | RTLD_LOCAL);
-    if (!library)
-        *failure = (Failure){pool_print(pool, "the compiled model can't be loaded: %s", dlerror()),
-                             "if the folder forbids execution, set TMPDIR to one that allows it"};
-    return library;
+    const gic_model *code = load(b, object);
+    if (code && b->shelf && !cache_keep(pool, b->shelf, b->key, object, cache_limit()))
+        b->unkept = pool_print(pool, "can't write to %s: %s", b->shelf, strerror(errno));
+    return code;
+}
+
+static const gic_model *compile_privately(Build *b)
+{
+    char *folder = pool_print(b->pool, "%s/gicrun-XXXXXX", temporary_folder());
+    if (!mkdtemp(folder)) {
+        b->failure =
+            (Failure){pool_print(b->pool, "can't make a folder in %s: %s", temporary_folder(), strerror(errno)),
+                      "set TMPDIR to a folder that can be written"};
+        return NULL;
+    }
+    const gic_model *code = compile(b, folder);
+    remove_folder(b->pool, folder);
+    return code;
+}
+
+/* The object of an earlier run. One that can't be used is removed. */
+static const gic_model *take_kept(Build *b)
+{
+    const char *path = cache_find(b->pool, b->shelf, b->key);
+    const gic_model *code = path ? load(b, path) : NULL;
+    if (path && !code)
+        unlink(path);
+    b->failure = (Failure){NULL, NULL};
+    return code;
 }
 
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options)
 {
-    Text c = {.pool = pool}, h = {.pool = pool};
     if (!options->compiler[strspn(options->compiler, " \t")])
         diag_fail(gicrun_place, "name it: --cc gcc, or set CC", "the compiler command is empty");
+    Build b = {.pool = pool, .model = model->name, .c.pool = pool, .h.pool = pool};
     const Sequence *sequence = sequence_find(pool, model);
     const Formulation *formulation = formulate(pool, model_assemble(pool, model, sequence), sequence, options->solve);
-    generate(pool, formulation, NULL, "model.h", &c, &h);
+    generate(pool, formulation, NULL, "model.h", &b.c, &b.h);
+    b.words = compiler_words(pool, options->compiler, options->flags, &b.count);
 
     interrupt_hold();
-    char *folder = pool_print(pool, "%s/gicrun-XXXXXX", temporary_folder());
-    Failure failure = {NULL, NULL};
-    void *library = NULL;
-    if (mkdtemp(folder)) {
-        library = compile_and_load(pool, folder, options->compiler, &c, &h, &failure);
-        remove_folder(pool, folder);
-    } else {
-        failure = (Failure){pool_print(pool, "can't make a folder in %s: %s", temporary_folder(), strerror(errno)),
-                            "set TMPDIR to a folder that can be written"};
-    }
+    b.shelf = cache_folder(pool, &b.unkept);
+    b.key = build_key(&b);
+    const gic_model *code = b.shelf ? take_kept(&b) : NULL;
+    if (!code)
+        code = compile_privately(&b);
     interrupt_release();
-    if (failure.message)
-        diag_fail(gicrun_place, failure.remedy, "%s", failure.message);
+    if (!code)
+        diag_fail(gicrun_place, b.failure.remedy, "%s", b.failure.message);
+    if (b.unkept && !options->quiet)
+        fprintf(stderr, "gicrun: note: the compiled model is not kept for the next run: %s\n", b.unkept);
 
-    const gic_model *code = dlsym(library, pool_print(pool, "%s_model", model->name));
-    if (!code || code->abi_version != GIC_ABI_VERSION || code->real_size != sizeof(gic_real))
-        diag_fail(gicrun_place, "does the compiler command change the number type or the target machine?",
-                  "the compiled model does not fit: %s", gic_status_text(GIC_ERROR_ABI));
     Engine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (Engine){.name = "cc", .code = code, .standard = code->state, .standard_count = code->slow_count};
     return engine;

@@ -86,17 +86,28 @@ static bool make_folders(Pool *pool, const char *path)
     }
 }
 
-const char *cache_folder(Pool *pool)
+static const char *folder_name(Pool *pool)
 {
     const char *own = getenv("GICGEN_CACHE"), *base = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-    const char *folder = NULL;
     if (own)
-        folder = *own ? own : NULL;
-    else if (base && *base == '/')
-        folder = pool_print(pool, "%s/gicgen", base);
-    else if (home && *home == '/')
-        folder = pool_print(pool, "%s/.cache/gicgen", home);
-    return folder && make_folders(pool, folder) ? folder : NULL;
+        return own;
+    if (base && *base == '/')
+        return pool_print(pool, "%s/gicgen", base);
+    return home && *home == '/' ? pool_print(pool, "%s/.cache/gicgen", home) : NULL;
+}
+
+const char *cache_folder(Pool *pool, const char **why)
+{
+    struct stat is;
+    const char *folder = folder_name(pool);
+    *why = NULL;
+    if (!folder)
+        *why = "neither GICGEN_CACHE nor HOME names a folder";
+    else if (*folder && (!make_folders(pool, folder) || stat(folder, &is)))
+        *why = pool_print(pool, "can't make the folder %s: %s", folder, strerror(errno));
+    else if (*folder && (is.st_uid != geteuid() || (is.st_mode & S_IWOTH)))
+        *why = pool_print(pool, "the folder %s belongs to somebody else, or everybody may write there", folder);
+    return *why || !*folder ? NULL : folder;
 }
 
 int64_t cache_limit(void)
@@ -202,8 +213,10 @@ bool cache_keep(Pool *pool, const char *folder, const char *key, const char *pat
     const Seal seal = seal_of(bytes, size);
     bool good = fwrite(bytes, 1, size, file) == size && fwrite(&seal, sizeof seal, 1, file) == 1;
     good = !fclose(file) && good && !rename(temporary, place);
+    const int error = errno;
     if (!good)
         unlink(temporary);
     trim(pool, folder, most);
+    errno = error;
     return good;
 }

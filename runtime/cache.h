@@ -12,14 +12,15 @@
 /* Bytes of all kept objects unless $GICGEN_CACHE_SIZE (MB) says otherwise; the least recently used ones go first. */
 #define CACHE_MOST ((int64_t)64 << 20)
 
-/* The folder: $GICGEN_CACHE, else gicgen in $XDG_CACHE_HOME or ~/.cache; made where it is missing. NULL where that
- * can't be done, or where $GICGEN_CACHE is set and empty: nothing is kept. */
-const char *cache_folder(Pool *pool);
+/* The folder: $GICGEN_CACHE, else gicgen in $XDG_CACHE_HOME or ~/.cache; made where it is missing. NULL: nothing is
+ * kept, *why says why not, or is NULL where that is wanted ($GICGEN_CACHE is set and empty). A folder in which others
+ * could put objects is refused: objects are code, and are run. */
+const char *cache_folder(Pool *pool, const char **why);
 /* A key for the texts that determine an object; the list ends with NULL. */
 const char *cache_key(Pool *pool, const char *const *text);
 /* The path of a kept object, or NULL. */
 const char *cache_find(Pool *pool, const char *folder, const char *key);
-/* Keep a copy of the object at `path`, then drop what exceeds `most` bytes. False where it can't be written. */
+/* Keep a copy of the object at `path`, then drop what exceeds `most` bytes. False, with errno, where that can't be. */
 bool cache_keep(Pool *pool, const char *folder, const char *key, const char *path, int64_t most);
 /* The limit in bytes: see CACHE_MOST. */
 int64_t cache_limit(void);

@@ -45,10 +45,12 @@ typedef struct Engine {
 extern const char *const engine_name[];
 bool engine_known(const char *name);
 
-/* For those engines that generate or compile. compiler: command, perhaps with options. */
+/* For those engines that generate or compile. */
 typedef struct EngineOptions {
     Solve solve;
-    const char *compiler;
+    const char *compiler; /* command, perhaps with options */
+    const char *flags;    /* more options, behind ours */
+    bool quiet;           /* no notes */
 } EngineOptions;
 
 /* Open an engine, one of engine_name, for a model. Every failure ends in diag_fail. */
@@ -82,12 +84,20 @@ const char *instance_status(Pool *pool, const gic_model *model, const gic_head *
 /* An array of the instance at one of the descriptor's offsets. */
 double *instance_array(gic_head *self, size_t offset);
 
+/* ---- compiler.c: the user's C compiler -------------------------------------------------------------------- */
+
+/* Our options of the compiler, behind the command's and before the user's. */
+extern const char build_flags[];
+/* Words of command, our options and the user's; blanks separate them. */
+const char **compiler_words(Pool *pool, const char *compiler, const char *flags, int *count);
+/* What decides what a command makes, other than its words and what it reads: the programs and files that the words name
+ * (path, inode, size, time of change), the environment, and the processor, for -march=native means it. */
+const char *compiler_identity(Pool *pool, const char *const *words, int count);
+
 /* ---- one function for each engine that is not in a file of its own name ---------------------------------- */
 
-/* build.c: generated code, compiled and loaded. */
+/* build.c: generated code, compiled, or kept from an earlier run, and loaded. */
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
-/* Our options of the compiler, behind the user's. */
-extern const char build_flags[];
 /* engine_gic.c: the method of Serban and Haug 2000, interpreted. */
 const Engine *engine_gic(Pool *pool, const Model *model, const EngineOptions *options);
 /* engine_gcp.c: generalized coordinate partitioning, with the topology-based solver and with MUMPS. */

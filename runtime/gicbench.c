@@ -18,6 +18,7 @@ static const char help[] = "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCEN
                            "                       with the first; default: all\n"
                            "      --quick          few repetitions, few settings\n"
                            "      --cc COMMAND     C compiler of generated code; default: $CC or cc\n"
+                           "      --cflags FLAGS   more options for it, behind ours, all in one word\n"
                            "  -h, --help           this text\n"
                            "      --version        version\n"
                            "\n"
@@ -50,12 +51,13 @@ static const char *const *engine_list(Pool *pool, char *names)
 /* What the command line asks for, and the names of the engines, ended by NULL. */
 static Bench read_command_line(Pool *pool, int count, char **word, const char *const **names)
 {
-    enum { ENGINES = 256, QUICK, COMPILER, VERSION };
+    enum { ENGINES = 256, QUICK, COMPILER, FLAGS, VERSION };
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
         {"engines", required_argument, NULL, ENGINES},
         {"quick", no_argument, NULL, QUICK},
         {"cc", required_argument, NULL, COMPILER},
+        {"cflags", required_argument, NULL, FLAGS},
         {"help", no_argument, NULL, 'h'},
         {"version", no_argument, NULL, VERSION},
         {NULL, 0, NULL, 0},
@@ -63,6 +65,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
     const char *compiler = getenv("CC");
     Bench bench = {.pool = pool, .folder = "gicbench", .repetitions = 9};
     bench.options.compiler = compiler && *compiler ? compiler : "cc";
+    bench.options.flags = "";
     *names = engine_name;
     for (int option; (option = getopt_long(count, word, "o:h", options, NULL)) != -1;)
         switch (option) {
@@ -73,6 +76,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
             bench.repetitions = 3;
             break;
         case COMPILER: bench.options.compiler = optarg; break;
+        case FLAGS: bench.options.flags = optarg; break;
         case 'h': fputs(help, stdout); exit(0);
         case VERSION: puts("gicbench " GICGEN_VERSION); exit(0);
         default: fputs("  remedy: `gicbench -h` shows how\n", stderr); exit(2);

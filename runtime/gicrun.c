@@ -27,10 +27,15 @@ static const char help[] =
     "                     same formulas interpreted, digit by digit equal; gic, the paper's\n"
     "                     form of the method interpreted. The last two need no compiler\n"
     "      --solve FORM   of the equations of motion: reduced (default) or augmented\n"
-    "      --cc COMMAND   C compiler; default: $CC or cc\n"
+    "      --cc COMMAND   C compiler, perhaps with options; default: $CC or cc\n"
+    "      --cflags FLAGS more options for it, behind ours, all in one word\n"
     "  -q, --quiet        neither progress nor summary\n"
     "  -h, --help         this text\n"
     "      --version      version\n"
+    "\n"
+    "What the compiler made is kept for the next run, in $GICGEN_CACHE (default: gicgen in\n"
+    "$XDG_CACHE_HOME or ~/.cache), at most $GICGEN_CACHE_SIZE megabytes (default: 64); an\n"
+    "empty GICGEN_CACHE keeps nothing. The compiler works in $TMPDIR (default: /tmp).\n"
     "\n"
     "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
     "Exit status: 0 good, 1 error in a file or during the run, 2 wrong usage.\n";
@@ -70,7 +75,7 @@ static const char *read_engine(const char *name)
 
 static Request read_command_line(int count, char **word)
 {
-    enum { PLOT = 256, EVAL, ENGINE, SOLVE, COMPILER, INTEGRATOR, TOLERANCE, VERSION };
+    enum { PLOT = 256, EVAL, ENGINE, SOLVE, COMPILER, FLAGS, INTEGRATOR, TOLERANCE, VERSION };
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
         {"plot", required_argument, NULL, PLOT},
@@ -80,12 +85,13 @@ static Request read_command_line(int count, char **word)
         {"engine", required_argument, NULL, ENGINE},
         {"solve", required_argument, NULL, SOLVE},
         {"cc", required_argument, NULL, COMPILER},
+        {"cflags", required_argument, NULL, FLAGS},
         {"quiet", no_argument, NULL, 'q'},
         {"help", no_argument, NULL, 'h'},
         {"version", no_argument, NULL, VERSION},
         {NULL, 0, NULL, 0},
     };
-    Request request = {.engine = engine_name[0], .compiler = default_compiler()};
+    Request request = {.engine = engine_name[0], .compiler = default_compiler(), .flags = ""};
     for (int option; (option = getopt_long(count, word, "o:qh", options, NULL)) != -1;)
         switch (option) {
         case 'o': request.results = optarg; break;
@@ -100,6 +106,7 @@ static Request read_command_line(int count, char **word)
                 usage_fail("--solve takes reduced or augmented, not", optarg);
             break;
         case COMPILER: request.compiler = optarg; break;
+        case FLAGS: request.flags = optarg; break;
         case 'q': request.quiet = true; break;
         case 'h': fputs(help, stdout); exit(0);
         case VERSION: puts("gicrun " GICGEN_VERSION); exit(0);
@@ -136,7 +143,10 @@ int main(int count, char **word)
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
     const Engine *engine =
         engine_open(pool, request.engine, model,
-                    &(EngineOptions){.solve = request.solve, .compiler = request.compiler});
+                    &(EngineOptions){.solve = request.solve,
+                                     .compiler = request.compiler,
+                                     .flags = request.flags,
+                                     .quiet = request.quiet});
     if (request.states)
         evaluate(pool, engine, scene, &request);
     else

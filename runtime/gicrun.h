@@ -19,6 +19,7 @@ typedef struct Request {
     const char *engine;         /* one of engine_name */
     Solve solve;
     const char *compiler;       /* command, perhaps with options */
+    const char *flags;          /* more options of the compiler */
     const char *integrator;     /* instead of the scene's, or NULL */
     double tolerance;           /* instead of the scene's, or 0 */
     bool quiet;

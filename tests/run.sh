@@ -35,7 +35,10 @@ run() {
 }
 
 log=$(mktemp) || exit 1
-trap 'rm -f "$log"' EXIT
+# compiled models are kept for the tests alone
+GICGEN_CACHE=$(mktemp -d) || exit 1
+export GICGEN_CACHE
+trap 'rm -rf "$log" "$GICGEN_CACHE"' EXIT
 trap 'exit 130' INT TERM
 passed=0
 failed=0

@@ -70,7 +70,7 @@ static void test_keys(void **state)
 static void test_kept_is_found(void **state)
 {
     Shelf *f = *state;
-    const char *folder = cache_folder(f->pool);
+    const char *why, *folder = cache_folder(f->pool, &why);
     assert_string_equal(folder, f->folder);
     put(f, 1000, 'x');
     assert_null(cache_find(f->pool, folder, "one"));
@@ -88,7 +88,7 @@ static void test_kept_is_found(void **state)
 static void test_damage(void **state)
 {
     Shelf *f = *state;
-    const char *folder = cache_folder(f->pool);
+    const char *why, *folder = cache_folder(f->pool, &why);
     put(f, 64, 'x');
     assert_true(cache_keep(f->pool, folder, "one", f->object, CACHE_MOST));
     const char *path = cache_find(f->pool, folder, "one");
@@ -112,7 +112,7 @@ static void test_damage(void **state)
 static void test_limit(void **state)
 {
     Shelf *f = *state;
-    const char *folder = cache_folder(f->pool);
+    const char *why, *folder = cache_folder(f->pool, &why);
     const struct timespec moment = {0, 20000000};
     put(f, 1000, 'x');
     for (int i = 0; i < 5; ++i) {
@@ -139,7 +139,7 @@ static void test_processes(void **state)
 {
     enum { PROCESSES = 8, ROUNDS = 40 };
     Shelf *f = *state;
-    const char *folder = cache_folder(f->pool);
+    const char *why, *folder = cache_folder(f->pool, &why);
     pid_t child[PROCESSES];
     put(f, 200000, 'x');
     for (int p = 0; p < PROCESSES; ++p)
@@ -168,19 +168,35 @@ static void test_processes(void **state)
     assert_non_null(cache_find(f->pool, folder, "key0"));
 }
 
-static void test_unwritable(void **state)
+static void test_folders(void **state)
 {
     Shelf *f = *state;
+    const char *why;
     setenv("GICGEN_CACHE", "", 1);
-    assert_null(cache_folder(f->pool));
+    assert_null(cache_folder(f->pool, &why));
+    assert_null(why);
     setenv("GICGEN_CACHE", "/proc/nowhere", 1);
-    assert_null(cache_folder(f->pool));
+    assert_null(cache_folder(f->pool, &why));
+    assert_non_null(strstr(why, "/proc/nowhere"));
     put(f, 100, 'x');
     assert_false(cache_keep(f->pool, "/proc/nowhere", "one", f->object, CACHE_MOST));
+    /* where anybody could put an object */
+    setenv("GICGEN_CACHE", f->folder, 1);
+    assert_non_null(cache_folder(f->pool, &why));
+    assert_int_equal(chmod(f->folder, 0777), 0);
+    assert_null(cache_folder(f->pool, &why));
+    assert_non_null(strstr(why, "everybody may write"));
+    assert_int_equal(chmod(f->folder, 0700), 0);
+    /* without a name of its own */
     unsetenv("GICGEN_CACHE");
     setenv("XDG_CACHE_HOME", f->folder, 1);
-    assert_string_equal(cache_folder(f->pool), pool_print(f->pool, "%s/gicgen", f->folder));
+    assert_string_equal(cache_folder(f->pool, &why), pool_print(f->pool, "%s/gicgen", f->folder));
     unsetenv("XDG_CACHE_HOME");
+    setenv("HOME", f->root, 1);
+    assert_string_equal(cache_folder(f->pool, &why), pool_print(f->pool, "%s/.cache/gicgen", f->root));
+    unsetenv("HOME");
+    assert_null(cache_folder(f->pool, &why));
+    assert_non_null(why);
 }
 
 int main(void)
@@ -191,7 +207,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_damage, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_limit, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_processes, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_unwritable, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_folders, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
