@@ -12,7 +12,7 @@
 # CC, CXX, CFLAGS, LDFLAGS and BUILD (the build folder) may be given; WERROR=-Werror makes warnings errors.
 
 BUILD := build
-CFLAGS := -O2 -g
+CFLAGS := -O3 -g
 WERROR :=
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow $(WERROR)
 STANDARD := -std=c11 -D_POSIX_C_SOURCE=200809L
