@@ -27,6 +27,7 @@ static const char *chart_script(Pool *pool, const Chart *chart, const char *outp
     text_print(&out, "set terminal svg size 900,560 noenhanced background 'white'\nset output '%s'\n", output);
     text_print(&out, "set title '%s'\nset xlabel '%s'\nset ylabel '%s'\n", chart->title, chart->x, chart->y);
     text_print(&out, "set logscale xy\nset format xy '%%g'\nset grid\nset key outside right\nset pointsize 0.7\n");
+    text_print(&out, "set linetype 5 linecolor rgb '#e51e10'\n"); /* is yellow, which white paper swallows */
     for (int i = 0; i < chart->count; ++i) {
         const Series *s = &chart->series[i];
         text_print(&out, "$data%d << END\n", i);

@@ -99,11 +99,18 @@ static void set_design(World *world, const Body *body)
 
 static void set_size(World *world)
 {
-    world->size = 0.01;
+    const double least = 0.01;
+    world->size = least;
     for (int t = 0; t < world->ties; ++t)
         for (int end = 0; end < 2; ++end)
             if (world->tie[t].body[end] >= world->first)
                 world->size = fmax(world->size, sqrt(dot3(world->tie[t].arm[end], world->tie[t].arm[end])));
+    /* bodies on rails through their mass centres have no arms: then how far they go is the measure */
+    for (int c = 0; c < world->model->coordinates && world->size <= least; ++c) {
+        const Coordinate *w = &world->model->coordinate[c];
+        if (w->type != COORDINATE_ANGLE)
+            world->size = fmax(world->size, w->range[1] - w->range[0]);
+    }
 }
 
 void world_adopt(World *world)

@@ -39,7 +39,8 @@ typedef struct World {
     int constraints, constraint_rows; /* how many of them, from the first, are joints and driven coordinates */
     Tie *tie;
     int *coordinate_tie;        /* [coordinates] */
-    double size;                /* largest distance of a tie's point from its body's centre of mass, at least 0.01 m */
+    double size;                /* largest distance of a tie's point from its body's centre of mass, at least 0.01 m;
+                                 * without such distances the range of a length or translation */
     double (*q_design)[BODY_Q]; /* [bodies] at the assembled design */
 
     /* what an evaluation starts from */
