@@ -8,8 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Leaves in one expression, a function's name counted as one: about a line of text, and a bound on its nesting. */
-enum { LEAVES_MOST = 6 };
+/* For people and optimizing compilers: about a line of text. */
+const Style style_readable = {.leaves = 6, .doubles = false, .whole_self_test = true};
+/* For a compiler that keeps no value in a register from one statement to the next, and whose own time counts. */
+const Style style_direct = {.leaves = 30, .doubles = true, .whole_self_test = false};
 
 /* Binding strength of a node's text. */
 enum { STRENGTH_SUM = 1, STRENGTH_PRODUCT = 2, STRENGTH_UNARY = 3, STRENGTH_ATOM = 4 };
@@ -27,6 +29,7 @@ typedef struct Emitter {
     Text *out;
     const Block *block;
     const Dag *dag;
+    const Style *style;
     Constants *constants;
     int indent;
     int *uses;      /* [nodes] how often a needed node is used */
@@ -35,14 +38,28 @@ typedef struct Emitter {
     int temporaries;
 } Emitter;
 
-const char *emit_number(Pool *pool, double value)
+/* The shortest of 15 to 17 digits that reads back bit-exactly, between two texts. */
+static const char *number_text(Pool *pool, const char *before, double value, const char *after)
 {
     char digits[32];
     int precision = 15;
     do
         snprintf(digits, sizeof digits, "%.*g", precision++, value);
     while (strtod(digits, NULL) != value && precision <= 17);
-    return pool_print(pool, "R(%s%s)", digits, strpbrk(digits, ".e") ? "" : ".0");
+    return pool_print(pool, "%s%s%s%s", before, digits, strpbrk(digits, ".e") ? "" : ".0", after);
+}
+
+const char *emit_number(Pool *pool, double value)
+{
+    return number_text(pool, "R(", value, ")");
+}
+
+/* A number within an expression, where a minus sign must not meet another one. */
+static const char *literal_text(const Emitter *m, double value)
+{
+    if (!m->style->doubles)
+        return emit_number(m->dag->pool, value);
+    return signbit(value) ? number_text(m->dag->pool, "(", value, ")") : number_text(m->dag->pool, "", value, "");
 }
 
 /* Every line of one block can name what it needs by number alone. */
@@ -78,7 +95,7 @@ static void size_texts(Emitter *m)
             sum += own ? own : 1;
         }
         bool again = m->uses[e] > 1 && node->op != OP_ROAD_PART;
-        m->leaves[e] = again || sum > LEAVES_MOST || node->op == OP_ROAD ? 0 : sum;
+        m->leaves[e] = again || sum > m->style->leaves || node->op == OP_ROAD ? 0 : sum;
     }
 }
 
@@ -109,7 +126,7 @@ static void write_text(Emitter *m, Text *line, Ex e, int strength)
 {
     const Node *node = &m->dag->node[e];
     if (node->op == OP_LITERAL) {
-        text_print(line, "%s", emit_number(m->dag->pool, ex_value(m->dag, e, 0)));
+        text_print(line, "%s", literal_text(m, ex_value(m->dag, e, 0)));
         return;
     }
     if (node->level < LEVEL_VARIABLE) {
@@ -202,17 +219,18 @@ static void write_check(Emitter *m, const Check *check)
     write_temporaries(m, check->value);
     write_text(m, &line, check->value, 0);
     text_print(m->out, check->magnitude ? "%*sif (!(GIC_FABS(%s) > %s))\n" : "%*sif (!(%s > %s))\n", m->indent, "",
-               line.s, emit_number(m->dag->pool, check->least));
+               line.s, literal_text(m, check->least));
     text_print(m->out, "%*sreturn %s;\n", m->indent + 4, "", check->status);
 }
 
-void block_emit(Text *out, const Block *block, Constants *constants, int indent)
+void block_emit(Text *out, const Block *block, const Style *style, Constants *constants, int indent)
 {
     Pool *pool = block->dag->pool;
     size_t nodes = (size_t)block->dag->nodes;
     Emitter m = {.out = out,
                  .block = block,
                  .dag = block->dag,
+                 .style = style,
                  .constants = constants,
                  .indent = indent,
                  .uses = pool_alloc(pool, nodes * sizeof(int)),

@@ -14,6 +14,7 @@ typedef struct Generation {
     const Model *model; /* these three are the formulation's */
     const Sequence *sequence;
     const Plan *plan;
+    const Style *style;
     const char *templates, *header, *upper;
     int class;            /* the one whose template is being expanded */
     Constants *constants; /* [classes] */
@@ -271,7 +272,7 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
                              : !strcmp(name, "solve") ? &f->solve
                              : !strcmp(name, "react") ? &f->react
                                                       : &f->residual;
-        block_emit(out, block, &g->constants[g->class], indent);
+        block_emit(out, block, g->style, &g->constants[g->class], indent);
     }
 }
 
@@ -648,7 +649,7 @@ static void insert_derive(void *context, const char *name, Text *out, int indent
     Generation *g = context;
     Constants none = {0};
     const Block *block = !strcmp(name, "derive") ? derive_block(g->pool, g->plan) : draw_block(g->pool, g->plan);
-    block_emit(out, block, &none, indent);
+    block_emit(out, block, g->style, &none, indent);
 }
 
 static void insert_code(void *context, const char *name, Text *out, int indent)
@@ -663,7 +664,7 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
                   {"energy", g->formulation->energy},     {"wrenches", g->formulation->wrenches}};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
         if (!strcmp(name, blocks[i].name)) {
-            block_emit(out, blocks[i].block, &none, indent);
+            block_emit(out, blocks[i].block, g->style, &none, indent);
             return;
         }
     if (!strcmp(name, "banner")) {
@@ -683,6 +684,11 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
         write_gather(g, out, indent);
     } else if (!strcmp(name, "base")) {
         insert_template(g, out, g->model->free_base ? "base_free.c.in" : "base_fixed.c.in");
+    } else if (!strcmp(name, "independent equations")) {
+        if (g->style->whole_self_test)
+            template_expand(g->pool, out, g->templates, "independent.c.in", g->model->name, NULL, insert_code, g);
+    } else if (!strcmp(name, "self-test")) {
+        insert_template(g, out, g->style->whole_self_test ? "self_test.c.in" : "self_test_constraints.c.in");
     } else if (!strcmp(name, "road")) {
         if (g->model->wheels)
             insert_template(g, out, "road.c.in");
@@ -748,7 +754,8 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
     }
 }
 
-void generate(Pool *pool, const Formulation *formulation, const char *templates, const char *header, Text *c, Text *h)
+void generate(Pool *pool, const Formulation *formulation, const Style *style, const char *templates,
+              const char *header, Text *c, Text *h)
 {
     const char *name = formulation->model->name;
     Generation g = {.pool = pool,
@@ -756,6 +763,7 @@ void generate(Pool *pool, const Formulation *formulation, const char *templates,
                     .model = formulation->model,
                     .sequence = formulation->sequence,
                     .plan = formulation->plan,
+                    .style = style,
                     .templates = templates,
                     .header = header,
                     .upper = capital(pool, name),

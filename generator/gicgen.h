@@ -607,10 +607,19 @@ typedef struct Constants {
     Ex *e;
 } Constants;
 
+/* How the text looks. No style changes the order of operations: results are the same to the last bit. */
+typedef struct Style {
+    int leaves;           /* in one expression at most, a function's name counted as one: also bounds its nesting */
+    bool doubles;         /* numbers are plain: 0.5; else of either type: R(0.5) */
+    bool whole_self_test; /* else it measures constraints alone */
+} Style;
+
+extern const Style style_readable, style_direct;
+
 /* The statements of a block, each line led by `indent` spaces: temporaries in depth-first order from the results,
  * checks as soon as their values are there, stores at the end (a target may be read before). Constants met on the way
  * get slots. */
-void block_emit(Text *out, const Block *block, Constants *constants, int indent);
+void block_emit(Text *out, const Block *block, const Style *style, Constants *constants, int indent);
 /* A number as C source that reads back bit-exactly: R(0.5). */
 const char *emit_number(Pool *pool, double value);
 
@@ -664,7 +673,8 @@ Count figures_outputs(const Figures *figures);
 
 /* The generated C and its header. `header`: the name by which the C includes it, NULL: it doesn't. `templates` as
  * above. */
-void generate(Pool *pool, const Formulation *f, const char *templates, const char *header, Text *c, Text *h);
+void generate(Pool *pool, const Formulation *f, const Style *style, const char *templates, const char *header, Text *c,
+              Text *h);
 
 /* ---- measure.c, report.c: the page about it ---------------------------------------------------------------------- */
 

@@ -124,7 +124,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
     const Formulation *formulation = formulate(pool, model, sequence, options->solve);
-    generate(pool, formulation, options->templates, strcmp(path, "-") ? name : NULL, &c, &h);
+    generate(pool, formulation, &style_readable, options->templates, strcmp(path, "-") ? name : NULL, &c, &h);
     if (!strcmp(path, "-")) {
         text_add(&h, c.s, c.size);
         file_write(path, h.s, h.size);
@@ -152,7 +152,7 @@ static void write_report(Pool *pool, const Model *model, const Sequence *sequenc
     if (strcmp(options->page, "-") && !ends_with(options->page, ".html"))
         usage_error("the report's name must end in .html", options->page);
     const Formulation *formulation = formulate(pool, model, sequence, options->solve);
-    generate(pool, formulation, options->templates, NULL, &c, &h);
+    generate(pool, formulation, &style_readable, options->templates, NULL, &c, &h);
     report_print(&page, options->page, options->templates, formulation, &c, &h);
     file_write(options->page, page.s, page.size);
 }

@@ -102,7 +102,7 @@ static void program_function(Program *program, const Block *block, Constants *co
                "static int f%d(const void *self, gic_real time, gic_real *q, gic_real *x, const gic_real *k)\n{\n"
                "    (void)self, (void)time, (void)q, (void)x, (void)k;\n",
                program->blocks);
-    block_emit(&program->functions, block, constants, 4);
+    block_emit(&program->functions, block, &style_readable, constants, 4);
     text_print(&program->functions, "    return GIC_OK;\n}\n");
     ++program->blocks;
 }
@@ -323,7 +323,7 @@ static void test_function_text(void **state)
     block_store(&block, ex_op(dag, OP_ATAN2, y, x, 0), "d");
     Text out = {.pool = pool};
     Constants constants = {0};
-    block_emit(&out, &block, &constants, 2);
+    block_emit(&out, &block, &style_readable, &constants, 2);
     assert_string_equal(out.s, "  const gic_real t1 = GIC_SIN(x + y);\n  const gic_real t2 = GIC_COS(-x);\n"
                                "  const gic_real t3 = GIC_ASIN(y);\n  const gic_real t4 = GIC_ATAN2(y, x);\n"
                                "  a = t1;\n  b = t2;\n  c = t3;\n  d = t4;\n");

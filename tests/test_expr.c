@@ -486,7 +486,7 @@ static void *long_sum(void *argument)
     block_store(&block, e, "x");
     Text out = {.pool = pool};
     Constants constants = {0};
-    block_emit(&out, &block, &constants, 0);
+    block_emit(&out, &block, &style_readable, &constants, 0);
     int products = 0;
     for (const char *s = out.s; (s = strchr(s, '*')) != NULL; ++s)
         ++products;
@@ -509,7 +509,7 @@ static void *long_nest(void *argument)
     block_store(&block, e, "x");
     Text out = {.pool = pool};
     Constants constants = {0};
-    block_emit(&out, &block, &constants, 0);
+    block_emit(&out, &block, &style_readable, &constants, 0);
     int sines = 0;
     for (const char *s = out.s; (s = strchr(s, 'N')) != NULL; ++s) /* the N of GIC_SIN; there is no other */
         ++sines;
