@@ -19,7 +19,7 @@ STANDARD := -std=c11 -D_POSIX_C_SOURCE=200809L
 # no contraction: results must not depend on which multiply-add the compiler fuses
 COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -Igenerator -Iruntime $(CFLAGS) -MMD -MP
 # of host programs; gicgen needs libyaml alone, what it emits nothing
-LIBRARIES := -lyaml -lgsl -lgslcblas -ldmumps_seq -lklu -lm -ldl
+LIBRARIES := -lyaml -lgsl -lgslcblas -ldmumps_seq -lklu -ltcc -lm -ldl
 
 models := $(basename $(notdir $(wildcard models/*.veh)))
 generator := $(filter-out generator/main.c generator/embed.c,$(wildcard generator/*.c))

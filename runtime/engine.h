@@ -38,6 +38,7 @@ typedef struct Engine {
      * it is the state. */
     int (*enter)(gic_head *self, const double *standard);
     void (*leave)(const gic_head *self, double *standard, double *rate);
+    void *memory; /* what `close` gives back */
     void (*close)(const struct Engine *engine); /* NULL: it has nothing but memory of the pool */
 } Engine;
 
@@ -98,6 +99,8 @@ const char *compiler_identity(Pool *pool, const char *const *words, int count);
 
 /* build.c: generated code, compiled, or kept from an earlier run, and loaded. */
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
+/* jit.c: generated code, compiled into memory; where the system refuses to execute that, the engine `tape`. */
+const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *options);
 /* engine_gic.c: the method of Serban and Haug 2000, interpreted. */
 const Engine *engine_gic(Pool *pool, const Model *model, const EngineOptions *options);
 /* engine_gcp.c: generalized coordinate partitioning, with the topology-based solver and with MUMPS. */

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: MIT
+ * The engine `tcc`: generated code compiled by libtcc into memory of this process. It takes no file and no compiler,
+ * and some milliseconds; the code is about half as fast as an optimizing compiler's, with the same bits. */
+#define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
+#include "gicrun.h"
+
+#include <errno.h>
+#include <libtcc.h>
+#include <math.h>
+#include <string.h>
+#include <sys/mman.h>
+
+/* Compiled code: the pages it stands in. Upstream's libtcc finds memory by itself and keeps it with its state; that of
+ * Debian 12 would make pages of the heap executable, and end the program where it may not. */
+typedef struct Jit {
+    TCCState *state; /* NULL: deleted */
+    void *pages;     /* NULL: the state's */
+    size_t size;
+} Jit;
+
+/* ---- the text ------------------------------------------------------------------------------------------------- */
+
+typedef struct Sources {
+    const char *runtime;
+    const Text *h, *c;
+} Sources;
+
+/* There are no files, so nothing can be included. */
+static void add_without_includes(Text *out, const char *source)
+{
+    static const char include[] = "#include";
+    for (const char *line = source, *end; *line; line = end) {
+        end = line + strcspn(line, "\n");
+        end += *end != 0;
+        if (strncmp(line, include, strlen(include)))
+            text_add(out, line, (size_t)(end - line));
+    }
+}
+
+static void insert(void *context, const char *name, Text *out, int indent)
+{
+    const Sources *sources = context;
+    (void)indent;
+    add_without_includes(out, !strcmp(name, "runtime")  ? sources->runtime
+                              : !strcmp(name, "header") ? sources->h->s
+                                                        : sources->c->s);
+}
+
+static const char *jit_text(Pool *pool, const Model *model, const EngineOptions *options)
+{
+    Text c = {.pool = pool}, h = {.pool = pool}, text = {.pool = pool};
+    Sources sources = {.h = &h, .c = &c};
+    for (const Embedded *file = embedded; file->name; ++file)
+        if (!strcmp(file->name, "gic_runtime.h"))
+            sources.runtime = file->bytes;
+    const Sequence *sequence = sequence_find(pool, model);
+    const Formulation *formulation = formulate(pool, model_assemble(pool, model, sequence), sequence, options->solve);
+    generate(pool, formulation, &style_direct, NULL, NULL, &c, &h);
+    template_expand(pool, &text, NULL, "jit.c.in", model->name, NULL, insert, &sources);
+    return text.s;
+}
+
+/* ---- compilation ------------------------------------------------------------------------------------------------ */
+
+/* A function's address for tcc_add_symbol; C knows no way from a function's pointer to an object's but by a number. */
+#define HOST_FUNCTION(name) \
+    { \
+#name, (uintptr_t)(name) \
+    }
+
+static void add_host_functions(TCCState *state)
+{
+    const struct {
+        const char *name;
+        uintptr_t address;
+    } function[] = {
+        HOST_FUNCTION(memset),
+        HOST_FUNCTION(memcpy),
+        HOST_FUNCTION(memmove),
+        HOST_FUNCTION(sqrt),
+        HOST_FUNCTION(fabs),
+        HOST_FUNCTION(sin),
+        HOST_FUNCTION(cos),
+        HOST_FUNCTION(tan),
+        HOST_FUNCTION(asin),
+        HOST_FUNCTION(acos),
+        HOST_FUNCTION(atan),
+        HOST_FUNCTION(atan2),
+        HOST_FUNCTION(exp),
+        HOST_FUNCTION(log),
+        HOST_FUNCTION(tanh),
+        HOST_FUNCTION(pow),
+        HOST_FUNCTION(gic_status_text),
+        HOST_FUNCTION(gic_finite),
+        HOST_FUNCTION(gic_step),
+        HOST_FUNCTION(gic_time),
+        HOST_FUNCTION(gic_orientation),
+        HOST_FUNCTION(gic_table_value),
+    };
+    for (size_t i = 0; i < sizeof function / sizeof *function; ++i)
+        tcc_add_symbol(state, function[i].name, (const void *)function[i].address);
+}
+
+/* A tcc error function: `said` is a Text. */
+static void collect(void *said, const char *message)
+{
+    text_print(said, "%s%s", ((Text *)said)->size ? "; " : "", message);
+}
+
+/* Executable pages, or NULL with errno where the system refuses them. */
+static void *executable_pages(size_t size)
+{
+    void *pages = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (pages == MAP_FAILED)
+        return NULL;
+    if (!mprotect(pages, size, PROT_READ | PROT_WRITE | PROT_EXEC))
+        return pages;
+    const int error = errno;
+    munmap(pages, size);
+    errno = error;
+    return NULL;
+}
+
+/* Put the compiled code where it can run. Returns 0, -1 where tcc can't, 1 where the system refuses. */
+static int place(Jit *jit)
+{
+#ifdef TCC_RELOCATE_AUTO
+    const int size = tcc_relocate(jit->state, NULL);
+    if (size < 0)
+        return -1;
+    jit->size = (size_t)size;
+    jit->pages = executable_pages(jit->size);
+    if (!jit->pages)
+        return 1;
+    return tcc_relocate(jit->state, jit->pages);
+#else
+    void *probe = executable_pages(1);
+    if (!probe)
+        return 1;
+    munmap(probe, 1);
+    return tcc_relocate(jit->state);
+#endif
+}
+
+static void jit_close(const Engine *engine)
+{
+    const Jit *jit = engine->memory;
+    if (jit->state)
+        tcc_delete(jit->state);
+    if (jit->pages)
+        munmap(jit->pages, jit->size);
+}
+
+const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *options)
+{
+    const char *text = jit_text(pool, model, options);
+    Text said = {.pool = pool};
+    Jit *jit = pool_alloc(pool, sizeof *jit);
+    jit->state = tcc_new();
+    if (!jit->state)
+        diag_fail(gicrun_place, NULL, "no memory for tcc");
+    tcc_set_error_func(jit->state, &said, collect);
+    tcc_set_options(jit->state, "-nostdlib -nostdinc");
+    tcc_set_output_type(jit->state, TCC_OUTPUT_MEMORY);
+    add_host_functions(jit->state);
+    const int status = tcc_compile_string(jit->state, text) ? -1 : place(jit);
+    if (status < 0)
+        diag_fail(gicrun_place, "use another engine: --engine cc or --engine tape",
+                  "tcc can't compile the generated code: %s", said.s ? said.s : "it does not say why");
+    if (status) {
+        fprintf(stderr, "gicrun: note: the system refuses executable memory (%s), so the model is interpreted\n",
+                strerror(errno));
+        tcc_delete(jit->state);
+        return engine_tape(pool, model, options);
+    }
+    const gic_model *code = tcc_get_symbol(jit->state, pool_print(pool, "%s_model", model->name));
+    if (jit->pages) { /* the state has done its work */
+        tcc_delete(jit->state);
+        jit->state = NULL;
+    }
+    Engine *engine = pool_alloc(pool, sizeof *engine);
+    *engine = (Engine){.name = "tcc",
+                       .code = code,
+                       .memory = jit,
+                       .standard = code->state,
+                       .standard_count = code->slow_count,
+                       .close = jit_close};
+    return engine;
+}
