@@ -21,7 +21,7 @@ static bool put(Pool *pool, const char *folder, const char *name, const char *by
     return !fclose(file) && written;
 }
 
-static void remove_folder(Pool *pool, const char *folder)
+void folder_remove(Pool *pool, const char *folder)
 {
     DIR *listing = opendir(folder);
     if (!listing)
@@ -56,6 +56,7 @@ typedef struct Build {
     int count;               /* of words */
     const char *shelf, *key; /* where objects are kept, NULL: nowhere; and as what */
     const char *unkept;      /* why the object isn't kept, or NULL */
+    const char *copy;        /* where a copy of the object goes, NULL: nowhere */
     Failure failure;
 } Build;
 
@@ -76,6 +77,13 @@ static const char *build_key(Build *b)
     return cache_key(b->pool, text);
 }
 
+static void object_copy(Pool *pool, const char *from, const char *to)
+{
+    size_t size;
+    const char *bytes = file_read(pool, from, &size);
+    file_write(to, bytes, size);
+}
+
 /* The descriptor in an object, which stays loaded; NULL: see failure. */
 static const gic_model *load(Build *b, const char *path)
 {
@@ -86,8 +94,11 @@ static const gic_model *load(Build *b, const char *path)
         return NULL;
     }
     const gic_model *code = dlsym(library, pool_print(b->pool, "%s_model", b->model));
-    if (code && code->abi_version == GIC_ABI_VERSION && code->real_size == sizeof(gic_real))
+    if (code && code->abi_version == GIC_ABI_VERSION && code->real_size == sizeof(gic_real)) {
+        if (b->copy)
+            object_copy(b->pool, path, b->copy);
         return code;
+    }
     b->failure = (Failure){pool_print(b->pool, "the compiled model does not fit: %s", gic_status_text(GIC_ERROR_ABI)),
                            "does the compiler command change the number type or the target machine?"};
     dlclose(library);
@@ -147,7 +158,7 @@ static const gic_model *compile_privately(Build *b)
         return NULL;
     }
     const gic_model *code = compile(b, folder);
-    remove_folder(b->pool, folder);
+    folder_remove(b->pool, folder);
     return code;
 }
 
@@ -166,7 +177,7 @@ const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *opt
 {
     if (!options->compiler[strspn(options->compiler, " \t")])
         diag_fail(gicrun_place, "name it: --cc gcc, or set CC", "the compiler command is empty");
-    Build b = {.pool = pool, .model = model->name, .c.pool = pool, .h.pool = pool};
+    Build b = {.pool = pool, .model = model->name, .c.pool = pool, .h.pool = pool, .copy = options->object};
     const Sequence *sequence = sequence_find(pool, model);
     const Formulation *formulation = formulate(pool, model_assemble(pool, model, sequence), sequence, options->solve);
     generate(pool, formulation, &style_readable, NULL, "model.h", &b.c, &b.h);

@@ -26,6 +26,9 @@ typedef struct EngineProfile {
 /* The time, s; 0 while the profile is off. */
 double profile_clock(EngineProfile *profile);
 
+/* auto.c: code that is being compiled while another runs. */
+typedef struct Background Background;
+
 typedef struct Engine {
     const char *name;
     const gic_model *code;
@@ -38,6 +41,7 @@ typedef struct Engine {
      * it is the state. */
     int (*enter)(gic_head *self, const double *standard);
     void (*leave)(const gic_head *self, double *standard, double *rate);
+    Background *background; /* NULL: `code` is all there will be */
     void *memory; /* what `close` gives back */
     void (*close)(const struct Engine *engine); /* NULL: it has nothing but memory of the pool */
 } Engine;
@@ -51,6 +55,7 @@ typedef struct EngineOptions {
     Solve solve;
     const char *compiler; /* command, perhaps with options */
     const char *flags;    /* more options, behind ours */
+    const char *object;   /* path where a compiled object is left too; NULL: nowhere */
     bool quiet;           /* no notes */
 } EngineOptions;
 
@@ -99,6 +104,17 @@ const char *compiler_identity(Pool *pool, const char *const *words, int count);
 
 /* build.c: generated code, compiled, or kept from an earlier run, and loaded. */
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
+/* A folder with the files in it, but for those that begin with a dot. */
+void folder_remove(Pool *pool, const char *folder);
+/* auto.c: the engine `tcc`, and while it runs the compiler for faster code. */
+const Engine *engine_auto(Pool *pool, const Model *model, const EngineOptions *options);
+/* Between two steps: faster code to go on with, which gives the same bits from the state of `present` on, or NULL: not
+ * yet, or never. The first call sets the compiler to work, so it is for runs that last. */
+const gic_model *engine_faster(const Engine *engine, const gic_head *present);
+/* How that went, for people; NULL: not begun, or not finished. */
+const char *engine_remark(const Engine *engine);
+/* No more steps: what was begun for engine_faster ends. */
+void engine_rest(const Engine *engine);
 /* jit.c: generated code, compiled into memory; where the system refuses to execute that, the engine `tape`. */
 const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *options);
 /* engine_gic.c: the method of Serban and Haug 2000, interpreted. */

@@ -18,7 +18,8 @@ static const double refresh = 0.1; /* s between lines of progress */
  * the results. */
 typedef struct Run {
     Pool *pool;
-    const gic_model *model;
+    const Engine *engine;
+    const gic_model *model; /* the engine's code, until there is faster one */
     const Scene *scene;
     const Request *request;
     gic_head *self, *copy;
@@ -163,6 +164,8 @@ static void summary(const Run *run, double total)
             (long long)head->newton_count);
     fprintf(stderr, "  parameter switches   %lld\n", (long long)head->switch_count);
     fprintf(stderr, "  constraint residual  %.2g at most, relative to the subset's size\n", run->constraint);
+    if (engine_remark(run->engine))
+        fprintf(stderr, "  compiled code        %s\n", engine_remark(run->engine));
     fprintf(stderr, "  CPU time             %.3g s in steps, %.0f times real time; %.3g s with outputs\n",
             run->integrating, time / fmax(run->integrating, 1e-9), total);
 }
@@ -197,7 +200,17 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
     return set_state(engine, scene, self);
 }
 
-/* Now and then: has someone asked to stop, and is someone watching? */
+static void change_code(Run *run)
+{
+    const gic_model *faster = engine_faster(run->engine, run->self);
+    if (!faster)
+        return;
+    run->model = faster;
+    if (run->variable)
+        variable_change(run->variable, faster);
+}
+
+/* Now and then: has someone asked to stop, is there faster code, and is someone watching? */
 static void look_around(Run *run)
 {
     double now = seconds(CLOCK_MONOTONIC);
@@ -205,6 +218,7 @@ static void look_around(Run *run)
         return;
     run->looked = now;
     run->interrupted = interrupt_arrived();
+    change_code(run);
     show_progress(run);
 }
 
@@ -259,7 +273,7 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
 {
     const gic_model *model = engine->code;
     const Place at = {scene->source, 0, 0};
-    Run run = {.pool = pool, .model = model, .scene = scene, .request = request};
+    Run run = {.pool = pool, .engine = engine, .model = model, .scene = scene, .request = request};
     run.self = instance_new(pool, engine);
     run.copy = instance_new(pool, engine);
     int status = scene_start(engine, scene, run.self);
@@ -279,8 +293,10 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
 
     interrupt_hold();
     const double before = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    run.looked = seconds(CLOCK_MONOTONIC);
     const gic_head *failed = run.self;
     status = run_all(&run, &failed);
+    engine_rest(engine);
     clear_progress(&run);
     if (request->results)
         csv_close(&run.csv);

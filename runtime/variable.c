@@ -104,6 +104,11 @@ void variable_close(Variable *variable)
     free(variable);
 }
 
+void variable_change(Variable *variable, const gic_model *model)
+{
+    variable->model = model;
+}
+
 void variable_restart(Variable *variable)
 {
     variable->fresh = true;

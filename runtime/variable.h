@@ -25,6 +25,9 @@ void variable_close(Variable *variable);
  * evaluation that failed, or GIC_ERROR_ARGUMENT where rounding alone exceeds the tolerance. */
 int variable_step(Variable *variable, void *self, double end);
 
+/* From here on by other code for the same model, which gives the same bits from the same instances. */
+void variable_change(Variable *variable, const gic_model *model);
+
 /* Forget the history, because state, inputs or their derivatives jump here. */
 void variable_restart(Variable *variable);
 
