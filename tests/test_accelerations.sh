@@ -44,7 +44,7 @@ for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" "$work/steered.veh
     for solve in reduced augmented; do
         cc=${CC:-cc}
         [ $solve = reduced ] || cc="sh $work/cc"
-        if "$gicrun" --solve $solve --cc "$cc" --eval "$work/states" "$work/variant.veh" -o "$work/results" &&
+        if "$gicrun" --solve $solve --engine cc --cc "$cc" --eval "$work/states" "$work/variant.veh" -o "$work/results" &&
             "$agree" "$work/dump" "$work/accelerations" "$work/results" --reactions --tolerance 5e-13; then
             passed=$((passed + 1))
         else

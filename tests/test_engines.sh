@@ -132,11 +132,11 @@ along() {
     model=$1
     scene=$2
     shift 2
-    "$gicrun" --quiet --cc "$cc" "$@" "$model" "$scene" -o generated.csv >said 2>&1
+    "$gicrun" --quiet --engine cc --cc "$cc" "$@" "$model" "$scene" -o generated.csv >said 2>&1
     check $? "$scene with generated code"
     precise="--integrator rkck --tolerance 1e-10"
     # shellcheck disable=SC2086  # options
-    "$gicrun" --quiet --cc "$cc" "$@" $precise "$model" "$scene" -o precise.csv >said 2>&1
+    "$gicrun" --quiet --engine cc --cc "$cc" "$@" $precise "$model" "$scene" -o precise.csv >said 2>&1
     check $? "$scene with generated code, precisely"
     for engine in $engines; do
         case $engine in
@@ -265,7 +265,7 @@ for engine in $engines; do
     check $? "$engine: states out of reach"
 done
 "$gicrun" --engine nothing crank.veh crank.scene >said 2>&1
-[ $? -eq 2 ] && grep -q "no engine 'nothing'" said && grep -q 'remedy: one of cc, ' said
+[ $? -eq 2 ] && grep -q "no engine 'nothing'" said && grep -q 'remedy: one of auto, cc, ' said
 check $? "an engine that is not there"
 
 echo "$passed passed, $failed failed"

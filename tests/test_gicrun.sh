@@ -106,11 +106,11 @@ status=$?
 check 'no gnuplot: an error' exits 1
 check 'no gnuplot: a remedy' says 'remedy: .*gnuplot'
 check 'no gnuplot: the results stay' cmp -s "$work/a.csv" "$work/b.csv"
-run "$work/carts.veh" "$work/swing.scene" --cc "$work/nothing"
+run "$work/carts.veh" "$work/swing.scene" --engine cc --cc "$work/nothing"
 check 'no compiler: an error' exits 1
 check 'no compiler: a remedy' says 'remedy: .*--cc'
 check 'no compiler: no temporary file' clean
-run "$work/carts.veh" "$work/swing.scene" --cc "cc -DGIC_FLOAT"
+run "$work/carts.veh" "$work/swing.scene" --engine cc --cc "cc -DGIC_FLOAT"
 check 'another number type is noticed' says 'error: the compiled model does not fit'
 run "$work/carts.veh" "$work/swing.scene" -o "$work/nowhere/a.csv"
 check 'results that cannot be written are an error' exits 1
@@ -163,7 +163,7 @@ check 'SIGTERM keeps the results' [ "$(wc -l <"$work/long.csv")" -gt 1 ]
 check 'SIGTERM leaves no temporary file' [ "$(ls "$work"/long.csv* | wc -l)" -eq 1 ]
 printf '#!/bin/sh\nsleep 30\n' >"$work/slow"
 chmod +x "$work/slow"
-"$gicrun" "$work/carts.veh" "$work/swing.scene" --cc "$work/slow" 2>"$work/err" &
+"$gicrun" "$work/carts.veh" "$work/swing.scene" --engine cc --cc "$work/slow" 2>"$work/err" &
 child=$!
 sleep 0.5
 kill -TERM "$child"

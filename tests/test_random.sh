@@ -45,7 +45,7 @@ agrees() {
         sh "$(dirname "$0")/reactions.sh" "$work/$1.dump" "$(realpath "$work/$1.veh")" >"$work/$1.variant.veh" || return 1
     for solve in reduced augmented; do
         echo "$solve:"
-        "$gicrun" --solve $solve --cc "sh $work/cc" --eval "$work/$1.states" "$work/$1.variant.veh" \
+        "$gicrun" --solve $solve --engine cc --cc "sh $work/cc" --eval "$work/$1.states" "$work/$1.variant.veh" \
             -o "$work/$1.results" && "$agree" "$work/$1.dump" "$work/$1.accelerations" "$work/$1.results" --reactions ||
             return 1
     done

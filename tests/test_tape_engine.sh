@@ -64,7 +64,8 @@ same_states() {
     "$gicgen" --dump-model "$model" >"$work/dump" 2>"$work/said" &&
         "$states" "$work/dump" --count "${ROWS:-30}" --seed 5 2>"$work/said" >"$work/plain" &&
         spoil "$work/plain" >"$work/spoilt" && tuned "$model" "$work/spoilt" >"$work/states" &&
-        "$gicrun" "$@" --cc "sh $work/cc" --eval "$work/states" "$model" -o "$work/compiled" 2>"$work/said.compiled" &&
+        "$gicrun" "$@" --engine cc --cc "sh $work/cc" --eval "$work/states" "$model" -o "$work/compiled" \
+            2>"$work/said.compiled" &&
         tape "$@" --eval "$work/states" "$model" -o "$work/played" 2>"$work/said.played" &&
         cmp "$work/said.compiled" "$work/said.played" >"$work/said" &&
         diff "$work/compiled" "$work/played" >"$work/said"
@@ -75,7 +76,7 @@ same_states() {
 
 # same_run MODEL SCENE LABEL: results and summary, but for the time it took
 same_run() {
-    "$gicrun" "$1" "$2" -o "$work/run" 2>"$work/said.compiled" && mv "$work/run" "$work/compiled" &&
+    "$gicrun" --engine cc "$1" "$2" -o "$work/run" 2>"$work/said.compiled" && mv "$work/run" "$work/compiled" &&
         tape "$1" "$2" -o "$work/run" 2>"$work/said.played" &&
         sed -i '/CPU time/d' "$work/said.compiled" "$work/said.played" &&
         diff "$work/said.compiled" "$work/said.played" >"$work/said" &&
@@ -124,7 +125,8 @@ check $? "the dependent parameter changes"
 sed 's/^duration.*/duration: 2/; s/^step:.*/step: 0.02/; s/^output_step:.*/output_step: 0.02/
     s/height: 0.06/height: 3/' \
     "$root/models/scenes/paper_run.scene" >"$work/hmmwv.scene"
-"$gicrun" --cc "sh $work/cc" -q "$root/models/hmmwv.veh" "$work/hmmwv.scene" -o "$work/compiled" 2>"$work/said.compiled"
+"$gicrun" --engine cc --cc "sh $work/cc" -q "$root/models/hmmwv.veh" "$work/hmmwv.scene" -o "$work/compiled" \
+    2>"$work/said.compiled"
 compiled=$?
 tape -q "$root/models/hmmwv.veh" "$work/hmmwv.scene" -o "$work/played" 2>"$work/said.played"
 [ $? -eq 1 ] && [ $compiled -eq 1 ] && cmp "$work/compiled" "$work/played" &&

@@ -1,0 +1,184 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_jit.sh GICGEN GICRUN STATES DENY_EXEC: the engines `tcc` and `auto`. Both do the operations of the other engines
+# that run generated formulas in the same order, so results must agree byte by byte, and so must statuses: with compiled
+# code along scenes of every model, with `tape` at ROWS (default 20) random states. What is fast must be: see below. And
+# what can be missing is: compiler, folder for temporary files, executable memory.
+gicgen=$(realpath "$1")
+gicrun=$(realpath "$2")
+states=$(realpath "$3")
+deny_exec=$(realpath "$4")
+root=$(cd "$(dirname "$0")/.." && pwd)
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+passed=0
+failed=0
+mkdir tmp
+TMPDIR=$work/tmp
+export TMPDIR
+
+# check STATUS LABEL: counts, and shows what was said where it failed
+check() {
+    if [ "$1" -eq 0 ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAIL $2"
+        sed 's/^/    /' said
+    fi
+}
+clean() { [ -z "$(ls -A tmp)" ]; }
+# gicrun with nothing to start and nowhere to write but where it is told to
+alone() { env -i PATH=/nonexistent TMPDIR=/nonexistent "$gicrun" "$@"; }
+
+# compiles in a tenth of the time
+echo "exec ${CC:-cc} \"\$@\" -O0" >cc
+quick="sh $work/cc"
+
+# ---- the same bits ------------------------------------------------------------------------------------------------
+
+# same_run MODEL SCENE COMPILER: all engines; summaries but for the time that it took
+same_run() {
+    "$gicrun" --engine cc --cc "$3" "$1" "$2" -o run.csv 2>said
+    check $? "$2: cc"
+    mv run.csv compiled.csv
+    grep -v 'CPU time' said >compiled.said
+    for engine in tcc auto tape; do
+        alone --engine $engine "$1" "$2" -o run.csv 2>said && cmp compiled.csv run.csv >>said &&
+            grep -v 'CPU time' said | diff - compiled.said >>said && [ "$(wc -l <run.csv)" -gt 2 ]
+        check $? "$2: $engine"
+    done
+}
+sed 's/^duration: .*/duration: 1.5/' "$root/models/scenes/paper_run.scene" >hmmwv.scene
+same_run "$root/models/hmmwv.veh" hmmwv.scene "${CC:-cc}"
+same_run "$root/models/hmmwv.veh" "$root/models/scenes/spin.scene" "$quick"
+for model in "$root"/models/*.veh; do
+    name=$(basename "$model" .veh)
+    scene=$root/models/scenes/$name.scene
+    if [ -f "$scene" ]; then
+        sed 's/^duration: .*/duration: 0.04/; s/^output_step: .*//' "$scene" >"$name.scene"
+        same_run "$model" "$name.scene" "$quick"
+    fi
+done
+
+# same_states MODEL OPTION...: some out of reach
+same_states() {
+    model=$1
+    shift
+    "$gicgen" --dump-model "$model" >dump 2>said && "$states" dump --count "${ROWS:-20}" --seed 7 >plain.csv 2>said &&
+        awk -F, -v OFS=, 'NR == 1 { base = /e0/ } NR % 7 == 0 { $(base ? 14 : 1) += 4e4 } { print }' plain.csv >states.csv &&
+        alone "$@" --engine tape --eval states.csv "$model" -o tape.csv 2>said &&
+        alone "$@" --engine tcc --eval states.csv "$model" -o tcc.csv 2>said && cmp tape.csv tcc.csv >>said &&
+        grep -q ',0,"ok"' tcc.csv && grep -q ',-[0-9]*,"' tcc.csv
+    check $? "states of $model $*"
+}
+sed "s|parts/|$root/models/parts/|g; s/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/" \
+    "$root/models/hmmwv.veh" >steered.veh
+for model in "$root"/models/*.veh steered.veh "$root/tests/laws/cart.veh" "$root/tests/tuning/car.veh"; do
+    same_states "$model"
+done
+"$gicgen" --dump-model "$root/models/hmmwv14.veh" >dump &&
+    sh "$root/tests/reactions.sh" dump "$root/models/hmmwv14.veh" >reactions.veh
+same_states reactions.veh
+same_states reactions.veh --solve augmented
+
+# ---- fast enough --------------------------------------------------------------------------------------------------
+
+# From the model's file to the end of the first step of the HMMWV in 0.1 s, on an otherwise idle machine: the best of
+# 20. Programs for debugging are slower and no matter here.
+printf '%s\n' 'gicscene: 1' 'duration: 0.005' 'step: 0.005' >step.scene
+best=$(for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+    before=$(date +%s%N)
+    alone -q --engine auto "$root/models/hmmwv.veh" step.scene -o step.csv 2>said
+    echo $((($(date +%s%N) - before) / 1000))
+done | sort -n | head -n 1)
+echo "first step after $best us" >said
+[ "$best" -lt "${FIRST_STEP_US:-100000}" ]
+check $? "the first step within 0.1 s"
+
+# the CPU time of steps is that of right-hand sides but for some per cent: at most 2.5 times that of cc -O2
+sed 's/^duration.*/duration: 4/; s/^step:.*/step: 0.0002/; s/^output_step:.*/output_step: 1/' \
+    "$root/models/scenes/paper_run.scene" >many.scene
+cpu() {
+    for _ in 1 2 3; do
+        "$gicrun" "$@" "$root/models/hmmwv.veh" many.scene -o many.csv 2>said
+        sed -n 's/^  CPU time *\([0-9.e-]*\) s in steps.*/\1/p' said
+    done | sort -g | head -n 1
+}
+echo "$(cpu --engine tcc) $(cpu --engine cc)" >times
+awk '{ print "tcc", $1, "s, cc", $2, "s"; exit !($1 < 2.5 * $2) }' times >said
+check $? "steps take at most 2.5 times as long as with cc -O2"
+
+# ---- auto: compiled code takes over -------------------------------------------------------------------------------
+
+# some seconds, and a model that is compiled in a fraction of one
+sed 's/^duration: .*/duration: 600/; s/^step: .*/step: 0.0002/; s/^integrator: .*/integrator: rk4/
+    s/^output_step: .*/output_step: 1/' "$root/models/scenes/pendulum.scene" >long.scene
+pendulum=$root/models/pendulum.veh
+alone -q --engine tcc "$pendulum" long.scene -o long.csv 2>said
+check $? "a long run"
+# long LABEL REMARK OPTION...: auto gives the same, and tells how it went
+long() {
+    label=$1
+    remark=$2
+    shift 2
+    "$gicrun" "$@" "$pendulum" long.scene -o auto.csv 2>said && cmp long.csv auto.csv >>said &&
+        grep -q "^  compiled code  *$remark" said && [ "$(grep -c . said)" -eq 7 ] && clean
+    check $? "auto: $label"
+}
+long "changes to compiled code" 'from t = [1-9]' --cc "$quick"
+# every number of the code is another one in the last digit
+cat >other <<'END'
+for word; do
+    case $word in
+    */model.c) sed -i 's/^#define R(x) .*/#define R(x) (GIC_R(x) * GIC_R(1.0000000000000003))/' "$word" ;;
+    esac
+done
+END
+cat cc >>other
+long "does not change to code with other bits" 'not used' --cc "sh $work/other"
+long "a compiler that fails" "none: 'false' failed" --cc false
+long "no compiler" "none: '/nonexistent' failed" --cc /nonexistent
+# a library with nothing in it
+echo 'while [ "$1" != -o ]; do shift; done; echo >"$2"' >empty
+long "a compiler that makes something else" 'none' --cc "sh $work/empty"
+
+sed 's/^integrator: .*/integrator: rkck/; s/^step: .*/tolerance: 1e-13/; s/^duration: .*/duration: 3000/' \
+    "$root/models/scenes/pendulum.scene" | sed 's/^output_step: .*/output_step: 10/' >variable.scene
+alone -q --engine tcc "$pendulum" variable.scene -o variable.csv 2>said &&
+    "$gicrun" --cc "$quick" "$pendulum" variable.scene -o auto.csv 2>said && cmp variable.csv auto.csv >>said &&
+    grep -q 'compiled code  *from' said
+check $? "auto: changes between variable steps"
+
+# a compiler that takes its time is ended with the run, or with a signal
+printf 'echo $$ >%s/pid\nsleep 30\n' "$work" >slow
+before=$(date +%s)
+"$gicrun" -q --cc "sh $work/slow" "$pendulum" long.scene -o auto.csv 2>said && cmp long.csv auto.csv >>said &&
+    [ $(($(date +%s) - before)) -lt 25 ] && [ -s pid ] && ! kill -0 "$(cat pid)" 2>/dev/null && clean
+check $? "auto: a run that ends before the compiler"
+rm -f pid
+sed 's/^duration: .*/duration: 100000/' long.scene >longer.scene
+"$gicrun" -q --cc "sh $work/slow" "$pendulum" longer.scene -o auto.csv 2>said &
+child=$!
+waited=0
+while [ ! -s pid ] && [ $waited -lt 100 ]; do
+    sleep 0.1
+    waited=$((waited + 1))
+done
+kill -TERM $child
+wait $child 2>/dev/null
+[ $? -eq 143 ] && [ -s pid ] && ! kill -0 "$(cat pid)" 2>/dev/null && clean
+check $? "auto: SIGTERM ends run and compiler"
+
+# ---- no executable memory -----------------------------------------------------------------------------------------
+
+"$gicrun" -q --engine tape "$root/models/hmmwv.veh" hmmwv.scene -o tape.csv
+for engine in tcc auto; do
+    "$deny_exec" "$gicrun" -q --engine $engine "$root/models/hmmwv.veh" hmmwv.scene -o denied.csv 2>said &&
+        [ "$(wc -l <said)" -eq 1 ] && grep -q '^gicrun: note: .*executable memory' said && cmp tape.csv denied.csv >>said
+    check $? "$engine: interpreted where executable memory is refused"
+done
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
