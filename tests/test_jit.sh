@@ -85,16 +85,21 @@ same_states reactions.veh --solve augmented
 
 # ---- fast enough --------------------------------------------------------------------------------------------------
 
-# From the model's file to the end of the first step of the HMMWV in 0.1 s, on an otherwise idle machine: the best of
-# 20. Programs for debugging are slower and no matter here.
+# From the model's file to the end of the first step of the HMMWV in 0.1 s on an idle machine: here as CPU time, the mean of
+# 10, because other processes take their share of this one. FIRST_STEP: for programs compiled for debugging.
 printf '%s\n' 'gicscene: 1' 'duration: 0.005' 'step: 0.005' >step.scene
-best=$(for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
-    before=$(date +%s%N)
-    alone -q --engine auto "$root/models/hmmwv.veh" step.scene -o step.csv 2>said
-    echo $((($(date +%s%N) - before) / 1000))
-done | sort -n | head -n 1)
-echo "first step after $best us" >said
-[ "$best" -lt "${FIRST_STEP_US:-100000}" ]
+(
+    for _ in 1 2 3 4 5 6 7 8 9 10; do
+        alone -q --engine auto "$root/models/hmmwv.veh" step.scene -o step.csv 2>said
+    done
+    times
+) >times
+awk -v most="${FIRST_STEP:-0.1}" 'NR == 2 { # user and system time of children, 0m0.71s each
+        split($0, part, /[ms ]+/)
+        mean = (60 * (part[1] + part[3]) + part[2] + part[4]) / 10
+        print "the first step takes", mean, "s"
+    }
+    END { exit !(mean > 0 && mean < most) }' times >said
 check $? "the first step within 0.1 s"
 
 # the CPU time of steps is that of right-hand sides but for some per cent: at most 2.5 times that of cc -O2
