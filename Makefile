@@ -7,11 +7,14 @@
 #   make generated      generated/*.c and *.h from models/*.veh, and models/veh.schema.json
 #   make debug          the same programs with the sanitizers, in build/debug/
 #   make deps           install the packages that all of this needs (Debian)
+#   make install        into $(DESTDIR)$(PREFIX): programs, runtime core, models, manuals; make uninstall removes them
 #   make clean
 #
-# CC, CXX, CFLAGS, LDFLAGS and BUILD (the build folder) may be given; WERROR=-Werror makes warnings errors.
+# CC, CXX, CFLAGS, LDFLAGS and BUILD (the build folder) may be given; WERROR=-Werror makes warnings errors. PREFIX is
+# /usr/local by default; DESTDIR goes before it where the files are collected for a package.
 
 BUILD := build
+PREFIX := /usr/local
 CFLAGS := -O3 -g
 WERROR :=
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow $(WERROR)
@@ -31,7 +34,7 @@ embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_ru
 generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 
-.PHONY: all test test-programs list-tests demo bench generated debug deps clean
+.PHONY: all test test-programs list-tests demo bench generated debug deps install uninstall clean
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -186,6 +189,45 @@ debug:
 
 deps:
 	sh tests/install.sh test
+
+# ---- installing
+
+prefix := $(DESTDIR)$(PREFIX)
+share := $(prefix)/share/gicgen
+manuals := generator/gicgen.1 runtime/gicrun.1 runtime/gicbench.1
+installed_models := $(wildcard models/*.* models/parts/*.* models/scenes/*.*)
+version = $(shell sed -n 's/^.define GICGEN_VERSION "\(.*\)"/\1/p' generator/gicgen.h)
+# texts that name places
+PLACE = sed 's|@PREFIX@|$(PREFIX)|g; s|@VERSION@|$(version)|g'
+
+# both number types in one archive: names differ; position-independent, for shared objects may want it
+$(BUILD)/install/float.o: VARIANT := -DGIC_FLOAT
+$(BUILD)/install/double.o $(BUILD)/install/float.o: runtime/gic_runtime.c
+	@mkdir -p $(@D)
+	$(COMPILE) -std=c99 -fPIC $(VARIANT) -c -o $@ $<
+
+$(BUILD)/install/libgic_runtime.a: $(BUILD)/install/double.o $(BUILD)/install/float.o
+	rm -f $@
+	$(AR) rcs $@ $^
+
+install: all $(BUILD)/install/libgic_runtime.a
+	install -d $(prefix)/bin $(prefix)/include $(prefix)/lib/pkgconfig $(prefix)/share/man/man1 \
+	    $(addprefix $(share)/,$(sort $(dir $(installed_models))))
+	install -m 755 $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicbench $(prefix)/bin
+	install -m 644 runtime/gic_runtime.h $(prefix)/include
+	install -m 644 $(BUILD)/install/libgic_runtime.a $(prefix)/lib
+	install -m 644 runtime/gic_runtime.c $(share)
+	for file in $(installed_models); do install -m 644 $$file $(share)/$$file || exit 1; done
+	$(PLACE) generator/gicgen.pc.in > $(BUILD)/install/gicgen.pc
+	install -m 644 $(BUILD)/install/gicgen.pc $(prefix)/lib/pkgconfig
+	for page in $(manuals); do $(PLACE) $$page > $(BUILD)/install/$${page##*/} && \
+	    install -m 644 $(BUILD)/install/$${page##*/} $(prefix)/share/man/man1 || exit 1; done
+
+uninstall:
+	rm -f $(addprefix $(prefix)/bin/,gicgen gicrun gicbench) $(prefix)/include/gic_runtime.h \
+	    $(prefix)/lib/libgic_runtime.a $(prefix)/lib/pkgconfig/gicgen.pc \
+	    $(addprefix $(prefix)/share/man/man1/,$(notdir $(manuals)))
+	rm -rf $(share)
 
 clean:
 	rm -rf $(BUILD)

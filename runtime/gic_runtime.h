@@ -63,6 +63,7 @@ typedef enum gic_status {
 } gic_status;
 
 /* What a status means, in one line; never NULL. */
+#define gic_status_text GIC_NAME(gic_status_text)
 const char *gic_status_text(int status);
 
 /* ---- road ------------------------------------------------------------------------------------- */

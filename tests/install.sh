@@ -4,7 +4,8 @@
 # tests too. Does nothing where all are there; asks for nothing. This is the one list of what the project depends on.
 packages="gcc libc6-dev make libyaml-dev libgsl-dev libmumps-seq-dev libsuitesparse-dev libtcc-dev gnuplot-nox"
 [ "$1" = test ] && packages="$packages g++ libcmocka-dev graphviz python3-jsonschema python3-yaml \
-    gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
+    gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user \
+    mandoc pkgconf"
 
 if ! command -v dpkg-query >/dev/null; then
     echo "This is no Debian system: make sure that it has what these packages hold: $packages" >&2
