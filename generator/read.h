@@ -17,7 +17,10 @@ typedef enum KeyKind {
     KEY_TORQUE_VECTOR, /* likewise, of a torque */
     KEY_INERTIA,       /* likewise: a list of numbers or a map of inertia_section */
     KEY_ORIENTATION,   /* likewise: a map of orientation_section */
+    KEY_LIST,          /* numbers: item */
     KEY_TEXT,          /* text */
+    KEY_INTERPOLATION, /* one of two words (kind_words); flag: it is the second */
+    KEY_BEYOND,        /* the same */
     KEY_NAME,          /* text */
     KEY_NUMBER,        /* number[0], which follows no tunable parameter */
     KEY_MEASURE,       /* number[0], which may */
@@ -106,6 +109,8 @@ extern const Section input_section, force_section, wheel_section, output_section
 
 /* What to write for each kind of value, for people. */
 extern const char *const kind_example[KEY_KINDS];
+/* Of kinds that are one of two words: those, the default first; else NULL. */
+extern const char *const kind_words[KEY_KINDS][2];
 /* The section of the entries of a group of the file ("joints"); NULL: points, or no group. */
 const Section *group_section(const char *group);
 

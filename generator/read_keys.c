@@ -18,7 +18,10 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_TORQUE_VECTOR] = "[x, y, z]",
     [KEY_INERTIA] = "[Ixx, Iyy, Izz]",
     [KEY_ORIENTATION] = "{...}",
+    [KEY_LIST] = "[x, y, ...]",
     [KEY_TEXT] = "text",
+    [KEY_INTERPOLATION] = "linear",
+    [KEY_BEYOND] = "constant",
     [KEY_NAME] = "name",
     [KEY_NUMBER] = "number",
     [KEY_MEASURE] = "number",
@@ -42,6 +45,11 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_FORCE] = "force",
     [KEY_WHEEL] = "wheel",
     [KEY_TABLE] = "table",
+};
+
+const char *const kind_words[KEY_KINDS][2] = {
+    [KEY_INTERPOLATION] = {"linear", "cubic"},
+    [KEY_BEYOND] = {"constant", "linear"},
 };
 
 /* Keywords of C11 and C++20: the runtime compiles as either. */
@@ -264,6 +272,17 @@ static void read_number(Reader *reader, const Key *key, const Item *item, const 
                                   key->bound == BOUND_POSITIVE ? "be greater than zero" : "not be negative"));
 }
 
+/* One of two words: is it the second? */
+static bool second_word(const Item *item, const char *what, const char *const word[2])
+{
+    const char *text = doc_word(item, what);
+    if (!strcmp(text, word[0]))
+        return false;
+    if (strcmp(text, word[1]))
+        diag_fail(item->at, "choose one of the two", "%s is `%s` or `%s`, not '%s'", what, word[0], word[1], text);
+    return true;
+}
+
 static void read_value(Reader *reader, const Key *key, const Item *item, const char *what, Value *value)
 {
     const Model *model = reader->model;
@@ -276,6 +295,8 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     case KEY_NUMBER:
     case KEY_MEASURE:
     case KEY_ODD: read_number(reader, key, item, what, value); break;
+    case KEY_INTERPOLATION:
+    case KEY_BEYOND: value->flag = second_word(item, what, kind_words[key->kind]); break;
     case KEY_FLAG: value->flag = doc_bool(item, what); break;
     case KEY_RANGE:
         vector_read(reader, item, what, value->number, 2, NULL);
@@ -330,6 +351,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         break;
     case KEY_TYPE:
     case KEY_ITEM:
+    case KEY_LIST:
     case KEY_FORMULA:
     case KEY_FORCE_VECTOR:
     case KEY_TORQUE_VECTOR:

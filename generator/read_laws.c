@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What formulas refer to: parameters, tables, ports (FORMAT.md section 7). */
+ * What formulas refer to: parameters, tables, ports (FORMAT.md section 6). */
 #include "read.h"
 
 #include <string.h>
@@ -23,10 +23,10 @@ const Section parameter_section = {parameter_key, PARAMETER_KEYS, NULL, 0, NULL,
 enum { TABLE_X, TABLE_Y, TABLE_INTERPOLATION, TABLE_BEYOND, TABLE_KEYS };
 
 static const Key table_key[TABLE_KEYS] = {
-    [TABLE_X] = {"x", KEY_ITEM, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
-    [TABLE_Y] = {"y", KEY_ITEM, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
-    [TABLE_INTERPOLATION] = {"interpolation", KEY_TEXT, ALL_FORMS, 0, BOUND_NONE, 0},
-    [TABLE_BEYOND] = {"beyond", KEY_TEXT, ALL_FORMS, 0, BOUND_NONE, 0},
+    [TABLE_X] = {"x", KEY_LIST, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [TABLE_Y] = {"y", KEY_LIST, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
+    [TABLE_INTERPOLATION] = {"interpolation", KEY_INTERPOLATION, ALL_FORMS, 0, BOUND_NONE, 0},
+    [TABLE_BEYOND] = {"beyond", KEY_BEYOND, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
 static const char *const table_about[TABLE_KEYS] = {
@@ -103,17 +103,6 @@ static double *numbers(Reader *reader, const Value *value, const char *what, int
     return out;
 }
 
-/* One of two words. */
-static bool second_word(const Value *value, const char *what, const char *first, const char *second)
-{
-    if (!value->item || !strcmp(value->text, first))
-        return false;
-    if (strcmp(value->text, second))
-        diag_fail(value->item->at, "choose one of the two", "%s is `%s` or `%s`, not '%s'", what, first, second,
-                  value->text);
-    return true;
-}
-
 void tables_read(Reader *reader, const Item *map)
 {
     Model *model = reader->model;
@@ -134,10 +123,8 @@ void tables_read(Reader *reader, const Item *map)
             if (!(table->x[k] > table->x[k - 1]))
                 diag_fail(value[TABLE_X].item->value[k]->at, "sort the table by x, without repetitions",
                           "x of %s must rise", entry[i].what);
-        table->cubic = second_word(&value[TABLE_INTERPOLATION],
-                                   pool_print(reader->pool, "interpolation of %s", entry[i].what), "linear", "cubic");
-        table->onward = second_word(&value[TABLE_BEYOND], pool_print(reader->pool, "beyond of %s", entry[i].what),
-                                    "constant", "linear");
+        table->cubic = value[TABLE_INTERPOLATION].flag;
+        table->onward = value[TABLE_BEYOND].flag;
         table->slope = pool_alloc(reader->pool, sizeof *table->slope * (size_t)count);
         table_slopes(table);
     }

@@ -22,6 +22,7 @@ typedef struct Rule {
 
 static const Rule rule[KEY_KINDS] = {
     [KEY_ITEM] = {.words = WORDS_FORMULA},
+    [KEY_LIST] = {.words = WORDS_FORMULA},
     [KEY_FORMULA] = {.words = WORDS_FORMULA},
     [KEY_FORCE_VECTOR] = {.odd = Y, .words = WORDS_FORMULA},
     [KEY_TORQUE_VECTOR] = {.odd = X | Z, .words = WORDS_FORMULA},

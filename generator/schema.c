@@ -31,7 +31,7 @@ static void pair(Text *out, const char *name)
 
 static void object(Text *out, const Section *section, int indent);
 
-static void value(Text *out, const Section *section, const Key *key, int indent)
+static void value(Text *out, const Key *key, int indent)
 {
     switch (key->kind) {
     case KEY_NUMBER:
@@ -75,11 +75,11 @@ static void value(Text *out, const Section *section, const Key *key, int indent)
         text_print(out, "]}");
         break;
     case KEY_ORIENTATION: object(out, &orientation_section, indent); break;
-    case KEY_ITEM:
-        if (section == &table_section)
-            reference(out, "numbers");
-        else
-            text_print(out, "{}");
+    case KEY_ITEM: text_print(out, "{}"); break;
+    case KEY_LIST: reference(out, "numbers"); break;
+    case KEY_INTERPOLATION:
+    case KEY_BEYOND:
+        text_print(out, "{\"enum\": [\"%s\", \"%s\"]}", kind_words[key->kind][0], kind_words[key->kind][1]);
         break;
     default: text_print(out, "{\"type\": \"string\"}");
     }
@@ -106,7 +106,7 @@ static void form(Text *out, const Section *section, int which, const char *type,
         if (key->kind == KEY_TYPE)
             text_print(&schema, "{\"const\": \"%s\"}", type);
         else
-            value(&schema, section, key, indent + 2);
+            value(&schema, key, indent + 2);
         described(out, section->about[k], &schema);
     }
     text_print(out, "},\n%*s\"required\": [", indent, "");
@@ -194,7 +194,7 @@ void schema_print(Text *out)
         else if (!strcmp(key->name, "include"))
             inclusion(&schema);
         else if (!section && strcmp(key->name, "points"))
-            value(&schema, &file_section, key, 4);
+            value(&schema, key, 4);
         else
             group(&schema, section);
         described(out, file_section.about[k], &schema);
@@ -234,8 +234,7 @@ static void section_keys(Text *out, const char *name, const Section *section)
     text_print(out, "\n%s\n", name);
     for (int k = 0; k < section->keys; ++k) {
         const Key *key = &section->key[k];
-        text_print(out, "  %-15s %-22s", key->name,
-                   section == &table_section && key->kind == KEY_ITEM ? "[...]" : kind_example[key->kind]);
+        text_print(out, "  %-15s %-22s", key->name, kind_example[key->kind]);
         if (key->kind == KEY_TYPE) {
             for (int t = 0; t < section->types; ++t)
                 text_print(out, "%s%s", t ? ", " : " one of: ", section->type[t]);

@@ -37,7 +37,8 @@ for name in body_key_missing body_key_unknown body_not_map coordinate_angle_poin
     joint_axes_axis joint_axes_flat joint_axes_missing joint_axes_one joint_axis_and_axes joint_axis_missing \
     joint_bodies_three joint_key_foreign joint_length_negative joint_offset_foreign joint_point_missing joint_type \
     joint_type_missing key_unknown load_list mass_negative mass_zero name_bad not_a_map orientation_mixed output_in_foreign \
-    output_type parameter_flag point_length section_list table_short version_missing version_zero wheel_radius_missing; do
+    output_reaction_body output_reaction_missing output_type parameter_flag port_body_missing port_key point_length section_list \
+    stop_free table_interpolation table_short torsion_bodies torsion_points version_missing version_zero wheel_radius_missing; do
     fits "$root/tests/bad/$name.veh"
     grep -q '^bad' "$work/said"
     check $? "$name fits the schema"
