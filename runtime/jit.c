@@ -168,8 +168,9 @@ const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *op
         diag_fail(gicrun_place, "use another engine: --engine cc or --engine tape",
                   "tcc can't compile the generated code: %s", said.s ? said.s : "it does not say why");
     if (status) {
-        fprintf(stderr, "gicrun: note: the system refuses executable memory (%s), so the model is interpreted\n",
-                strerror(errno));
+        if (!options->quiet)
+            fprintf(stderr, "gicrun: note: the system refuses executable memory (%s), so the model is interpreted\n",
+                    strerror(errno));
         tcc_delete(jit->state);
         return engine_tape(pool, model, options);
     }
