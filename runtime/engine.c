@@ -7,9 +7,10 @@
 
 typedef const Engine *Open(Pool *pool, const Model *model, const EngineOptions *options);
 
-const char *const engine_name[] = {"auto", "cc", "tcc", "gic", "gcp1", "gcp2", "tape", NULL};
+const char *const engine_name[] = {"auto", "tcc", "cc", "gic", "gcp1", "gcp2", "tape", NULL};
 
-static Open *const engine_opener[] = {engine_auto, engine_cc, engine_tcc, engine_gic, engine_gcp1, engine_gcp2, engine_tape};
+static Open *const engine_opener[] = {engine_auto, engine_tcc,  engine_cc,  engine_gic,
+                                      engine_gcp1, engine_gcp2, engine_tape};
 
 static int engine_index(const char *name)
 {

@@ -66,7 +66,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
     Bench bench = {.pool = pool, .folder = "gicbench", .repetitions = 9};
     bench.options.compiler = compiler && *compiler ? compiler : "cc";
     bench.options.flags = "";
-    *names = engine_name + 1; /* auto is cc and tcc by turns */
+    *names = engine_name + 2; /* auto and tcc start sooner, with the code of cc */
     for (int option; (option = getopt_long(count, word, "o:h", options, NULL)) != -1;)
         switch (option) {
         case 'o': bench.folder = optarg; break;

@@ -123,7 +123,8 @@ mkdir "$work/other"
 cp "$work/bin/counting" "$work/other/"
 : >"$work/starts"
 for folder in other bin; do
-    PATH=$work/$folder:$PATH "$gicrun" -q --engine cc --cc counting "$work/mass.veh" "$work/mass.scene" >"$work/out" 2>"$work/err"
+    PATH=$work/$folder:$PATH \
+        "$gicrun" -q --engine cc --cc counting "$work/mass.veh" "$work/mass.scene" >"$work/out" 2>"$work/err"
 done
 check 'the compiler is the one that PATH finds' [ "$(wc -l <"$work/starts")" -eq 2 ]
 CPATH=$work run

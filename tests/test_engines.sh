@@ -265,7 +265,7 @@ for engine in $engines; do
     check $? "$engine: states out of reach"
 done
 "$gicrun" --engine nothing crank.veh crank.scene >said 2>&1
-[ $? -eq 2 ] && grep -q "no engine 'nothing'" said && grep -q 'remedy: one of auto, cc, ' said
+[ $? -eq 2 ] && grep -q "no engine 'nothing'" said && grep -q 'remedy: one of auto, tcc, ' said
 check $? "an engine that is not there"
 
 echo "$passed passed, $failed failed"
