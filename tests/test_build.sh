@@ -78,7 +78,7 @@ END
 right() { "$gicrun" -q --engine tape "$work/mass.veh" "$work/mass.scene" -o "$work/right" 2>"$work/err"; }
 right
 
-# ---- kept and found ----------------------------------------------------------------------------------------------
+# ---- kept and found ----------------------------------------------------------------------------------------
 
 run
 check 'the first run compiles' good 1
@@ -105,7 +105,7 @@ check 'a changed model compiles' good 1
 run
 check 'and is found again' good 0
 
-# ---- stale -------------------------------------------------------------------------------------------------------
+# ---- stale -------------------------------------------------------------------------------------------------
 
 echo '# a later version' >>"$work/bin/counting"
 run
@@ -130,7 +130,7 @@ check 'the compiler is the one that PATH finds' [ "$(wc -l <"$work/starts")" -eq
 CPATH=$work run
 check 'other folders of headers compile' good 1
 
-# ---- damaged -----------------------------------------------------------------------------------------------------
+# ---- damaged -----------------------------------------------------------------------------------------------
 
 # every kept object, so that the one in question is among them
 damage() {
@@ -174,7 +174,7 @@ chmod +x "$work/bin/breaking"
 check 'an object that cannot be loaded is an error' [ $? -eq 1 ]
 check 'and is not kept' [ "$(objects)" -eq 1 ]
 
-# ---- several at once, and killed ones -------------------------------------------------------------------------------
+# ---- several at once, and killed ones ----------------------------------------------------------------------
 
 : >"$work/starts"
 for i in 1 2 3 4; do
@@ -206,7 +206,7 @@ run
 check 'the next run compiles' good 1
 check 'what killed runs left goes in time' [ "$(files)" -eq 1 ]
 
-# ---- no place to keep anything ------------------------------------------------------------------------------------
+# ---- no place to keep anything -----------------------------------------------------------------------------
 
 GICGEN_CACHE='' run
 check 'an empty GICGEN_CACHE keeps nothing' good 1
@@ -248,7 +248,7 @@ if [ "$(id -u)" -ne 0 ]; then # root may write anyway
     nowhere 'a folder without the right to write'
 fi
 
-# ---- engines without a compiler touch none of it ----------------------------------------------------------------------
+# ---- engines without a compiler touch none of it -----------------------------------------------------------
 
 GICGEN_CACHE=$work/untouched
 run --engine tape

@@ -24,12 +24,14 @@ check() {
 
 # a blank-free prefix that is not the default, collected elsewhere as packagers do
 prefix=/opt/gic
-made() { make --no-print-directory -s -C "$root" BUILD="$build" WERROR=-Werror DESTDIR="$work/stage" PREFIX=$prefix "$@"; }
+made() {
+    make --no-print-directory -s -C "$root" BUILD="$build" WERROR=-Werror DESTDIR="$work/stage" PREFIX=$prefix "$@"
+}
 umask 077 # modes of what is installed must not depend on it
 check 'make install' made install
 there=$work/stage$prefix
 
-# ---- files and modes ----------------------------------------------------------------------------------------------
+# ---- files and modes ---------------------------------------------------------------------------------------
 
 modes() { [ -z "$(find "$there" "$@")" ] || { find "$there" "$@" -printf '%m %p\n'; false; }; }
 check 'folders may be read by all' modes -type d ! -perm 0755
@@ -46,7 +48,7 @@ check 'all models are there' [ "$(models "$there/share/gicgen")" -eq "$(models "
 check 'nothing speaks of the place of collection, and nothing is left to fill in' \
     sh -c "! grep -rIl -e '$work' -e '@PREFIX@' -e '@VERSION@' '$there'"
 
-# ---- manuals ----------------------------------------------------------------------------------------------------------
+# ---- manuals -----------------------------------------------------------------------------------------------
 
 # options PATTERN: all words - or -- on standard input that look like options, each once
 options() { grep -oE -- '(^|[^[:alnum:]-])--?[[:alpha:]][[:alnum:]-]*' | sed 's/^[^-]*//' | sort -u; }
@@ -67,7 +69,7 @@ for program in gicgen gicrun gicbench; do
     check "$program: mandoc finds nothing" mandoc -T lint -W warning "$page"
 done
 
-# ---- programs from another folder ---------------------------------------------------------------------------------------
+# ---- programs from another folder --------------------------------------------------------------------------
 
 mkdir "$work/elsewhere"
 cd "$work/elsewhere" || exit 1
@@ -81,8 +83,8 @@ check 'gicgen works' gicgen "$there/share/gicgen/models/hmmwv.veh" -o hmmwv.c
 sed -n '/^```c$/,/^```$/p' "$root/README.md" | sed '/^```/d' >main.c
 # shellcheck disable=SC2046  # lists of words
 {
-    check "README's example in double precision" cc -std=c99 -Wall -Wextra -Werror -O1 $(config --cflags) main.c hmmwv.c \
-        $(config --libs) -o double
+    check "README's example in double precision" cc -std=c99 -Wall -Wextra -Werror -O1 $(config --cflags) \
+        main.c hmmwv.c $(config --libs) -o double
     check "README's example in single precision" cc -std=c99 -Wall -Wextra -Werror -O1 -DGIC_FLOAT $(config --cflags) \
         main.c hmmwv.c $(config --libs) -o single
     check "README's example with the runtime as source" cc -std=c99 -O1 $(config --cflags) main.c hmmwv.c \
@@ -99,12 +101,12 @@ version() { [ "gicgen $(pkg-config --modversion gicgen)" = "$(gicgen --version)"
 check "pkg-config's version is gicgen's" version
 recorded() { [ "$(pkg-config --variable=runtime gicgen)" = $prefix/share/gicgen/gic_runtime.c ]; }
 check 'pkg-config names the installed place' recorded
-check 'gicrun works' gicrun "$there/share/gicgen/models/pendulum.veh" "$there/share/gicgen/models/scenes/pendulum.scene" \
-    -o run.csv
+check 'gicrun works' gicrun "$there/share/gicgen/models/pendulum.veh" \
+    "$there/share/gicgen/models/scenes/pendulum.scene" -o run.csv
 check 'its results are there' grep -q '^time' run.csv
 check 'gicbench works' gicbench --version
 
-# ---- uninstall --------------------------------------------------------------------------------------------------------
+# ---- uninstall ---------------------------------------------------------------------------------------------
 
 : >"$there/bin/foreign"
 check 'make uninstall' made uninstall
