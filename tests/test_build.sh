@@ -40,7 +40,8 @@ chmod +x "$work/bin/counting"
 # $status and the number of compilers it started in $starts
 run() {
     : >"$work/starts"
-    "$gicrun" --engine cc --cc "$work/bin/counting" "$work/mass.veh" "$work/mass.scene" "$@" >"$work/out" 2>"$work/err"
+    "$gicrun" --engine cc --cc "$work/bin/counting" \
+        "$work/mass.veh" "$work/mass.scene" "$@" >"$work/out" 2>"$work/err"
     status=$?
     starts=$(wc -l <"$work/starts")
 }
@@ -123,8 +124,8 @@ mkdir "$work/other"
 cp "$work/bin/counting" "$work/other/"
 : >"$work/starts"
 for folder in other bin; do
-    PATH=$work/$folder:$PATH \
-        "$gicrun" -q --engine cc --cc counting "$work/mass.veh" "$work/mass.scene" >"$work/out" 2>"$work/err"
+    PATH=$work/$folder:$PATH "$gicrun" -q --engine cc --cc counting \
+        "$work/mass.veh" "$work/mass.scene" >"$work/out" 2>"$work/err"
 done
 check 'the compiler is the one that PATH finds' [ "$(wc -l <"$work/starts")" -eq 2 ]
 CPATH=$work run
@@ -178,7 +179,8 @@ check 'and is not kept' [ "$(objects)" -eq 1 ]
 
 : >"$work/starts"
 for i in 1 2 3 4; do
-    "$gicrun" -q --engine cc --cc "$work/bin/counting" "$work/mass.veh" "$work/mass.scene" >"$work/out$i" 2>>"$work/err" &
+    "$gicrun" -q --engine cc --cc "$work/bin/counting" \
+        "$work/mass.veh" "$work/mass.scene" >"$work/out$i" 2>>"$work/err" &
 done
 wait
 for i in 1 2 3 4; do
