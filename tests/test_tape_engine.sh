@@ -40,11 +40,16 @@ spoil() {
         { print }' "$1"
 }
 
-# tuned MODEL FILE: the states in FILE with values of MODEL's tunable parameters from between the two numbers behind each,
+# tuned MODEL FILE: the states in FILE with values of MODEL's tunable parameters from between the two numbers behind some,
 # in every fifth row a negative one, which some refuse
 tuned() {
     awk -F '[ ,:]+' 'NR == FNR {
-            if (/tunable: true/) { low[++count] = $(NF - 1); high[count] = $NF; sub(/^ */, ""); name[count] = $1 }
+            if (/tunable: true[}] # [-0-9.]+ [-0-9.]+$/) {
+                low[++count] = $(NF - 1)
+                high[count] = $NF
+                sub(/^ */, "")
+                name[count] = $1
+            }
             next
         }
         FNR == 1 { srand(9); for (i = 1; i <= count; ++i) $0 = $0 "," name[i]; print; next }
