@@ -127,7 +127,7 @@ $(BUILD)/check/test_runtime_float $(BUILD)/check/test_runtime_fast: tests/test_r
 
 code := $(BUILD)/check/code
 driven := hmmwv quarter_car pendulum steered undamped glider
-driving := test_motion test_instance
+driving := test_motion test_instance test_threads
 
 # the rack moved by inputs
 steered := s/^  rack: *{type: translation,/& driven: true,/; s/^  energy: .*/&\n  drive: {type: drive_force, coordinate: rack}/
