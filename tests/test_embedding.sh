@@ -68,6 +68,10 @@ while read -r how; do
         check $? "$how $name.c"
     done
 done <compilers
+for name in $compiled; do
+    tcc -std=c99 -Wall -Werror -I. -c "$name.c" -o tcc.o && tcc -DGIC_FLOAT -Wall -Werror -I. -c "$name.c" -o tcc.o
+    check $? "tcc $name.c"
+done
 
 # ---- freestanding ------------------------------------------------------------------------------------------
 
@@ -142,6 +146,9 @@ check $? "two vehicles went elsewhere: $(cat ride.double)"
 g++ -x c++ -std=c++17 -Wall -Wextra -Wpedantic -Wconversion -Werror -O1 -ffp-contract=off -I. "$program" $parts -lm \
     -o ride && ./ride | cmp - ride.double
 check $? "two vehicles in C++"
+# shellcheck disable=SC2086  # lists of words
+tcc -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
+check $? "two vehicles with tcc"
 if command -v clang >/dev/null; then
     # shellcheck disable=SC2086  # lists of words
     clang -std=c99 -O1 -ffp-contract=off -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
