@@ -3,7 +3,7 @@
 # test_embedding.sh GICGEN: README's example works as it stands there, and emitted code and runtime core compile without
 # a warning in every way that users build them, need nothing, and run the same in all of them. clang is tried where it
 # is installed.
-gicgen=$1
+gicgen=$(realpath "$1")
 root=$(cd "$(dirname "$0")/.." && pwd)
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
