@@ -12,16 +12,16 @@
 
 /* What the command line asks for. */
 typedef struct Request {
-    const char *model, *scene;  /* paths; scene may be NULL with `states` */
-    const char *states;         /* --eval, or NULL */
-    const char *results;        /* "-": standard output; NULL: none */
-    const char *picture;        /* NULL: none */
-    const char *engine;         /* one of engine_name */
+    const char *model, *scene; /* paths; scene may be NULL with `states` */
+    const char *states;        /* --eval, or NULL */
+    const char *results;       /* "-": standard output; NULL: none */
+    const char *picture;       /* NULL: none */
+    const char *engine;        /* one of engine_name */
     Solve solve;
-    const char *compiler;       /* command, perhaps with options */
-    const char *flags;          /* more options of the compiler */
-    const char *integrator;     /* instead of the scene's, or NULL */
-    double tolerance;           /* instead of the scene's, or 0 */
+    const char *compiler;   /* command, perhaps with options */
+    const char *flags;      /* more options of the compiler */
+    const char *integrator; /* instead of the scene's, or NULL */
+    double tolerance;       /* instead of the scene's, or 0 */
     bool quiet;
 } Request;
 
@@ -59,15 +59,15 @@ typedef struct Profile {
 typedef struct Scene {
     const Source *source;
     double duration, step, output_step; /* step is 0 where a scene of variable steps has none */
-    int64_t outputs;    /* output times after the one at 0 */
-    int64_t per_output; /* constant steps from one output time to the next */
-    int32_t method;     /* gic_method, or one of variable.h */
-    double tolerance;   /* of variable steps */
+    int64_t outputs;                    /* output times after the one at 0 */
+    int64_t per_output;                 /* constant steps from one output time to the next */
+    int32_t method;                     /* gic_method, or one of variable.h */
+    double tolerance;                   /* of variable steps */
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
-    double *value, *rate; /* [coordinates] at time 0; not used where driven */
+    double *value, *rate;                                           /* [coordinates] at time 0; not used where driven */
     bool placed, *given;  /* does the scene give the position, [coordinates] the values? Else they are the model's */
     const gic_road *road; /* NULL: flat at z = 0 */
-    double *parameter; /* [tunables] */
+    double *parameter;    /* [tunables] */
     int profiles, columns, curves;
     Profile *profile;
     int *column, *curve; /* output components in results and picture, indices into output[] */
@@ -139,8 +139,8 @@ typedef struct Plot {
 
 /* Picture by gnuplot, SVG or PNG by the ending of `path`; curves of the same unit share a panel. */
 void plot_write(Pool *pool, const Plot *plot, const char *path);
-/* Let gnuplot run a script that writes the file `temporary`, which then becomes `path`. Returns what process_run does, 1 when
- * the file could not be renamed; *said: why. */
+/* Let gnuplot run a script that writes the file `temporary`, which then becomes `path`. Returns what process_run does,
+ * 1 when the file could not be renamed; *said: why. */
 int gnuplot_run(Pool *pool, const char *script, const char *temporary, const char *path, const char **said);
 bool plot_known(const char *path); /* does `path` end in .svg or .png? */
 

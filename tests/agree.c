@@ -3,9 +3,10 @@
  *
  * Compares what `gicrun --eval` wrote (EVAL) with what `reference` wrote (ACCEL) for the same states. Accelerations by
  * group, relative to the sum of magnitudes of the contributing terms; places relative to the model's length scale;
- * Euler parameters up to their common sign. With --reactions EVAL has a `reaction` output for each joint, which bears its
- * name, and a `drive_force` output `drive_NAME` for each driven coordinate; they are compared like accelerations. A row counts where the reference reached it with a subset condition
- * within the limit; at least half of the rows must. Exit status 1 unless every counted row agrees. */
+ * Euler parameters up to their common sign. With --reactions EVAL has a `reaction` output for each joint, which bears
+ * its name, and a `drive_force` output `drive_NAME` for each driven coordinate; they are compared like accelerations. A
+ * row counts where the reference reached it with a subset condition within the limit; at least half of the rows must.
+ * Exit status 1 unless every counted row agrees. */
 #include "reference/dump.h"
 #include "reference/support.h"
 #include "reference/table.h"
@@ -92,7 +93,8 @@ static Groups groups_find(const Model *model, const Table *reference, const Tabl
 {
     static const char *const xyz[] = {".x", ".y", ".z"}, *const e[] = {".e0", ".e1", ".e2", ".e3"};
     static const char *const base[] = {"a", "alpha"};
-    Groups groups = {.group = grab((size_t)(2 + 2 * (model->coordinates + model->bodies + model->joints)), sizeof *groups.group)};
+    Groups groups = {
+        .group = grab((size_t)(2 + 2 * (model->coordinates + model->bodies + model->joints)), sizeof *groups.group)};
     for (int i = 0; i < 2 && model->free_base; ++i) {
         Group *group = add_group(&groups, base[i], "");
         for (int j = 0; j < 3; ++j)

@@ -145,14 +145,16 @@ static void test_self_test(void **unused)
             if (!(test.constraint >= 0 && test.constraint < 1e-12 && test.symmetry >= 0 && test.symmetry < 1e-12 &&
                   test.balance >= 0 && test.balance < 1e-12 && test.energy >= 0 && test.energy < 1e-12 &&
                   test.smallest_pivot > 0 && test.smallest_pivot <= 1))
-                fail_msg("%s, state %d: constraint %g, symmetry %g, balance %g, energy %g, pivot %g", vehicle.model->name,
-                         row, test.constraint, test.symmetry, test.balance, test.energy, test.smallest_pivot);
+                fail_msg("%s, state %d: constraint %g, symmetry %g, balance %g, energy %g, pivot %g",
+                         vehicle.model->name, row, test.constraint, test.symmetry, test.balance, test.energy,
+                         test.smallest_pivot);
         }
         free(vehicle.head);
     }
 }
 
-/* ---- failures ------------------------------------------------------------------------------------------------------ */
+/* ---- failures ------------------------------------------------------------------------------------------------------
+ */
 
 /* A car that has already gone some way, and a spoiled copy of it. */
 typedef struct Failure {
@@ -320,11 +322,11 @@ static void test_inputs_refused(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_snapshot),          cmocka_unit_test(test_interleaved),
-        cmocka_unit_test(test_newton_start),      cmocka_unit_test(test_self_test),
-        cmocka_unit_test(test_out_of_reach),      cmocka_unit_test(test_not_finite),
-        cmocka_unit_test(test_step_refused),      cmocka_unit_test(test_orientation_refused),
-        cmocka_unit_test(test_road_refused),      cmocka_unit_test(test_wild),
+        cmocka_unit_test(test_snapshot),       cmocka_unit_test(test_interleaved),
+        cmocka_unit_test(test_newton_start),   cmocka_unit_test(test_self_test),
+        cmocka_unit_test(test_out_of_reach),   cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_step_refused),   cmocka_unit_test(test_orientation_refused),
+        cmocka_unit_test(test_road_refused),   cmocka_unit_test(test_wild),
         cmocka_unit_test(test_inputs_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

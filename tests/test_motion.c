@@ -87,7 +87,8 @@ static void test_orders(void **unused)
     }
 }
 
-/* ---- conservation -------------------------------------------------------------------------------------------------- */
+/* ---- conservation --------------------------------------------------------------------------------------------------
+ */
 
 /* Energy with what the tires store, on the flat road. */
 static double total_energy(Vehicle *car)
@@ -143,7 +144,8 @@ static void test_energy(void **unused)
         const double fine = energy_drift((gic_method)method, 2 * steps[method], &moved);
         const double order = log2(coarse / fine);
         if (!(order > expected[method] - 0.1))
-            fail_msg("energy drifts by %g J, at half the step by %g J: order %g with method %d", coarse, fine, order, method);
+            fail_msg("energy drifts by %g J, at half the step by %g J: order %g with method %d", coarse, fine, order,
+                     method);
         /* and it is a small part of what goes to and fro */
         assert_true(coarse < 1e-3 * moved);
     }
@@ -209,8 +211,8 @@ static void fly(int steps, double *off, double *drift)
         }
         assert_int_equal(car.model->outputs(car.head), GIC_OK);
         assert_true(car.output[GLIDER_OUTPUT_TIRE_F_L_FZ] == 0);
-        *drift = fmax(*drift, fabs(car.output[GLIDER_OUTPUT_ENERGY_KINETIC] + car.output[GLIDER_OUTPUT_ENERGY_POTENTIAL] -
-                                   energy));
+        *drift = fmax(*drift, fabs(car.output[GLIDER_OUTPUT_ENERGY_KINETIC] +
+                                   car.output[GLIDER_OUTPUT_ENERGY_POTENTIAL] - energy));
     }
     free(car.head);
 }
@@ -228,7 +230,8 @@ static void test_flight(void **unused)
         fail_msg("energy drifts by %g J, at half the step by %g J", drift[0], drift[1]);
 }
 
-/* ---- change of the dependent Euler parameter --------------------------------------------------------------------------- */
+/* ---- change of the dependent Euler parameter
+ * --------------------------------------------------------------------------- */
 
 enum { WINDOW = 10 }; /* steps before and after a change to compare with */
 
