@@ -172,13 +172,46 @@ bool force_is_torque(const Force *force);
 
 enum { FORCE_LOCALS = 2 }; /* of FORCE_POINTS_LAW: length, speed; of FORCE_AXIS_LAW: angle, speed */
 
+/* ---- tires and wheels: models/TIRES.md ---- */
+
+typedef enum TireType { TIRE_PAC2002, TIRE_TMEASY, TIRE_TYPES } TireType;
+typedef enum TireSide { SIDE_LEFT, SIDE_RIGHT, SIDE_SYMMETRIC } TireSide;
+
+/* SI units. */
+typedef struct Tire {
+    const char *name;
+    Place at;
+    TireType type;
+    TireSide side; /* its own */
+    int mode;      /* PAC2002: 0 to 4 */
+    double radius; /* R, unloaded */
+    double stiffness, damping, bottom_stiffness, bottom /* k, c, k_b, rho_b */;
+    double low_speed;     /* v_low */
+    double relaxation[2]; /* sigma_x, sigma_y where they are given or constant; 0: they follow from number[] */
+    const double *number; /* [PAC_COUNT] or [TMEASY_COUNT], tire.h */
+} Tire;
+
+/* A contact with the road: with a tire it spins, without it is a vertical spring and damper. */
 typedef struct Wheel {
     const char *name;
     Place at;
     int body;
     double center[3]; /* frame of body */
-    double radius, stiffness, damping, fade;
+    double radius, stiffness, damping, fade; /* with a tire: those of the tire; fade is the wheel's own */
+    int tire;                                /* -1: none, and nothing below counts */
+    double axis[3];                          /* s, frame of body */
+    double spin_inertia;                     /* taken off the inertia of body already */
+    bool mirrored;                           /* mounted on the side that is not the tire's own */
+    const struct Law *drive, *brake;         /* NULL: none; local 0: spin */
+    int drive_body;
+    double windup;
+    int fast; /* index of its first fast state among the model's: spin, slip_x, slip_y and, with a brake, brake */
 } Wheel;
+
+enum { FAST_SPIN, FAST_SLIP_X, FAST_SLIP_Y, FAST_BRAKE, FAST_MOST };
+
+/* 3 or 4; 0 without a tire. */
+int wheel_fast_states(const Wheel *wheel);
 
 typedef enum OutputType {
     OUTPUT_POSITION,
@@ -192,11 +225,13 @@ typedef enum OutputType {
     OUTPUT_DRIVE_FORCE,
     OUTPUT_REACTION,
     OUTPUT_WHEEL,
+    OUTPUT_TIRE,
+    OUTPUT_CONTACT,
     OUTPUT_ENERGY,
     OUTPUT_TYPES
 } OutputType;
 
-enum { OUTPUT_MAX_COMPONENTS = 6 };
+enum { OUTPUT_MAX_COMPONENTS = 12 };
 
 typedef struct Output {
     const char *name;
@@ -217,11 +252,12 @@ typedef struct Model {
     double gravity[3];
     bool free_base; /* body 0 is the base: the chassis, or ground with mass 0 */
     int bodies, joints, coordinates, forces, wheels, inputs, outputs, output_components;
-    int parameters, tunables, tables, ports;
+    int parameters, tunables, tables, ports, tires, fast_states;
     Body *body;
     Joint *joint;
     Coordinate *coordinate;
     Force *force;
+    Tire *tire;
     Wheel *wheel;
     Input *input;
     Output *output;

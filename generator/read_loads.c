@@ -377,6 +377,11 @@ void forces_read(Reader *reader, const Item *map)
         force_read(reader, entry + i, model->force + i);
 }
 
+int wheel_fast_states(const Wheel *wheel)
+{
+    return wheel->tire < 0 ? 0 : wheel->brake ? FAST_MOST : FAST_BRAKE;
+}
+
 void wheels_read(Reader *reader, const Item *map)
 {
     Model *model = reader->model;
@@ -394,6 +399,7 @@ void wheels_read(Reader *reader, const Item *map)
             .stiffness = value[TIRE_STIFFNESS].number[0],
             .damping = value[TIRE_DAMPING].number[0],
             .fade = value[TIRE_FADE].number[0],
+            .tire = -1,
         };
         tuning_set(model->tuning, &wheel->radius, value[TIRE_RADIUS].tuned, 1);
         tuning_set(model->tuning, &wheel->stiffness, value[TIRE_STIFFNESS].tuned, 1);

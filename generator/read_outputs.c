@@ -16,6 +16,8 @@ const char *const output_type_name[OUTPUT_TYPES] = {
     [OUTPUT_DRIVE_FORCE] = "drive_force",
     [OUTPUT_REACTION] = "reaction",
     [OUTPUT_WHEEL] = "wheel",
+    [OUTPUT_TIRE] = "tire",
+    [OUTPUT_CONTACT] = "contact",
     [OUTPUT_ENERGY] = "energy",
 };
 
@@ -37,6 +39,8 @@ enum {
 #define ROTATIONS (FORM(OUTPUT_ORIENTATION) | FORM(OUTPUT_ROLL_PITCH_YAW) | FORM(OUTPUT_ANGULAR_VELOCITY))
 #define OF_COORDINATES (FORM(OUTPUT_COORDINATE) | FORM(OUTPUT_DRIVE_FORCE))
 
+#define WATCH_WHEELS (FORM(OUTPUT_WHEEL) | FORM(OUTPUT_TIRE) | FORM(OUTPUT_CONTACT))
+
 static const Key output_key[WATCH_KEYS] = {
     [WATCH_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [WATCH_BODY] = {"body", KEY_BODY, POINTS | ROTATIONS, POINTS | ROTATIONS, BOUND_NONE, 0},
@@ -45,7 +49,7 @@ static const Key output_key[WATCH_KEYS] = {
     [WATCH_COORDINATE] = {"coordinate", KEY_COORDINATE, OF_COORDINATES, OF_COORDINATES, BOUND_NONE, 0},
     [WATCH_ELEMENT] = {"element", KEY_FORCE, FORM(OUTPUT_FORCE), FORM(OUTPUT_FORCE), BOUND_NONE, 0},
     [WATCH_JOINT] = {"joint", KEY_JOINT, FORM(OUTPUT_REACTION), FORM(OUTPUT_REACTION), BOUND_NONE, 0},
-    [WATCH_WHEEL] = {"wheel", KEY_WHEEL, FORM(OUTPUT_WHEEL), FORM(OUTPUT_WHEEL), BOUND_NONE, 0},
+    [WATCH_WHEEL] = {"wheel", KEY_WHEEL, WATCH_WHEELS, WATCH_WHEELS, BOUND_NONE, 0},
 };
 
 /* Components and units of each type; a lone component "" has no suffix. Angles have their own units. */
@@ -69,6 +73,11 @@ static const OutputKind output_kind[OUTPUT_TYPES] = {
                          {"N", "N", "N", "N m", "N m", "N m"},
                          {0}},
     [OUTPUT_WHEEL] = {4, {"fz", "deflection", "deflection_rate", "height"}, {"N", "m", "m/s", "m"}, {0}},
+    [OUTPUT_TIRE] = {12,
+                     {"fx", "fy", "mx", "my", "mz", "kappa", "alpha", "camber", "spin", "spin_rate", "drive", "brake"},
+                     {"N", "N", "N m", "N m", "N m", "1", "rad", "rad", "rad/s", "rad/s^2", "N m", "N m"},
+                     {0}},
+    [OUTPUT_CONTACT] = {3, {"x", "y", "z"}, {"m", "m", "m"}, {0}},
     [OUTPUT_ENERGY] = {2, {"kinetic", "potential"}, {"J", "J"}, {0}},
 };
 

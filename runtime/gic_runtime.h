@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Raised when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 2
+#define GIC_ABI_VERSION 3
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. */
@@ -88,6 +88,7 @@ typedef struct gic_head {
     int64_t steps;        /* time = start_time + steps * step, so that no error accumulates */
     int32_t method;       /* of the last step; a change restarts the multistep history */
     int32_t history;      /* rates kept for AB3: 0, 1 or 2 */
+    int32_t ratio;        /* of the last step: fast steps in it, 1: a single rate; a change restarts the history too */
     int32_t lane;         /* free for the caller: which vehicle of many this is */
     int32_t flip;         /* which of the two Newton starts is the last good one */
     int32_t status;       /* of the last call */
@@ -150,6 +151,15 @@ typedef struct gic_model {
     int (*outputs)(void *self);
     int (*poses)(void *self, gic_real *pose);
     int (*self_test)(void *self, gic_self_test *result);
+    /* Dual rate (TIRES.md section 9); models without fast states have link_count 0 and NULL here. */
+    int32_t link_count; /* numbers through which the slow part moves the fast one */
+    size_t link_offset; /* of 5 link_count numbers: links at the last slow steps, newest first, and one row of scratch */
+    /* link[] at a slow state (slow_count numbers), whose dependent coordinates are recovered */
+    int (*link)(void *self, gic_real time, const gic_real *slow, gic_real *link);
+    /* rate[] (fast_count) of a fast state (fast_count) at links */
+    int (*fast)(void *self, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate);
+    /* let all wheels roll at the present state: TIRES.md section 2 */
+    int (*roll)(void *self);
 } gic_model;
 
 /* With n = slow_count + fast_count: state has n numbers; rate n, at the start of the last step; history 2 n, two past
@@ -162,6 +172,12 @@ typedef struct gic_model {
  * size or method restarts the history. */
 #define gic_step GIC_NAME(gic_step)
 int gic_step(const gic_model *model, void *self, gic_real step, int32_t method);
+
+/* One step of `step` seconds of AB3 in which the fast states take `ratio` >= 1 steps: TIRES.md section 9. The first two
+ * steps are `ratio` steps each of RK4. As gic_step otherwise; with ratio 1, or a model without fast states, it is
+ * gic_step. */
+#define gic_step_dual GIC_NAME(gic_step_dual)
+int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t ratio);
 
 /* The present time of an instance, s. */
 #define gic_time GIC_NAME(gic_time)
