@@ -203,7 +203,7 @@ Ex tuned_number(const Model *model, const double *at);
 Ex tuned_or_fixed(const Model *model, const double *at);
 /* Differences of the numbers at a and b likewise, 0: follows no parameter. */
 Ex tuned_difference(const Model *model, const double *a, const double *b);
-/* Let numbers follow formulas [count]; 0 and literals: they don't. */
+/* Let numbers follow formulas [count], in place of those that they followed before; 0 and literals: as before. */
 void tuning_set(Tuning *tuning, const double *at, const Ex *formula, int count);
 /* Numbers [count] that are copies of others follow the same formulas. */
 void tuning_copy(const Model *model, const double *to, const double *from, int count);

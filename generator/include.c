@@ -140,26 +140,27 @@ static const Item *part_placed(Pool *pool, const Item *file, const Value *value)
     return out;
 }
 
-/* `name` as seen from the folder of the file that names it. */
-static const char *path_from(Pool *pool, const char *file, const char *name)
+const char *path_check(Pool *pool, const Item *item, const char *file, const char *name, const char *use,
+                       struct stat *identity)
 {
-    const char *slash = strrchr(file, '/');
-    if (name[0] == '/' || !slash)
-        return name;
-    return pool_print(pool, "%.*s%s", (int)(slash + 1 - file), file, name);
+    const char *slash = strrchr(file, '/'), *path = name;
+    if (!name[0] || !strcmp(name, "-"))
+        diag_fail(item->at, "name a file; paths start in the folder of this file", "'%s' is no file to %s", name, use);
+    if (name[0] != '/' && slash)
+        path = pool_print(pool, "%.*s%s", (int)(slash + 1 - file), file, name);
+    if (stat(path, identity) || access(path, R_OK))
+        diag_fail(item->at, "paths start in the folder of the file that they stand in", "can't %s '%s': %s", use, path,
+                  strerror(errno));
+    if (S_ISDIR(identity->st_mode))
+        diag_fail(item->at, "name a file in it", "can't %s '%s': it is a folder", use, path);
+    return path;
 }
 
 /* Refuse what can't be read, and what is being read already. */
 static Open part_open(Pool *pool, const Item *item, const char *name, const Open *from)
 {
-    Open open = {.from = from, .path = path_from(pool, from->path, name), .depth = from->depth + 1};
-    if (!name[0] || !strcmp(name, "-"))
-        diag_fail(item->at, "name a file; paths start in the folder of this file", "'%s' is no file to include", name);
-    if (stat(open.path, &open.identity) || access(open.path, R_OK))
-        diag_fail(item->at, "paths start in the folder of the file that they stand in", "can't include '%s': %s",
-                  open.path, strerror(errno));
-    if (S_ISDIR(open.identity.st_mode))
-        diag_fail(item->at, "name a file in it", "can't include '%s': it is a folder", open.path);
+    Open open = {.from = from, .depth = from->depth + 1};
+    open.path = path_check(pool, item, from->path, name, "include", &open.identity);
     Text chain = {.pool = pool};
     text_print(&chain, "%s", open.path);
     for (const Open *above = from; above; above = above->from) {

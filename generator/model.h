@@ -52,7 +52,8 @@ enum { BODY_BASE = 0, BODY_GROUND = -1 };
 typedef struct Body {
     const char *name;
     Place at;
-    double mass, com[3] /* own frame */, inertia[6] /* xx yy zz xy xz yz, own axes, about com */;
+    double mass, com[3] /* own frame */;
+    double inertia[6]; /* xx yy zz xy xz yz, own axes, about com; less the spin inertia of the wheels that it carries */
     double position[3], euler[4]; /* body frame at design, model frame */
 } Body;
 

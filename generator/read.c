@@ -21,6 +21,7 @@ enum {
     FILE_TABLES,
     FILE_PORTS,
     FILE_FORCES,
+    FILE_TIRES,
     FILE_WHEELS,
     FILE_OUTPUTS,
     FILE_KEYS
@@ -42,6 +43,7 @@ static const Key file_key[FILE_KEYS] = {
     [FILE_TABLES] = {"tables", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_PORTS] = {"ports", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_FORCES] = {"forces", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_TIRES] = {"tires", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_WHEELS] = {"wheels", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_OUTPUTS] = {"outputs", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
 };
@@ -62,6 +64,7 @@ static const char *const file_about[FILE_KEYS] = {
     [FILE_TABLES] = "functions of one number, for formulas",
     [FILE_PORTS] = "external forces and torques that the calling program supplies",
     [FILE_FORCES] = "force elements: springs, dampers, force laws, loads",
+    [FILE_TIRES] = "tires of wheels that roll, from .tir files or with their data",
     [FILE_WHEELS] = "contacts of bodies with the road of the scene",
     [FILE_OUTPUTS] = "results and their names; default: poses and velocity of a free base, and coordinates",
 };
@@ -103,6 +106,7 @@ const Model *model_read(Pool *pool, const char *path)
     inputs_read(&reader, value[FILE_INPUTS].item);
     ports_read(&reader, value[FILE_PORTS].item);
     forces_read(&reader, value[FILE_FORCES].item);
+    tires_read(&reader, value[FILE_TIRES].item);
     wheels_read(&reader, value[FILE_WHEELS].item);
     outputs_read(&reader, value[FILE_OUTPUTS].item);
     model->drawn = model->body;

@@ -8,6 +8,8 @@
 
 #include "gicgen.h"
 
+struct stat;
+
 /* What the value of a key is, and where section_read leaves it in a Value. Vectors and points: model frame. */
 typedef enum KeyKind {
     KEY_TYPE,          /* one of the section's types, for section_type */
@@ -21,10 +23,12 @@ typedef enum KeyKind {
     KEY_TEXT,          /* text */
     KEY_INTERPOLATION, /* one of two words (kind_words); flag: it is the second */
     KEY_BEYOND,        /* the same */
+    KEY_SIDE,          /* the same; the mirror exchanges the words */
     KEY_NAME,          /* text */
     KEY_NUMBER,        /* number[0], which follows no tunable parameter */
     KEY_MEASURE,       /* number[0], which may */
     KEY_ODD,           /* the same as KEY_MEASURE; changes its sign in the mirror */
+    KEY_PAIR,          /* number[0], number[1], each within the bound */
     KEY_FLAG,          /* flag */
     KEY_RANGE,         /* number[0] < number[1] */
     KEY_VECTOR,        /* number[0..2] */
@@ -42,6 +46,7 @@ typedef enum KeyKind {
     KEY_COORDINATE,    /* index[0] */
     KEY_JOINT,         /* index[0] */
     KEY_FORCE,         /* index[0] */
+    KEY_TIRE,          /* index[0] */
     KEY_WHEEL,         /* index[0] */
     KEY_TABLE,         /* index[0] */
     KEY_KINDS
@@ -105,7 +110,7 @@ typedef struct Entry {
 extern const Section file_section, part_section;
 extern const Section parameter_section, table_section, port_section;
 extern const Section body_section, inertia_section, orientation_section, joint_section, coordinate_section;
-extern const Section input_section, force_section, wheel_section, output_section;
+extern const Section input_section, force_section, tire_section, wheel_section, output_section;
 
 /* What to write for each kind of value, for people. */
 extern const char *const kind_example[KEY_KINDS];
@@ -141,6 +146,10 @@ const char *name_mirrored(Pool *pool, const char *name);
 const Item *file_mirrored(Pool *pool, const Item *file);
 /* A file of this format's version with all that it includes (FORMAT.md section 12), as if written in one. */
 const Item *file_included(Pool *pool, const char *path);
+/* The path of the file that `item` names, `name`, from the folder of `file`; what can't be read ends in diag_fail. use:
+ * what is done with it, "include". */
+const char *path_check(Pool *pool, const Item *item, const char *file, const char *name, const char *use,
+                       struct stat *identity);
 
 /* ---- read_keys.c ---- */
 
@@ -175,8 +184,10 @@ void bodies_read(Reader *reader, const Item *base, const Item *bodies);
  * its place in the Model. */
 void body_point(const Reader *reader, int body, const double x[3], const Ex tuned[3], Place at, double out[3]);
 void body_direction(const Reader *reader, int body, const double x[3], const Ex tuned[3], double out[3]);
+/* Take the spin inertia of a wheel off the inertia of the body that carries it, which must leave that of a body. */
+void spin_take(const Reader *reader, const Wheel *wheel, const char *what, Place at);
 
-/* ---- read_links.c: joints and dual coordinates; read_loads.c: inputs, forces, wheels; read_outputs.c ---- */
+/* ---- read_links.c: joints and dual coordinates; read_loads.c: inputs, forces; read_outputs.c ---- */
 
 /* ---- read_laws.c: parameters, tables, ports ---- */
 
@@ -188,8 +199,14 @@ void joints_read(Reader *reader, const Item *map);
 void coordinates_read(Reader *reader, const Item *map);
 void inputs_read(Reader *reader, const Item *map);
 void forces_read(Reader *reader, const Item *map);
-void wheels_read(Reader *reader, const Item *map);
 void outputs_read(Reader *reader, const Item *map);
+
+/* ---- read_tires.c, tir.c, read_wheels.c ---- */
+
+void tires_read(Reader *reader, const Item *map);
+/* The tire of the `.tir` file that `item` names, all but what the model says of it. what: "tire 'front'". */
+void tir_read(const Reader *reader, const Item *item, const char *what, Tire *tire);
+void wheels_read(Reader *reader, const Item *map);
 
 /* The unit vector perpendicular to a unit axis that is as near as can be to the axis of the model frame to which it is
  * least parallel (e_1 of FORMAT.md section 5), fixed in both bodies; all in the model frame but `out`, its places in

@@ -88,6 +88,16 @@ static bool positive_definite(const double m[6])
     return m[2] - l20 * m[4] - s21 / d1 * s21 > 0;
 }
 
+/* Whether the triangle inequality holds: the principal values of trace/2 - inertia are (b + c - a)/2 and so on, and
+ * none may be negative. The tolerance is relative to b + c, which at the limit is half of the trace. */
+static bool of_a_body(const double inertia[6])
+{
+    double trace = inertia[0] + inertia[1] + inertia[2], slack = triangle_tolerance * trace / 4, spread[6];
+    for (int i = 0; i < 6; ++i)
+        spread[i] = i < 3 ? trace / 2 - inertia[i] + slack : -inertia[i];
+    return isfinite(trace) && positive_definite(spread);
+}
+
 /* The pivots of a symmetric matrix that must be positive definite. */
 static void require_definite(const Reader *reader, const Ex m[6], const char *text)
 {
@@ -138,15 +148,38 @@ static void inertia_read(Reader *reader, const Item *item, const Entry *body, do
     if (!positive_definite(inertia))
         diag_fail(item->at, "check signs and magnitudes; xy, xz, yz are the elements of the matrix",
                   "%s is not positive definite", what);
-    /* The principal values of trace/2 - inertia are (b + c - a)/2 and so on: none may be negative. The tolerance is
-     * relative to b + c, which at the limit is half of the trace. */
-    double trace = inertia[0] + inertia[1] + inertia[2], slack = triangle_tolerance * trace / 4, spread[6];
-    for (int i = 0; i < 6; ++i)
-        spread[i] = i < 3 ? trace / 2 - inertia[i] + slack : -inertia[i];
-    if (!isfinite(trace) || !positive_definite(spread))
+    if (!of_a_body(inertia))
         diag_fail(item->at, "check the values; for a flat body the largest is the sum of the others",
                   "%s is that of no body: a principal value is larger than the sum of the other two", what);
     inertia_tune(reader, what, inertia, tuned);
+}
+
+void spin_take(const Reader *reader, const Wheel *wheel, const char *what, Place at)
+{
+    static const int entry[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+    Body *body = &reader->model->body[wheel->body];
+    Dag *dag = reader->model->tuning->dag;
+    Ex tuned[6], s[3];
+    for (int i = 0; i < 3; ++i)
+        s[i] = tuned_or_fixed(reader->model, &wheel->axis[i]);
+    for (int i = 0; i < 6; ++i) {
+        Ex square = ex_mul(dag, s[entry[i][0]], s[entry[i][1]]);
+        tuned[i] = ex_sub(dag, tuned_or_fixed(reader->model, &body->inertia[i]),
+                          ex_mul(dag, ex_literal(dag, wheel->spin_inertia), square));
+    }
+    for (int i = 0; i < 6; ++i)
+        body->inertia[i] -= wheel->spin_inertia * wheel->axis[entry[i][0]] * wheel->axis[entry[i][1]];
+    if (!positive_definite(body->inertia))
+        diag_fail(at, "give the body the inertia of everything that it carries, wheels included",
+                  "spin_inertia of %s is as much as body '%s' has about that axis, or more", what, body->name);
+    if (!of_a_body(body->inertia))
+        diag_fail(at, "give the body the inertia of everything that it carries, wheels included",
+                  "without spin_inertia of %s the inertia of body '%s' is that of no body: a principal value is larger "
+                  "than the sum of the other two",
+                  what, body->name);
+    tuned_reduce(reader, tuned, 6);
+    inertia_tune(reader, pool_print(reader->pool, "what spin leaves of the inertia of body '%s'", body->name),
+                 body->inertia, tuned);
 }
 
 /* Euler parameters of the rotation matrix with columns x, y, z (Shepperd: divide by the largest parameter). */
@@ -179,9 +212,9 @@ static void orientation_read(Reader *reader, const Item *item, const Entry *body
 {
     Entry entry = {"orientation", pool_print(reader->pool, "orientation of %s", body->what), item->at, item};
     bool is_map = item->kind == ITEM_MAP;
-    int form = is_map && doc_find(item, "euler")                                ? ORIENTATION_EULER
+    int form = is_map && doc_find(item, "euler")                               ? ORIENTATION_EULER
                : is_map && (doc_find(item, "axis") || doc_find(item, "angle")) ? ORIENTATION_ANGLE
-                                                                                : ORIENTATION_AXES;
+                                                                               : ORIENTATION_AXES;
     Value value[TURN_KEYS];
     reader->fixed = true;
     section_read(reader, &orientation_section, form, &entry, value);
@@ -253,8 +286,9 @@ void bodies_read(Reader *reader, const Item *base, const Item *bodies)
         if (first == count) {
             name[count] = "ground";
             const char *nearest = diag_nearest(base_name, name, count + 1);
-            diag_fail(base->at, nearest ? pool_print(reader->pool, "did you mean '%s'?", nearest)
-                                        : "name one of the bodies, or `ground` for a fixed base",
+            diag_fail(base->at,
+                      nearest ? pool_print(reader->pool, "did you mean '%s'?", nearest)
+                              : "name one of the bodies, or `ground` for a fixed base",
                       "base: there is no body '%s'", base_name);
         }
     }

@@ -22,10 +22,12 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_TEXT] = "text",
     [KEY_INTERPOLATION] = "linear",
     [KEY_BEYOND] = "constant",
+    [KEY_SIDE] = "left",
     [KEY_NAME] = "name",
     [KEY_NUMBER] = "number",
     [KEY_MEASURE] = "number",
     [KEY_ODD] = "number",
+    [KEY_PAIR] = "[first, second]",
     [KEY_FLAG] = "true",
     [KEY_RANGE] = "[low, high]",
     [KEY_VECTOR] = "[x, y, z]",
@@ -43,6 +45,7 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_COORDINATE] = "coordinate",
     [KEY_JOINT] = "joint",
     [KEY_FORCE] = "force",
+    [KEY_TIRE] = "tire",
     [KEY_WHEEL] = "wheel",
     [KEY_TABLE] = "table",
 };
@@ -50,6 +53,7 @@ const char *const kind_example[KEY_KINDS] = {
 const char *const kind_words[KEY_KINDS][2] = {
     [KEY_INTERPOLATION] = {"linear", "cubic"},
     [KEY_BEYOND] = {"constant", "linear"},
+    [KEY_SIDE] = {"left", "right"},
 };
 
 /* Keywords of C11 and C++20: the runtime compiles as either. */
@@ -258,14 +262,18 @@ static void read_axis(Reader *reader, const Item *item, const char *what, double
         diag_fail(item->at, "write a direction, such as [0, 0, 1]", "%s has no direction: it is zero", what);
 }
 
+static void bound_check(const Key *key, const Item *item, const char *what, double number)
+{
+    if (key->bound == BOUND_POSITIVE && !(number > 0))
+        diag_fail(item->at, "write a positive number", "%s must be greater than zero, not %s", what, item->text);
+    if (key->bound == BOUND_NOT_NEGATIVE && number < 0)
+        diag_fail(item->at, "write zero or a positive number", "%s must not be negative (%s)", what, item->text);
+}
+
 static void read_number(Reader *reader, const Key *key, const Item *item, const char *what, Value *value)
 {
-    double *number = value->number;
-    *number = number_read(reader, item, what, key->kind == KEY_NUMBER ? NULL : value->tuned);
-    if (key->bound == BOUND_POSITIVE && !(*number > 0))
-        diag_fail(item->at, "write a positive number", "%s must be greater than zero, not %s", what, item->text);
-    if (key->bound == BOUND_NOT_NEGATIVE && *number < 0)
-        diag_fail(item->at, "write zero or a positive number", "%s must not be negative (%s)", what, item->text);
+    value->number[0] = number_read(reader, item, what, key->kind == KEY_NUMBER ? NULL : value->tuned);
+    bound_check(key, item, what, value->number[0]);
     if (value->tuned[0] && key->bound != BOUND_NONE)
         tuning_require(reader->model->tuning, value->tuned[0], key->bound == BOUND_NOT_NEGATIVE,
                        pool_print(reader->pool, "%s must %s", what,
@@ -296,7 +304,13 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     case KEY_MEASURE:
     case KEY_ODD: read_number(reader, key, item, what, value); break;
     case KEY_INTERPOLATION:
-    case KEY_BEYOND: value->flag = second_word(item, what, kind_words[key->kind]); break;
+    case KEY_BEYOND:
+    case KEY_SIDE: value->flag = second_word(item, what, kind_words[key->kind]); break;
+    case KEY_PAIR:
+        vector_read(reader, item, what, value->number, 2, NULL);
+        for (int i = 0; i < 2; ++i)
+            bound_check(key, item->value[i], what, value->number[i]);
+        break;
     case KEY_FLAG: value->flag = doc_bool(item, what); break;
     case KEY_RANGE:
         vector_read(reader, item, what, value->number, 2, NULL);
@@ -342,6 +356,9 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         break;
     case KEY_FORCE:
         value->index[0] = find(reader, item, what, "force element", model->force, model->forces, sizeof *model->force);
+        break;
+    case KEY_TIRE:
+        value->index[0] = find(reader, item, what, "tire", model->tire, model->tires, sizeof *model->tire);
         break;
     case KEY_WHEEL:
         value->index[0] = find(reader, item, what, "wheel", model->wheel, model->wheels, sizeof *model->wheel);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Inputs, force elements and wheels (FORMAT.md sections 6 to 8). */
+ * Inputs and force elements (FORMAT.md sections 6 and 7). */
 #include "read.h"
 
 #include <math.h>
@@ -146,28 +146,6 @@ static const char *const force_about[ELEMENT_KEYS] = {
 
 const Section force_section = {force_key,       ELEMENT_KEYS,     force_type_name, TYPES,
                                force_form_name, force_type_forms, force_about};
-
-enum { TIRE_BODY, TIRE_CENTER, TIRE_RADIUS, TIRE_STIFFNESS, TIRE_DAMPING, TIRE_FADE, TIRE_KEYS };
-
-static const Key wheel_key[TIRE_KEYS] = {
-    [TIRE_BODY] = {"body", KEY_BODY, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
-    [TIRE_CENTER] = {"center", KEY_POINT, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
-    [TIRE_RADIUS] = {"radius", KEY_MEASURE, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
-    [TIRE_STIFFNESS] = {"stiffness", KEY_MEASURE, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
-    [TIRE_DAMPING] = {"damping", KEY_MEASURE, ALL_FORMS, 0, BOUND_NOT_NEGATIVE, 0},
-    [TIRE_FADE] = {"fade", KEY_MEASURE, ALL_FORMS, 0, BOUND_POSITIVE, 0.01},
-};
-
-static const char *const wheel_about[TIRE_KEYS] = {
-    [TIRE_BODY] = "the body that carries the wheel",
-    [TIRE_CENTER] = "centre of the wheel at design, m, model frame",
-    [TIRE_RADIUS] = "radius without load, m",
-    [TIRE_STIFFNESS] = "vertical stiffness of the tire, N/m",
-    [TIRE_DAMPING] = "vertical damping of the tire, N s/m; default 0",
-    [TIRE_FADE] = "deflection over which damping builds up, m; default 0.01",
-};
-
-const Section wheel_section = {wheel_key, TIRE_KEYS, NULL, 0, NULL, NULL, wheel_about};
 
 /* The three inputs of a driven coordinate: value, rate, acceleration. */
 static void driven_inputs(Reader *reader, Coordinate *coordinate)
@@ -375,40 +353,4 @@ void forces_read(Reader *reader, const Item *map)
     model->force = pool_alloc(reader->pool, sizeof *model->force * (size_t)(model->forces + 1));
     for (int i = 0; i < model->forces; ++i)
         force_read(reader, entry + i, model->force + i);
-}
-
-int wheel_fast_states(const Wheel *wheel)
-{
-    return wheel->tire < 0 ? 0 : wheel->brake ? FAST_MOST : FAST_BRAKE;
-}
-
-void wheels_read(Reader *reader, const Item *map)
-{
-    Model *model = reader->model;
-    Entry *entry = section_entries(reader, map, "wheel", &model->wheels);
-    model->wheel = pool_alloc(reader->pool, sizeof *model->wheel * (size_t)(model->wheels + 1));
-    for (int i = 0; i < model->wheels; ++i) {
-        Value value[TIRE_KEYS];
-        section_read(reader, &wheel_section, 0, entry + i, value);
-        Wheel *wheel = model->wheel + i;
-        *wheel = (Wheel){
-            .name = entry[i].name,
-            .at = entry[i].at,
-            .body = value[TIRE_BODY].index[0],
-            .radius = value[TIRE_RADIUS].number[0],
-            .stiffness = value[TIRE_STIFFNESS].number[0],
-            .damping = value[TIRE_DAMPING].number[0],
-            .fade = value[TIRE_FADE].number[0],
-            .tire = -1,
-        };
-        tuning_set(model->tuning, &wheel->radius, value[TIRE_RADIUS].tuned, 1);
-        tuning_set(model->tuning, &wheel->stiffness, value[TIRE_STIFFNESS].tuned, 1);
-        tuning_set(model->tuning, &wheel->damping, value[TIRE_DAMPING].tuned, 1);
-        tuning_set(model->tuning, &wheel->fade, value[TIRE_FADE].tuned, 1);
-        if (!model->free_base && wheel->body == BODY_BASE)
-            diag_fail(value[TIRE_BODY].item->at, "name the body that carries it", "%s: ground can't roll on the road",
-                      entry[i].what);
-        body_point(reader, wheel->body, value[TIRE_CENTER].number, value[TIRE_CENTER].tuned,
-                   value[TIRE_CENTER].item->at, wheel->center);
-    }
 }

@@ -9,14 +9,14 @@
 enum { X = 1 << 0, Y = 1 << 1, Z = 1 << 2, LONGEST = 4 /* list of numbers that a kind has */ };
 
 /* Formulas name coordinates, inputs and what else can stand in them. */
-typedef enum Words { WORDS_NONE, WORDS_FORMULA, WORDS_NAME } Words;
+typedef enum Words { WORDS_NONE, WORDS_FORMULA, WORDS_NAME, WORDS_SIDE } Words;
 
 typedef struct Rule {
-    unsigned odd;      /* bit i: component i changes its sign in the mirror y -> -y */
-    bool place;        /* components are those of a point, which can be moved */
-    bool pair;         /* a list of two such values */
-    Words words;       /* what a scalar that is no number may be */
-    const char *group; /* WORDS_NAME: of an entry of this group */
+    unsigned odd;           /* bit i: component i changes its sign in the mirror y -> -y */
+    bool place;             /* components are those of a point, which can be moved */
+    bool pair;              /* a list of two such values */
+    Words words;            /* what a scalar that is no number may be */
+    const char *group;      /* WORDS_NAME: of an entry of this group */
     const Section *section; /* a map of keys with rules of their own, where it is a map */
 } Rule;
 
@@ -29,6 +29,7 @@ static const Rule rule[KEY_KINDS] = {
     [KEY_NUMBER] = {.words = WORDS_FORMULA},
     [KEY_MEASURE] = {.words = WORDS_FORMULA},
     [KEY_INERTIA] = {.words = WORDS_FORMULA, .section = &inertia_section},
+    [KEY_PAIR] = {.words = WORDS_FORMULA},
     [KEY_RANGE] = {.words = WORDS_FORMULA},
     [KEY_ORIENTATION] = {.section = &orientation_section},
     [KEY_ODD] = {.odd = X},
@@ -45,6 +46,8 @@ static const Rule rule[KEY_KINDS] = {
     [KEY_COORDINATE] = {.words = WORDS_NAME, .group = "coordinates"},
     [KEY_JOINT] = {.words = WORDS_NAME, .group = "joints"},
     [KEY_FORCE] = {.words = WORDS_NAME, .group = "forces"},
+    [KEY_TIRE] = {.words = WORDS_NAME, .group = "tires"},
+    [KEY_SIDE] = {.words = WORDS_SIDE},
     [KEY_WHEEL] = {.words = WORDS_NAME, .group = "wheels"},
     [KEY_TABLE] = {.words = WORDS_NAME, .group = "tables"},
 };
@@ -55,17 +58,12 @@ static const struct {
     const Section *section;
     bool formulas; /* its names may stand in formulas */
 } groups[] = {
-    {"points", NULL, false},
-    {"bodies", &body_section, false},
-    {"joints", &joint_section, false},
-    {"coordinates", &coordinate_section, true},
-    {"inputs", &input_section, true},
-    {"parameters", &parameter_section, true},
-    {"tables", &table_section, true},
-    {"ports", &port_section, false},
-    {"forces", &force_section, false},
-    {"wheels", &wheel_section, false},
-    {"outputs", &output_section, false},
+    {"points", NULL, false},           {"bodies", &body_section, false},
+    {"joints", &joint_section, false}, {"coordinates", &coordinate_section, true},
+    {"inputs", &input_section, true},  {"parameters", &parameter_section, true},
+    {"tables", &table_section, true},  {"ports", &port_section, false},
+    {"forces", &force_section, false}, {"tires", &tire_section, false},
+    {"wheels", &wheel_section, false}, {"outputs", &output_section, false},
 };
 
 enum { GROUPS = sizeof groups / sizeof *groups };
@@ -152,6 +150,13 @@ static Item **copies(const Rewrite *rewrite, Item **item, int count)
     return pool_grow(rewrite->pool, item, size, size);
 }
 
+/* Left for right; other words are left to the reader to refuse. */
+static const char *side_mirrored(const char *word)
+{
+    const char *const *side = kind_words[KEY_SIDE];
+    return !strcmp(word, side[0]) ? side[1] : !strcmp(word, side[1]) ? side[0] : word;
+}
+
 static Item *number_rewrite(const Rewrite *rewrite, const Rule *how, int component, Item *item)
 {
     if (item->kind != ITEM_SCALAR)
@@ -163,6 +168,8 @@ static Item *number_rewrite(const Rewrite *rewrite, const Rule *how, int compone
     bool formula = how->words == WORDS_FORMULA || how->place || how->odd; /* any component may be one */
     if (formula && item->text[0])
         other->text = formula_renamed(rewrite, item->text);
+    if (how->words == WORDS_SIDE && rewrite->mirror)
+        other->text = side_mirrored(item->text);
     return other;
 }
 
@@ -182,8 +189,8 @@ static Item *value_rewrite(const Rewrite *rewrite, const Rule *how, bool pair, I
     Item *other = copy(rewrite, item);
     other->value = copies(rewrite, item->value, item->count);
     for (int i = 0; i < item->count; ++i)
-        other->value[i] = pair ? value_rewrite(rewrite, how, false, item->value[i])
-                               : number_rewrite(rewrite, how, i, item->value[i]);
+        other->value[i] =
+            pair ? value_rewrite(rewrite, how, false, item->value[i]) : number_rewrite(rewrite, how, i, item->value[i]);
     return other;
 }
 

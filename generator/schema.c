@@ -45,6 +45,7 @@ static void value(Text *out, const Key *key, int indent)
         break;
     case KEY_FORMULA: reference(out, "number"); break;
     case KEY_FLAG: text_print(out, "{\"type\": \"boolean\"}"); break;
+    case KEY_PAIR:
     case KEY_RANGE: pair(out, "number"); break;
     case KEY_VECTOR:
     case KEY_AXIS:
@@ -67,6 +68,7 @@ static void value(Text *out, const Key *key, int indent)
     case KEY_COORDINATE:
     case KEY_JOINT:
     case KEY_FORCE:
+    case KEY_TIRE:
     case KEY_WHEEL:
     case KEY_TABLE: reference(out, "name"); break;
     case KEY_INERTIA:
@@ -79,6 +81,7 @@ static void value(Text *out, const Key *key, int indent)
     case KEY_LIST: reference(out, "numbers"); break;
     case KEY_INTERPOLATION:
     case KEY_BEYOND:
+    case KEY_SIDE:
         text_print(out, "{\"enum\": [\"%s\", \"%s\"]}", kind_words[key->kind][0], kind_words[key->kind][1]);
         break;
     default: text_print(out, "{\"type\": \"string\"}");
@@ -119,12 +122,19 @@ static void form(Text *out, const Section *section, int which, const char *type,
     text_print(out, "]}");
 }
 
-/* The forms that some choice of keys selects, where there is no type. */
+static unsigned type_forms(const Section *section, int type)
+{
+    return section->type_forms ? section->type_forms[type] : FORM(type);
+}
+
+/* The forms that no type has: some choice of keys selects them. */
 static unsigned forms_by_keys(const Section *section)
 {
     unsigned forms = 0;
     for (int k = 0; k < section->keys; ++k)
         forms |= section->key[k].allowed == ALL_FORMS ? 0 : section->key[k].allowed;
+    for (int t = 0; t < section->types; ++t)
+        forms &= ~type_forms(section, t);
     return forms;
 }
 
@@ -137,15 +147,13 @@ static void object(Text *out, const Section *section, int indent)
         return;
     }
     text_print(out, "{\"anyOf\": [");
-    for (int t = 0; t == 0 || t < section->types; ++t) {
-        unsigned forms = !section->types       ? forms_by_keys(section)
-                         : section->type_forms ? section->type_forms[t]
-                                               : FORM(t);
+    for (int t = 0; t <= section->types; ++t) {
+        unsigned forms = t < section->types ? type_forms(section, t) : forms_by_keys(section);
         for (int f = 0; f < forms_most; ++f)
             if (forms & FORM(f)) {
                 text_print(out, "%s\n%*s", separator, indent, "");
                 separator = ",";
-                form(out, section, f, section->types ? section->type[t] : NULL, indent);
+                form(out, section, f, t < section->types ? section->type[t] : NULL, indent);
             }
     }
     text_print(out, "]}");
@@ -210,11 +218,11 @@ static void types_of(Text *out, const Section *section, unsigned forms)
     const char *separator = " for ";
     unsigned all = 0;
     for (int t = 0; t < section->types; ++t)
-        all |= section->type_forms ? section->type_forms[t] : FORM(t);
+        all |= type_forms(section, t);
     if (!section->types || (forms & all) == all)
         return;
     for (int t = 0; t < section->types; ++t)
-        if (forms & (section->type_forms ? section->type_forms[t] : FORM(t))) {
+        if (forms & (type_forms(section, t))) {
             text_print(out, "%s%s", separator, section->type[t]);
             separator = ", ";
         }
@@ -226,7 +234,7 @@ static bool by_choice(const Section *section, const Key *key)
     for (int t = 0; t < section->types && section->type_forms; ++t)
         if (key->required & section->type_forms[t] && section->type_forms[t] & ~key->required)
             return true;
-    return false;
+    return forms_by_keys(section) & key->required && forms_by_keys(section) & ~key->required;
 }
 
 static void section_keys(Text *out, const char *name, const Section *section)

@@ -37,9 +37,16 @@ Ex tuned_difference(const Model *model, const double *a, const double *b)
 
 void tuning_set(Tuning *tuning, const double *at, const Ex *formula, int count)
 {
-    for (int i = 0; i < count; ++i)
-        if (tuning->dag->node[formula[i]].level == LEVEL_VARIABLE)
-            *POOL_PUSH(tuning->dag->pool, tuning->number, tuning->numbers) = (struct TunedNumber){at + i, formula[i]};
+    for (int i = 0; i < count; ++i) {
+        int k = 0;
+        if (tuning->dag->node[formula[i]].level != LEVEL_VARIABLE)
+            continue;
+        while (k < tuning->numbers && tuning->number[k].at != at + i)
+            ++k;
+        struct TunedNumber *number =
+            k < tuning->numbers ? &tuning->number[k] : POOL_PUSH(tuning->dag->pool, tuning->number, tuning->numbers);
+        *number = (struct TunedNumber){at + i, formula[i]};
+    }
 }
 
 void tuning_copy(const Model *model, const double *to, const double *from, int count)
