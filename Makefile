@@ -73,7 +73,7 @@ $(BUILD)/%.o: %.c
 tested := $(BUILD)/check/tested.a
 reference := $(patsubst %.c,$(BUILD)/%.o,$(filter-out tests/reference/main.c,$(wildcard tests/reference/*.c)))
 programs := $(basename $(notdir $(wildcard tests/*.c)))
-variants := test_runtime_float test_runtime_fast
+variants := test_runtime_float test_runtime_fast test_dual_float
 
 test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) reference)
 
@@ -117,9 +117,11 @@ $(BUILD)/check/compare_dump: $(BUILD)/tests/compare_dump.o $(tested)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 # the runtime core in the other ways that users build it
-$(BUILD)/check/test_runtime_float: VARIANT := -DGIC_FLOAT
+$(BUILD)/check/test_runtime_float $(BUILD)/check/test_dual_float: VARIANT := -DGIC_FLOAT
 $(BUILD)/check/test_runtime_fast: VARIANT := -ffast-math
 $(BUILD)/check/test_runtime_float $(BUILD)/check/test_runtime_fast: tests/test_runtime.c runtime/gic_runtime.c
+$(BUILD)/check/test_dual_float: tests/test_dual.c runtime/gic_runtime.c
+$(variants:%=$(BUILD)/check/%):
 	@mkdir -p $(@D)
 	$(COMPILE) $(VARIANT) -MF $@.d -o $@ $^ $(LDFLAGS) -lcmocka -lm
 

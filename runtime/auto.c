@@ -80,7 +80,7 @@ static bool same_layout(const gic_model *a, const gic_model *b)
            a->history_offset == b->history_offset && a->scratch_offset == b->scratch_offset &&
            a->discrete_offset == b->discrete_offset && a->input_offset == b->input_offset &&
            a->parameter_offset == b->parameter_offset && a->output_offset == b->output_offset &&
-           a->port_offset == b->port_offset && !strcmp(a->hash, b->hash);
+           a->port_offset == b->port_offset && a->link_offset == b->link_offset && !strcmp(a->hash, b->hash);
 }
 
 /* What code makes of an instance: some steps, outputs and constraints after each, all left in the instance but for the
@@ -91,7 +91,11 @@ static double exercise(const gic_model *code, gic_head *self)
     double constraint = 0;
     for (int i = 0; i < STEPS; ++i) {
         gic_self_test test = {.constraint = 0};
-        gic_step(code, self, 0.001, GIC_RK4);
+        /* two steps of dual rate are a start, so that four show all of it */
+        if (code->fast_count && i >= STEPS / 2)
+            gic_step_dual(code, self, 0.001, 2);
+        else
+            gic_step(code, self, 0.001, GIC_RK4);
         code->outputs(self);
         code->self_test(self, &test);
         constraint += test.constraint;
@@ -119,7 +123,7 @@ static bool same_bits(Pool *pool, const gic_model *a, const gic_model *b, const 
     for (int i = 0; i < STATES && same; ++i) {
         memcpy(from, present, a->size);
         double *state = instance_array(from, a->state_offset);
-        for (int s = 0; s < a->slow_count; ++s)
+        for (int s = 0; s < a->slow_count + a->fast_count; ++s)
             state[s] += random_uniform(&random, -0.01, 0.01) * (s < a->slow_count / 2 ? 0.1 : 10);
         same = same_from(pool, a, b, from);
     }

@@ -2,9 +2,23 @@
  * The descriptor of an interpreted model: what emission prints as tables, made at run time. */
 #include "engine.h"
 
+#include <string.h>
+
 static gic_signal *signals(Pool *pool, int count)
 {
     return pool_alloc(pool, ((size_t)count + 1) * sizeof(gic_signal));
+}
+
+const gic_signal *descriptor_fast_states(Pool *pool, const Model *model)
+{
+    static const gic_signal part[FAST_MOST] = {
+        [FAST_SPIN] = {"spin", "rad/s"}, [FAST_SLIP_X] = {"slip_x", "1"}, [FAST_SLIP_Y] = {"slip_y", "1"},
+        [FAST_BRAKE] = {"brake", "1"}};
+    gic_signal *signal = signals(pool, model->fast_states), *next = signal;
+    for (int i = 0; i < model->wheels; ++i)
+        for (int k = 0; k < wheel_fast_states(&model->wheel[i]); ++k)
+            *next++ = (gic_signal){pool_print(pool, "%s.%s", model->wheel[i].name, part[k].name), part[k].unit};
+    return signal;
 }
 
 /* Names and units of the state: FORMAT.md section 10. */
@@ -28,6 +42,7 @@ static const gic_signal *state_signals(Pool *pool, const Model *model, int state
                            : (gic_signal){w->name, angle ? "rad" : "m"};
         }
     }
+    memcpy(next, descriptor_fast_states(pool, model), sizeof *next * (size_t)model->fast_states);
     return signal;
 }
 
@@ -57,7 +72,7 @@ static void set_signals(Pool *pool, const Model *model, gic_model *code)
     for (int i = 0; i < model->coordinates; ++i)
         coordinate[i] =
             (gic_signal){model->coordinate[i].name, model->coordinate[i].type == COORDINATE_ANGLE ? "rad" : "m"};
-    code->state = state_signals(pool, model, code->slow_count);
+    code->state = state_signals(pool, model, code->slow_count + code->fast_count);
     code->discrete = &discrete;
     code->input = input;
     code->parameter = parameter;
@@ -114,13 +129,13 @@ static void set_names(Pool *pool, const Model *model, const Sequence *sequence, 
 /* Arrays one behind another. */
 static void place_arrays(gic_model *code)
 {
-    const size_t states = (size_t)code->slow_count;
+    const size_t states = (size_t)(code->slow_count + code->fast_count);
     const struct {
         size_t *offset, count;
     } array[] = {{&code->state_offset, states},
                  {&code->rate_offset, states},
                  {&code->history_offset, 2 * states},
-                 {&code->scratch_offset, 4 * states + (size_t)code->input_count},
+                 {&code->scratch_offset, GIC_SCRATCH(states, (size_t)code->input_count)},
                  {&code->discrete_offset, 1},
                  {&code->input_offset, (size_t)code->input_count},
                  {&code->parameter_offset, (size_t)code->parameter_count},
@@ -148,6 +163,7 @@ gic_model descriptor_new(Pool *pool, const Model *model, const Sequence *sequenc
                       .generator = "gicrun " GICGEN_VERSION,
                       .free_base = model->free_base,
                       .slow_count = model->free_base ? 13 : 0,
+                      .fast_count = model->fast_states,
                       .discrete_count = model->free_base,
                       .input_count = model->inputs,
                       .parameter_count = model->tunables,

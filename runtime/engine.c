@@ -54,10 +54,13 @@ double *instance_array(gic_head *self, size_t offset)
 
 int engine_enter(const Engine *engine, gic_head *self, const double *standard)
 {
+    const gic_model *code = engine->code;
+    const int slow = engine->standard_count - code->fast_count;
+    double *state = instance_array(self, code->state_offset);
+    memcpy(state + code->slow_count, standard + slow, sizeof *standard * (size_t)code->fast_count);
     if (engine->enter)
         return engine->enter(self, standard);
-    memcpy(instance_array(self, engine->code->state_offset), standard,
-           sizeof *standard * (size_t)engine->standard_count);
+    memcpy(state, standard, sizeof *standard * (size_t)slow);
     return GIC_OK;
 }
 
@@ -65,19 +68,23 @@ int engine_look(const Engine *engine, gic_head *self, double *standard, double *
 {
     const gic_model *code = engine->code;
     const double *state = instance_array(self, code->state_offset);
-    double own[code->slow_count + 1], other[engine->standard_count + 1];
+    const int slow = engine->standard_count - code->fast_count;
+    double own[code->slow_count + code->fast_count + 1], other[slow + 1];
     int status = GIC_OK;
     if (rate || engine->leave)
         status = code->rhs(self, gic_time(self), state, own);
     if (status != GIC_OK)
         return status;
+    memcpy(standard + slow, state + code->slow_count, sizeof *state * (size_t)code->fast_count);
+    if (rate)
+        memcpy(rate + slow, own + code->slow_count, sizeof *own * (size_t)code->fast_count);
     if (engine->leave) {
         engine->leave(self, standard, rate ? rate : other);
         return GIC_OK;
     }
-    memcpy(standard, state, sizeof *state * (size_t)engine->standard_count);
+    memcpy(standard, state, sizeof *state * (size_t)slow);
     if (rate)
-        memcpy(rate, own, sizeof *own * (size_t)engine->standard_count);
+        memcpy(rate, own, sizeof *own * (size_t)slow);
     return GIC_OK;
 }
 

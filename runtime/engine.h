@@ -34,11 +34,12 @@ typedef struct Engine {
     const gic_model *code;
     const void *context;    /* interpreted: what every instance points to; NULL: generated code */
     EngineProfile *profile; /* NULL: generated code */
-    /* The state of FORMAT.md section 10, in which people and scenes speak; most engines integrate just that. */
+    /* The state of FORMAT.md section 10, fast states last, in which people and scenes speak; most engines integrate
+     * just that. */
     const gic_signal *standard;
     int standard_count;
-    /* From it to the engine's own state, and back, with rates, after a right-hand side at the instance's state. NULL:
-     * it is the state. */
+    /* From it to the engine's own state, and back, with rates, after a right-hand side at the instance's state, slow
+     * states only: fast ones are the same everywhere. NULL: it is the state. */
     int (*enter)(gic_head *self, const double *standard);
     void (*leave)(const gic_head *self, double *standard, double *rate);
     Background *background; /* NULL: `code` is all there will be */
@@ -73,6 +74,8 @@ typedef struct Instance {
  * `count` more numbers in its instances: their offset, bytes. */
 gic_model descriptor_new(Pool *pool, const Model *model, const Sequence *sequence);
 size_t descriptor_place(gic_model *code, size_t count);
+/* Names and units of a model's fast states, [fast_states]: TIRES.md section 2. */
+const gic_signal *descriptor_fast_states(Pool *pool, const Model *model);
 
 /* Memory for one instance, not set up. It may be copied byte by byte. Instances of one interpreted engine share
  * scratch: one call at a time. */

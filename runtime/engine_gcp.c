@@ -521,7 +521,7 @@ static void set_states(Pool *pool, Interpreted *context, int states)
     code->state_offset = descriptor_place(code, (size_t)states);
     code->rate_offset = descriptor_place(code, (size_t)states);
     code->history_offset = descriptor_place(code, 2 * (size_t)states);
-    code->scratch_offset = descriptor_place(code, (size_t)(4 * states + code->input_count));
+    code->scratch_offset = descriptor_place(code, (size_t)GIC_SCRATCH(states, code->input_count));
 }
 
 /* Nothing is derived from the design: q goes on from a configuration that gic finds. */

@@ -74,102 +74,312 @@ void gic_restart(void *self, gic_real time)
     head->history = 0;
 }
 
-/* The right-hand side with the inputs of its own time. */
-static int evaluate(const gic_model *model, void *self, gic_real time, const gic_real *state, gic_real *rate)
+static void set_inputs(const gic_model *model, void *self, gic_real time)
 {
     gic_head *head = (gic_head *)self;
     if (head->input_function)
         head->input_function(head->user, head->lane, time, array_at(self, model->input_offset));
+}
+
+/* The right-hand side with the inputs of its own time. */
+static int evaluate(const gic_model *model, void *self, gic_real time, const gic_real *state, gic_real *rate)
+{
+    set_inputs(model, self, time);
     return model->rhs(self, time, state, rate);
 }
 
-/* The state one step on, into `next`, and the rate at the step's start, into `first`. `work` has room for two states;
- * `past` holds the two rates before the step, or is NULL: then RK4. */
-static int advance(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *past,
-                   gic_real *first, gic_real *next, gic_real *work)
+/* AB3 for `count` numbers: one step on from `from`, which `next` may be, with the rates there and at the two steps
+ * before. */
+static void adams_bashforth(int32_t count, gic_real step, const gic_real *from, const gic_real *rate,
+                            const gic_real *past, const gic_real *older, gic_real *next)
+{
+    const gic_real weight = step / GIC_R(12.0);
+    for (int32_t i = 0; i < count; ++i)
+        next[i] = from[i] + weight * (GIC_R(23.0) * rate[i] - GIC_R(16.0) * past[i] + GIC_R(5.0) * older[i]);
+}
+
+/* RK4 for the whole state, with its rate at `from`; `work` has room for two states. */
+static int runge_kutta(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
+                       const gic_real *rate, gic_real *next, gic_real *work)
 {
     const int32_t n = model->slow_count + model->fast_count;
-    const gic_real *state = array_at(self, model->state_offset);
-    int status = evaluate(model, self, time, state, first);
-    if (status != GIC_OK)
-        return status;
-
-    if (past) {
-        const gic_real weight = step / GIC_R(12.0);
+    /* `next` gathers the weighted slopes, so that the state is added only once */
+    gic_real *stage = work, *slope = work + n;
+    copy(next, rate, n);
+    copy(slope, rate, n);
+    for (int k = 1; k <= 3; ++k) {
+        const gic_real reach = k < 3 ? GIC_R(0.5) * step : step;
+        const gic_real weight = k < 3 ? GIC_R(2.0) : GIC_R(1.0);
         for (int32_t i = 0; i < n; ++i)
-            next[i] = state[i] + weight * (GIC_R(23.0) * first[i] - GIC_R(16.0) * past[i] + GIC_R(5.0) * past[n + i]);
-    } else {
-        /* `next` gathers the weighted slopes, so that the state is added only once */
-        gic_real *stage = work, *slope = work + n;
-        copy(next, first, n);
-        copy(slope, first, n);
-        for (int k = 1; k <= 3; ++k) {
-            const gic_real reach = k < 3 ? GIC_R(0.5) * step : step;
-            const gic_real weight = k < 3 ? GIC_R(2.0) : GIC_R(1.0);
-            for (int32_t i = 0; i < n; ++i)
-                stage[i] = state[i] + reach * slope[i];
-            status = evaluate(model, self, time + reach, stage, slope);
-            if (status != GIC_OK)
-                return status;
-            for (int32_t i = 0; i < n; ++i)
-                next[i] += weight * slope[i];
-        }
+            stage[i] = from[i] + reach * slope[i];
+        const int status = evaluate(model, self, time + reach, stage, slope);
+        if (status != GIC_OK)
+            return status;
         for (int32_t i = 0; i < n; ++i)
-            next[i] = state[i] + step / GIC_R(6.0) * next[i];
+            next[i] += weight * slope[i];
     }
+    for (int32_t i = 0; i < n; ++i)
+        next[i] = from[i] + step / GIC_R(6.0) * next[i];
+    return GIC_OK;
+}
 
+/* What makes the numbers that an integrator found a state. */
+static int settle(const gic_model *model, void *self, gic_real *next)
+{
+    const int32_t n = model->slow_count + model->fast_count;
     ((gic_head *)self)->subset = -1; /* what follows is about the whole state */
     if (!gic_finite(next, n))
         return GIC_ERROR_RESULT;
-    status = model->settle(self, next);
+    const int status = model->settle(self, next);
     if (status != GIC_OK)
         return status;
     return gic_finite(next, n) ? GIC_OK : GIC_ERROR_RESULT;
 }
 
-int gic_step(const gic_model *model, void *self, gic_real step, int32_t method)
+/* The state one step on from `from`, into `next`, and the rate at the step's start, into `rate`. `past` holds the two
+ * rates before the step, or is NULL: then RK4. */
+static int advance(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
+                   const gic_real *past, gic_real *rate, gic_real *next, gic_real *work)
+{
+    const int32_t n = model->slow_count + model->fast_count;
+    int status = evaluate(model, self, time, from, rate);
+    if (status != GIC_OK)
+        return status;
+    if (past)
+        adams_bashforth(n, step, from, rate, past, past + n, next);
+    else
+        status = runge_kutta(model, self, time, step, from, rate, next, work);
+    return status == GIC_OK ? settle(model, self, next) : status;
+}
+
+/* Can a step of this length be tried? `part` is the smallest that time has to move by. */
+static int check_step(const gic_model *model, void *self, gic_real step, gic_real part)
 {
     if (model->abi_version != GIC_ABI_VERSION || model->real_size != sizeof(gic_real))
         return GIC_ERROR_ABI;
     gic_head *head = (gic_head *)self;
     const gic_real time = gic_time(self);
     head->subset = -1;
-    if (!gic_finite(&step, 1) || !gic_finite(&time, 1) || time + step <= time ||
-        (method != GIC_AB3 && method != GIC_RK4))
+    if (!gic_finite(&step, 1) || !gic_finite(&time, 1) || time + part <= time)
+        return head->status = GIC_ERROR_ARGUMENT;
+    return GIC_OK;
+}
+
+/* Does a step go on from the one before? Then its history counts. */
+static int goes_on(const gic_head *head, gic_real step, int32_t method, int32_t ratio)
+{
+    return step == head->step && method == head->method && ratio == head->ratio;
+}
+
+/* A step was made: the instance moves on, with `history` rates kept. */
+static void move_on(const gic_model *model, void *self, gic_real step, int32_t method, int32_t ratio, int32_t history,
+                    const gic_real *next, const gic_real *rate)
+{
+    gic_head *head = (gic_head *)self;
+    const int32_t n = model->slow_count + model->fast_count;
+    if (!goes_on(head, step, method, ratio)) {
+        head->start_time = gic_time(self);
+        head->steps = 0;
+        head->step = step;
+        head->method = method;
+        head->ratio = ratio;
+    }
+    ++head->steps;
+    head->history = history;
+    copy(array_at(self, model->state_offset), next, n);
+    copy(array_at(self, model->rate_offset), rate, n);
+    set_inputs(model, self, gic_time(self));
+}
+
+int gic_step(const gic_model *model, void *self, gic_real step, int32_t method)
+{
+    int status = check_step(model, self, step, step);
+    if (status != GIC_OK)
+        return status;
+    gic_head *head = (gic_head *)self;
+    if (method != GIC_AB3 && method != GIC_RK4)
         return head->status = GIC_ERROR_ARGUMENT;
 
     const int32_t n = model->slow_count + model->fast_count;
-    const int same = step == head->step && method == head->method;
-    const int32_t known = same && method == GIC_AB3 ? head->history : 0;
+    const int32_t known = goes_on(head, step, method, 1) && method == GIC_AB3 ? head->history : 0;
     gic_real *history = array_at(self, model->history_offset);
     gic_real *input = array_at(self, model->input_offset);
-    gic_real *first = array_at(self, model->scratch_offset), *next = first + n, *work = next + n;
+    gic_real *rate = array_at(self, model->scratch_offset), *next = rate + n, *work = next + n;
     gic_real *input_before = work + 2 * n;
     copy(input_before, input, model->input_count);
 
-    const int status = advance(model, self, time, step, known == 2 ? history : NULL, first, next, work);
+    status = advance(model, self, gic_time(self), step, array_at(self, model->state_offset),
+                     known == 2 ? history : NULL, rate, next, work);
     head->status = status;
     if (status != GIC_OK) {
         copy(input, input_before, model->input_count);
         return status;
     }
-    if (!same) {
-        head->start_time = time;
-        head->steps = 0;
-        head->step = step;
-        head->method = method;
-    }
-    ++head->steps;
-    copy(array_at(self, model->state_offset), next, n);
-    copy(array_at(self, model->rate_offset), first, n);
-    head->history = 0;
     if (method == GIC_AB3) {
         copy(history + n, history, n);
-        copy(history, first, n);
-        head->history = known < 2 ? known + 1 : 2;
+        copy(history, rate, n);
     }
-    if (head->input_function)
-        head->input_function(head->user, head->lane, gic_time(self), input);
+    move_on(model, self, step, method, 1, method == GIC_RK4 ? 0 : known < 2 ? known + 1 : 2, next, rate);
+    return GIC_OK;
+}
+
+/* ---- dual rate -------------------------------------------------------------------------------------------- */
+
+/* A step of gic_step_dual in the making. */
+typedef struct Dual {
+    const gic_model *model;
+    void *self;
+    gic_real start, step; /* time is start + steps * step, whichever way the head counts so far */
+    int64_t steps;
+    int32_t ratio;
+    gic_real *scratch; /* rows of a state: 0 the rate at the start, 1 and 2 states, 3 to 6 what the method needs */
+    gic_real *link;    /* rows 0 to 2: at this slow step and the two before; 3 at the next; 4 at a fast step */
+    const gic_real *next, *fast[2]; /* results: the state; rates of the fast states at the last two fast steps */
+} Dual;
+
+static gic_real *row(const Dual *dual, int32_t i)
+{
+    return dual->scratch + i * (dual->model->slow_count + dual->model->fast_count);
+}
+
+/* When fast step k from 0 to `ratio` begins: from integers, so that no error accumulates. */
+static gic_real moment(const Dual *dual, int32_t k)
+{
+    const gic_real whole = (gic_real)(dual->steps + k / dual->ratio);
+    return dual->start + (whole + (gic_real)(k % dual->ratio) / (gic_real)dual->ratio) * dual->step;
+}
+
+/* The links at a slow state at the beginning of fast step k. */
+static int link_at(const Dual *dual, int32_t k, const gic_real *slow, gic_real *link)
+{
+    const gic_real time = moment(dual, k);
+    set_inputs(dual->model, dual->self, time);
+    const int status = dual->model->link(dual->self, time, slow, link);
+    if (status != GIC_OK)
+        return status;
+    return gic_finite(link, dual->model->link_count) ? GIC_OK : GIC_ERROR_RESULT;
+}
+
+/* The links at the beginning of fast step k: cubic through the four rows. Differences are weighted, so that what stays
+ * the same stays the same to the last bit. */
+static void interpolate(const Dual *dual, int32_t k, gic_real *link)
+{
+    const int32_t count = dual->model->link_count;
+    const gic_real *now = dual->link, *before = now + count, *older = before + count, *next = older + count;
+    const gic_real s = (gic_real)k / (gic_real)dual->ratio, half = GIC_R(0.5) * s, sixth = s / GIC_R(6.0);
+    const gic_real of_next = sixth * (s + GIC_R(1.0)) * (s + GIC_R(2.0));
+    const gic_real of_before = half * (s - GIC_R(1.0)) * (s + GIC_R(2.0));
+    const gic_real of_older = sixth * (GIC_R(1.0) - s) * (s + GIC_R(1.0));
+    for (int32_t i = 0; i < count; ++i)
+        link[i] =
+            now[i] + of_next * (next[i] - now[i]) + of_before * (before[i] - now[i]) + of_older * (older[i] - now[i]);
+}
+
+/* A step without history: RK4 of everything at fast steps. */
+static int start_dual(Dual *dual, int32_t known)
+{
+    const gic_model *model = dual->model;
+    const gic_real *from = array_at(dual->self, model->state_offset);
+    gic_real *link = dual->link;
+    int status = known == 0 ? link_at(dual, 0, from, link + 4 * model->link_count) : GIC_OK;
+    for (int32_t k = 0; k < dual->ratio && status == GIC_OK; ++k) {
+        gic_real *rate = row(dual, k == 0 ? 0 : 5 + k % 2), *next = row(dual, 1 + k % 2);
+        status = advance(model, dual->self, moment(dual, k), dual->step / (gic_real)dual->ratio, from, NULL, rate, next,
+                         row(dual, 3));
+        dual->fast[1] = dual->fast[0];
+        dual->fast[0] = rate + model->slow_count;
+        from = next;
+    }
+    dual->next = from;
+    return status == GIC_OK ? link_at(dual, dual->ratio, from, link + 3 * model->link_count) : status;
+}
+
+/* A step with history: one of AB3 for the slow states, then `ratio` of AB3 for the fast ones. */
+static int march_dual(Dual *dual)
+{
+    const gic_model *model = dual->model;
+    const int32_t slow = model->slow_count, n = slow + model->fast_count;
+    const gic_real *state = array_at(dual->self, model->state_offset);
+    const gic_real *history = array_at(dual->self, model->history_offset);
+    gic_real *rate = row(dual, 0), *next = row(dual, 1), *fast = next + slow;
+    gic_real *link = dual->link + 4 * model->link_count;
+    int status = evaluate(model, dual->self, moment(dual, 0), state, rate);
+    if (status != GIC_OK)
+        return status;
+    adams_bashforth(slow, dual->step, state, rate, history, history + n, next);
+    copy(fast, state + slow, model->fast_count);
+    status = settle(model, dual->self, next);
+    if (status == GIC_OK)
+        status = link_at(dual, dual->ratio, next, dual->link + 3 * model->link_count);
+    if (status != GIC_OK)
+        return status;
+
+    dual->next = next;
+    dual->fast[0] = history + slow;
+    dual->fast[1] = history + n + slow;
+    for (int32_t k = 0; k < dual->ratio; ++k) {
+        gic_real *now = k == 0 ? rate + slow : row(dual, 3 + k % 3);
+        if (k > 0) {
+            const gic_real time = moment(dual, k);
+            set_inputs(model, dual->self, time);
+            interpolate(dual, k, link);
+            ++((gic_head *)dual->self)->fast_count;
+            status = model->fast(dual->self, time, link, fast, now);
+            if (status != GIC_OK)
+                return status;
+        }
+        adams_bashforth(model->fast_count, dual->step / (gic_real)dual->ratio, fast, now, dual->fast[0], dual->fast[1],
+                        fast);
+        if (!gic_finite(fast, model->fast_count))
+            return GIC_ERROR_RESULT;
+        dual->fast[1] = dual->fast[0];
+        dual->fast[0] = now;
+    }
+    return GIC_OK;
+}
+
+/* Rates and links of this step become those of the past. */
+static void keep_dual(const Dual *dual, int32_t known)
+{
+    const gic_model *model = dual->model;
+    const int32_t slow = model->slow_count, fast = model->fast_count, n = slow + fast, links = model->link_count;
+    gic_real *history = array_at(dual->self, model->history_offset), *link = dual->link;
+    copy(history + n, history, slow);
+    copy(history, row(dual, 0), slow);
+    copy(history + n + slow, dual->fast[1], fast);
+    copy(history + slow, dual->fast[0], fast);
+    if (known == 0)
+        copy(link, link + 4 * links, links);
+    copy(link + 2 * links, link + links, links);
+    copy(link + links, link, links);
+    copy(link, link + 3 * links, links);
+}
+
+int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t ratio)
+{
+    if (ratio == 1 || (ratio > 1 && model->fast_count == 0))
+        return gic_step(model, self, step, GIC_AB3);
+    /* without a ratio there is no fast step that time could move by */
+    int status = check_step(model, self, step, ratio > 0 ? step / (gic_real)ratio : GIC_R(0.0));
+    if (status != GIC_OK)
+        return status;
+
+    gic_head *head = (gic_head *)self;
+    const int same = goes_on(head, step, GIC_AB3, ratio);
+    const int32_t known = same ? head->history : 0;
+    gic_real *input = array_at(self, model->input_offset), *scratch = array_at(self, model->scratch_offset);
+    gic_real *input_before = scratch + 7 * (model->slow_count + model->fast_count);
+    Dual dual = {model, self,    same ? head->start_time : gic_time(self), step, same ? head->steps : 0,
+                 ratio, scratch, array_at(self, model->link_offset),       NULL, {NULL, NULL}};
+    copy(input_before, input, model->input_count);
+    status = known == 2 ? march_dual(&dual) : start_dual(&dual, known);
+    head->status = status;
+    if (status != GIC_OK) {
+        copy(input, input_before, model->input_count);
+        return status;
+    }
+    keep_dual(&dual, known);
+    move_on(model, self, step, GIC_AB3, ratio, known < 2 ? known + 1 : 2, dual.next, row(&dual, 0));
     return GIC_OK;
 }
 
@@ -180,8 +390,8 @@ int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switch
     /* a stage of an integrator leaves unit length by (step * angular velocity / 2)^2, which must pass; what a
      * caller forgot to normalize must not */
     const gic_real tolerance = GIC_R(0.01);
-    const gic_real excess = given[0] * given[0] + given[1] * given[1] + given[2] * given[2] + given[3] * given[3] -
-                            GIC_R(1.0);
+    const gic_real excess =
+        given[0] * given[0] + given[1] * given[1] + given[2] * given[2] + given[3] * given[3] - GIC_R(1.0);
     if (!gic_finite(given, 4) || excess > tolerance || excess < -tolerance)
         return GIC_ERROR_ORIENTATION;
 
@@ -332,7 +542,6 @@ gic_real gic_table_value(const gic_table *table, gic_real x)
                t * t * (GIC_R(3.0) - GIC_R(2.0) * t) * table->y[high] - t * t * u * h * table->slope[high];
     }
 }
-
 
 void gic_quintic(gic_real time, gic_real t0, gic_real t1, gic_real y0, gic_real y1, gic_real out[3])
 {

@@ -95,6 +95,7 @@ typedef struct gic_head {
     int32_t subset;       /* that the status is about, -1: none; see the descriptor's subset_name */
     int32_t condition;    /* that GIC_ERROR_GEOMETRY is about, -1: none; see the descriptor's condition_text */
     int64_t rhs_count;    /* right-hand sides evaluated */
+    int64_t fast_count;   /* rates of the fast states alone evaluated, by gic_step_dual */
     int64_t newton_count; /* subset solutions, and the corrections they took in total */
     int64_t correction_count;
     int64_t switch_count;               /* changes of the dependent Euler parameter */
@@ -153,8 +154,9 @@ typedef struct gic_model {
     int (*self_test)(void *self, gic_self_test *result);
     /* Dual rate (TIRES.md section 9); models without fast states have link_count 0 and NULL here. */
     int32_t link_count; /* numbers through which the slow part moves the fast one */
-    size_t link_offset; /* of 5 link_count numbers: links at the last slow steps, newest first, and one row of scratch */
-    /* link[] at a slow state (slow_count numbers), whose dependent coordinates are recovered */
+    size_t link_offset; /* of 5 link_count numbers: links at the present slow step and the two before, newest first, and
+                         * two rows of scratch */
+    /* link[] at a slow state (slow_count numbers), whose dependent coordinates are recovered; inputs as for rhs */
     int (*link)(void *self, gic_real time, const gic_real *slow, gic_real *link);
     /* rate[] (fast_count) of a fast state (fast_count) at links */
     int (*fast)(void *self, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate);
@@ -163,7 +165,9 @@ typedef struct gic_model {
 } gic_model;
 
 /* With n = slow_count + fast_count: state has n numbers; rate n, at the start of the last step; history 2 n, two past
- * rates, newest first; scratch 4 n + input_count, free between calls. */
+ * rates, newest first (of dual rate those of the slow states at slow steps, of the fast states at fast steps); scratch
+ * GIC_SCRATCH(n, input_count), free between calls. */
+#define GIC_SCRATCH(n, inputs) (7 * (n) + (inputs))
 
 /* ---- integrators: fixed step, any generated model ------------------------------------------------- */
 
@@ -174,8 +178,10 @@ typedef struct gic_model {
 int gic_step(const gic_model *model, void *self, gic_real step, int32_t method);
 
 /* One step of `step` seconds of AB3 in which the fast states take `ratio` >= 1 steps: TIRES.md section 9. The first two
- * steps are `ratio` steps each of RK4. As gic_step otherwise; with ratio 1, or a model without fast states, it is
- * gic_step. */
+ * steps are `ratio` steps each of RK4. As gic_step otherwise, a new ratio restarts the history too; with ratio 1, or a
+ * model without fast states, it is gic_step. A step with history costs one right-hand side, one evaluation of the links
+ * (at its end) and `ratio` - 1 of the fast rates, for those at its start come with the right-hand side. Without an
+ * input function inputs stay through the step, its end included. */
 #define gic_step_dual GIC_NAME(gic_step_dual)
 int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t ratio);
 

@@ -337,6 +337,6 @@ Engine *interpreted_engine(Pool *pool, const char *name, const Interpreted *cont
                        .context = context,
                        .profile = context->profile,
                        .standard = context->code.state,
-                       .standard_count = context->standard_count};
+                       .standard_count = context->standard_count + context->code.fast_count};
     return engine;
 }

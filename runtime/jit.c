@@ -184,7 +184,7 @@ const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *op
                        .code = code,
                        .memory = jit,
                        .standard = code->state,
-                       .standard_count = code->slow_count,
+                       .standard_count = code->slow_count + code->fast_count,
                        .close = jit_close};
     return engine;
 }

@@ -224,6 +224,6 @@ const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *o
                        .context = tape,
                        .profile = tape->profile,
                        .standard = tape->code.state,
-                       .standard_count = tape->code.slow_count};
+                       .standard_count = tape->code.slow_count + tape->code.fast_count};
     return engine;
 }

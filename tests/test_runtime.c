@@ -28,7 +28,7 @@ enum { N = 2 };
 
 typedef struct Probe {
     gic_head head;
-    gic_real state[N], rate[N], history[2 * N], input[1], scratch[4 * N + 1];
+    gic_real state[N], rate[N], history[2 * N], input[1], scratch[GIC_SCRATCH(N, 1)];
     int fail_at;   /* evaluation of the step that fails, from 0; -1: none */
     int poison_at; /* evaluation whose rate is not a number, from 0; -1: none */
     int settle_status;
