@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* The version of gic_runtime.h that emitted code is written for: GIC_ABI_VERSION. */
-enum { ABI_VERSION = 2 };
+enum { ABI_VERSION = 3 };
 
 typedef struct Generation {
     Pool *pool;
