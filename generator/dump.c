@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The resolved model as JSON, for programs that check ours (FORMAT.md section 11). */
 #include "gicgen.h"
+#include "tire.h"
 
 #include <string.h>
 
@@ -58,6 +59,14 @@ static void number_pair(Text *out, const char *name, const double *x, int size, 
         vector(out, x, size);
     else
         text_print(out, "%.17g", *x);
+}
+
+static void index_pair(Text *out, const char *name, int index, bool applies)
+{
+    if (applies)
+        integer_pair(out, name, index);
+    else
+        number_pair(out, name, NULL, 0, false);
 }
 
 /* The start of entry i of a list, up to its name. */
@@ -187,10 +196,7 @@ static void forces(Text *out, const Model *model)
         text_pair(out, "type", type[force->type]);
         integer_pair(out, "coordinate", force->coordinate);
         for (int k = 0; k < 2; ++k)
-            if (!along)
-                integer_pair(out, k ? "b" : "a", force->body[k]);
-            else
-                number_pair(out, k ? "b" : "a", NULL, 0, false);
+            index_pair(out, k ? "b" : "a", force->body[k], !along);
         number_pair(out, "point_a", force->point[0], 3, !along && !about);
         number_pair(out, "point_b", force->point[1], 3, !along && !about && !load);
         number_pair(out, "axis_a", force->axis, 3, about);
@@ -202,10 +208,7 @@ static void forces(Text *out, const Model *model)
         law_pair(out, "low", force->low, model);
         law_pair(out, "high", force->high, model);
         law_pair(out, "fade", force->fade, model);
-        if (force->table < 0)
-            number_pair(out, "table", NULL, 0, false);
-        else
-            integer_pair(out, "table", force->table);
+        index_pair(out, "table", force->table, force->table >= 0);
         key(out, "law");
         add(out, "[");
         for (int k = 0; k < (load ? 6 : force_is_law(force)); ++k) {
@@ -258,6 +261,82 @@ static void ports(Text *out, const Model *model)
     }
 }
 
+/* One number or, size 2, two; returns where the next ones are. */
+static const double *data_pair(Text *out, const char *name, const double *number, int size, bool first)
+{
+    text_print(out, "%s\"%s\": ", first ? "" : ", ", name);
+    if (size == 1)
+        text_print(out, "%.17g", *number);
+    else
+        vector(out, number, size);
+    return number + size;
+}
+
+/* Numbers by their names in the lists of tire.h. */
+static void tire_data(Text *out, const Tire *tire)
+{
+    const double *number = tire->number;
+    key(out, "data");
+    add(out, "{");
+#define ONE(name) number = data_pair(out, #name, number, 1, number == tire->number);
+#define TWO(name) number = data_pair(out, #name, number, 2, false);
+    if (tire->type == TIRE_TMEASY) {
+        TMEASY_LIST(ONE, TWO)
+    } else {
+        PAC_LIST(ONE)
+    }
+#undef TWO
+#undef ONE
+    add(out, "}");
+}
+
+static void tires(Text *out, const Model *model)
+{
+    static const char *const type[TIRE_TYPES] = {[TIRE_PAC2002] = "pac2002", [TIRE_TMEASY] = "tmeasy"};
+    static const char *const side[] = {[SIDE_LEFT] = "left", [SIDE_RIGHT] = "right", [SIDE_SYMMETRIC] = "symmetric"};
+    for (int i = 0; i < model->tires; ++i) {
+        const Tire *tire = model->tire + i;
+        begin(out, i, tire->name);
+        text_pair(out, "type", type[tire->type]);
+        text_pair(out, "side", side[tire->side]);
+        index_pair(out, "mode", tire->mode, tire->type == TIRE_PAC2002);
+        number_pair(out, "radius", &tire->radius, 0, true);
+        number_pair(out, "stiffness", &tire->stiffness, 0, true);
+        number_pair(out, "damping", &tire->damping, 0, true);
+        number_pair(out, "bottom_stiffness", &tire->bottom_stiffness, 0, true);
+        number_pair(out, "bottom", &tire->bottom, 0, true);
+        number_pair(out, "low_speed", &tire->low_speed, 0, true);
+        number_pair(out, "relaxation", tire->relaxation, 2, true);
+        tire_data(out, tire);
+        add(out, "}");
+    }
+}
+
+static void formula_pair(Text *out, const char *name, const Law *law, const Model *model)
+{
+    key(out, name);
+    if (law)
+        formula(out, law, model);
+    else
+        add(out, "null");
+}
+
+/* What a wheel with a tire has besides. */
+static void wheel_rolls(Text *out, const Model *model, const Wheel *wheel)
+{
+    bool rolls = wheel->tire >= 0;
+    index_pair(out, "tire", wheel->tire, rolls);
+    number_pair(out, "axis", wheel->axis, 3, rolls);
+    number_pair(out, "spin_inertia", &wheel->spin_inertia, 0, rolls);
+    key(out, "mirrored");
+    add(out, !rolls ? "null" : wheel->mirrored ? "true" : "false");
+    formula_pair(out, "drive", wheel->drive, model);
+    index_pair(out, "drive_body", wheel->drive_body, rolls);
+    formula_pair(out, "brake", wheel->brake, model);
+    number_pair(out, "windup", &wheel->windup, 0, rolls && wheel->brake);
+    index_pair(out, "fast", wheel->fast, rolls);
+}
+
 static void wheels(Text *out, const Model *model)
 {
     for (int i = 0; i < model->wheels; ++i) {
@@ -269,6 +348,7 @@ static void wheels(Text *out, const Model *model)
         number_pair(out, "stiffness", &wheel->stiffness, 0, true);
         number_pair(out, "damping", &wheel->damping, 0, true);
         number_pair(out, "fade", &wheel->fade, 0, true);
+        wheel_rolls(out, model, wheel);
         add(out, "}");
     }
 }
@@ -337,9 +417,9 @@ void model_dump(Text *out, const Model *model, const Sequence *sequence)
         const char *name;
         void (*entries)(Text *out, const Model *model);
     } list[] = {
-        {"bodies", bodies}, {"joints", joints},   {"coordinates", coordinates}, {"forces", forces},
-        {"wheels", wheels}, {"inputs", inputs},   {"parameters", parameters},   {"tables", tables},
-        {"ports", ports},   {"outputs", outputs},
+        {"bodies", bodies}, {"joints", joints}, {"coordinates", coordinates}, {"forces", forces},
+        {"tires", tires},   {"wheels", wheels}, {"inputs", inputs},           {"parameters", parameters},
+        {"tables", tables}, {"ports", ports},   {"outputs", outputs},
     };
     add(out, "{\"gicgen_dump\": 1");
     text_pair(out, "model", model->name);

@@ -11,8 +11,8 @@
 /* Keys that a tire computes with: numbers, first those of PAC_LIST, then words, of which units stand last. */
 #define NUMBER_LIST(X) \
     X(UNLOADED_RADIUS) \
-    X(RIM_RADIUS) X(VERTICAL_STIFFNESS) X(VERTICAL_DAMPING) X(BOTTOM_STIFF) X(BOTTOM_OFFST) X(LCZ) X(VXLOW) \
-        X(USE_MODE) X(FITTYP)
+    X(RIM_RADIUS) \
+    X(VERTICAL_STIFFNESS) X(VERTICAL_DAMPING) X(BOTTOM_STIFF) X(BOTTOM_OFFST) X(LCZ) X(VXLOW) X(USE_MODE) X(FITTYP)
 #define WORD_LIST(X) X(PROPERTY_FILE_FORMAT) X(TYRESIDE)
 #define UNIT_LIST(X) X(LENGTH) X(FORCE) X(ANGLE) X(TIME) X(MASS) X(PRESSURE)
 
@@ -277,14 +277,17 @@ static bool is_rest(const char *s, const char *end)
 
 static void section_begin(Tir *tir, const char *s, const char *end)
 {
-    const char *name = s + 1, *close = memchr(s, ']', (size_t)(end - s));
+    const char *name = skip(s + 1, end), *close = memchr(s, ']', (size_t)(end - s));
     if (!close)
         diag_fail(place(tir, s), "write [NAME] in one line", "the name of a section is not closed by ]");
     if (!is_rest(close + 1, end))
         diag_fail(place(tir, skip(close + 1, end)), "begin comments with $", "'%.*s' is unexpected behind a section",
                   (int)(end - skip(close + 1, end)), skip(close + 1, end));
+    const char *last = close;
+    while (last > name && strchr(" \t\f", last[-1]))
+        --last;
     int count = tir->section_count;
-    tir->section = capitals(tir->pool, name, close);
+    tir->section = capitals(tir->pool, name, last > name ? last : name);
     tir->table = false;
     *POOL_PUSH(tir->pool, tir->sections, count) = tir->section;
     *POOL_PUSH(tir->pool, tir->section_at, tir->section_count) = (size_t)(s - tir->source.bytes);
@@ -443,15 +446,20 @@ static double unit_size(const Tir *tir, int key)
               tir->what, item->text, key_name[key]);
 }
 
+/* As they are written. */
+static void numbers_read(Tir *tir)
+{
+    for (int i = 0; i < TIR_NUMBERS; ++i)
+        if (given(tir, i))
+            tir->found[i].number =
+                doc_number(&tir->found[i].item, pool_print(tir->pool, "%s of %s", key_name[i], tir->what));
+}
+
 static void numbers_convert(Tir *tir)
 {
     double size[TIR_KEYS - TIR_UNITS];
     for (int i = 0; i < TIR_KEYS - TIR_UNITS; ++i)
         size[i] = unit_size(tir, TIR_UNITS + i);
-    for (int i = 0; i < TIR_NUMBERS; ++i)
-        if (given(tir, i))
-            tir->found[i].number =
-                doc_number(&tir->found[i].item, pool_print(tir->pool, "%s of %s", key_name[i], tir->what));
     for (size_t i = 0; i < sizeof dimension / sizeof *dimension; ++i)
         for (int k = 0; k < 4; ++k) {
             double *number = &tir->found[dimension[i].key].number;
@@ -610,8 +618,9 @@ void tir_read(const Reader *reader, const Item *item, const char *what, Tire *ti
         diag_fail(item->at, "name a .tir file", "can't read '%s': it is no file", tir->source.path);
     tir->source.bytes = file_read(reader->pool, tir->source.path, &tir->source.size);
     lines_read(tir);
-    numbers_convert(tir);
+    numbers_read(tir);
     format_check(tir);
+    numbers_convert(tir);
     tire->mode = mode_read(tir);
     tire->side = side_read(tir);
     numbers_check(tir, tire->mode);
