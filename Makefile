@@ -197,7 +197,7 @@ deps:
 prefix := $(DESTDIR)$(PREFIX)
 share := $(prefix)/share/gicgen
 manuals := generator/gicgen.1 runtime/gicrun.1 runtime/gicbench.1
-installed_models := $(wildcard models/*.* models/parts/*.* models/scenes/*.*)
+installed_models := $(wildcard models/*.* models/parts/*.* models/tires/*.* models/scenes/*.*)
 version = $(shell sed -n 's/^.define GICGEN_VERSION "\(.*\)"/\1/p' generator/gicgen.h)
 # texts that name places
 PLACE = sed 's|@PREFIX@|$(PREFIX)|g; s|@VERSION@|$(version)|g'

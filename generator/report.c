@@ -101,6 +101,8 @@ static void identity(const Report *r, Text *out)
                sequence->unknowns / 7, model->free_base ? "free" : "fixed", model->body[BODY_BASE].name, model->joints,
                model->coordinates, model->forces, model->wheels, sequence->unknowns, sequence->equations,
                sequence->dof);
+    if (model->fast_states)
+        text_print(out, "<p>Wheels with tires have %d fast states.</p>\n", model->fast_states);
     text_print(out, "<p>Equations of motion in the %s form. Code of gicgen %s; model hash <code>%s</code>.</p>\n",
                solve_name[r->formulation->plan->solve], GICGEN_VERSION, r->formulation->hash);
 }
@@ -355,6 +357,9 @@ static void users_list(const Report *r, int parameter, Text *users)
     for (int k = 0; k < m->forces; ++k)
         if (force_uses(&m->force[k], parameter))
             listed(users, "force %s", m->force[k].name);
+    for (int k = 0; k < m->wheels; ++k)
+        if (law_uses(m->wheel[k].drive, parameter) || law_uses(m->wheel[k].brake, parameter))
+            listed(users, "wheel %s", m->wheel[k].name);
     const char *input = pool_print(r->pool, "p[%d]", m->parameter[parameter].index), **seen = NULL;
     int owners = 0;
     for (int i = 0; m->tuning && i < m->tuning->numbers; ++i) {

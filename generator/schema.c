@@ -258,7 +258,7 @@ static void section_keys(Text *out, const char *name, const Section *section)
 
 void keys_print(Text *out)
 {
-    text_print(out, "Keys of a .veh file; models/FORMAT.md says more of each.\n");
+    text_print(out, "Keys of a .veh file; models/FORMAT.md and models/TIRES.md say more of each.\n");
     section_keys(out, "the file", &file_section);
     for (int k = 0; k < file_section.keys; ++k)
         if (group_section(file_section.key[k].name))

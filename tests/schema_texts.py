@@ -12,7 +12,7 @@ with open(sys.argv[2], encoding="utf-8") as file:
 
 listed = set()
 for line, following in zip(lines, lines[1:] + [""]):
-    key = re.match(r" {2}([a-z]+) ", line)
+    key = re.match(r" {2}([a-z][a-z0-9_]*) ", line)
     if not key:
         continue
     text = re.match(r" {6}(\S.*)", following)

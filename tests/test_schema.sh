@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_schema.sh GICGEN: the JSON Schema of model files. What the reader reads fits it, and what has a wrong structure (unknown, missing
-# and misplaced keys, wrong kinds) does not; the committed schema, the list of keys and FORMAT.md are those of the reader.
+# and misplaced keys, wrong kinds) does not; the committed schema, the list of keys, FORMAT.md and TIRES.md are those of the reader.
 gicgen=$1
 root=$(dirname "$0")/..
 work=$(mktemp -d) || exit 1
@@ -48,9 +48,9 @@ done
 /usr/bin/python3 "$root/tests/schema_texts.py" "$work/schema" "$work/keys" >"$work/said" &&
     ! grep '^bad' "$work/said" && [ "$(sed -n '$s/ described$//p' "$work/said")" -gt 60 ]
 check $? "descriptions of keys: $(cat "$work/said")"
-for key in $(sed -n 's/^  \([a-z][a-z]*\) .*/\1/p' "$work/keys" | sort -u); do
-    grep -q "[\`{ ]$key[\`:]" "$root/models/FORMAT.md" && grep -q "\"$key\": " "$work/schema"
-    check $? "key '$key' is missing in FORMAT.md or in the schema"
+for key in $(sed -n 's/^  \([a-z][a-z0-9_]*\) .*/\1/p' "$work/keys" | sort -u); do
+    grep -q "[\`{ ]$key[\`:]" "$root/models/FORMAT.md" "$root/models/TIRES.md" && grep -q "\"$key\": " "$work/schema"
+    check $? "key '$key' is missing in FORMAT.md and TIRES.md, or in the schema"
 done
 
 echo "$passed passed, $failed failed"
