@@ -27,9 +27,9 @@
  *
  *     x'' = -x - 0.1 x' + 2 (z0 - x) - z1^3 + u        state 0, 1; state 2 is x^2, which settling recovers
  *     z0' = 40 (x - z0)                                state 3
- *     z1'' = -900 z1 - 20 z1' + 300 x' + u t           state 4, 5
+ *     z1'' = -900 z1 - 20 z1' + 90 (x' + u) + t        state 4, 5
  *
- * with the input u = cos 2t and the links x, x'. */
+ * with the input u = cos 2t and the links x, x' + u. */
 
 enum { SLOW = 3, FAST = 3, N = SLOW + FAST, LINKS = 2, RATIO = 5 };
 
@@ -72,25 +72,32 @@ static double cubic(double t)
     return 1 + t - 2 * t * t + 3 * t * t * t;
 }
 
-static void fast_rates(gic_real time, gic_real u, const gic_real *link, const gic_real *z, gic_real *rate)
+static void fast_rates(gic_real time, const gic_real *link, const gic_real *z, gic_real *rate)
 {
     rate[0] = GIC_R(40.0) * (link[0] - z[0]);
     rate[1] = z[2];
-    rate[2] = GIC_R(-900.0) * z[1] - GIC_R(20.0) * z[2] + GIC_R(300.0) * link[1] + u * time;
+    rate[2] = GIC_R(-900.0) * z[1] - GIC_R(20.0) * z[2] + GIC_R(90.0) * link[1] + time;
+}
+
+static void cosine_input(void *user, int32_t lane, gic_real time, gic_real *input)
+{
+    (void)user;
+    (void)lane;
+    input[0] = (gic_real)cos(2 * (double)time);
 }
 
 static int probe_rhs(void *self, gic_real time, const gic_real *y, gic_real *rate)
 {
     Probe *probe = self;
     const gic_real *z = y + SLOW, x = y[0], v = y[1], u = probe->input[0];
-    const gic_real link[LINKS] = {x, v};
+    const gic_real link[LINKS] = {x, v + u};
     if (probe->all == 0 && (memcmp(y, probe->at, sizeof probe->at) || time != probe->at_time))
         ++probe->surprised;
     ++probe->head.rhs_count;
     rate[0] = v;
     rate[1] = -x - GIC_R(0.1) * v + GIC_R(2.0) * (z[0] - x) - z[1] * z[1] * z[1] + u;
     rate[2] = GIC_R(2.0) * x * v;
-    fast_rates(time, u, link, z, rate + SLOW);
+    fast_rates(time, link, z, rate + SLOW);
     return called(probe, CALL_RHS, rate + 1);
 }
 
@@ -106,7 +113,7 @@ static int probe_link(void *self, gic_real time, const gic_real *slow, gic_real 
     memcpy(probe->at, slow, sizeof probe->at);
     probe->at_time = time;
     link[0] = probe->cubic ? (gic_real)cubic((double)time) : slow[0];
-    link[1] = probe->cubic ? GIC_R(0.1) : slow[1];
+    link[1] = probe->cubic ? GIC_R(0.1) : slow[1] + probe->input[0];
     return called(probe, CALL_LINK, link);
 }
 
@@ -115,6 +122,9 @@ static int probe_fast(void *self, gic_real time, const gic_real *link, const gic
     Probe *probe = self;
     const gic_head *head = &probe->head;
     const double step = (double)(head->step / (gic_real)head->ratio);
+    gic_real input;
+    cosine_input(NULL, 0, time, &input);
+    assert_true(probe->input[0] == input);
     const double steps = (double)(head->steps * head->ratio + probe->calls[CALL_FAST] + 1);
     probe->late = fmax(probe->late, fabs((double)time - steps * step) / (double)time);
     if (probe->cubic) {
@@ -122,16 +132,9 @@ static int probe_fast(void *self, gic_real time, const gic_real *link, const gic
         assert_true(link[1] == GIC_R(0.1));
         memset(rate, 0, sizeof *rate * FAST);
     } else {
-        fast_rates(time, probe->input[0], link, fast, rate);
+        fast_rates(time, link, fast, rate);
     }
     return called(probe, CALL_FAST, rate);
-}
-
-static void cosine_input(void *user, int32_t lane, gic_real time, gic_real *input)
-{
-    (void)user;
-    (void)lane;
-    input[0] = (gic_real)cos(2 * (double)time);
 }
 
 static const gic_model probe_model = {
@@ -154,7 +157,8 @@ static const gic_model probe_model = {
     .fast = probe_fast,
 };
 
-static const double initial[N] = {1, 0, 1, 1, 0, 0};
+/* Fast states at ease: what moves them otherwise asks for steps to follow it. */
+static const double initial[N] = {1, 0, 1, 1, 0.1, 0};
 
 static Probe probe_new(void)
 {
@@ -193,7 +197,7 @@ static void exact_rates(long double t, const long double *y, long double *rate)
     rate[2] = 2 * y[0] * y[1];
     rate[3] = 40 * (y[0] - y[3]);
     rate[4] = y[5];
-    rate[5] = -900 * y[4] - 20 * y[5] + 300 * y[1] + u * t;
+    rate[5] = -900 * y[4] - 20 * y[5] + 90 * (y[1] + u) + t;
 }
 
 /* The state at `end` by RK4 in long double: (30 * 1e-4)^4 leaves 1e-12 of what the coarsest error below is */
@@ -316,8 +320,13 @@ static void test_start(void **unused)
     Probe dual = probe_new(), single = probe_new();
     for (int k = 0; k < 2; ++k) {
         assert_int_equal(dual_step(&dual, step, 4), GIC_OK);
-        for (int j = 0; j < 4; ++j)
+        for (int j = 0; j < 4; ++j) {
             assert_int_equal(gic_step(&probe_model, &single, (gic_real)(step / 4), GIC_RK4), GIC_OK);
+            if (j == 0)
+                assert_memory_equal(dual.history, single.rate, SLOW * sizeof *dual.history);
+            if (j >= 2)
+                assert_memory_equal(dual.history + SLOW + (3 - j) * N, single.rate + SLOW, FAST * sizeof *dual.history);
+        }
         assert_memory_equal(dual.state, single.state, sizeof dual.state);
         assert_int_equal(dual.calls[CALL_RHS], 16);
         assert_int_equal(dual.calls[CALL_SETTLE], 4);
