@@ -20,12 +20,13 @@ static const char *number_name(const Engine *engine, int i)
                            : model->parameter[parameter].name;
 }
 
-/* Must the table have it? All states, and what driven coordinates do. */
+/* Must the table have it? All slow states, and what driven coordinates do. */
 static bool is_needed(const Engine *engine, int i)
 {
     const gic_model *model = engine->code;
-    if ((i -= engine->standard_count) < 0)
-        return true;
+    if (i < engine->standard_count)
+        return i < engine->standard_count - model->fast_count;
+    i -= engine->standard_count;
     for (int k = 0; k < model->coordinate_count; ++k) {
         int first = model->coordinate_input[k];
         if (first >= 0 && i >= first && i < first + 3)
@@ -70,8 +71,9 @@ static bool is_ground(const gic_model *model, int body)
     return body == 0 && !model->free_base;
 }
 
-static void write_header(const gic_model *model, Csv *csv)
+static void write_header(const Engine *engine, Csv *csv)
 {
+    const gic_model *model = engine->code;
     static const char *const base[][2] = {{"a.x", "m/s^2"},       {"a.y", "m/s^2"},       {"a.z", "m/s^2"},
                                           {"alpha.x", "rad/s^2"}, {"alpha.y", "rad/s^2"}, {"alpha.z", "rad/s^2"}};
     static const char *const pose[][2] = {{"x", "m"},   {"y", "m"},   {"z", "m"},  {"e0", NULL},
@@ -85,6 +87,11 @@ static void write_header(const gic_model *model, Csv *csv)
             snprintf(unit, sizeof unit, "%s/s^2", model->coordinate[i].unit);
             csv_name(csv, name, unit);
         }
+    for (int i = engine->standard_count - model->fast_count; i < engine->standard_count; ++i) {
+        const gic_signal *state = &engine->standard[i];
+        snprintf(name, sizeof name, "%s.rate", state->name);
+        csv_name(csv, name, strcmp(state->unit, "1") ? "rad/s^2" : "1/s");
+    }
     for (int i = 0; i < model->body_count; ++i)
         for (int k = 0; k < 7 && !is_ground(model, i); ++k) {
             snprintf(name, sizeof name, "%s.%s", model->body_name[i], pose[k][0]);
@@ -114,12 +121,15 @@ static void write_row(Pool *pool, const Engine *engine, Csv *csv, const gic_head
                       const double *pose, const double *output, double constraint)
 {
     const gic_model *model = engine->code;
-    const int half = engine->standard_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
+    const int slow = engine->standard_count - model->fast_count;
+    const int half = slow / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
     for (int i = 0; i < 6 && model->free_base; ++i)
         result(csv, status, rate[half + 1 + i]);
     for (int i = 0; i < model->coordinate_count; ++i)
         if (model->coordinate_state[i] >= 0)
             result(csv, status, rate[model->coordinate_state[i] + half]);
+    for (int i = slow; i < engine->standard_count; ++i)
+        result(csv, status, rate[i]);
     for (int i = 0; i < model->body_count; ++i)
         for (int k = 0; k < 7 && !is_ground(model, i); ++k)
             result(csv, status, pose[7 * i + k]);
@@ -149,7 +159,7 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
     memcpy(standard, instance_array(self, model->parameter_offset), sizeof *standard * (size_t)model->parameter_count);
 
     Csv csv = csv_open(pool, request->results);
-    write_header(model, &csv);
+    write_header(engine, &csv);
     for (int row = 0; row < table->rows; ++row) {
         const double *value = table->value + row * table->columns;
         gic_self_test test = {.constraint = 0};
@@ -160,6 +170,7 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
         }
         int status = model->setup_with(self, parameter);
         self->road = scene ? scene->road : NULL;
+        memset(state, 0, sizeof *state * (size_t)columns.states); /* what may be missing is 0 */
         for (int i = 0; i < columns.states + columns.inputs; ++i)
             if (columns.column[i] >= 0)
                 *(i < columns.states ? &state[i] : &input[i - columns.states]) = value[columns.column[i]];

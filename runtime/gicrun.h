@@ -63,9 +63,11 @@ typedef struct Scene {
     int64_t per_output;                 /* constant steps from one output time to the next */
     int32_t method;                     /* gic_method, or one of variable.h */
     double tolerance;                   /* of variable steps */
+    int32_t ratio;                      /* of AB3: fast steps in a step */
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
     double *value, *rate;                                           /* [coordinates] at time 0; not used where driven */
     bool placed, *given;  /* does the scene give the position, [coordinates] the values? Else they are the model's */
+    double *fast;         /* [fast states] at time 0, NAN: as wheels roll */
     const gic_road *road; /* NULL: flat at z = 0 */
     double *parameter;    /* [tunables] */
     int profiles, columns, curves;
@@ -148,7 +150,7 @@ bool plot_known(const char *path); /* does `path` end in .svg or .png? */
 
 /* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
 int scene_start(const Engine *engine, const Scene *scene, gic_head *self);
-/* One step of a scene: a constant one, or where `variable` is given one towards `end` that stops at kinks of inputs. */
+/* One step of a scene: a constant one, of dual rate where the scene says so, or where `variable` is given one towards `end` that stops at kinks of inputs. */
 int scene_step(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end);
 /* Run a scene: results, picture, summary. A failure on the way keeps what was computed and ends in diag_fail. */
 void simulate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);

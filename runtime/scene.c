@@ -132,6 +132,18 @@ static void count_steps(Reader *reader, const Item *step, const Item *output)
     scene->per_output = (int64_t)steps;
 }
 
+static void read_ratio(Reader *reader, const Item *item, bool replaced)
+{
+    const double most = 1000, ratio = doc_number(item, "ratio");
+    if (!(ratio >= 1 && ratio <= most && ratio == floor(ratio)))
+        diag_fail(item->at, "write how many fast steps make a step, for example 6",
+                  "ratio must be a whole number from 1 to %g", most);
+    if (reader->scene->method != GIC_AB3 && !replaced)
+        diag_fail(item->at, "remove it, or write `integrator: ab3`", "%s has one rate for everything",
+                  integrator_name(reader->scene->method));
+    reader->scene->ratio = (int32_t)ratio;
+}
+
 static void read_time(Reader *reader, const Item *root)
 {
     Scene *scene = reader->scene;
@@ -229,6 +241,23 @@ static void read_coordinates(Reader *reader, const Item *map, const char *what, 
     }
 }
 
+/* A map from fast states to numbers. */
+static void read_states(Reader *reader, const Item *map, double *out)
+{
+    const int count = reader->model->fast_states;
+    const gic_signal *signal = descriptor_fast_states(reader->pool, reader->model);
+    const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(count + 1));
+    for (int i = 0; i < count; ++i)
+        name[i] = signal[i].name;
+    if (map->kind != ITEM_MAP)
+        diag_fail(map->at, "write {name: number}", "initial states must be a map");
+    for (int k = 0; k < map->count; ++k) {
+        const Item *key = map->key[k];
+        const int i = name_index(reader, key, key->text, "fast state", name, count);
+        out[i] = doc_number(map->value[k], pool_print(reader->pool, "initial value of '%s'", name[i]));
+    }
+}
+
 static void warn_range(const Coordinate *coordinate, Place at, double low, double high)
 {
     if (low < coordinate->range[0] || high > coordinate->range[1])
@@ -242,13 +271,16 @@ static void read_initial(Reader *reader, const Item *initial)
     const Model *model = reader->model;
     Scene *scene = reader->scene;
     CHECK_KEYS(initial, "the initial state", "position", "orientation", "velocity", "speed", "angular_velocity",
-               "coordinates", "rates");
+               "coordinates", "rates", "states");
     read_base(reader, initial);
     const Item *coordinates = doc_find(initial, "coordinates"), *rates = doc_find(initial, "rates");
+    const Item *states = doc_find(initial, "states");
     if (coordinates)
         read_coordinates(reader, coordinates, "coordinate", scene->value);
     if (rates)
         read_coordinates(reader, rates, "rate", scene->rate);
+    if (states)
+        read_states(reader, states, scene->fast);
     for (int i = 0; coordinates && i < model->coordinates; ++i) {
         const Item *item = doc_find(coordinates, model->coordinate[i].name);
         scene->given[i] = item;
@@ -492,7 +524,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     const Item *root = doc_read(pool, path);
     Scene *scene = pool_alloc(pool, sizeof *scene);
     Reader reader = {pool, model, scene};
-    CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance",
+    CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
                "output_step", "initial", "road", "inputs", "parameters", "outputs", "plot");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
@@ -501,6 +533,9 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     if (doc_find(root, "description"))
         doc_word(doc_find(root, "description"), "description");
     read_integrator(&reader, root, integrator, tolerance);
+    scene->ratio = 1;
+    if (doc_find(root, "ratio"))
+        read_ratio(&reader, doc_find(root, "ratio"), integrator);
     read_time(&reader, root);
 
     memcpy(scene->position, model->body[BODY_BASE].position, sizeof scene->position);
@@ -510,6 +545,9 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     scene->given = pool_alloc(pool, sizeof(bool) * (size_t)(model->coordinates + 1));
     for (int i = 0; i < model->coordinates; ++i)
         scene->value[i] = model->coordinate[i].initial;
+    scene->fast = pool_alloc(pool, sizeof(double) * (size_t)(model->fast_states + 1));
+    for (int i = 0; i < model->fast_states; ++i)
+        scene->fast[i] = NAN;
     const Item *initial = doc_find(root, "initial"), *road = doc_find(root, "road"), *inputs = doc_find(root, "inputs");
     const Item *outputs = doc_find(root, "outputs"), *plot = doc_find(root, "plot");
     if (initial)

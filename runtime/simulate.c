@@ -50,7 +50,8 @@ static int set_state(const Engine *engine, const Scene *scene, gic_head *self)
     const int status = engine_look(engine, self, state, NULL);
     if (status != GIC_OK)
         return status;
-    const int half = engine->standard_count / 2; /* from a coordinate to its rate, past 7 and 6 numbers of the base */
+    /* from a coordinate to its rate, past 7 and 6 numbers of the base */
+    const int half = (engine->standard_count - model->fast_count) / 2;
     if (model->free_base) {
         if (scene->placed)
             memcpy(state, scene->position, sizeof scene->position);
@@ -67,6 +68,17 @@ static int set_state(const Engine *engine, const Scene *scene, gic_head *self)
         state[at + half] = scene->rate[i];
     }
     return engine_enter(engine, self, state);
+}
+
+/* Wheels roll, but for what the scene says. */
+static int set_fast_states(const gic_model *model, const Scene *scene, gic_head *self)
+{
+    const int status = model->roll ? model->roll(self) : GIC_OK;
+    double *fast = instance_array(self, model->state_offset) + model->slow_count;
+    for (int i = 0; i < model->fast_count; ++i)
+        if (!isnan(scene->fast[i]))
+            fast[i] = scene->fast[i];
+    return status;
 }
 
 /* ---- output times --------------------------------------------------------------------------------------- */
@@ -151,14 +163,17 @@ static void summary(const Run *run, double total)
     const double time = gic_time(head), solutions = (double)head->newton_count;
     const char *results = run->request->results;
     const char *integrator = integrator_name(scene->method);
+    const char *ratio = head->ratio > 1 ? pool_print(run->pool, ", ratio %d", head->ratio) : "";
     const char *how = run->variable ? pool_print(run->pool, "of %s, tolerance %.6g", integrator, scene->tolerance)
-                                    : pool_print(run->pool, "of %.6g s (%s)", scene->step, integrator);
+                                    : pool_print(run->pool, "of %.6g s (%s%s)", scene->step, integrator, ratio);
     fprintf(stderr, "%s: %.6g s in %lld steps %s, %lld rows%s%s\n", run->model->name, time, (long long)run->steps, how,
             (long long)run->samples, results ? " in " : "",
             !results               ? ""
             : strcmp(results, "-") ? results
                                    : "standard output");
     fprintf(stderr, "  right-hand sides     %lld\n", (long long)head->rhs_count);
+    if (head->fast_count)
+        fprintf(stderr, "  fast rates           %lld\n", (long long)head->fast_count);
     fprintf(stderr, "  Newton corrections   %.3f a subset solution (%lld in %lld)\n",
             solutions > 0 ? (double)head->correction_count / solutions : 0.0, (long long)head->correction_count,
             (long long)head->newton_count);
@@ -190,14 +205,15 @@ static const char *remedy_of(int status)
 int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
 {
     const gic_model *model = engine->code;
-    const int status = model->setup_with(self, scene->parameter);
+    int status = model->setup_with(self, scene->parameter);
     if (status != GIC_OK)
         return status;
     self->road = scene->road;
     self->input_function = scene_inputs;
     self->user = (void *)scene; /* only read */
     scene_inputs(self->user, 0, 0, instance_array(self, model->input_offset));
-    return set_state(engine, scene, self);
+    status = set_state(engine, scene, self);
+    return status == GIC_OK ? set_fast_states(model, scene, self) : status;
 }
 
 static void change_code(Run *run)
@@ -224,6 +240,8 @@ static void look_around(Run *run)
 
 int scene_step(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end)
 {
+    if (!variable && scene->method == GIC_AB3)
+        return gic_step_dual(model, self, scene->step, scene->ratio);
     if (!variable)
         return gic_step(model, self, scene->step, scene->method);
     const double kink = scene_next_kink(scene, gic_time(self));
