@@ -212,6 +212,10 @@ change 's/^duration: 2/duration: 0.01/' 2:11 'before the first output'
 change 's/^step: 0.002/step: 0,002/' 3:7 'must be a number'
 change 's/^step: 0.002/step: 0.003/' 5:14 'multiple of step'
 change 's/rk4/rk5/' 4:13 "no integrator 'rk5'"
+change '$a ratio: 2' 9:8 'rk4 has one rate'
+change 's/^integrator: rk4/ratio: 2.5/' 4:8 'whole number'
+change 's/^integrator: rk4/ratio: 0/' 4:8 'whole number'
+change 's/coordinates: {x: 0.1}/states: {w.spin: 1}/' 6:20 "no fast state 'w.spin'"
 change 's/{x: 0.1}/{y: 0.1}/' 6:25 "no coordinate 'y'"
 change 's/{x: 0.1}/{drive: 0.1}/' 6:25 'is driven'
 change 's/coordinates: {x: 0.1}/speed: 5/' 6:18 'is fixed'
