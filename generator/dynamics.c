@@ -338,6 +338,16 @@ Ex whole_drive_force(Whole *whole, int coordinate)
     return project(whole, loads_make(whole), alpha, a, w2).along[coordinate];
 }
 
+Ex whole_power(Whole *whole, const Loads *loads)
+{
+    Dag *dag = whole->dag;
+    Ex power = loads->power;
+    for (int w = 0; w < whole->model->coordinates; ++w)
+        if (whole->model->coordinate[w].driven)
+            power = ex_add(dag, power, ex_mul(dag, whole_drive_force(whole, w), whole->xd[w]));
+    return power;
+}
+
 static Ex magnitude(Dag *dag, Ex e)
 {
     return ex_op(dag, OP_ABS, e, 0, 0);
@@ -350,7 +360,7 @@ Block *energy_block(Whole *whole)
     Block *block = pool_alloc(dag->pool, sizeof *block);
     block->dag = dag;
     const Loads *loads = loads_make(whole);
-    Ex alpha[3], a[3], *w2, rate = 0, scale = 0, power = loads->power;
+    Ex alpha[3], a[3], *w2, rate = 0, scale = 0, power = whole_power(whole, loads);
     whole_accelerations(whole, alpha, a, &w2);
     for (int b = model->free_base ? 0 : 1; b < model->bodies; ++b) {
         Ex acceleration[3], angular[3], velocity[3], total[3], J[6], t[3];
@@ -367,10 +377,15 @@ Block *energy_block(Whole *whole)
         rate = ex_add(dag, rate, ex_add(dag, linear, turning));
         scale = ex_add(dag, scale, ex_add(dag, magnitude(dag, linear), magnitude(dag, turning)));
     }
+    for (int i = 0; i < model->wheels; ++i) {
+        if (model->wheel[i].tire < 0)
+            continue;
+        Ex turning = ex_mul(dag, whole_fast(whole, "y", i, FAST_SPIN), whole_fast(whole, "rate", i, FAST_SPIN));
+        turning = ex_mul(dag, ex_literal(dag, model->wheel[i].spin_inertia), turning);
+        rate = ex_add(dag, rate, turning);
+        scale = ex_add(dag, scale, magnitude(dag, turning));
+    }
     rate = ex_add(dag, rate, loads->potential_rate);
-    for (int w = 0; w < model->coordinates; ++w)
-        if (model->coordinate[w].driven)
-            power = ex_add(dag, power, ex_mul(dag, whole_drive_force(whole, w), whole->xd[w]));
     block_store(block, rate, "energy[0]");
     block_store(block, power, "energy[1]");
     scale = ex_add(dag, scale, ex_add(dag, magnitude(dag, loads->potential_rate), magnitude(dag, power)));

@@ -158,6 +158,7 @@ double op_value(Op op, double a, double b, double c)
     case OP_MIN: return a < b ? a : b;
     case OP_MAX: return a > b ? a : b;
     case OP_POSITIVE: return a > 0 ? b : c;
+    case OP_FRICTION: return 1;
     default: return 0; /* roads and tables are not known to the graph: flat */
     }
 }
@@ -221,7 +222,7 @@ Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c)
     for (int i = 0; i < arity; ++i)
         if (dag->node[node.arg[i]].level > node.level)
             node.level = dag->node[node.arg[i]].level;
-    if (op == OP_ROAD || op == OP_ROAD_PART || op == OP_TABLE)
+    if (op == OP_ROAD || op == OP_ROAD_PART || op == OP_FRICTION || op == OP_TABLE)
         node.level = LEVEL_VARIABLE;
     double sample[dag->samples];
     if (op == OP_ROAD_PART || op == OP_TABLE) {

@@ -11,6 +11,21 @@ void count_add(Count *sum, Count more, int times)
     sum->function += times * more.function;
 }
 
+static void wheel_figures(Pool *pool, Figures *figures, const Wheels *wheels)
+{
+    figures->link = block_count(&wheels->link);
+    figures->torque = block_count(&wheels->torque);
+    figures->wheel = pool_alloc(pool, (size_t)wheels->classes * sizeof *figures->wheel);
+    figures->fast = figures->torque;
+    for (int c = 0; c < wheels->classes; ++c) {
+        const WheelClass *class = &wheels->class[c];
+        count_add(&figures->wheel[c], block_count(&class->contact), 1);
+        count_add(&figures->wheel[c], block_count(&class->tire), 1);
+        count_add(&figures->wheel[c], block_count(&class->balance), 1);
+        count_add(&figures->fast, figures->wheel[c], class->members);
+    }
+}
+
 const Figures *figures_new(Pool *pool, const Formulation *f)
 {
     int classes = f->sequence->classes;
@@ -26,6 +41,8 @@ const Figures *figures_new(Pool *pool, const Formulation *f)
         figures->class[c] =
             (ClassFigures){block_count(&formula->predict), block_count(&formula->chord), block_count(&formula->solve)};
     }
+    if (f->wheels)
+        wheel_figures(pool, figures, f->wheels);
     if (!formulation_reacts(f))
         return figures;
     figures->wrenches = block_count(f->wrenches);
@@ -61,6 +78,8 @@ Count figures_rhs(const Figures *figures, int chords, int passes)
 {
     Count sum = figures_recovery(figures, chords, passes);
     count_add(&sum, figures->dynamics, 1);
+    count_add(&sum, figures->link, 1);
+    count_add(&sum, figures->fast, 1);
     return sum;
 }
 

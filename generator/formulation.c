@@ -42,7 +42,8 @@ const Formulation *formulate(Pool *pool, const Model *model, const Sequence *seq
                        .poses = poses_block(whole_new(pool, plan)),
                        .inverse = inverse_block(whole_new(pool, plan)),
                        .energy = energy_block(whole_new(pool, plan)),
-                       .wrenches = solve == SOLVE_REDUCED ? wrenches_block(whole_new(pool, plan)) : NULL};
+                       .wrenches = solve == SOLVE_REDUCED ? wrenches_block(whole_new(pool, plan)) : NULL,
+                       .wheels = model->fast_states ? wheels_formulate(pool, plan) : NULL};
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
         f->known_most = subset->knowns > f->known_most ? subset->knowns : f->known_most;
@@ -56,6 +57,16 @@ bool formulation_reacts(const Formulation *f)
     return f->plan->solve == SOLVE_REDUCED && f->plan->multipliers;
 }
 
+static StateNumber fast_number(Pool *pool, const Model *model, int index)
+{
+    static const char *const name[FAST_MOST] = {"spin", "slip_x", "slip_y", "brake"};
+    const Wheel *wheel = model->wheel;
+    while (index >= wheel->fast + wheel_fast_states(wheel) || wheel->tire < 0)
+        ++wheel;
+    int which = index - wheel->fast;
+    return (StateNumber){pool_print(pool, "%s.%s", wheel->name, name[which]), which == FAST_SPIN ? "rad/s" : "1", 0};
+}
+
 StateNumber state_number(Pool *pool, const Formulation *f, int index)
 {
     static const char *const base[13][2] = {
@@ -63,6 +74,8 @@ StateNumber state_number(Pool *pool, const Formulation *f, int index)
         {"e2", "1"},          {"e3", "1"},          {"v.x", "m/s"},      {"v.y", "m/s"}, {"v.z", "m/s"},
         {"omega.x", "rad/s"}, {"omega.y", "rad/s"}, {"omega.z", "rad/s"}};
     const Model *model = f->model;
+    if (index >= f->plan->states)
+        return fast_number(pool, model, index - f->plan->states);
     for (int w = 0; w < model->coordinates; ++w) {
         const Coordinate *c = &model->coordinate[w];
         bool angle = c->type == COORDINATE_ANGLE;

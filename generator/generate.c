@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What fills the insertion points of the templates. */
-#include "gicgen.h"
+#include "generate.h"
 
 #include <ctype.h>
 #include <string.h>
@@ -8,23 +8,9 @@
 /* The version of gic_runtime.h that emitted code is written for: GIC_ABI_VERSION. */
 enum { ABI_VERSION = 3 };
 
-typedef struct Generation {
-    Pool *pool;
-    const Formulation *formulation;
-    const Model *model; /* these three are the formulation's */
-    const Sequence *sequence;
-    const Plan *plan;
-    const Style *style;
-    const char *templates, *header, *upper;
-    int class;            /* the one whose template is being expanded */
-    Constants *constants; /* [classes] */
-} Generation;
-
 /* ---- texts ------------------------------------------------------------------------------------------------ */
 
-static void line(Text *out, int indent, const char *format, ...) __attribute__((format(printf, 3, 4)));
-
-static void line(Text *out, int indent, const char *format, ...)
+void line(Text *out, int indent, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
@@ -55,7 +41,7 @@ static const char *capital(Pool *pool, const char *s)
 
 /* ---- header comment --------------------------------------------------------------------------------------------- */
 
-static void count_line(Text *out, const char *what, Count c)
+void count_line(Text *out, const char *what, Count c)
 {
     text_print(out, " *   %-40.40s %7d %9d %7d %6d %9d\n", what, c.add, c.multiply, c.divide, c.root, c.function);
 }
@@ -76,6 +62,7 @@ static void write_counts(Generation *g, Text *out)
                    figures_subset(figures, c, 1, 1));
     }
     count_line(out, "forces and equations of motion", figures->dynamics);
+    wheel_counts(g, out, figures);
     count_line(out, "all together", figures_rhs(figures, 1, 1));
     count_line(out, "outputs, when asked for", figures_outputs(figures));
 }
@@ -102,9 +89,15 @@ static void write_banner(Generation *g, Text *out)
 /* ---- header: sizes and places
  * ---------------------------------------------------------------------------------------- */
 
-static int room(int count)
+int room(int count)
 {
     return count ? count : 1;
+}
+
+/* Slow and fast ones. */
+static int states(const Generation *g)
+{
+    return g->plan->states + g->model->fast_states;
 }
 
 static void write_sizes(Generation *g, Text *out, int indent)
@@ -116,7 +109,8 @@ static void write_sizes(Generation *g, Text *out, int indent)
         int value;
     } size[] = {{"ABI", ABI_VERSION},
                 {"FREE_BASE", model->free_base},
-                {"STATES", plan->states},
+                {"STATES", states(g)},
+                {"SLOW", plan->states},
                 {"INPUTS", model->inputs},
                 {"OUTPUTS", model->output_components},
                 {"PARAMETERS", model->tunables},
@@ -128,7 +122,7 @@ static void write_sizes(Generation *g, Text *out, int indent)
                 {"BODIES", model->bodies},
                 {"WHEELS", model->wheels},
                 {"TWIST", model->free_base ? 7 + plan->free_coordinates : 0},
-                {"STATE_ROOM", room(plan->states)},
+                {"STATE_ROOM", room(states(g))},
                 {"INPUT_ROOM", room(model->inputs)},
                 {"OUTPUT_ROOM", room(model->output_components)},
                 {"PARAMETER_ROOM", room(model->tunables)},
@@ -146,6 +140,7 @@ static void write_sizes(Generation *g, Text *out, int indent)
                 {"KNOWN_ROOM", room(g->formulation->known_most)},
                 {"DEPENDENCE_ROOM", room(g->formulation->dependence_most)}};
     size_t count = sizeof size / sizeof *size;
+    write_wheel_sizes(g, out, indent);
     for (size_t i = 0; i < count; ++i)
         line(out, indent, "%s_%s = %d%s", g->upper, size[i].name, size[i].value, i + 1 < count ? "," : "");
 }
@@ -154,7 +149,7 @@ static void write_sizes(Generation *g, Text *out, int indent)
 static void write_places(Generation *g, Text *out, int indent)
 {
     const Model *model = g->model;
-    for (int i = 0; i < g->plan->states; ++i) {
+    for (int i = 0; i < states(g); ++i) {
         const StateNumber number = state_number(g->pool, g->formulation, i);
         line(out, indent, "%s_STATE_%s = %d, /* %s */", g->upper, capital(g->pool, number.name), i, number.unit);
     }
@@ -276,17 +271,13 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
     }
 }
 
-/* Constants of the members, a row each. */
-static void write_constants(Generation *g, Text *out)
+void write_constants(Generation *g, Text *out, const char *name, const Dag *dag, const Constants *k,
+                     const char *const *member)
 {
-    const Class *class = &g->sequence->class[g->class];
-    const Constants *k = &g->constants[g->class];
-    const Dag *dag = g->plan->formula[g->class]->dag;
     int each = dag->samples / dag->members;
-    line(out, 0, "static const gic_real %s_k_%s[%d][%d] = {", g->model->name, class->name, class->members,
-         room(k->count));
-    for (int i = 0; i < class->members; ++i) {
-        line(out, 4, "{ /* %s */", g->model->body[g->sequence->subset[class->member[i]].body[0]].name);
+    line(out, 0, "static const gic_real %s_%s[%d][%d] = {", g->model->name, name, dag->members, room(k->count));
+    for (int i = 0; i < dag->members; ++i) {
+        line(out, 4, "{ /* %s */", member[i]);
         for (int j = 0; j < room(k->count); j += 4) {
             text_print(out, "       ");
             for (int l = j; l < j + 4 && l < room(k->count); ++l)
@@ -298,6 +289,16 @@ static void write_constants(Generation *g, Text *out)
     line(out, 0, "};\n");
 }
 
+static void write_class_constants(Generation *g, Text *out)
+{
+    const Class *class = &g->sequence->class[g->class];
+    const char *member[class->members];
+    for (int i = 0; i < class->members; ++i)
+        member[i] = g->model->body[g->sequence->subset[class->member[i]].body[0]].name;
+    write_constants(g, out, pool_print(g->pool, "k_%s", class->name), g->plan->formula[g->class]->dag,
+                    &g->constants[g->class], member);
+}
+
 static void write_classes(Generation *g, Text *out)
 {
     for (g->class = 0; g->class < g->sequence->classes; ++g->class) {
@@ -307,7 +308,7 @@ static void write_classes(Generation *g, Text *out)
         if (g->plan->formula[g->class]->react.stores)
             template_expand(g->pool, &body, g->templates, "react.c.in", g->model->name,
                             g->sequence->class[g->class].name, insert_class, g);
-        write_constants(g, out); /* known now that all blocks are text */
+        write_class_constants(g, out); /* known now that all blocks are text */
         text_add(out, body.s, body.size);
     }
     g->class = 0;
@@ -452,11 +453,11 @@ static void write_design(Generation *g, Text *out, int indent)
 
 static void write_initial(Generation *g, Text *out, int indent)
 {
-    for (int i = 0; i < g->plan->states; ++i) {
+    for (int i = 0; i < states(g); ++i) {
         const StateNumber number = state_number(g->pool, g->formulation, i);
         line(out, indent, "%s, /* %s */", emit_number(g->pool, number.initial), number.name);
     }
-    if (!g->plan->states)
+    if (!states(g))
         line(out, indent, "R(0.0)");
 }
 
@@ -484,12 +485,12 @@ static void write_signal_tables(Generation *g, Text *out)
 {
     const Model *model = g->model;
     static const char none[] = "{NULL, NULL}";
-    open_table(g, out, "gic_signal ", "state_signal", g->plan->states);
-    for (int i = 0; i < g->plan->states; ++i) {
+    open_table(g, out, "gic_signal ", "state_signal", states(g));
+    for (int i = 0; i < states(g); ++i) {
         const StateNumber number = state_number(g->pool, g->formulation, i);
         write_signal(g, out, number.name, number.unit);
     }
-    close_table(out, g->plan->states, none);
+    close_table(out, states(g), none);
     open_table(g, out, "gic_signal ", "discrete_signal", 1);
     write_signal(g, out, "dependent_euler_parameter", "1");
     close_table(out, 1, none);
@@ -625,6 +626,8 @@ static void insert_header(void *context, const char *name, Text *out, int indent
         write_abi(g, out);
     else if (!strcmp(name, "sizes"))
         write_sizes(g, out, indent);
+    else if (!strcmp(name, "wheels"))
+        write_wheel_members(g, out, indent);
     else if (!strcmp(name, "derived")) {
         if (g->model->tuning)
             line(out, indent,
@@ -747,6 +750,21 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
     } else if (!strcmp(name, "begin")) {
         line(out, indent, "status = %s_%s;", g->model->name,
              g->model->tuning ? "assemble(self, turn)" : "recover(self, turn, 1)");
+    } else if (!strcmp(name, "wheels")) {
+        write_wheels(g, out);
+    } else if (!strcmp(name, "recover")) {
+        line(out, indent, "status = %s_recover%s;", g->model->name,
+             g->formulation->wheels ? "_once(self, turn)" : "(self, turn, 0)");
+    } else if (!strcmp(name, "turn wheels")) {
+        if (g->formulation->wheels) {
+            line(out, indent, "if (status == GIC_OK)");
+            line(out, indent + 4, "status = %s_turn_wheels(self, time, y, e, result + %s_SLOW);", g->model->name,
+                 g->upper);
+        }
+    } else if (!strcmp(name, "wheel functions")) {
+        write_wheel_functions(g, out);
+    } else if (!strcmp(name, "dual rate")) {
+        write_dual_rate(g, out, indent);
     } else if (!strcmp(name, "identity")) {
         line(out, indent, "%s,", quoted(g->pool, g->model->name));
         line(out, indent, "%s,", quoted(g->pool, g->model->description));
@@ -754,8 +772,8 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
     }
 }
 
-void generate(Pool *pool, const Formulation *formulation, const Style *style, const char *templates,
-              const char *header, Text *c, Text *h)
+void generate(Pool *pool, const Formulation *formulation, const Style *style, const char *templates, const char *header,
+              Text *c, Text *h)
 {
     const char *name = formulation->model->name;
     Generation g = {.pool = pool,

@@ -99,7 +99,8 @@ typedef uint32_t Ex;
     X(OP_POSITIVE, 3, "(%0 > GIC_R(0) ? %1 : %2)", "") \
     X(OP_TABLE, 1, "", "function") \
     X(OP_ROAD, 2, "", "function") \
-    X(OP_ROAD_PART, 1, "", "")
+    X(OP_ROAD_PART, 1, "", "") \
+    X(OP_FRICTION, 2, "road_friction(self, time, %0, %1)", "function")
 
 typedef enum Op {
 #define OP_ENUM(name, arity, text, counted) name,
@@ -450,7 +451,7 @@ typedef struct Plan {
     int start_size, inertia_size, motion_size;
     int free_coordinates;
     int *coordinate_state, *coordinate_rate; /* [coordinates] index in the state, -1: driven */
-    int states;                              /* r e w v omega w', or w w' */
+    int states;                              /* r e w v omega w', or w w'; fast states behind them do not count */
     int unknowns;                            /* accelerations: alpha and a of a free base, then the free coordinates */
     int *coordinate_unknown;                 /* [coordinates] -1: driven */
 } Plan;
@@ -491,6 +492,10 @@ void whole_velocity_in_base(Whole *whole, const Vector *point, Ex out[3]);
 void whole_rotate_inertia(Whole *whole, int body, const Ex own[6], Ex out[6]);
 /* A body's inertia matrix in base axes. */
 void whole_inertia(Whole *whole, int body, Ex J[6]);
+/* A fast state of a wheel, `array` being "y", or its rate, "rate". */
+Ex whole_fast(Whole *whole, const char *array, int wheel, int state);
+/* What a wheel with a tire does: a number of its grip[]. */
+Ex whole_grip(Whole *whole, int wheel, int number);
 /* Coordinates that a body's motion depends on. */
 const Subset *whole_subset(const Whole *whole, int body);
 
@@ -515,6 +520,59 @@ typedef struct Loads {
 } Loads;
 
 Loads *loads_make(Whole *whole);
+/* A formula as an expression; local: what its place offers. */
+Ex whole_law(Whole *whole, const Law *law, const Ex *local);
+
+/* ---- wheel.c, tire_pac2002.c, tire_tmeasy.c: wheels with tires, models/TIRES.md ----------------------------- */
+
+/* How the multibody system moves a wheel: its link, world components. Behind those of all wheels a link has the
+ * coordinates that formulas of wheels read. */
+enum { LINK_C = 0, LINK_V = 3, LINK_S = 6, LINK_OMEGA = 9, LINK_NUMBERS = 12 };
+
+/* What a wheel does: grip[]. */
+enum {
+    GRIP_FORCE = 0,  /* on the carrier at the wheel's centre, world */
+    GRIP_TORQUE = 3, /* the same */
+    GRIP_DRIVE = 6,  /* torques of drive and brake, N m */
+    GRIP_BRAKE,
+    GRIP_LOAD, /* Fz, rho, rho', h */
+    GRIP_DEFLECTION,
+    GRIP_DEFLECTION_RATE,
+    GRIP_HEIGHT,
+    GRIP_TIRE,                  /* Fx, Fy, Mx, My, Mz */
+    GRIP_KAPPA = GRIP_TIRE + 5, /* slips and camber that the tire has */
+    GRIP_TANGENT,
+    GRIP_CAMBER,
+    GRIP_POINT,                    /* P */
+    GRIP_SPEED_X = GRIP_POINT + 3, /* V_x, V_y */
+    GRIP_SPEED_Y,
+    GRIP_RADIUS, /* R_e */
+    GRIP_POWER,  /* of all that turns the wheel, W */
+    GRIP_NUMBERS
+};
+
+/* Wheels with the same tire that have the same formulas or lack them. Inputs, as C names: link and fast (of the wheel),
+ * torque (drive, brake), time, and between the blocks hub and force (wheel.h); k constants of the member. */
+typedef struct WheelClass {
+    const char *name; /* of the first member */
+    int members, *member;
+    Block contact; /* hub[]; rate[] of the slips; grip[] */
+    Block tire;    /* force[], of a wheel that is loaded; else they are 0 */
+    Block balance; /* rate[] of spin and brake; grip[] */
+} WheelClass;
+
+typedef struct Wheels {
+    int count; /* wheels with tires */
+    int classes;
+    WheelClass *class;
+    int links;    /* numbers of a link */
+    Block link;   /* link[], from a Whole */
+    Block torque; /* torque[2 i]: drive and brake of the i-th wheel with a tire, from link, fast, u, p, time */
+} Wheels;
+
+const Wheels *wheels_formulate(Pool *pool, const Plan *plan);
+/* How many wheels with tires come before this one. */
+int wheel_rolling(const Model *model, int wheel);
 
 /* ---- dynamics.c, outputs.c: the blocks that end the pipeline ----------------------------------------------- */
 
@@ -545,6 +603,9 @@ Block *energy_block(Whole *whole);
 void whole_accelerations(Whole *whole, Ex alpha[3], Ex a[3], Ex **w2);
 /* Force that drives a driven coordinate, at rate[]. */
 Ex whole_drive_force(Whole *whole, int coordinate);
+/* Power of all that changes the sum of kinetic and potential energy, at rate[]: of the loads and of the drives of
+ * driven coordinates. */
+Ex whole_power(Whole *whole, const Loads *loads);
 /* What moves a body as given: moment about its reference point, force; base frame. */
 void whole_inertial_wrench(Whole *whole, int body, const Ex alpha[3], const Ex a[3], const Ex *w2, Ex wrench[6]);
 /* Absolute acceleration less gravity, base frame, of a point; alpha, a: of the base (a less gravity), w2: of all
@@ -575,6 +636,7 @@ typedef struct Formulation {
     const char *hash; /* of the model, in hexadecimal digits */
     const Block *dynamics, *outputs, *poses, *inverse, *energy;
     const Block *wrenches;           /* of the reduced form */
+    const Wheels *wheels;            /* NULL: none has a tire */
     int known_most, dependence_most; /* knowns and deps of a subset, at most */
 } Formulation;
 
@@ -584,7 +646,7 @@ const Formulation *formulate(Pool *pool, const Model *model, const Sequence *seq
 /* Are there reactions to find after the accelerations? The augmented form has them already. */
 bool formulation_reacts(const Formulation *f);
 
-/* One number of the state: FORMAT.md section 10. */
+/* One number of the state, fast ones last: FORMAT.md section 10. */
 typedef struct StateNumber {
     const char *name, *unit;
     double initial;
@@ -653,10 +715,13 @@ typedef struct Figures {
     const Sequence *sequence;
     ClassFigures *class; /* [classes] */
     Count dynamics;
-    Count outputs;  /* of what outputs are made of; where they need multipliers that the dynamics don't give: */
-    Count wrenches; /* what they follow from */
-    Count *react;   /* [classes] multipliers of one subset */
-    int *reacting;  /* [classes] of so many members */
+    Count link, torque; /* of wheels with tires: their motion; what drives and brakes them */
+    Count *wheel;       /* [classes of wheels] one wheel on the road */
+    Count fast;         /* a fast step: torque, and all wheels */
+    Count outputs;      /* of what outputs are made of; where they need multipliers that the dynamics don't give: */
+    Count wrenches;     /* what they follow from */
+    Count *react;       /* [classes] multipliers of one subset */
+    int *reacting;      /* [classes] of so many members */
 } Figures;
 
 const Figures *figures_new(Pool *pool, const Formulation *f);

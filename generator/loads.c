@@ -2,6 +2,8 @@
  * Applied forces (FORMAT.md sections 7 and 8), body by body and as generalised forces. */
 #include "gicgen.h"
 
+#include <string.h>
+
 /* A force F (base frame) on a point of a body. */
 static void push(Whole *whole, Loads *loads, int body, const Vector *point, const Ex F[3])
 {
@@ -50,13 +52,12 @@ static Ex table_lookup(Whole *whole, int table, Ex x)
     return ex_op(dag, OP_TABLE, x, (Ex)table, 0);
 }
 
-/* A formula as an expression; local: what its place offers. */
-static Ex law_value(Whole *whole, const Law *law, const Ex *local)
+Ex whole_law(Whole *whole, const Law *law, const Ex *local)
 {
     Dag *dag = whole->dag;
     Ex arg[3] = {0};
     for (int i = 0; i < 3 && law->arg[i]; ++i)
-        arg[i] = law_value(whole, law->arg[i], local);
+        arg[i] = whole_law(whole, law->arg[i], local);
     switch (law->op) {
     case LAW_NUMBER: return whole_number(whole, &law->number);
     case LAW_INPUT: return ex_input(dag, pool_print(dag->pool, "u[%d]", law->index), NULL);
@@ -80,7 +81,7 @@ static Ex fade_in(Dag *dag, Ex s)
 static Ex elastic_force(Whole *whole, Loads *loads, const Force *force, Ex extension, Ex rate)
 {
     Dag *dag = whole->dag;
-    Ex elastic = force->table < 0 ? ex_mul(dag, law_value(whole, force->stiffness, NULL), extension)
+    Ex elastic = force->table < 0 ? ex_mul(dag, whole_law(whole, force->stiffness, NULL), extension)
                                   : table_lookup(whole, force->table, extension);
     Ex power = ex_mul(dag, elastic, rate);
     if (force->table < 0) {
@@ -97,9 +98,9 @@ static Ex elastic_force(Whole *whole, Loads *loads, const Force *force, Ex exten
 static Ex spring_damper(Whole *whole, Loads *loads, const Force *force, Ex value, Ex rate)
 {
     Dag *dag = whole->dag;
-    Ex extension = ex_sub(dag, value, law_value(whole, force->free, NULL));
+    Ex extension = ex_sub(dag, value, whole_law(whole, force->free, NULL));
     Ex elastic = elastic_force(whole, loads, force, extension, rate);
-    Ex viscous = ex_mul(dag, law_value(whole, force->damping, NULL), rate);
+    Ex viscous = ex_mul(dag, whole_law(whole, force->damping, NULL), rate);
     loads->power = ex_sub(dag, loads->power, ex_mul(dag, viscous, rate));
     return ex_add(dag, elastic, viscous);
 }
@@ -108,9 +109,9 @@ static Ex spring_damper(Whole *whole, Loads *loads, const Force *force, Ex value
 static Ex contact(Whole *whole, Loads *loads, const Force *force, Ex beyond, Ex rate)
 {
     Dag *dag = whole->dag;
-    Ex depth = ex_op(dag, OP_MAX, beyond, 0, 0), fade = law_value(whole, force->fade, NULL);
+    Ex depth = ex_op(dag, OP_MAX, beyond, 0, 0), fade = whole_law(whole, force->fade, NULL);
     Ex elastic = elastic_force(whole, loads, force, depth, rate);
-    Ex damping = ex_mul(dag, law_value(whole, force->damping, NULL), fade_in(dag, ex_div(dag, depth, fade)));
+    Ex damping = ex_mul(dag, whole_law(whole, force->damping, NULL), fade_in(dag, ex_div(dag, depth, fade)));
     Ex push = ex_op(dag, OP_MAX, ex_add(dag, elastic, ex_mul(dag, damping, rate)), 0, 0);
     loads->power = ex_sub(dag, loads->power, ex_mul(dag, ex_sub(dag, push, elastic), rate));
     return push;
@@ -122,11 +123,11 @@ static Ex stop(Whole *whole, Loads *loads, const Force *force, Ex value, Ex rate
     Dag *dag = whole->dag;
     Ex tension = 0;
     if (force->high) {
-        Ex beyond = ex_sub(dag, value, law_value(whole, force->high, NULL));
+        Ex beyond = ex_sub(dag, value, whole_law(whole, force->high, NULL));
         tension = contact(whole, loads, force, beyond, rate);
     }
     if (force->low) {
-        Ex beyond = ex_sub(dag, law_value(whole, force->low, NULL), value);
+        Ex beyond = ex_sub(dag, whole_law(whole, force->low, NULL), value);
         tension = ex_sub(dag, tension, contact(whole, loads, force, beyond, ex_neg(dag, rate)));
     }
     return tension;
@@ -140,7 +141,7 @@ static Ex resistance(Whole *whole, Loads *loads, const Force *force, Ex value, E
         return spring_damper(whole, loads, force, value, rate);
     if (force_is_stop(force))
         return stop(whole, loads, force, value, rate);
-    Ex tension = law_value(whole, force->law[0], (const Ex[FORCE_LOCALS]){value, rate});
+    Ex tension = whole_law(whole, force->law[0], (const Ex[FORCE_LOCALS]){value, rate});
     loads->power = ex_sub(dag, loads->power, ex_mul(dag, tension, rate));
     return tension;
 }
@@ -152,7 +153,7 @@ static void add_along(Whole *whole, Loads *loads, int index)
     int w = force->coordinate;
     Ex Q;
     if (force_is_law(force)) {
-        Q = law_value(whole, force->law[0], NULL);
+        Q = whole_law(whole, force->law[0], NULL);
         loads->power = ex_add(dag, loads->power, ex_mul(dag, Q, whole->xd[w]));
     } else {
         Q = ex_neg(dag, resistance(whole, loads, force, whole->x[w], whole->xd[w]));
@@ -264,7 +265,7 @@ static void add_force(Whole *whole, Loads *loads, int index)
         add_between(whole, loads, index);
     } else {
         for (int i = 0; i < 6; ++i)
-            value[i] = force->law[i] ? law_value(whole, force->law[i], NULL) : 0;
+            value[i] = force->law[i] ? whole_law(whole, force->law[i], NULL) : 0;
         add_load(whole, loads, force->body[0], force->body[1], force->point[0], value, value + 3);
     }
 }
@@ -276,6 +277,31 @@ static void add_port(Whole *whole, Loads *loads, int index)
     for (int i = 0; i < 6; ++i)
         value[i] = ex_input(whole->dag, pool_print(whole->dag->pool, "port[%d]", 6 * index + i), NULL);
     add_load(whole, loads, port->body, port->in, port->point, value, value + 3);
+}
+
+/* A wheel with a tire: what it does is known already. */
+static void add_rolling_wheel(Whole *whole, Loads *loads, int index)
+{
+    Dag *dag = whole->dag;
+    const Wheel *wheel = &whole->model->wheel[index];
+    Ex grip[GRIP_NUMBERS], axis[3], local[3];
+    for (int i = 0; i < GRIP_NUMBERS; ++i)
+        grip[i] = whole_grip(whole, index, i);
+    add_load(whole, loads, wheel->body, BODY_GROUND, wheel->center, grip + GRIP_FORCE, grip + GRIP_TORQUE);
+    loads->power = ex_add(dag, loads->power, grip[GRIP_POWER]);
+    memcpy(loads->wheel[index], grip + GRIP_LOAD, sizeof *loads->wheel);
+    if (!wheel->drive)
+        return;
+    /* the reaction of the drive */
+    for (int i = 0; i < 3; ++i)
+        local[i] = whole_number(whole, &wheel->axis[i]);
+    ex_apply(dag, whole->motion[wheel->body].A, local, axis);
+    ex_scale3(dag, ex_neg(dag, grip[GRIP_DRIVE]), axis, axis);
+    twist(whole, loads, wheel->drive_body, axis);
+    if (wheel->drive_body == BODY_GROUND)
+        return;
+    ex_add3(dag, whole->turn, whole->motion[wheel->drive_body].omega, local);
+    loads->power = ex_add(dag, loads->power, ex_dot(dag, axis, local));
 }
 
 static void add_wheel(Whole *whole, Loads *loads, int index)
@@ -317,7 +343,7 @@ Loads *loads_make(Whole *whole)
     for (int i = 0; i < model->forces; ++i)
         add_force(whole, loads, i);
     for (int i = 0; i < model->wheels; ++i)
-        add_wheel(whole, loads, i);
+        (model->wheel[i].tire < 0 ? add_wheel : add_rolling_wheel)(whole, loads, i);
     for (int i = 0; i < model->ports; ++i)
         add_port(whole, loads, i);
     project(whole, loads);

@@ -60,6 +60,19 @@ static void body_euler(Whole *whole, int body, const char *start, Ex p[4])
         p[i] = ex_op(dag, OP_POSITIVE, product[0], product[i], ex_neg(dag, product[i]));
 }
 
+static void tire_components(Whole *whole, int wheel, Ex *out)
+{
+    static const int from_grip[] = {GRIP_TIRE,     GRIP_TIRE + 1, GRIP_TIRE + 2, GRIP_TIRE + 3,
+                                    GRIP_TIRE + 4, GRIP_KAPPA,    GRIP_TANGENT,  GRIP_CAMBER};
+    for (int i = 0; i < 8; ++i)
+        out[i] = whole_grip(whole, wheel, from_grip[i]);
+    out[6] = ex_op(whole->dag, OP_ATAN, out[6], 0, 0);
+    out[8] = whole_fast(whole, "y", wheel, FAST_SPIN);
+    out[9] = whole_fast(whole, "rate", wheel, FAST_SPIN);
+    out[10] = whole_grip(whole, wheel, GRIP_DRIVE);
+    out[11] = whole_grip(whole, wheel, GRIP_BRAKE);
+}
+
 static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MAX_COMPONENTS])
 {
     Whole *whole = s->whole;
@@ -117,10 +130,24 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         break;
     }
     case OUTPUT_WHEEL: memcpy(out, s->loads->wheel[output->index], 4 * sizeof *out); break;
+    case OUTPUT_TIRE: tire_components(whole, output->index, out); break;
+    case OUTPUT_CONTACT:
+        for (int i = 0; i < 3; ++i)
+            out[i] = whole_grip(whole, output->index, GRIP_POINT + i);
+        break;
     case OUTPUT_ENERGY: {
         out[0] = 0;
         out[1] = s->loads->potential;
+        out[2] = whole_power(whole, s->loads);
         Ex half = ex_literal(dag, 0.5);
+        for (int i = 0; i < whole->model->wheels; ++i) {
+            const Wheel *wheel = &whole->model->wheel[i];
+            if (wheel->tire < 0)
+                continue;
+            Ex spin = whole_fast(whole, "y", i, FAST_SPIN);
+            Ex turning = ex_mul(dag, ex_literal(dag, 0.5 * wheel->spin_inertia), ex_mul(dag, spin, spin));
+            out[0] = ex_add(dag, out[0], turning);
+        }
         for (int b = whole->model->free_base ? 0 : 1; b < whole->model->bodies; ++b) {
             const Body *body = &whole->model->body[b];
             Ex v[3], total[3], J[6], gravity[3], mass = whole_number(whole, &body->mass);

@@ -78,7 +78,7 @@ static const OutputKind output_kind[OUTPUT_TYPES] = {
                      {"N", "N", "N m", "N m", "N m", "1", "rad", "rad", "rad/s", "rad/s^2", "N m", "N m"},
                      {0}},
     [OUTPUT_CONTACT] = {3, {"x", "y", "z"}, {"m", "m", "m"}, {0}},
-    [OUTPUT_ENERGY] = {2, {"kinetic", "potential"}, {"J", "J"}, {0}},
+    [OUTPUT_ENERGY] = {3, {"kinetic", "potential", "power"}, {"J", "J", "W"}, {0}},
 };
 
 static const char *const output_about[WATCH_KEYS] = {

@@ -92,6 +92,16 @@ static Ex indexed(Whole *whole, const char *array, int i)
     return ex_input(whole->dag, pool_print(whole->dag->pool, "%s[%d]", array, i), NULL);
 }
 
+Ex whole_fast(Whole *whole, const char *array, int wheel, int state)
+{
+    return indexed(whole, array, whole->plan->states + whole->model->wheel[wheel].fast + state);
+}
+
+Ex whole_grip(Whole *whole, int wheel, int number)
+{
+    return indexed(whole, "self->grip", GRIP_NUMBERS * wheel_rolling(whole->model, wheel) + number);
+}
+
 Whole *whole_new(Pool *pool, const Plan *plan)
 {
     const Model *model = plan->model;

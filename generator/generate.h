@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the files that fill the templates share. */
+#ifndef GENERATE_H
+#define GENERATE_H
+
+#include "gicgen.h"
+
+typedef struct Generation {
+    Pool *pool;
+    const Formulation *formulation;
+    const Model *model; /* these three are the formulation's */
+    const Sequence *sequence;
+    const Plan *plan;
+    const Style *style;
+    const char *templates, *header, *upper;
+    int class;            /* the one whose template is being expanded */
+    Constants *constants; /* [classes] */
+} Generation;
+
+/* generate.c: one line of text. */
+void line(Text *out, int indent, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Elements of an array that would be empty: one. */
+int room(int count);
+/* The table `name` of a class's constants, a row a member. */
+void write_constants(Generation *g, Text *out, const char *name, const Dag *dag, const Constants *k,
+                     const char *const *member);
+/* A line of the table of operations. */
+void count_line(Text *out, const char *what, Count c);
+
+/* generate_wheels.c: nothing where no wheel has a tire, but for the end of the descriptor. */
+void write_wheels(Generation *g, Text *out);          /* functions of the wheels, before the equations of motion */
+void write_wheel_functions(Generation *g, Text *out); /* what the descriptor calls */
+void write_dual_rate(Generation *g, Text *out, int indent);
+void write_wheel_sizes(Generation *g, Text *out, int indent);
+void write_wheel_members(Generation *g, Text *out, int indent); /* of the instance */
+void wheel_counts(Generation *g, Text *out, const Figures *figures);
+
+#endif
