@@ -127,7 +127,6 @@ static const char *const other_name[] = {
 
 enum { UNKNOWN_MOST = 10 /* warnings about unknown keys; more say nothing new */ };
 
-static const double unlimited = 1e30; /* a range that is absent; it fits in a float */
 
 /* Exponents of length, force, angle, time; the other numbers have no unit that counts. */
 static const struct {
@@ -587,8 +586,8 @@ static double fallback(int key)
     if (key >= PAC_LFZO && key <= PAC_LMY)
         return 1;
     if (key == PAC_KPUMIN || key == PAC_ALPMIN || key == PAC_CAMMIN)
-        return -unlimited;
-    return key == PAC_KPUMAX || key == PAC_ALPMAX || key == PAC_CAMMAX || key == PAC_FZMAX ? unlimited : 0;
+        return -PAC_UNLIMITED;
+    return key == PAC_KPUMAX || key == PAC_ALPMAX || key == PAC_CAMMAX || key == PAC_FZMAX ? PAC_UNLIMITED : 0;
 }
 
 static void tire_fill(const Tir *tir, Tire *tire)

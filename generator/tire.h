@@ -3,6 +3,8 @@
 #ifndef TIRE_H
 #define TIRE_H
 
+#define PAC_UNLIMITED 1e30 /* end of a range that is absent; it fits in a float */
+
 /* X(name): coefficients of the Magic Formula and what else of a `.tir` file a tire computes with. FORCE of FNOMIN and
  * of ranges in N. */
 #define PAC_LIST(X) \

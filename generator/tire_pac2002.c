@@ -85,9 +85,9 @@ static Ex weight(Dag *dag, Ex B, Ex C, Ex E, Ex x, Ex shift)
 /* x within [low, high], where those are limits. */
 static Ex limit(Dag *dag, Ex x, double low, double high)
 {
-    if (isfinite(low))
+    if (low > -PAC_UNLIMITED)
         x = ex_op(dag, OP_MAX, x, ex_literal(dag, low), 0);
-    return isfinite(high) ? ex_op(dag, OP_MIN, x, ex_literal(dag, high), 0) : x;
+    return high < PAC_UNLIMITED ? ex_op(dag, OP_MIN, x, ex_literal(dag, high), 0) : x;
 }
 
 /* The tangent of a limit of alpha; none for angles that alpha never reaches. */
@@ -95,7 +95,7 @@ static double tangent_of_limit(double angle)
 {
     double sine, cosine;
     if (fabs(angle) >= 1.57)
-        return INFINITY;
+        return angle < 0 ? -PAC_UNLIMITED : PAC_UNLIMITED;
     portable_sincos(angle, &sine, &cosine);
     return sine / cosine;
 }
@@ -146,9 +146,9 @@ static void longitudinal(Magic *m)
     Ex bend = parabola(dag, NUMBER(PEX1), NUMBER(PEX2), NUMBER(PEX3), m->d);
     Ex lean = ex_sub(dag, ex_literal(dag, 1), ex_mul(dag, LITERAL(PEX4), sign(dag, kx)));
     Ex E = at_most_one(dag, ex_mul(dag, LITERAL(LEX), ex_mul(dag, bend, lean)));
+    Ex growth = ex_op(dag, OP_EXP, ex_mul(dag, LITERAL(PKX3), m->d), 0, 0);
     m->Kx = ex_mul(dag, LITERAL(LKX), ex_mul(dag, m->F, line(dag, NUMBER(PKX1), NUMBER(PKX2), m->d)));
-    if (NUMBER(PKX3) != 0)
-        m->Kx = ex_mul(dag, m->Kx, ex_op(dag, OP_EXP, ex_mul(dag, LITERAL(PKX3), m->d), 0, 0));
+    m->Kx = ex_mul(dag, m->Kx, growth);
     Ex B = ex_div(dag, m->Kx, ex_mul(dag, C, D));
     m->Fx = ex_add(dag, ex_mul(dag, D, ex_op(dag, OP_SIN, magic(dag, B, C, E, kx), 0, 0)), SVx);
 }
@@ -304,23 +304,18 @@ void pac2002_forces(Dag *dag, const Tire *tire, const Rolling *rolling, Ex force
 
 void pac2002_relaxation(Dag *dag, const Tire *tire, Ex load, Ex camber, Ex length[2])
 {
-    const double least = 0.2, along = 0.5, across = 1; /* of the radius: at least, and without coefficients */
-    Ex F = formula_load(dag, tire, load), d = above_nominal(dag, tire, F), R0 = ex_literal(dag, tire->radius);
-    Ex gamma = limit(dag, camber, NUMBER(CAMMIN), NUMBER(CAMMAX)), shortest = ex_mul(dag, ex_literal(dag, least), R0);
-    length[0] = ex_mul(dag, ex_literal(dag, along), R0);
-    length[1] = ex_mul(dag, ex_literal(dag, across), R0);
-    if (NUMBER(PTX1) != 0) {
-        Ex sigma = ex_mul(dag, F, line(dag, NUMBER(PTX1), NUMBER(PTX2), d));
-        if (NUMBER(PTX3) != 0)
-            sigma = ex_mul(dag, sigma, ex_op(dag, OP_EXP, ex_mul(dag, ex_literal(dag, -NUMBER(PTX3)), d), 0, 0));
-        sigma = ex_mul(dag, ex_literal(dag, tire->radius / NUMBER(FNOMIN) * NUMBER(LSGKP)), sigma);
-        length[0] = ex_op(dag, OP_MAX, sigma, shortest, 0);
-    }
-    if (NUMBER(PTY1) != 0) {
-        double most = NUMBER(PTY1) * tire->radius * NUMBER(LFZO) * NUMBER(LSGAL);
-        Ex sigma = ex_mul(dag, degression(dag, tire, F, NUMBER(PTY2)), camber_loss(dag, tire, gamma));
-        length[1] = ex_op(dag, OP_MAX, ex_mul(dag, ex_literal(dag, most), sigma), shortest, 0);
-    }
+    const double least = 0.2; /* of the radius */
+    Ex F = formula_load(dag, tire, load), d = above_nominal(dag, tire, F);
+    Ex gamma = limit(dag, camber, NUMBER(CAMMIN), NUMBER(CAMMAX));
+    double along = tire->radius / NUMBER(FNOMIN) * NUMBER(LSGKP);
+    double across = NUMBER(PTY1) * tire->radius * NUMBER(LFZO) * NUMBER(LSGAL);
+    Ex growth = ex_op(dag, OP_EXP, ex_mul(dag, ex_literal(dag, -NUMBER(PTX3)), d), 0, 0);
+    length[0] = ex_mul(dag, ex_mul(dag, F, line(dag, NUMBER(PTX1), NUMBER(PTX2), d)), growth);
+    length[0] = ex_mul(dag, ex_literal(dag, along), length[0]);
+    length[1] = ex_mul(dag, degression(dag, tire, F, NUMBER(PTY2)), camber_loss(dag, tire, gamma));
+    length[1] = ex_mul(dag, ex_literal(dag, across), length[1]);
+    for (int i = 0; i < 2; ++i)
+        length[i] = ex_op(dag, OP_MAX, length[i], ex_literal(dag, least * tire->radius), 0);
 }
 
 Ex pac2002_radius(Dag *dag, const Tire *tire, Ex deflection)

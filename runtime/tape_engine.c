@@ -68,12 +68,13 @@ int tape_whole(Instance *self, const Tape *tape, double time, const double *y, c
         [WHOLE_tau] = out,
         [WHOLE_energy] = out,
         [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
+        [WHOLE_GRIP] = tape_array(self, engine->grip_offset),
         [WHOLE_lambda] = tape_array(self, engine->multiplier_offset),
     };
     return tape_play(tape, 0, array, &world, engine->frame);
 }
 
-static int evaluate(Instance *self, double time, const double *y, double e[4], double *rate)
+int tape_locate(Instance *self, double time, const double *y, double e[4])
 {
     const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
@@ -86,32 +87,50 @@ static int evaluate(Instance *self, double time, const double *y, double e[4], d
         return self->head.status = GIC_ERROR_INPUT;
     if (!tape_is_tuned(self))
         return self->head.status = GIC_ERROR_TUNED;
-    ++self->head.rhs_count;
     const double begun = profile_clock(engine->profile);
     int status = orient(self, y, e, turn);
     if (status == GIC_OK) {
         gather(self, y);
-        status = tape_recover(self, turn, false);
+        status = engine->wheel ? tape_recover_once(self, turn) : tape_recover(self, turn, false);
     }
+    engine->profile->recovery += profile_clock(engine->profile) - begun;
+    return self->head.status = status;
+}
+
+static int evaluate(Instance *self, double time, const double *y, double e[4], double *rate)
+{
+    const TapeEngine *engine = tape_of(self);
+    const gic_model *code = &engine->code;
+    const int count = code->slow_count + code->fast_count;
+    int status = tape_locate(self, time, y, e);
+    self->head.rhs_count += status != GIC_ERROR_INPUT;
     const double recovered = profile_clock(engine->profile);
+    if (status == GIC_OK && engine->wheel)
+        status = tape_turn_wheels(self, time, y, e, engine->result + code->slow_count);
     if (status == GIC_OK)
         status = tape_whole(self, engine->dynamics, time, y, e, engine->result, NULL, NULL);
-    engine->profile->recovery += recovered - begun;
     engine->profile->acceleration += profile_clock(engine->profile) - recovered;
-    ++engine->profile->evaluations;
-    if (status == GIC_OK && !gic_finite(engine->result, code->slow_count))
+    engine->profile->evaluations += status != GIC_ERROR_INPUT;
+    if (status == GIC_OK && !gic_finite(engine->result, count))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK)
-        memcpy(rate, engine->result, (size_t)code->slow_count * sizeof *rate);
+        memcpy(rate, engine->result, (size_t)count * sizeof *rate);
     return self->head.status = status;
+}
+
+double tape_present(Instance *self)
+{
+    const double time = gic_time(self);
+    if (self->head.input_function)
+        self->head.input_function(self->head.user, self->head.lane, time,
+                                  tape_array(self, tape_of(self)->code.input_offset));
+    return time;
 }
 
 int tape_refresh(Instance *self, double e[4])
 {
     const gic_model *code = &tape_of(self)->code;
-    const double time = gic_time(self);
-    if (self->head.input_function)
-        self->head.input_function(self->head.user, self->head.lane, time, tape_array(self, code->input_offset));
+    const double time = tape_present(self);
     return evaluate(self, time, tape_array(self, code->state_offset), e, tape_array(self, code->rate_offset));
 }
 
@@ -157,10 +176,10 @@ static int poses(void *instance, double *pose)
 {
     Instance *self = instance;
     double e[4];
-    int status = tape_refresh(self, e);
+    const double time = tape_present(self), *state = tape_array(self, tape_of(self)->code.state_offset);
+    const int status = tape_locate(self, time, state, e);
     if (status == GIC_OK)
-        tape_whole(self, tape_of(self)->poses, gic_time(self), tape_array(self, tape_of(self)->code.state_offset), e,
-                   NULL, NULL, pose);
+        tape_whole(self, tape_of(self)->poses, time, state, e, NULL, NULL, pose);
     return status;
 }
 
@@ -179,7 +198,7 @@ static int setup_with(void *instance, const double *wanted)
     double *state = tape_array(self, code->state_offset), *input = tape_array(self, code->input_offset);
     double *x = tape_array(self, engine->x_offset);
     double *start = tape_start(self);
-    memcpy(state, engine->initial, (size_t)code->slow_count * sizeof *state);
+    memcpy(state, engine->initial, (size_t)(code->slow_count + code->fast_count) * sizeof *state);
     for (int i = 0; i < model->inputs; ++i)
         input[i] = model->input[i].initial;
     memcpy(tape_array(self, code->parameter_offset), engine->wanted, (size_t)code->parameter_count * sizeof *wanted);
@@ -218,6 +237,12 @@ const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *o
     tape->code.outputs = outputs;
     tape->code.poses = poses;
     tape->code.self_test = tape_self_test;
+    if (tape->wheel) {
+        tape->code.link_count = tape->formulation->wheels->links;
+        tape->code.link = tape_link_wheels;
+        tape->code.fast = tape_fast;
+        tape->code.roll = tape_roll;
+    }
     Engine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (Engine){.name = "tape",
                        .code = &tape->code,

@@ -15,6 +15,11 @@ typedef struct TapeClass {
     double enough; /* square of a correction that is rounding, relative to the subset's size */
 } TapeClass;
 
+/* One class of wheels with tires. */
+typedef struct TapeWheel {
+    const Tape *contact, *tire, *balance;
+} TapeWheel;
+
 /* What a subset is connected to, as in model.c.in, and addresses of all arrays of its class's blocks. */
 typedef struct TapeLinks {
     double **array, *x, *rate, *change, turn[3];
@@ -33,9 +38,14 @@ typedef struct TapeEngine {
     const Tape *wrenches;      /* NULL: no reactions to find after the accelerations */
     const Tape *derive, *draw; /* NULL: no parameter is geometric */
     const bool *reacts;        /* [subsets] whose multipliers outputs need */
+    const Tape *link, *torque; /* NULL: no wheel has a tire */
+    TapeWheel *wheel;          /* [classes of wheels] */
     gic_table *table;
     double *piece, *initial; /* [coordinates], [states] */
     size_t x_offset, xd_offset, start_offset[2], motion_offset, inertia_offset, multiplier_offset, derived_offset;
+    size_t grip_offset,
+        recovered_offset;       /* the latter: x, xd and angular velocity of the last recovery, 1: it was good */
+    double *link_row, *torques; /* a link; what drives and brakes [wheels with tires][2] */
     double *frame, *q, *first, *result, *out;
     double *standard, *wanted;              /* [tunables] values in the file, and while one is set up */
     double *acc, *unit, *tau0, *tau, *mass; /* [unknowns], and squared */
@@ -64,11 +74,13 @@ static inline double *tape_start(Instance *self)
     X(q) X(x) X(rate) X(change) X(turn) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst) X(w) X(d)
 #define WHOLE_ARRAYS(X) \
     X(time) \
-    X(y) X(e) X(x) X(xd) X(u) X(m) X(n) X(p) X(port) X(s) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda)
+    X(y) \
+    X(e) X(x) X(xd) X(u) X(m) X(n) X(p) X(port) X(s) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) \
+        X(fast) X(torque) X(hub) X(force) X(grip)
 #define CLASS_ENUM(name) CLASS_##name,
 #define WHOLE_ENUM(name) WHOLE_##name,
 enum { CLASS_ARRAYS(CLASS_ENUM) CLASS_KNOWN };
-enum { WHOLE_ARRAYS(WHOLE_ENUM) WHOLE_DERIVED, WHOLE_COUNT };
+enum { WHOLE_ARRAYS(WHOLE_ENUM) WHOLE_DERIVED, WHOLE_GRIP, WHOLE_COUNT };
 #undef CLASS_ENUM
 #undef WHOLE_ENUM
 
@@ -97,8 +109,21 @@ int tape_react(Instance *self, const double e[4]);
  * (which is also pose, tau and energy); NULL: not used. */
 int tape_whole(Instance *self, const Tape *tape, double time, const double *y, const double *e, double *rate,
                double *acc, double *out);
-/* The present state recovered, its rate in the instance. */
+/* The state recovered; inputs of the present time, which it returns; the present state recovered, its rate in the
+ * instance. */
+int tape_locate(Instance *self, double time, const double *y, double e[4]);
+double tape_present(Instance *self);
 int tape_refresh(Instance *self, double e[4]);
+
+/* tape_wheels.c: the templates wheels.c.in and dual_rate.c.in, over tapes. */
+void tape_record_wheels(Pool *pool, TapeEngine *engine, const char *const *array);
+int tape_turn_wheels(Instance *self, double time, const double *y, const double *e, double *rate);
+/* Recovery, unless the last one was for the very same coordinates and velocities. */
+int tape_recover_once(Instance *self, const double turn[3]);
+/* For the descriptor. */
+int tape_link_wheels(void *self, double time, const double *slow, double *link);
+int tape_fast(void *self, double time, const double *link, const double *fast, double *rate);
+int tape_roll(void *self);
 
 /* tape_self_test.c: as the generated code tests itself. */
 int tape_self_test(void *self, gic_self_test *result);

@@ -44,6 +44,7 @@ static void record_whole(Pool *pool, TapeEngine *engine)
     static const char *const array[] = {
 #define NAME(name) #name,
         WHOLE_ARRAYS(NAME) "self->derived",
+        "self->grip",
 #undef NAME
     };
     const Formulation *f = engine->formulation;
@@ -56,6 +57,8 @@ static void record_whole(Pool *pool, TapeEngine *engine)
         engine->wrenches = tape_record(pool, f->wrenches, array, WHOLE_COUNT);
         engine->reacts = reactions_needed(pool, f->model, f->sequence);
     }
+    if (f->wheels)
+        tape_record_wheels(pool, engine, array);
 }
 
 static void make_tables(Pool *pool, TapeEngine *engine)
@@ -84,10 +87,19 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
             slots = GIC_MAX(slots, part[i]->slots);
         bodies = GIC_MAX(bodies, class->layout->bodies);
     }
+    for (int c = 0; f->wheels && c < f->wheels->classes; ++c) {
+        const TapeWheel *wheel = &engine->wheel[c];
+        slots = GIC_MAX(slots, GIC_MAX(wheel->contact->slots, GIC_MAX(wheel->tire->slots, wheel->balance->slots)));
+    }
+    if (f->wheels) {
+        slots = GIC_MAX(slots, GIC_MAX(engine->link->slots, engine->torque->slots));
+        engine->link_row = numbers(pool, f->wheels->links);
+        engine->torques = numbers(pool, 2 * f->wheels->count);
+    }
     engine->frame = numbers(pool, slots);
     engine->q = numbers(pool, 7 * bodies);
     engine->first = numbers(pool, f->model->coordinates);
-    engine->result = numbers(pool, f->plan->states);
+    engine->result = numbers(pool, f->plan->states + f->model->fast_states);
     engine->out = numbers(pool, f->model->output_components);
     engine->wanted = numbers(pool, f->model->tunables);
     engine->acc = numbers(pool, unknowns);
@@ -117,6 +129,12 @@ static void lay_out(TapeEngine *engine)
     engine->inertia_offset = descriptor_place(code, (size_t)plan->inertia_size);
     engine->derived_offset = descriptor_place(code, (size_t)plan->derived->count);
     engine->multiplier_offset = descriptor_place(code, (size_t)plan->multipliers);
+    const Wheels *wheels = engine->formulation->wheels;
+    if (wheels) {
+        code->link_offset = descriptor_place(code, 5 * (size_t)wheels->links);
+        engine->grip_offset = descriptor_place(code, GRIP_NUMBERS * (size_t)wheels->count);
+        engine->recovered_offset = descriptor_place(code, 2 * coordinates + 4);
+    }
 }
 
 TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve)
@@ -129,11 +147,11 @@ TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve)
                            .profile = pool_alloc(pool, sizeof *engine->profile),
                            .member = pool_alloc(pool, (size_t)(f->sequence->subsets + 1) * sizeof(int)),
                            .piece = numbers(pool, f->model->coordinates),
-                           .initial = numbers(pool, f->plan->states)};
+                           .initial = numbers(pool, f->plan->states + f->model->fast_states)};
     engine->code.hash = f->hash;
     for (int i = 0; i < f->model->coordinates; ++i)
         engine->piece[i] = coordinate_piece(f, i);
-    for (int i = 0; i < f->plan->states; ++i)
+    for (int i = 0; i < f->plan->states + f->model->fast_states; ++i)
         engine->initial[i] = state_number(pool, f, i).initial;
     engine->standard = numbers(pool, f->model->tunables);
     for (int i = 0; i < f->model->parameters; ++i)

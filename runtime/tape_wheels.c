@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: MIT
+ * Wheels with tires: the templates wheels.c.in, wheel.c.in and dual_rate.c.in, over tapes. */
+#include "tape_engine.h"
+
+#include "../generator/wheel.h"
+
+#include <math.h>
+#include <string.h>
+
+void tape_record_wheels(Pool *pool, TapeEngine *engine, const char *const *array)
+{
+    const Wheels *wheels = engine->formulation->wheels;
+    engine->link = tape_record(pool, &wheels->link, array, WHOLE_COUNT);
+    engine->torque = tape_record(pool, &wheels->torque, array, WHOLE_COUNT);
+    engine->wheel = pool_alloc(pool, (size_t)wheels->classes * sizeof *engine->wheel);
+    for (int c = 0; c < wheels->classes; ++c)
+        engine->wheel[c] = (TapeWheel){.contact = tape_record(pool, &wheels->class[c].contact, array, WHOLE_COUNT),
+                                       .tire = tape_record(pool, &wheels->class[c].tire, array, WHOLE_COUNT),
+                                       .balance = tape_record(pool, &wheels->class[c].balance, array, WHOLE_COUNT)};
+}
+
+/* How the multibody system moves the wheels. */
+static void links_of(Instance *self, const double *y, const double *e, double *link)
+{
+    const TapeEngine *engine = tape_of(self);
+    const TapeWorld none = {.table = NULL};
+    double *const array[WHOLE_COUNT] = {
+        [WHOLE_y] = (double *)y, /* blocks only read these two */
+        [WHOLE_e] = (double *)e,
+        [WHOLE_x] = tape_array(self, engine->x_offset),
+        [WHOLE_xd] = tape_array(self, engine->xd_offset),
+        [WHOLE_m] = tape_array(self, engine->motion_offset),
+        [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
+        [WHOLE_link] = link,
+    };
+    tape_play(engine->link, 0, array, &none, engine->frame);
+}
+
+/* One wheel; array[] has what belongs to it. */
+static int wheel_of(const TapeEngine *engine, const TapeWheel *wheel, int member, double **array,
+                    const TapeWorld *world)
+{
+    double hub[HUB_NUMBERS], force[TIRE_FORCES] = {0};
+    array[WHOLE_hub] = hub;
+    array[WHOLE_force] = force;
+    int status = tape_play(wheel->contact, member, array, world, engine->frame);
+    if (status != GIC_OK)
+        return status;
+    if (hub[HUB_LOAD] > 0) /* a wheel in the air has no tire forces */
+        tape_play(wheel->tire, member, array, world, engine->frame);
+    return tape_play(wheel->balance, member, array, world, engine->frame);
+}
+
+/* All wheels at their links: rate[] of the fast states, and the instance's grip. */
+static int grip(Instance *self, double time, const double *link, const double *fast, double *rate)
+{
+    const TapeEngine *engine = tape_of(self);
+    const Wheels *wheels = engine->formulation->wheels;
+    const Model *model = engine->formulation->model;
+    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, NULL};
+    double *array[WHOLE_COUNT] = {
+        [WHOLE_time] = &time,
+        [WHOLE_link] = (double *)link, /* blocks only read these two */
+        [WHOLE_fast] = (double *)fast,
+        [WHOLE_u] = tape_array(self, engine->code.input_offset),
+        [WHOLE_p] = tape_array(self, engine->code.parameter_offset),
+        [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
+        [WHOLE_torque] = engine->torques,
+    };
+    int status = tape_play(engine->torque, 0, array, &world, engine->frame);
+    for (int c = 0; c < wheels->classes; ++c) {
+        const WheelClass *class = &wheels->class[c];
+        for (int i = 0; i < class->members && status == GIC_OK; ++i) {
+            const int place = wheel_rolling(model, class->member[i]), first = model->wheel[class->member[i]].fast;
+            array[WHOLE_link] = (double *)link + LINK_NUMBERS * place;
+            array[WHOLE_fast] = (double *)fast + first;
+            array[WHOLE_torque] = engine->torques + 2 * place;
+            array[WHOLE_rate] = rate + first;
+            array[WHOLE_grip] = tape_array(self, engine->grip_offset) + GRIP_NUMBERS * place;
+            status = wheel_of(engine, &engine->wheel[c], i, array, &world);
+        }
+    }
+    return status;
+}
+
+int tape_turn_wheels(Instance *self, double time, const double *y, const double *e, double *rate)
+{
+    const TapeEngine *engine = tape_of(self);
+    if (!gic_finite(y + engine->code.slow_count, engine->code.fast_count))
+        return GIC_ERROR_INPUT;
+    links_of(self, y, e, engine->link_row);
+    return grip(self, time, engine->link_row, y + engine->code.slow_count, rate);
+}
+
+int tape_recover_once(Instance *self, const double turn[3])
+{
+    const TapeEngine *engine = tape_of(self);
+    const int coordinates = engine->code.coordinate_count;
+    const size_t size = (size_t)coordinates * sizeof(double);
+    const double *x = tape_array(self, engine->x_offset), *xd = tape_array(self, engine->xd_offset);
+    double *at = tape_array(self, engine->recovered_offset), *recovered = at + 2 * coordinates + 3;
+    if (*recovered > 0 && !memcmp(at, x, size) && !memcmp(at + coordinates, xd, size) &&
+        !memcmp(at + 2 * coordinates, turn, 3 * sizeof *turn))
+        return GIC_OK;
+    *recovered = 0;
+    const int status = tape_recover(self, turn, false);
+    if (status == GIC_OK) {
+        memcpy(at, x, size);
+        memcpy(at + coordinates, xd, size);
+        memcpy(at + 2 * coordinates, turn, 3 * sizeof *turn);
+        *recovered = 1;
+    }
+    return status;
+}
+
+/* ---- dual rate ------------------------------------------------------------------------------------------------- */
+
+int tape_link_wheels(void *instance, double time, const double *slow, double *link)
+{
+    Instance *self = instance;
+    double e[4];
+    const int status = tape_locate(self, time, slow, e);
+    if (status == GIC_OK)
+        links_of(self, slow, e, link);
+    return status;
+}
+
+int tape_fast(void *instance, double time, const double *link, const double *fast, double *rate)
+{
+    Instance *self = instance;
+    const TapeEngine *engine = tape_of(self);
+    const gic_model *code = &engine->code;
+    if (!gic_finite(link, code->link_count) || !gic_finite(fast, code->fast_count) || !gic_finite(&time, 1) ||
+        !gic_finite(tape_array(self, code->input_offset), code->input_count) ||
+        !gic_finite(tape_array(self, code->parameter_offset), code->parameter_count))
+        return self->head.status = GIC_ERROR_INPUT;
+    int status = grip(self, time, link, fast, engine->result);
+    if (status == GIC_OK && !gic_finite(engine->result, code->fast_count))
+        status = GIC_ERROR_RESULT;
+    if (status == GIC_OK)
+        memcpy(rate, engine->result, (size_t)code->fast_count * sizeof *rate);
+    return self->head.status = status;
+}
+
+int tape_roll(void *instance)
+{
+    Instance *self = instance;
+    const TapeEngine *engine = tape_of(self);
+    const gic_model *code = &engine->code;
+    const Model *model = engine->formulation->model;
+    const double *number = tape_array(self, engine->grip_offset);
+    double *state = tape_array(self, code->state_offset), e[4];
+    const double time = tape_present(self);
+    int status = tape_locate(self, time, state, e);
+    if (status == GIC_OK)
+        status = tape_turn_wheels(self, time, state, e, engine->result);
+    for (int i = 0; i < model->wheels && status == GIC_OK; ++i) {
+        const Wheel *wheel = &model->wheel[i];
+        if (wheel->tire < 0)
+            continue;
+        double *own = state + code->slow_count + wheel->fast, speed = fabs(number[GRIP_SPEED_X]);
+        memset(own, 0, (size_t)wheel_fast_states(wheel) * sizeof *own);
+        own[FAST_SPIN] = number[GRIP_SPEED_X] / number[GRIP_RADIUS];
+        if (speed > model->tire[wheel->tire].low_speed)
+            own[FAST_SLIP_Y] = number[GRIP_SPEED_Y] / speed;
+        number += GRIP_NUMBERS;
+    }
+    if (status == GIC_OK)
+        gic_restart(self, time);
+    return self->head.status = status;
+}
