@@ -41,11 +41,9 @@ static inline void push(World *world, const Point *point, const double F[3])
 
 /* ---- laws ------------------------------------------------------------------------------------------------ */
 
-static double law_at(const World *world, const Law *law, const double *local);
-
 static double call_at(const World *world, const Law *law, const double *local)
 {
-    const double a = law_at(world, law->arg[0], local), b = law->arg[1] ? law_at(world, law->arg[1], local) : 0;
+    const double a = world_law(world, law->arg[0], local), b = law->arg[1] ? world_law(world, law->arg[1], local) : 0;
     switch ((Op)law->call) {
     case OP_NEG: return -a;
     case OP_ADD: return a + b;
@@ -67,7 +65,7 @@ static double call_at(const World *world, const Law *law, const double *local)
     case OP_ATAN2: return atan2(a, b);
     case OP_MIN: return a < b ? a : b;
     case OP_MAX: return a > b ? a : b;
-    default: return a > 0 ? b : law_at(world, law->arg[2], local); /* OP_POSITIVE */
+    default: return a > 0 ? b : world_law(world, law->arg[2], local); /* OP_POSITIVE */
     }
 }
 
@@ -77,15 +75,14 @@ static double table_at(const Table *table, double x)
     return gic_table_value(&t, x);
 }
 
-/* local: what the place of the formula offers. */
-static double law_at(const World *world, const Law *law, const double *local)
+double world_law(const World *world, const Law *law, const double *local)
 {
     switch (law->op) {
     case LAW_NUMBER: return law->number;
     case LAW_PARAMETER: {
         const Parameter *parameter = &world->model->parameter[law->index];
         if (parameter->law)
-            return law_at(world, parameter->law, local);
+            return world_law(world, parameter->law, local);
         return parameter->tunable ? world->parameter[parameter->index] : parameter->value;
     }
     case LAW_INPUT: return world->input[law->index];
@@ -93,7 +90,7 @@ static double law_at(const World *world, const Law *law, const double *local)
     case LAW_RATE: return world->xd[law->index];
     case LAW_TIME: return world->time;
     case LAW_LOCAL: return local[law->index];
-    case LAW_TABLE: return table_at(&world->model->table[law->index], law_at(world, law->arg[0], local));
+    case LAW_TABLE: return table_at(&world->model->table[law->index], world_law(world, law->arg[0], local));
     default: return call_at(world, law, local);
     }
 }
@@ -106,13 +103,14 @@ static inline double fade_in(double s)
     return s * s * (3 - 2 * s);
 }
 
-/* Of a spring, by its stiffness or table. */
-static double elastic_force(World *world, const Force *force, double extension)
+/* Of a spring, by its stiffness or table; rate: of the extension. */
+static double elastic_force(World *world, const Force *force, double extension, double rate)
 {
     if (force->table >= 0)
         return table_at(&world->model->table[force->table], extension);
-    const double elastic = law_at(world, force->stiffness, NULL) * extension;
+    const double elastic = world_law(world, force->stiffness, NULL) * extension;
     world->potential += 0.5 * elastic * extension;
+    world->stored += elastic * rate;
     return elastic;
 }
 
@@ -121,23 +119,23 @@ static double contact(World *world, const Force *force, double depth, double rat
 {
     if (!(depth > 0))
         return 0;
-    const double damping = law_at(world, force->damping, NULL) * fade_in(depth / law_at(world, force->fade, NULL));
-    return fmax(0, elastic_force(world, force, depth) + damping * rate);
+    const double damping = world_law(world, force->damping, NULL) * fade_in(depth / world_law(world, force->fade, NULL));
+    return fmax(0, elastic_force(world, force, depth, rate) + damping * rate);
 }
 
 /* What an element between points, about an axis or, but for a formula, along a coordinate does against growth. */
 static double resistance(World *world, const Force *force, double value, double rate)
 {
     if (force_is_law(force))
-        return law_at(world, force->law[0], (const double[FORCE_LOCALS]){value, rate});
+        return world_law(world, force->law[0], (const double[FORCE_LOCALS]){value, rate});
     if (force_is_spring(force))
-        return elastic_force(world, force, value - law_at(world, force->free, NULL)) +
-               law_at(world, force->damping, NULL) * rate;
+        return elastic_force(world, force, value - world_law(world, force->free, NULL), rate) +
+               world_law(world, force->damping, NULL) * rate;
     double tension = 0;
     if (force->high)
-        tension += contact(world, force, value - law_at(world, force->high, NULL), rate);
+        tension += contact(world, force, value - world_law(world, force->high, NULL), rate);
     if (force->low)
-        tension -= contact(world, force, law_at(world, force->low, NULL) - value, -rate);
+        tension -= contact(world, force, world_law(world, force->low, NULL) - value, -rate);
     return tension;
 }
 
@@ -146,9 +144,10 @@ static void add_along(World *world, int index)
     const Force *force = &world->model->force[index];
     const int w = force->coordinate;
     const double Q =
-        force_is_law(force) ? law_at(world, force->law[0], NULL) : -resistance(world, force, world->x[w], world->xd[w]);
+        force_is_law(force) ? world_law(world, force->law[0], NULL) : -resistance(world, force, world->x[w], world->xd[w]);
     world->element[index] = Q;
     world->along[w] += Q;
+    world->power += Q * world->xd[w];
 }
 
 static void add_between(World *world, int index)
@@ -162,6 +161,7 @@ static void add_between(World *world, int index)
     const double length = sqrt(dot3(d, d)), speed = dot3(d, rate) / length;
     const double tension = resistance(world, force, length, speed);
     world->element[index] = tension;
+    world->power -= tension * speed;
     for (int i = 0; i < 3; ++i)
         F[i] = tension / length * d[i];
     push(world, &a, F);
@@ -196,8 +196,9 @@ static void add_about(World *world, int index)
     add_scaled3(-dot3(u, f1), f1, n);
     sub3(b == BODY_GROUND ? still : world->omega[b], a == BODY_GROUND ? still : world->omega[a], turn);
     const double square = x * x + y * y;
-    const double torque = resistance(world, force, atan2(y, x), dot3(n, turn) / square);
+    const double rate = dot3(n, turn) / square, torque = resistance(world, force, atan2(y, x), rate);
     world->element[index] = torque;
+    world->power -= torque * rate;
     if (a != BODY_GROUND)
         add_scaled3(torque / square, n, world->wrench[a] + 3);
     if (b != BODY_GROUND)
@@ -218,6 +219,7 @@ static void add_load(World *world, int body, int in, const double at[3], const d
     }
     push(world, &point, F);
     add3(wrench + 3, T, wrench + 3);
+    world->power += dot3(F, point.v) + dot3(T, world->omega[body]);
 }
 
 static void add_force(World *world, int index)
@@ -232,12 +234,15 @@ static void add_force(World *world, int index)
         add_between(world, index);
     } else {
         for (int i = 0; i < 6; ++i)
-            load[i] = force->law[i] ? law_at(world, force->law[i], NULL) : 0;
+            load[i] = force->law[i] ? world_law(world, force->law[i], NULL) : 0;
         add_load(world, force->body[0], force->body[1], force->point[0], load);
     }
 }
 
-static int add_wheel(World *world, int index)
+/* ---- wheels ---------------------------------------------------------------------------------------------- */
+
+/* A vertical spring and damper. */
+static int add_contact(World *world, int index)
 {
     const Wheel *wheel = &world->model->wheel[index];
     const Point center = point_at(world, wheel->body, wheel->center);
@@ -252,11 +257,62 @@ static int add_wheel(World *world, int index)
     if (deflection > 0)
         fz = fmax(0, wheel->stiffness * deflection + wheel->damping * fade_in(deflection / wheel->fade) * rate);
     push(world, &center, (const double[3]){0, 0, fz});
+    world->power += fz * center.v[2];
     double *out = world->wheel[index];
     out[0] = fz;
     out[1] = deflection;
     out[2] = rate;
     out[3] = road[0];
+    return GIC_OK;
+}
+
+void world_wheel_motion(const World *world, int index, WheelMotion *motion)
+{
+    const Wheel *wheel = &world->model->wheel[index];
+    const Point center = point_at(world, wheel->body, wheel->center);
+    copy3(center.r, motion->center);
+    copy3(center.v, motion->velocity);
+    apply3(world->A[wheel->body], wheel->axis, motion->axis);
+    copy3(world->omega[wheel->body], motion->omega);
+    motion->drive_turn = dot3(motion->axis, world->omega[wheel->drive_body]);
+}
+
+int world_wheel_turn(const World *world, int index, const WheelMotion *motion, const double *fast, double *rate,
+                     Rolling *rolling)
+{
+    const Wheel *wheel = &world->model->wheel[index];
+    const Tire *tire = &world->model->tire[wheel->tire];
+    const Ground ground = {world->road, world->lane, world->time};
+    const double *spin = &fast[FAST_SPIN];
+    const double drive = wheel->drive ? world_law(world, wheel->drive, spin) : 0;
+    const double brake = wheel->brake ? world_law(world, wheel->brake, spin) : 0;
+    const int status = wheel_touch(wheel, tire, &ground, motion, rolling);
+    if (status == GIC_OK)
+        wheel_turn(wheel, tire, motion, drive, brake, fast, rate, rolling);
+    return status;
+}
+
+static int add_tire(World *world, int index)
+{
+    const Wheel *wheel = &world->model->wheel[index];
+    WheelMotion *motion = &world->motion[index];
+    Rolling *rolling = &world->rolling[index];
+    double arm[3], moment[3], *carrier = world->wrench[wheel->body], *driver = world->wrench[wheel->drive_body] + 3;
+    world_wheel_motion(world, index, motion);
+    const int status = world_wheel_turn(world, index, motion, world->fast + wheel->fast,
+                                        world->fast_rate + wheel->fast, rolling);
+    if (status != GIC_OK)
+        return status;
+    sub3(motion->center, world->q[wheel->body], arm);
+    cross3(arm, rolling->force, moment);
+    add3(carrier, rolling->force, carrier);
+    add3(carrier + 3, moment, carrier + 3);
+    add3(carrier + 3, rolling->torque, carrier + 3);
+    add3(driver, rolling->reaction, driver);
+    world->power += rolling->power;
+    memcpy(world->wheel[index],
+           (const double[4]){rolling->fz, rolling->deflection, rolling->deflection_rate, rolling->height},
+           sizeof world->wheel[index]);
     return GIC_OK;
 }
 
@@ -270,15 +326,16 @@ int world_forces(World *world)
         }
     }
     memset(world->along, 0, (size_t)model->coordinates * sizeof *world->along);
-    world->potential = 0;
+    world->potential = world->stored = world->power = 0;
     for (int i = 0; i < model->forces; ++i)
         add_force(world, i);
     for (int i = 0; i < model->ports; ++i) {
         const Port *port = &model->port[i];
         add_load(world, port->body, port->in, port->point, world->port + 6 * i);
     }
+    world->power += world->stored;
     for (int i = 0; i < model->wheels; ++i) {
-        const int status = add_wheel(world, i);
+        const int status = model->wheel[i].tire < 0 ? add_contact(world, i) : add_tire(world, i);
         if (status != GIC_OK)
             return status;
     }

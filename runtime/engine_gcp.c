@@ -272,7 +272,9 @@ static int use_partition(const Interpreted *context, const Instance *self, const
 static int recover(const Interpreted *context, Instance *self, const Memory *memory, const double *state)
 {
     World *world = context->world;
+    EngineProfile *profile = context->profile;
     const Gcp *gcp = context->engine;
+    const double begun = profile_clock(profile), solver = profile->recovery_solver;
     set_positions(world, state);
     set_rates(world, state + gcp->columns);
     gather_driven(world);
@@ -283,7 +285,16 @@ static int recover(const Interpreted *context, Instance *self, const Memory *mem
         status = find_jacobian(world) ? recover_rates(context) : GIC_ERROR_NEWTON;
     if (status == GIC_OK)
         find_coordinates(world, memory);
+    const double taken = profile_clock(profile) - begun;
+    profile->recovery += taken;
+    profile->recovery_functions += taken - (profile->recovery_solver - solver);
     return status;
+}
+
+static int place(const Interpreted *context, Instance *self, const double *state)
+{
+    const Memory memory = memory_of(context, self);
+    return recover(context, self, &memory, state);
 }
 
 /* ---- right-hand side -------------------------------------------------------------------------------------------- */
@@ -314,15 +325,10 @@ static int accelerate(const Interpreted *context, double *rate)
 static int evaluate(const Interpreted *context, Instance *self, const double *state, double *rate)
 {
     World *world = context->world;
-    EngineProfile *profile = context->profile;
     const Gcp *gcp = context->engine;
     const Memory memory = memory_of(context, self);
-    const double begun = profile_clock(profile), solver = profile->recovery_solver;
     int status = recover(context, self, &memory, state);
-    const double taken = profile_clock(profile) - begun;
-    profile->recovery += taken;
-    profile->recovery_functions += taken - (profile->recovery_solver - solver);
-    ++profile->evaluations;
+    ++context->profile->evaluations;
     if (status == GIC_OK)
         status = accelerate(context, rate);
     if (status == GIC_OK)
@@ -397,17 +403,14 @@ static int enter(gic_head *head, const double *standard)
     const gic_model *own = &context->code, *code = &gic->code;
     const Memory memory = memory_of(context, self);
     World *world = context->world;
-    double rate[code->slow_count + 1], *state = instance_array(head, own->state_offset);
-    const size_t offset[2][3] = {{code->input_offset, own->input_offset, (size_t)code->input_count},
-                                 {code->port_offset, own->port_offset, (size_t)code->port_count}};
+    double *state = instance_array(head, own->state_offset);
     int status = code->setup_with(gcp->start, instance_array(head, own->parameter_offset));
-    for (int i = 0; i < 2; ++i)
-        memcpy(instance_array(&gcp->start->head, offset[i][0]), instance_array(head, offset[i][1]),
-               sizeof(double) * offset[i][2]);
-    gcp->start->head.road = head->road;
-    gcp->start->head.lane = head->lane;
+    memcpy(instance_array(&gcp->start->head, code->input_offset), instance_array(head, own->input_offset),
+           sizeof(double) * (size_t)code->input_count);
     if (status == GIC_OK)
-        status = code->rhs(gcp->start, gic_time(head), standard, rate);
+        status = gic_finite(standard, code->slow_count) ? interpreted_load(gcp->start, gic_time(head)) : GIC_ERROR_INPUT;
+    if (status == GIC_OK)
+        status = gic->place(gic, gcp->start, standard);
     if (status != GIC_OK) {
         head->subset = gcp->start->head.subset;
         return head->status = status;
@@ -502,26 +505,28 @@ static const gic_signal *signals(Pool *pool, const World *world)
     static const char *const part[2][BODY_Q] = {{"r.x", "r.y", "r.z", "e0", "e1", "e2", "e3"},
                                                 {"v.x", "v.y", "v.z", "e0.rate", "e1.rate", "e2.rate", "e3.rate"}};
     static const char *const unit[2][2] = {{"m", "1"}, {"m/s", "1/s"}};
-    const int columns = BODY_Q * (world->bodies - world->first);
-    gic_signal *signal = pool_alloc(pool, (2 * (size_t)columns + 1) * sizeof *signal);
+    const int columns = BODY_Q * (world->bodies - world->first), fast = world->model->fast_states;
+    gic_signal *signal = pool_alloc(pool, (size_t)(2 * columns + fast + 1) * sizeof *signal);
     for (int j = 0; j < 2 * columns; ++j) {
         const int rate = j >= columns, i = j % columns, body = i / BODY_Q + world->first;
         signal[j] = (gic_signal){pool_print(pool, "%s.%s", world->model->body[body].name, part[rate][i % BODY_Q]),
                                  unit[rate][i % BODY_Q > 2]};
     }
+    memcpy(signal + 2 * columns, descriptor_fast_states(pool, world->model), sizeof *signal * (size_t)fast);
     return signal;
 }
 
-/* All of q and q' instead of the states of FORMAT.md section 10. */
-static void set_states(Pool *pool, Interpreted *context, int states)
+/* All of q and q' instead of the slow states of FORMAT.md section 10. */
+static void set_states(Pool *pool, Interpreted *context, int own)
 {
     gic_model *code = &context->code;
-    code->slow_count = states;
+    const size_t states = (size_t)(own + code->fast_count);
+    code->slow_count = own;
     code->state = signals(pool, context->world);
-    code->state_offset = descriptor_place(code, (size_t)states);
-    code->rate_offset = descriptor_place(code, (size_t)states);
-    code->history_offset = descriptor_place(code, 2 * (size_t)states);
-    code->scratch_offset = descriptor_place(code, (size_t)GIC_SCRATCH(states, code->input_count));
+    code->state_offset = descriptor_place(code, states);
+    code->rate_offset = descriptor_place(code, states);
+    code->history_offset = descriptor_place(code, 2 * states);
+    code->scratch_offset = descriptor_place(code, GIC_SCRATCH(states, (size_t)code->input_count));
 }
 
 /* Nothing is derived from the design: q goes on from a configuration that gic finds. */
@@ -558,6 +563,7 @@ static const Engine *open_gcp(Pool *pool, const char *name, const Model *drawn, 
     gcp->start = (Instance *)(void *)instance_new(pool, gcp->gic);
     world_set_solver(pool, world, solver);
     context->design = design;
+    context->place = place;
     context->start = start;
     context->evaluate = evaluate;
     context->engine = gcp;

@@ -297,32 +297,30 @@ static int recover(const Interpreted *context, Instance *self, bool cold)
     return GIC_OK;
 }
 
-static int evaluate(const Interpreted *context, Instance *self, const double *state, double *rate)
+static int place(const Interpreted *context, Instance *self, const double *state)
 {
     double e[4];
-    int status = interpreted_orient(self, state, e);
-    if (status != GIC_OK)
-        return status;
-    interpreted_gather(context, state);
-    interpreted_place_base(context, state, e);
-    status = recover(context, self, false);
-    return status == GIC_OK ? interpreted_accelerate(context, state, e, rate) : status;
-}
-
-/* From the design poses alone, then on to the initial values of the coordinates. */
-static int start(const Interpreted *context, Instance *self)
-{
-    const Gic *gic = context->engine;
-    const double *state = (const double *)(const void *)((char *)self + context->code.state_offset);
-    double e[4];
-    memcpy(start_of(context, self, 0), gic->design, sizeof *gic->design * (size_t)gic->start_size);
-    self->head.flip = 0;
     const int status = interpreted_orient(self, state, e);
     if (status != GIC_OK)
         return status;
     interpreted_gather(context, state);
     interpreted_place_base(context, state, e);
     return recover(context, self, false);
+}
+
+static int evaluate(const Interpreted *context, Instance *self, const double *state, double *rate)
+{
+    const int status = place(context, self, state);
+    return status == GIC_OK ? interpreted_accelerate(context, state, rate) : status;
+}
+
+/* From the design poses alone, then on to the initial values of the coordinates. */
+static int start(const Interpreted *context, Instance *self)
+{
+    const Gic *gic = context->engine;
+    memcpy(start_of(context, self, 0), gic->design, sizeof *gic->design * (size_t)gic->start_size);
+    self->head.flip = 0;
+    return place(context, self, instance_array(&self->head, context->code.state_offset));
 }
 
 /* ---- opening --------------------------------------------------------------------------------------------- */
@@ -456,6 +454,7 @@ const Engine *engine_gic(Pool *pool, const Model *drawn, const EngineOptions *op
     context->engine = gic;
     context->start = start;
     context->design = find_design;
+    context->place = place;
     context->evaluate = evaluate;
     const Engine *engine = interpreted_engine(pool, "gic", context);
     Instance *self = (Instance *)(void *)instance_new(pool, engine);

@@ -105,7 +105,7 @@ void interpreted_standard(const Interpreted *context, double *standard, double *
     base_rates(context, standard, q + 3, rate);
 }
 
-int interpreted_accelerate(const Interpreted *context, const double *state, const double e[4], double *rate)
+int interpreted_accelerate(const Interpreted *context, const double *state, double *rate)
 {
     World *world = context->world;
     EngineProfile *profile = context->profile;
@@ -130,7 +130,7 @@ int interpreted_accelerate(const Interpreted *context, const double *state, cons
         }
     }
     if (context->code.free_base)
-        base_rates(context, state, e, rate);
+        base_rates(context, state, world->q[BODY_BASE] + 3, rate);
     const double ended = profile_clock(profile);
     profile->acceleration += ended - begun;
     profile->acceleration_solver += solved - ready;
@@ -177,32 +177,44 @@ static int match_geometry(Instance *self)
     return geometry_adopted(context, parameter) ? GIC_OK : geometry_adopt(context, self, parameter);
 }
 
+int interpreted_load(Instance *self, double time)
+{
+    const gic_model *code = &context_of(self)->code;
+    self->head.subset = -1;
+    if (!gic_finite(&time, 1) || !finite(self, code->input_offset, code->input_count) ||
+        !finite(self, code->parameter_offset, code->parameter_count) ||
+        !finite(self, code->port_offset, code->port_count))
+        return GIC_ERROR_INPUT;
+    load(self, time);
+    return match_geometry(self);
+}
+
 static int any_rhs(void *instance, double time, const double *state, double *rate)
 {
     Instance *self = instance;
     const Interpreted *context = self->context;
     const gic_model *code = &context->code;
-    double result[code->slow_count + 1];
+    const int32_t count = code->slow_count + code->fast_count;
+    double result[count + 1];
     self->head.subset = -1;
-    if (!gic_finite(state, code->slow_count) || !gic_finite(&time, 1) ||
-        !finite(self, code->input_offset, code->input_count) ||
-        !finite(self, code->parameter_offset, code->parameter_count) ||
-        !finite(self, code->port_offset, code->port_count))
+    if (!gic_finite(state, count))
         return self->head.status = GIC_ERROR_INPUT;
+    int status = interpreted_load(self, time);
+    if (status == GIC_ERROR_INPUT)
+        return self->head.status = status;
     ++self->head.rhs_count;
-    load(self, time);
-    int status = match_geometry(self);
+    context->world->fast = state + code->slow_count;
     if (status == GIC_OK)
         status = context->evaluate(context, self, state, result);
-    if (status == GIC_OK && !gic_finite(result, code->slow_count))
+    memcpy(result + code->slow_count, context->world->fast_rate, sizeof *result * (size_t)code->fast_count);
+    if (status == GIC_OK && !gic_finite(result, count))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK)
-        memcpy(rate, result, sizeof *rate * (size_t)code->slow_count);
+        memcpy(rate, result, sizeof *rate * (size_t)count);
     return self->head.status = status;
 }
 
-/* The World at the present state, with the inputs of the present time. */
-static int refresh(Instance *self)
+int interpreted_refresh(Instance *self)
 {
     const gic_model *code = &context_of(self)->code;
     const double time = gic_time(self);
@@ -216,7 +228,7 @@ static int any_outputs(void *instance)
     Instance *self = instance;
     const gic_model *code = &context_of(self)->code;
     double out[code->output_count + 1];
-    int status = refresh(self);
+    int status = interpreted_refresh(self);
     if (status != GIC_OK)
         return status;
     world_outputs(context_of(self)->world, out);
@@ -229,7 +241,7 @@ static int any_outputs(void *instance)
 static int any_poses(void *instance, double *pose)
 {
     Instance *self = instance;
-    const int status = refresh(self);
+    const int status = interpreted_refresh(self);
     if (status == GIC_OK)
         world_poses(context_of(self)->world, pose);
     return status;
@@ -239,7 +251,7 @@ static int any_self_test(void *instance, gic_self_test *result)
 {
     Instance *self = instance;
     *result = (gic_self_test){.smallest_pivot = 1};
-    const int status = refresh(self);
+    const int status = interpreted_refresh(self);
     if (status == GIC_OK)
         world_self_test(context_of(self)->world, result);
     return status;
@@ -323,6 +335,13 @@ Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *seq
     context->code.outputs = any_outputs;
     context->code.poses = any_poses;
     context->code.self_test = any_self_test;
+    if (model->fast_states) {
+        context->code.link_count = interpreted_link_count(model);
+        context->code.link_offset = descriptor_place(&context->code, 5 * (size_t)context->code.link_count);
+        context->code.link = interpreted_link;
+        context->code.fast = interpreted_fast;
+        context->code.roll = interpreted_roll;
+    }
     context->geometry = geometry_new(pool, model);
     context->setup_offset = descriptor_place(&context->code, (size_t)model->tunables + own);
     context->own_offset = context->setup_offset + sizeof(double) * (size_t)model->tunables;

@@ -13,7 +13,7 @@ typedef struct Interpreted {
     gic_model code; /* an engine may replace what differs */
     World *world;
     EngineProfile *profile;
-    int standard_count; /* numbers in a state of FORMAT.md section 10 */
+    int standard_count; /* numbers in a state of FORMAT.md section 10, without fast states */
     size_t own_offset; /* bytes; before it the tunable parameters as set-up was given them */
     size_t setup_offset;
     struct Geometry *geometry; /* NULL: no parameter acts on points, axes, masses and so on */
@@ -22,10 +22,11 @@ typedef struct Interpreted {
      * engine derives from it; the World is left there. */
     int (*design)(const struct Interpreted *context, Instance *self);
     /* start: the engine's numbers at setup, where `state`, `input` and `parameter` of the instance have their initial
-     * values. evaluate: World and rate[] at a state, for which the instance's inputs are loaded. Both return a status
-     * and may set head.subset. What the engine remembers changes only to what is good at some configuration on the way.
-     */
+     * values. place: bodies and coordinates of the World, with their rates, at a slow state. evaluate: World and rate[]
+     * of a slow state. For both the instance's inputs are loaded, for evaluate fast states too. All return a status and
+     * may set head.subset. What the engine remembers changes only to what is good at some configuration on the way. */
     int (*start)(const struct Interpreted *context, Instance *self);
+    int (*place)(const struct Interpreted *context, Instance *self, const double *state);
     int (*evaluate)(const struct Interpreted *context, Instance *self, const double *state, double *rate);
     void *engine; /* the engine's own constants and scratch */
 } Interpreted;
@@ -33,9 +34,14 @@ typedef struct Interpreted {
 /* A context with descriptor for an assembled model. own: how many numbers of its own an instance has. */
 Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *sequence, size_t own);
 Engine *interpreted_engine(Pool *pool, const char *name, const Interpreted *context);
-/* State and rate of FORMAT.md section 10 from the World; e of the base is its p. */
+/* State and rate of FORMAT.md section 10 from the World, fast states behind; e of the base is its p. */
 void interpreted_standard(const Interpreted *context, double *standard, double *rate);
 double *instance_own(const Instance *self);
+/* For functions of gic_model. load: World's time, inputs and what else it starts from, after a look at whether all
+ * numbers are finite, and the geometry of the instance's parameters. refresh: the right-hand side at the present state,
+ * with the inputs of the present time. Both return a status. */
+int interpreted_load(Instance *self, double time);
+int interpreted_refresh(Instance *self);
 
 /* For `evaluate`. orient: Euler parameters of the base with the dependent one recovered; 1, 0, 0, 0 of a fixed base. */
 int interpreted_orient(const Instance *self, const double *state, double e[4]);
@@ -45,7 +51,16 @@ void interpreted_gather(const Interpreted *context, const double *state);
 void interpreted_place_base(const Interpreted *context, const double *state, const double e[4]);
 /* Forces and accelerations at the World's configuration, for which J, dual and vectors of all ties are there; then
  * rate[]. Rows A to C of the profile. */
-int interpreted_accelerate(const Interpreted *context, const double *state, const double e[4], double *rate);
+int interpreted_accelerate(const Interpreted *context, const double *state, double *rate);
+
+/* ---- interpreted_fast.c ---------------------------------------------------------------------------------- */
+
+/* Functions of gic_model for models with wheels that have tires. A row of links: WheelMotion of each of them, then
+ * value and rate of each coordinate, which formulas may use. */
+int interpreted_link_count(const Model *model);
+int interpreted_link(void *instance, double time, const double *slow, double *link);
+int interpreted_fast(void *instance, double time, const double *link, const double *fast, double *rate);
+int interpreted_roll(void *instance);
 
 /* ---- geometry.c ------------------------------------------------------------------------------------------ */
 

@@ -72,10 +72,28 @@ static void angular_momentum(const World *world, int body, const double rate[3],
            out);
 }
 
-static void energy(const World *world, double out[2])
+/* Multiplier of a driven coordinate's row as the force along the coordinate. */
+static double drive_force(const World *world, int coordinate)
+{
+    return world->multiplier[world->tie[world->coordinate_tie[coordinate]].first] * world->dual[coordinate];
+}
+
+/* Power of the drives of coordinates. */
+static double drive_power(const World *world)
+{
+    double power = 0;
+    for (int c = 0; c < world->model->coordinates; ++c)
+        if (world->model->coordinate[c].driven)
+            power += drive_force(world, c) * world->xd[c];
+    return power;
+}
+
+/* Kinetic, potential, and the power of all that is in neither. */
+static void energy(const World *world, double out[3])
 {
     out[0] = 0;
     out[1] = world->potential;
+    out[2] = world->power + drive_power(world);
     for (int b = world->first; b < world->bodies; ++b) {
         const double mass = world->model->body[b].mass, *v = world->qd[b];
         double momentum[3];
@@ -83,12 +101,23 @@ static void energy(const World *world, double out[2])
         out[0] += 0.5 * (mass * dot3(v, v) + dot3(world->omega[b], momentum));
         out[1] -= mass * dot3(world->model->gravity, world->q[b]);
     }
+    for (int i = 0; i < world->model->wheels; ++i) {
+        const Wheel *wheel = &world->model->wheel[i];
+        if (wheel->tire >= 0) {
+            const double spin = world->fast[wheel->fast + FAST_SPIN];
+            out[0] += 0.5 * wheel->spin_inertia * spin * spin;
+        }
+    }
 }
 
-/* Multiplier of a driven coordinate's row as the force along the coordinate. */
-static double drive_force(const World *world, int coordinate)
+static void tire(const World *world, int index, double *out)
 {
-    return world->multiplier[world->tie[world->coordinate_tie[coordinate]].first] * world->dual[coordinate];
+    const int at = world->model->wheel[index].fast + FAST_SPIN;
+    const Rolling *wheel = &world->rolling[index];
+    const double value[] = {wheel->tire.fx, wheel->tire.fy, wheel->tire.mx,   wheel->tire.my,
+                            wheel->tire.mz, wheel->kappa,   wheel->alpha,     wheel->camber,
+                            world->fast[at], world->fast_rate[at], wheel->drive, wheel->brake};
+    memcpy(out, value, sizeof value);
 }
 
 /* Of a row, what its multiplier puts on the body at one end as force and torque about the centre of mass: -J^T
@@ -143,7 +172,14 @@ static void one_output(const World *world, const Output *output, double *out)
     case OUTPUT_DRIVE_FORCE: out[0] = drive_force(world, i); break;
     case OUTPUT_REACTION: reaction(world, output, out); break;
     case OUTPUT_WHEEL: memcpy(out, world->wheel[i], sizeof world->wheel[i]); break;
-    case OUTPUT_ENERGY: energy(world, out); break;
+    case OUTPUT_TIRE: tire(world, i, out); break;
+    case OUTPUT_CONTACT: copy3(world->rolling[i].point, out); break;
+    case OUTPUT_ENERGY: {
+        double all[3];
+        energy(world, all);
+        memcpy(out, all, sizeof *out * (size_t)output->count);
+        break;
+    }
     default: break;
     }
 }
@@ -166,11 +202,11 @@ void world_poses(const World *world, double *pose)
     }
 }
 
-/* Newton's and Euler's equations with the constraints' forces, and the power of all: what remains relative to the sum
- * of magnitudes. */
+/* Newton's and Euler's equations with the constraints' forces, and the power of all that is neither gravity nor spring
+ * against the growth of kinetic and potential energy: what remains relative to the sum of magnitudes. */
 static void balance(const World *world, gic_self_test *result)
 {
-    double power = 0, scale = 0, worst = 0;
+    double growth = world->stored, scale = fabs(world->stored), worst = 0;
     for (int b = world->first; b < world->bodies; ++b) {
         const double mass = world->model->body[b].mass, *omega = world->omega[b];
         double momentum[3], gyro[3], inertial[6], rest[6], size[6];
@@ -200,15 +236,20 @@ static void balance(const World *world, gic_self_test *result)
         for (int i = 0; i < 6; ++i) {
             const double rate = i < 3 ? world->qd[b][i] : omega[i - 3];
             worst = fmax(worst, rest[i] == 0 ? 0 : fabs(rest[i]) / most[i / 3]);
-            power += (inertial[i] - world->wrench[b][i]) * rate;
+            growth += inertial[i] * rate;
             scale += size[i] * fabs(rate);
         }
+        growth -= mass * dot3(world->model->gravity, world->qd[b]);
     }
-    for (int c = 0; c < world->model->coordinates; ++c)
-        if (world->model->coordinate[c].driven)
-            power -= drive_force(world, c) * world->xd[c];
+    for (int i = 0; i < world->model->wheels; ++i)
+        if (world->model->wheel[i].tire >= 0) {
+            const int at = world->model->wheel[i].fast + FAST_SPIN;
+            const double part = world->model->wheel[i].spin_inertia * world->fast[at] * world->fast_rate[at];
+            growth += part;
+            scale += fabs(part) + fabs(world->rolling[i].power);
+        }
     result->balance = worst;
-    result->energy = fabs(power) / (scale > 0 ? scale : 1);
+    result->energy = fabs(growth - world->power - drive_power(world)) / (scale > 0 ? scale : 1);
 }
 
 void world_self_test(World *world, gic_self_test *result)

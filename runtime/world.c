@@ -184,6 +184,9 @@ World *world_new(Pool *pool, const Model *model, const Sequence *sequence)
     world->along = pool_alloc(pool, coordinates * number);
     world->element = pool_alloc(pool, ((size_t)model->forces + 1) * number);
     world->wheel = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *world->wheel);
+    world->motion = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *world->motion);
+    world->rolling = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *world->rolling);
+    world->fast_rate = pool_alloc(pool, ((size_t)model->fast_states + 1) * number);
     world->qdd = pool_alloc(pool, bodies * sizeof *world->qdd);
     world->alpha = pool_alloc(pool, bodies * sizeof *world->alpha);
     world->multiplier = pool_alloc(pool, rows * number);

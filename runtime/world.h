@@ -12,6 +12,7 @@
 
 #include "engine.h"
 #include "equations.h"
+#include "rolling.h"
 
 enum { BODY_Q = 7, ROW_J = 2 * BODY_Q, TIE_ROWS = 6 };
 
@@ -48,6 +49,7 @@ typedef struct World {
     const double *input, *parameter, *port;
     const gic_road *road;
     int32_t lane;
+    const double *fast; /* [fast states] of wheels with tires: TIRES.md section 2 */
 
     /* configuration: engines fill it, body by body (world_set_q, world_set_rate) and coordinate by coordinate. Ground
      * of a fixed base is there from the beginning. */
@@ -68,7 +70,12 @@ typedef struct World {
     double *along;       /* [coordinates] generalized force on w */
     double *element;     /* [forces] Q or T of FORMAT.md section 7 */
     double (*wheel)[4];  /* [wheels] fz, deflection, deflection rate, road height */
+    WheelMotion *motion; /* [wheels] with tires */
+    Rolling *rolling;    /* [wheels] with tires */
+    double *fast_rate;   /* [fast states] */
     double potential;    /* J, of springs */
+    double stored;       /* W, its rate */
+    double power;        /* W, of all applied forces but gravity and springs; drives of coordinates apart */
 
     /* solution: world_accelerate() */
     double (*qdd)[BODY_Q], (*alpha)[3]; /* [bodies] alpha = omega' */
@@ -109,7 +116,15 @@ double world_residual(World *world);
 
 /* ---- applied.c: forces ----------------------------------------------------------------------------------- */
 
-/* wrench, along, element, wheel at the present configuration. Forces along coordinates are not among the wrenches
+/* A formula at the World's coordinates, inputs, parameters and time; local: what the place of the formula offers. */
+double world_law(const World *world, const Law *law, const double *local);
+/* How the carrier of a wheel with a tire moves at the present configuration. */
+void world_wheel_motion(const World *world, int wheel, WheelMotion *motion);
+/* A wheel with a tire that moves so: its fast states' rates and all else of it. Of the World's configuration only the
+ * formulas of drive and brake depend on coordinates. GIC_ERROR_ROAD as below. */
+int world_wheel_turn(const World *world, int wheel, const WheelMotion *motion, const double *fast, double *rate,
+                     Rolling *rolling);
+/* wrench, along, element, wheel, fast_rate at the present configuration. Forces along coordinates are not among the wrenches
  * before world_spread(). GIC_ERROR_ROAD where the road has no finite height. */
 int world_forces(World *world);
 /* Forces along coordinates as wrenches on the bodies; needs J and dual of the coordinates' ties. */
