@@ -119,7 +119,8 @@ static double contact(World *world, const Force *force, double depth, double rat
 {
     if (!(depth > 0))
         return 0;
-    const double damping = world_law(world, force->damping, NULL) * fade_in(depth / world_law(world, force->fade, NULL));
+    const double damping =
+        world_law(world, force->damping, NULL) * fade_in(depth / world_law(world, force->fade, NULL));
     return fmax(0, elastic_force(world, force, depth, rate) + damping * rate);
 }
 
@@ -143,8 +144,8 @@ static void add_along(World *world, int index)
 {
     const Force *force = &world->model->force[index];
     const int w = force->coordinate;
-    const double Q =
-        force_is_law(force) ? world_law(world, force->law[0], NULL) : -resistance(world, force, world->x[w], world->xd[w]);
+    const double Q = force_is_law(force) ? world_law(world, force->law[0], NULL)
+                                         : -resistance(world, force, world->x[w], world->xd[w]);
     world->element[index] = Q;
     world->along[w] += Q;
     world->power += Q * world->xd[w];
@@ -299,8 +300,8 @@ static int add_tire(World *world, int index)
     Rolling *rolling = &world->rolling[index];
     double arm[3], moment[3], *carrier = world->wrench[wheel->body], *driver = world->wrench[wheel->drive_body] + 3;
     world_wheel_motion(world, index, motion);
-    const int status = world_wheel_turn(world, index, motion, world->fast + wheel->fast,
-                                        world->fast_rate + wheel->fast, rolling);
+    const int status =
+        world_wheel_turn(world, index, motion, world->fast + wheel->fast, world->fast_rate + wheel->fast, rolling);
     if (status != GIC_OK)
         return status;
     sub3(motion->center, world->q[wheel->body], arm);

@@ -408,7 +408,8 @@ static int enter(gic_head *head, const double *standard)
     memcpy(instance_array(&gcp->start->head, code->input_offset), instance_array(head, own->input_offset),
            sizeof(double) * (size_t)code->input_count);
     if (status == GIC_OK)
-        status = gic_finite(standard, code->slow_count) ? interpreted_load(gcp->start, gic_time(head)) : GIC_ERROR_INPUT;
+        status =
+            gic_finite(standard, code->slow_count) ? interpreted_load(gcp->start, gic_time(head)) : GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = gic->place(gic, gcp->start, standard);
     if (status != GIC_OK) {

@@ -14,7 +14,7 @@ typedef struct Interpreted {
     World *world;
     EngineProfile *profile;
     int standard_count; /* numbers in a state of FORMAT.md section 10, without fast states */
-    size_t own_offset; /* bytes; before it the tunable parameters as set-up was given them */
+    size_t own_offset;  /* bytes; before it the tunable parameters as set-up was given them */
     size_t setup_offset;
     struct Geometry *geometry; /* NULL: no parameter acts on points, axes, masses and so on */
     /* design: NULL where an engine knows the geometry of the file alone. The World's numbers are new, and its bodies

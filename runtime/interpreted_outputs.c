@@ -114,9 +114,9 @@ static void tire(const World *world, int index, double *out)
 {
     const int at = world->model->wheel[index].fast + FAST_SPIN;
     const Rolling *wheel = &world->rolling[index];
-    const double value[] = {wheel->tire.fx, wheel->tire.fy, wheel->tire.mx,   wheel->tire.my,
-                            wheel->tire.mz, wheel->kappa,   wheel->alpha,     wheel->camber,
-                            world->fast[at], world->fast_rate[at], wheel->drive, wheel->brake};
+    const double value[] = {wheel->tire.fx,  wheel->tire.fy,       wheel->tire.mx, wheel->tire.my,
+                            wheel->tire.mz,  wheel->kappa,         wheel->alpha,   wheel->camber,
+                            world->fast[at], world->fast_rate[at], wheel->drive,   wheel->brake};
     memcpy(out, value, sizeof value);
 }
 

@@ -7,10 +7,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double tau = 0.01;            /* s */
-static const double standing_slip = 0.3;   /* kappa_0 */
-static const double least_product = 1e-6;  /* norm(s x n) of a wheel that lies flat */
-static const double least_cosine = 0.05;   /* of camber */
+static const double tau = 0.01;           /* s */
+static const double standing_slip = 0.3;  /* kappa_0 */
+static const double least_product = 1e-6; /* norm(s x n) of a wheel that lies flat */
+static const double least_cosine = 0.05;  /* of camber */
 
 /* S(s) */
 static double smooth(double s)

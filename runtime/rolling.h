@@ -27,7 +27,7 @@ typedef struct Ground {
 /* The wheel at one moment. */
 typedef struct Rolling {
     /* contact */
-    double point[3], height;            /* P; h at g */
+    double point[3], height;               /* P; h at g */
     double forward[3], left[3], normal[3]; /* e_x, e_y, n */
     double camber, deflection, deflection_rate, fade, fz, friction;
     /* slip; rolling_radius: R_e */

@@ -108,11 +108,10 @@ static double joint_angle(double angle, double q)
 static double aligning(const Magic *t, bool combined, double fy)
 {
     const double *p = t->p, F = t->F, d = t->d, gz = t->gamma * P(LGAZ), two_over_pi = 0.636619772367581343;
-    const double B = (P(QBZ1) + P(QBZ2) * d + P(QBZ3) * d * d) * (1 + P(QBZ4) * gz + P(QBZ5) * fabs(gz)) * P(LKY) /
-                     t->muy;
+    const double B =
+        (P(QBZ1) + P(QBZ2) * d + P(QBZ3) * d * d) * (1 + P(QBZ4) * gz + P(QBZ5) * fabs(gz)) * P(LKY) / t->muy;
     const double C = P(QCZ1);
-    const double D =
-        F * (P(QDZ1) + P(QDZ2) * d) * (1 + P(QDZ3) * gz + P(QDZ4) * gz * gz) * t->R / P(FNOMIN) * P(LTR);
+    const double D = F * (P(QDZ1) + P(QDZ2) * d) * (1 + P(QDZ3) * gz + P(QDZ4) * gz * gz) * t->R / P(FNOMIN) * P(LTR);
     const double Br = P(QBZ9) * P(LKY) / t->muy + P(QBZ10) * t->By * t->Cy;
     const double Dr = F * ((P(QDZ6) + P(QDZ7) * d) * P(LRES) + (P(QDZ8) + P(QDZ9) * d) * gz) * t->R * t->muy;
     double at = t->alpha + P(QHZ1) + P(QHZ2) * d + (P(QHZ3) + P(QHZ4) * d) * gz;
@@ -131,8 +130,8 @@ static double aligning(const Magic *t, bool combined, double fy)
 static double rolling_moment(const Magic *t, const TireMotion *motion, double fx)
 {
     const double *p = t->p, v = motion->speed / P(LONGVL);
-    return -t->R * t->F * (P(QSY1) + P(QSY2) * fx / P(FNOMIN) + P(QSY3) * fabs(v) + P(QSY4) * v * v * v * v) *
-           P(LMY) * tanh(motion->spin);
+    return -t->R * t->F * (P(QSY1) + P(QSY2) * fx / P(FNOMIN) + P(QSY3) * fabs(v) + P(QSY4) * v * v * v * v) * P(LMY) *
+           tanh(motion->spin);
 }
 
 static TireForces pac2002(const Tire *tire, const TireMotion *motion)
@@ -160,12 +159,11 @@ static TireForces pac2002(const Tire *tire, const TireMotion *motion)
             reduced *= lateral_share(&t, &added);
             out.fy = reduced + added;
         }
-        out.mx = t.R * t.F *
-                 (P(QSX1) * P(LVMX) + (-P(QSX2) * t.gamma + P(QSX3) * out.fy / P(FNOMIN)) * P(LMX));
+        out.mx = t.R * t.F * (P(QSX1) * P(LVMX) + (-P(QSX2) * t.gamma + P(QSX3) * out.fy / P(FNOMIN)) * P(LMX));
         out.mz = aligning(&t, combined, reduced);
         if (combined)
-            out.mz += t.R *
-                      (P(SSZ1) + P(SSZ2) * out.fy / P(FNOMIN) + (P(SSZ3) + P(SSZ4) * t.d) * t.gamma) * P(LS) * out.fx;
+            out.mz +=
+                t.R * (P(SSZ1) + P(SSZ2) * out.fy / P(FNOMIN) + (P(SSZ3) + P(SSZ4) * t.d) * t.gamma) * P(LS) * out.fx;
     }
     if (tire->mode != MODE_LATERAL)
         out.my = rolling_moment(&t, motion, out.fx);
@@ -185,8 +183,8 @@ static void pac2002_relaxation(const Tire *tire, double fz, double camber, doubl
     const Load load = load_of(p, fz);
     const double gy = clamp(camber, P(CAMMIN), P(CAMMAX)) * P(LGAY);
     sigma[0] = load.F * (P(PTX1) + P(PTX2) * load.d) * exp(-P(PTX3) * load.d) * R / P(FNOMIN) * P(LSGKP);
-    sigma[1] = P(PTY1) * sin(2 * atan(load.F / (P(PTY2) * load.nominal))) * (1 - P(PKY3) * fabs(gy)) * R * P(LFZO) *
-               P(LSGAL);
+    sigma[1] =
+        P(PTY1) * sin(2 * atan(load.F / (P(PTY2) * load.nominal))) * (1 - P(PKY3) * fabs(gy)) * R * P(LFZO) * P(LSGAL);
     for (int i = 0; i < 2; ++i)
         sigma[i] = fmax(sigma[i], least);
 }

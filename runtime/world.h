@@ -124,8 +124,8 @@ void world_wheel_motion(const World *world, int wheel, WheelMotion *motion);
  * formulas of drive and brake depend on coordinates. GIC_ERROR_ROAD as below. */
 int world_wheel_turn(const World *world, int wheel, const WheelMotion *motion, const double *fast, double *rate,
                      Rolling *rolling);
-/* wrench, along, element, wheel, fast_rate at the present configuration. Forces along coordinates are not among the wrenches
- * before world_spread(). GIC_ERROR_ROAD where the road has no finite height. */
+/* wrench, along, element, wheel, fast_rate at the present configuration. Forces along coordinates are not among the
+ * wrenches before world_spread(). GIC_ERROR_ROAD where the road has no finite height. */
 int world_forces(World *world);
 /* Forces along coordinates as wrenches on the bodies; needs J and dual of the coordinates' ties. */
 void world_spread(World *world);
