@@ -61,8 +61,8 @@ $(BUILD)/embedded.c: $(BUILD)/embed $(embedded)
 $(BUILD)/embedded.o: $(BUILD)/embedded.c
 	$(COMPILE) -c -o $@ $<
 
-# the runtime core goes into other people's programs and stays C99
-$(BUILD)/runtime/gic_runtime.o: STANDARD := -std=c99
+# the runtime core and the roads go into other people's programs and stay C99
+$(BUILD)/runtime/gic_runtime.o $(BUILD)/runtime/gic_road.o: STANDARD := -std=c99
 
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
@@ -73,7 +73,7 @@ $(BUILD)/%.o: %.c
 tested := $(BUILD)/check/tested.a
 reference := $(patsubst %.c,$(BUILD)/%.o,$(filter-out tests/reference/main.c,$(wildcard tests/reference/*.c)))
 programs := $(basename $(notdir $(wildcard tests/*.c)))
-variants := test_runtime_float test_runtime_fast test_dual_float
+variants := test_runtime_float test_runtime_fast test_dual_float test_road_float test_road_fast
 
 test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) reference)
 
@@ -116,14 +116,15 @@ $(BUILD)/check/compare_dump: $(BUILD)/tests/compare_dump.o $(tested)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
-# the runtime core in the other ways that users build it
-$(BUILD)/check/test_runtime_float $(BUILD)/check/test_dual_float: VARIANT := -DGIC_FLOAT
-$(BUILD)/check/test_runtime_fast: VARIANT := -ffast-math
+# the runtime core and the roads in the other ways that users build them
+$(BUILD)/check/%_float: VARIANT := -DGIC_FLOAT
+$(BUILD)/check/%_fast: VARIANT := -ffast-math
 $(BUILD)/check/test_runtime_float $(BUILD)/check/test_runtime_fast: tests/test_runtime.c runtime/gic_runtime.c
 $(BUILD)/check/test_dual_float: tests/test_dual.c runtime/gic_runtime.c
-$(variants:%=$(BUILD)/check/%):
+$(BUILD)/check/test_road_float $(BUILD)/check/test_road_fast: tests/test_road.c runtime/gic_road.c runtime/gic_runtime.c
+$(addprefix $(BUILD)/check/,$(variants)):
 	@mkdir -p $(@D)
-	$(COMPILE) $(VARIANT) -MF $@.d -o $@ $^ $(LDFLAGS) -lcmocka -lm
+	$(COMPILE) $(VARIANT) -MF $@.d -o $@ $(filter %.c,$^) $(LDFLAGS) -lcmocka -lm
 
 # ---- tests that drive generated code: of the models, and of variants of the HMMWV
 
@@ -156,7 +157,8 @@ $(driving:%=$(BUILD)/tests/%.o): $(BUILD)/%.o: %.c $(driven:%=$(code)/%.c)
 	@mkdir -p $(@D)
 	$(COMPILE) -I$(code) -c -o $@ $<
 
-$(driving:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/%.o $(driven:%=$(code)/%.o) $(BUILD)/runtime/gic_runtime.o
+$(driving:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/%.o $(driven:%=$(code)/%.o) \
+    $(BUILD)/runtime/gic_runtime.o $(BUILD)/runtime/gic_road.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
 
@@ -197,18 +199,19 @@ deps:
 prefix := $(DESTDIR)$(PREFIX)
 share := $(prefix)/share/gicgen
 manuals := generator/gicgen.1 runtime/gicrun.1 runtime/gicbench.1
-installed_models := $(wildcard models/*.* models/parts/*.* models/tires/*.* models/scenes/*.*)
+installed_models := $(wildcard models/*.* models/parts/*.* models/roads/*.* models/tires/*.* models/scenes/*.*)
 version = $(shell sed -n 's/^.define GICGEN_VERSION "\(.*\)"/\1/p' generator/gicgen.h)
 # texts that name places
 PLACE = sed 's|@PREFIX@|$(PREFIX)|g; s|@VERSION@|$(version)|g'
 
 # both number types in one archive: names differ; position-independent, for shared objects may want it
-$(BUILD)/install/float.o: VARIANT := -DGIC_FLOAT
-$(BUILD)/install/double.o $(BUILD)/install/float.o: runtime/gic_runtime.c
+core := $(foreach part,gic_runtime gic_road,$(BUILD)/install/$(part).double.o $(BUILD)/install/$(part).float.o)
+$(BUILD)/install/%.float.o: VARIANT := -DGIC_FLOAT
+$(BUILD)/install/%.double.o $(BUILD)/install/%.float.o: runtime/%.c
 	@mkdir -p $(@D)
 	$(COMPILE) -std=c99 -fPIC $(VARIANT) -c -o $@ $<
 
-$(BUILD)/install/libgic_runtime.a: $(BUILD)/install/double.o $(BUILD)/install/float.o
+$(BUILD)/install/libgic_runtime.a: $(core)
 	rm -f $@
 	$(AR) rcs $@ $^
 
@@ -216,9 +219,9 @@ install: all $(BUILD)/install/libgic_runtime.a
 	install -d $(prefix)/bin $(prefix)/include $(prefix)/lib/pkgconfig $(prefix)/share/man/man1 \
 	    $(addprefix $(share)/,$(sort $(dir $(installed_models))))
 	install -m 755 $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicbench $(prefix)/bin
-	install -m 644 runtime/gic_runtime.h $(prefix)/include
+	install -m 644 runtime/gic_runtime.h runtime/gic_road.h $(prefix)/include
 	install -m 644 $(BUILD)/install/libgic_runtime.a $(prefix)/lib
-	install -m 644 runtime/gic_runtime.c $(share)
+	install -m 644 runtime/gic_runtime.c runtime/gic_road.c $(share)
 	for file in $(installed_models); do install -m 644 $$file $(share)/$$file || exit 1; done
 	$(PLACE) generator/gicgen.pc.in > $(BUILD)/install/gicgen.pc
 	install -m 644 $(BUILD)/install/gicgen.pc $(prefix)/lib/pkgconfig
@@ -226,7 +229,7 @@ install: all $(BUILD)/install/libgic_runtime.a
 	    install -m 644 $(BUILD)/install/$${page##*/} $(prefix)/share/man/man1 || exit 1; done
 
 uninstall:
-	rm -f $(addprefix $(prefix)/bin/,gicgen gicrun gicbench) $(prefix)/include/gic_runtime.h \
+	rm -f $(addprefix $(prefix)/bin/,gicgen gicrun gicbench) $(addprefix $(prefix)/include/,gic_runtime.h gic_road.h) \
 	    $(prefix)/lib/libgic_runtime.a $(prefix)/lib/pkgconfig/gicgen.pc \
 	    $(addprefix $(prefix)/share/man/man1/,$(notdir $(manuals)))
 	rm -rf $(share)

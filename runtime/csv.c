@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Tables as comma-separated text: results out, states in. */
+ * Tables as comma-separated text: results out, states and roads in. */
 #include "gicrun.h"
 
 #include <errno.h>
@@ -149,7 +149,7 @@ static double cell_number(Pool *pool, const Source *source, const Cell *c, const
 }
 
 /* Name of a column: quotes around it and a unit in brackets behind it are dropped. */
-static const char *column_name(Pool *pool, const Source *source, Cell c)
+static const char *column_name(Pool *pool, const Source *source, Cell c, const char *header)
 {
     if (c.to - c.from >= 2 && *c.from == '"' && c.to[-1] == '"') {
         ++c.from;
@@ -164,15 +164,16 @@ static const char *column_name(Pool *pool, const Source *source, Cell c)
     while (c.to > c.from && is_blank(c.to[-1]))
         --c.to;
     if (c.to == c.from)
-        diag_fail(cell_place(source, &c), "the first line names the columns: r.x,r.y,...", "a column without a name");
+        diag_fail(cell_place(source, &c), pool_print(pool, "the first line names the columns: %s", header),
+                  "a column without a name");
     return cell_text(pool, &c);
 }
 
-static void read_header(Pool *pool, States *table, const char *s, const char *end)
+static void read_header(Pool *pool, CsvTable *table, const char *header, const char *s, const char *end)
 {
     int places = 0;
     for (Cell c; next_cell(&s, end, &c);) {
-        const char *name = column_name(pool, table->source, c);
+        const char *name = column_name(pool, table->source, c, header);
         for (int i = 0; i < table->columns; ++i)
             if (!strcmp(table->name[i], name))
                 diag_fail(cell_place(table->source, &c), "remove one of them", "column '%s' is here twice", name);
@@ -181,11 +182,12 @@ static void read_header(Pool *pool, States *table, const char *s, const char *en
     }
 }
 
-static void read_row(Pool *pool, States *table, int *values, const char *s, const char *end)
+static void read_row(Pool *pool, CsvTable *table, int *values, const char *s, const char *end)
 {
     const Source *source = table->source;
     Cell c = {s, s};
     int column = 0;
+    *POOL_PUSH(pool, table->line, table->rows) = (size_t)(s - source->bytes);
     while (next_cell(&s, end, &c)) {
         if (column == table->columns)
             diag_fail(cell_place(source, &c), "one cell a column; the decimal point is a point",
@@ -195,10 +197,9 @@ static void read_row(Pool *pool, States *table, int *values, const char *s, cons
     if (column < table->columns)
         diag_fail(cell_place(source, &c), "one cell a column, separated by commas",
                   "the row has %d cells, the header has %d", column, table->columns);
-    ++table->rows;
 }
 
-const States *csv_read(Pool *pool, const char *path)
+const CsvTable *csv_read(Pool *pool, const char *path, const char *header)
 {
     Source *source = pool_alloc(pool, sizeof *source);
     source->path = path;
@@ -207,7 +208,7 @@ const States *csv_read(Pool *pool, const char *path)
         source->bytes += 3;
         source->size -= 3;
     }
-    States *table = pool_alloc(pool, sizeof *table);
+    CsvTable *table = pool_alloc(pool, sizeof *table);
     table->source = source;
     int values = 0;
     for (const char *s = source->bytes, *stop = s + source->size, *end; s < stop; s = end + 1) {
@@ -220,11 +221,17 @@ const States *csv_read(Pool *pool, const char *path)
         if (first == end || *first == '#')
             continue;
         if (!table->columns)
-            read_header(pool, table, s, end);
+            read_header(pool, table, header, s, end);
         else
             read_row(pool, table, &values, s, end);
     }
     if (!table->columns)
-        diag_fail((Place){source, 0, 0}, "the first line names the columns: r.x,r.y,...", "the file is empty");
+        diag_fail((Place){source, 0, 0}, pool_print(pool, "the first line names the columns: %s", header),
+                  "the file is empty");
     return table;
+}
+
+Place csv_place(const CsvTable *table, int row)
+{
+    return diag_place(table->source, table->line[row]);
 }

@@ -35,7 +35,7 @@ static bool is_needed(const Engine *engine, int i)
     return false;
 }
 
-static Columns find_columns(Pool *pool, const Engine *engine, const States *table)
+static Columns find_columns(Pool *pool, const Engine *engine, const CsvTable *table)
 {
     const gic_model *model = engine->code;
     Columns columns = {
@@ -144,7 +144,7 @@ static void write_row(Pool *pool, const Engine *engine, Csv *csv, const gic_head
 void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request)
 {
     const gic_model *model = engine->code;
-    const States *table = csv_read(pool, request->states);
+    const CsvTable *table = csv_read(pool, request->states, "r.x,r.y,...");
     const Columns columns = find_columns(pool, engine, table);
     gic_head *self = instance_new(pool, engine);
     double *input = instance_array(self, model->input_offset);

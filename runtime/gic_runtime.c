@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * gic_runtime: fixed-step integrators, orientation, roads and inputs for generated models. The same source is
+ * gic_runtime: fixed-step integrators, orientation, tables and inputs for generated models. The same source is
  * compiled for either number type, so constants go through GIC_R and functions of <math.h> through MATH. */
 #include "gic_runtime.h"
 
@@ -11,8 +11,6 @@
 #else
 #define MATH(name) name
 #endif
-
-#define TWO_PI GIC_R(6.283185307179586476925286766559)
 
 const char *gic_status_text(int status)
 {
@@ -419,106 +417,7 @@ int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switch
     return GIC_OK;
 }
 
-/* ---- roads ---------------------------------------------------------------------------------------------- */
-
-void gic_plane_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
-{
-    const gic_road_plane *plane = (const gic_road_plane *)(const void *)road;
-    (void)lane;
-    (void)time;
-    out[0] = plane->z0 + plane->sx * x + plane->sy * y;
-    out[1] = plane->sx;
-    out[2] = plane->sy;
-}
-
-void gic_bumps_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
-{
-    const gic_road_bumps *bumps = (const gic_road_bumps *)(const void *)road;
-    (void)lane;
-    (void)time;
-    out[0] = out[1] = out[2] = GIC_R(0.0);
-    for (int32_t i = 0; i < bumps->count; ++i) {
-        const gic_bump *bump = &bumps->bump[i];
-        const gic_real along = x - bump->x;
-        if (along <= GIC_R(0.0) || along >= bump->length || y < bump->y_low || y > bump->y_high)
-            continue;
-        const gic_real wave = TWO_PI / bump->length;
-        out[0] += GIC_R(0.5) * bump->height * (GIC_R(1.0) - MATH(cos)(wave * along));
-        out[1] += GIC_R(0.5) * bump->height * wave * MATH(sin)(wave * along);
-    }
-}
-
-void gic_sine_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
-{
-    const gic_road_sine *sine = (const gic_road_sine *)(const void *)road;
-    (void)lane;
-    (void)time;
-    const gic_real wave = TWO_PI / sine->wavelength;
-    const gic_real phase = wave * (x - sine->x0) + sine->phase_per_y * y;
-    const gic_real slope = sine->amplitude * MATH(cos)(phase);
-    out[0] = sine->amplitude * MATH(sin)(phase);
-    out[1] = slope * wave;
-    out[2] = slope * sine->phase_per_y;
-}
-
-void gic_table_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
-{
-    const gic_road_table *table = (const gic_road_table *)(const void *)road;
-    const gic_real *at = table->x;
-    const gic_real *height = y > GIC_R(0.0) ? table->left : table->right;
-    const gic_real *slope = y > GIC_R(0.0) ? table->slope_left : table->slope_right;
-    int32_t low = 0, high = table->count - 1;
-    (void)lane;
-    (void)time;
-    out[1] = out[2] = GIC_R(0.0);
-    if (x <= at[low] || x >= at[high]) {
-        out[0] = height[x <= at[low] ? low : high];
-        return;
-    }
-    while (high - low > 1) {
-        const int32_t middle = low + (high - low) / 2;
-        if (x < at[middle])
-            high = middle;
-        else
-            low = middle;
-    }
-    /* cubic Hermite: h0 + s (d0 + s (c + s b)), s from 0 to 1 */
-    const gic_real width = at[high] - at[low], s = (x - at[low]) / width;
-    const gic_real rise = height[high] - height[low];
-    const gic_real d0 = width * slope[low], d1 = width * slope[high];
-    const gic_real c = GIC_R(3.0) * rise - GIC_R(2.0) * d0 - d1, b = d0 + d1 - GIC_R(2.0) * rise;
-    out[0] = height[low] + s * (d0 + s * (c + s * b));
-    out[1] = (d0 + s * (GIC_R(2.0) * c + s * GIC_R(3.0) * b)) / width;
-}
-
-/* Slopes that keep every piece monotone: zero at extrema and plateaus, else the weighted harmonic mean of the chords
- * (Fritsch and Butland's form of Fritsch and Carlson's condition). */
-static void table_slopes(const gic_real *x, const gic_real *h, gic_real *slope, int32_t count)
-{
-    slope[0] = slope[count - 1] = GIC_R(0.0);
-    for (int32_t i = 1; i < count - 1; ++i) {
-        const gic_real before = x[i] - x[i - 1], after = x[i + 1] - x[i];
-        const gic_real chord_before = (h[i] - h[i - 1]) / before, chord_after = (h[i + 1] - h[i]) / after;
-        const gic_real w_before = GIC_R(2.0) * after + before, w_after = after + GIC_R(2.0) * before;
-        slope[i] = chord_before * chord_after > GIC_R(0.0)
-                       ? (w_before + w_after) / (w_before / chord_before + w_after / chord_after)
-                       : GIC_R(0.0);
-    }
-}
-
-int gic_road_table_setup(gic_road_table *road)
-{
-    if (road->count < 2 || !gic_finite(road->x, road->count))
-        return GIC_ERROR_ARGUMENT;
-    for (int32_t i = 1; i < road->count; ++i)
-        if (road->x[i] <= road->x[i - 1])
-            return GIC_ERROR_ARGUMENT;
-    table_slopes(road->x, road->left, road->slope_left, road->count);
-    table_slopes(road->x, road->right, road->slope_right, road->count);
-    return GIC_OK;
-}
-
-/* ---- inputs --------------------------------------------------------------------------------------------- */
+/* ---- tables and inputs ---------------------------------------------------------------------------------- */
 
 gic_real gic_table_value(const gic_table *table, gic_real x)
 {

@@ -68,8 +68,10 @@ const char *gic_status_text(int status);
 
 /* ---- road ------------------------------------------------------------------------------------- */
 
-/* A road z = h(x, y), world frame, metres. `height` fills out[0] = h, out[1] = dh/dx, out[2] = dh/dy; `friction` of
- * the road at a place, relative to the one that tires were measured on, NULL: 1. `lane` is the instance's lane index. The rest of a road's data follows this head in the user's own structure. */
+/* A road z = h(x, y), world frame, metres; those of gic_road.h, or one of your own. `height` fills out[0] = h,
+ * out[1] = dh/dx, out[2] = dh/dy. `friction`: of the road at a place, relative to the one that the tires were measured
+ * on; NULL: 1 everywhere. `lane` is the instance's lane index. The rest of a road's data follows this head in the user's
+ * own structure. */
 typedef struct gic_road {
     void (*height)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
     gic_real (*friction)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y);
@@ -206,53 +208,6 @@ int gic_finite(const gic_real *x, int32_t count);
  * (*switches counts it). Returns GIC_ERROR_ORIENTATION when `given` is not near unit length. */
 #define gic_orientation GIC_NAME(gic_orientation)
 int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switches, gic_real e[4]);
-
-/* ---- roads ready for use; each begins with a gic_road ------------------------------------------------ */
-
-/* h = z0 + sx x + sy y: flat and slope. */
-typedef struct gic_road_plane {
-    gic_road head;
-    gic_real z0, sx, sy;
-} gic_road_plane;
-
-/* A bump of height `height` between x and x + length, h (1 - cos)/2, on tracks y in [y_low, y_high]. */
-typedef struct gic_bump {
-    gic_real x, length, height, y_low, y_high;
-} gic_bump;
-
-typedef struct gic_road_bumps {
-    gic_road head;
-    const gic_bump *bump;
-    int32_t count;
-} gic_road_bumps;
-
-/* h = amplitude sin(2 pi (x - x0) / wavelength + phase_per_y y). */
-typedef struct gic_road_sine {
-    gic_road head;
-    gic_real amplitude, wavelength, x0, phase_per_y;
-} gic_road_sine;
-
-/* Heights left (y > 0) and right (y <= 0) of the middle at rising x, monotone cubic (Fritsch-Carlson) between,
- * constant outside; level at both ends, so that the slope has no jump. slope_left, slope_right: `count` numbers, filled
- * by gic_road_table_setup. */
-typedef struct gic_road_table {
-    gic_road head;
-    const gic_real *x, *left, *right;
-    gic_real *slope_left, *slope_right;
-    int32_t count;
-} gic_road_table;
-
-#define gic_plane_height GIC_NAME(gic_plane_height)
-void gic_plane_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
-#define gic_bumps_height GIC_NAME(gic_bumps_height)
-void gic_bumps_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
-#define gic_sine_height GIC_NAME(gic_sine_height)
-void gic_sine_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
-#define gic_table_height GIC_NAME(gic_table_height)
-void gic_table_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
-/* Fill the slopes; GIC_ERROR_ARGUMENT when count < 2 or x does not rise. */
-#define gic_road_table_setup GIC_NAME(gic_road_table_setup)
-int gic_road_table_setup(gic_road_table *road);
 
 /* ---- tables -------------------------------------------------------------------------------------------- */
 

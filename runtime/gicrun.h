@@ -6,6 +6,7 @@
 #define GICRUN_H
 
 #include "engine.h"
+#include "gic_road.h"
 #include "variable.h"
 
 /* ---- gicrun.c: the command line ------------------------------------------------------------------------ */
@@ -45,7 +46,7 @@ int process_run(Pool *pool, char *const argv[], const char *input, const char **
 /* $TMPDIR or /tmp. */
 const char *temporary_folder(void);
 
-/* ---- scene.c, scene_road.c: what the vehicle does and where; models/SCENE.md ---------------------------- */
+/* ---- scene.c, scene_road.c, scene_road_file.c: what the vehicle does and where; models/SCENE.md --------- */
 
 /* How an input runs over time: `count` knots joined by quintics, or a sine that is faded in over its first period. */
 typedef struct Profile {
@@ -90,6 +91,9 @@ void scene_inputs(void *user, int32_t lane, double time, double *input);
 double scene_next_kink(const Scene *scene, double time);
 /* scene_road.c: the road a `road:` item describes. */
 const gic_road *road_read(Pool *pool, const Item *item);
+/* scene_road_file.c: roads whose heights are in the file that the key `file` names. */
+const gic_road *table_file_read(Pool *pool, const Item *item);
+const gic_road *grid_file_read(Pool *pool, const Item *item);
 
 /* Checked access beyond doc.c. need: the value of a key that must be there; number: or `absent` where there is none;
  * numbers: a list of at least `least` numbers. */
@@ -119,15 +123,18 @@ void csv_end_row(Csv *csv);
 void csv_close(Csv *csv); /* exits with a message where not all could be written */
 
 /* A table of numbers with named columns; units in brackets behind the names are dropped. */
-typedef struct States {
+typedef struct CsvTable {
     const Source *source;
     int columns, rows;
     const char **name;
     Place *at;     /* of the names */
     double *value; /* [rows][columns] */
-} States;
+    size_t *line;  /* [rows] where each begins in the source */
+} CsvTable;
 
-const States *csv_read(Pool *pool, const char *path);
+/* header: the first line that messages suggest. */
+const CsvTable *csv_read(Pool *pool, const char *path, const char *header);
+Place csv_place(const CsvTable *table, int row);
 
 /* ---- plot.c --------------------------------------------------------------------------------------------- */
 

@@ -41,8 +41,8 @@ reacting() {
 }
 reacting car "$root/tests/tuning/car.veh"
 reacting steered "$work/steered.veh" --solve augmented
-compiled="$names cart car steered gic_runtime"
-cp "$root/runtime/gic_runtime.c" "$root/runtime/gic_runtime.h" "$work/"
+compiled="$names cart car steered gic_runtime gic_road"
+cp "$root"/runtime/gic_runtime.[ch] "$root"/runtime/gic_road.[ch] "$work/"
 cd "$work" || exit 1
 
 # ---- warnings ----------------------------------------------------------------------------------------------
@@ -132,9 +132,9 @@ check $? "README's example prints: $answer"
 # two vehicles and a pendulum in one program, as C and C++: the same digits; in float: to five of them, for the run
 # takes 400 steps of 1e-7 each
 program="$root/tests/embed/two_vehicles.c"
-parts="hmmwv.c pendulum.c gic_runtime.c"
+parts="hmmwv.c pendulum.c gic_runtime.c gic_road.c"
 cc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Werror -O2 -I. "$program" hmmwv.double.o pendulum.double.o \
-    gic_runtime.double.o -no-pie -lm -o ride && ./ride >ride.double
+    gic_runtime.double.o gic_road.double.o -no-pie -lm -o ride && ./ride >ride.double
 check $? "two vehicles in C"
 awk 'NF != 4 { bad = 1 } END { exit bad || NR != 3 }' ride.double
 check $? "two vehicles print: $(cat ride.double)"
@@ -155,7 +155,7 @@ if command -v clang >/dev/null; then
     check $? "two vehicles with clang"
 fi
 cc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror -DGIC_FLOAT -O2 -I. "$program" hmmwv.float.o \
-    pendulum.float.o gic_runtime.float.o -no-pie -lm -o ride && ./ride >ride.float
+    pendulum.float.o gic_runtime.float.o gic_road.float.o -no-pie -lm -o ride && ./ride >ride.float
 check $? "two vehicles in single precision"
 paste ride.double ride.float | awk '{ for (i = 1; i <= 4; ++i) if (($i - $(i + 4))^2 > 1e-10 * (1 + $i^2)) bad = 1 }
     END { exit bad || NR != 3 }'
@@ -187,7 +187,7 @@ check $? "the example of the pendulum ends elsewhere"
 
 # ---- versions that do not fit -------------------------------------------------------------------------------
 
-cc -O0 -I. "$program" hmmwv.double.o pendulum.double.o gic_runtime.float.o -no-pie -lm -o mixed 2>messages
+cc -O0 -I. "$program" hmmwv.double.o pendulum.double.o gic_runtime.float.o gic_road.float.o -no-pie -lm -o mixed 2>messages
 [ $? -ne 0 ] && grep -q gic_step messages
 check $? "number types can be mixed"
 mkdir later

@@ -392,123 +392,6 @@ static void test_orientation(void **unused)
     assert_int_equal(gic_orientation(broken, &dependent, &switches, e), GIC_ERROR_ORIENTATION);
 }
 
-/* ---- roads: against formulas written here in long double, slopes by their central differences ----------- */
-
-typedef long double Formula(const void *road, long double x, long double y);
-
-static const long double pi = 3.14159265358979323846264338327950288L;
-
-static long double plane_formula(const void *road, long double x, long double y)
-{
-    const gic_road_plane *plane = road;
-    return (long double)plane->z0 + (long double)plane->sx * x + (long double)plane->sy * y;
-}
-
-static long double sine_formula(const void *road, long double x, long double y)
-{
-    const gic_road_sine *sine = road;
-    const long double wave = 2 * pi / (long double)sine->wavelength;
-    return (long double)sine->amplitude * sinl(wave * (x - (long double)sine->x0) + (long double)sine->phase_per_y * y);
-}
-
-static long double bumps_formula(const void *road, long double x, long double y)
-{
-    const gic_road_bumps *bumps = road;
-    long double h = 0;
-    for (int32_t i = 0; i < bumps->count; ++i) {
-        const gic_bump *b = &bumps->bump[i];
-        const long double s = (x - (long double)b->x) / (long double)b->length;
-        if (s > 0 && s < 1 && y >= (long double)b->y_low && y <= (long double)b->y_high)
-            h += (long double)b->height * powl(sinl(pi * s), 2);
-    }
-    return h;
-}
-
-static void check_road(const gic_road *road, Formula *formula)
-{
-    const long double d = 1e-6L, tolerance = 100 * (long double)EPSILON + 1e-10L;
-    for (int i = -40; i < 140; ++i)
-        for (int j = -3; j <= 3; ++j) {
-            const gic_real x = (gic_real)(0.0937 * i + 0.011), y = (gic_real)(0.31 * j + 0.017);
-            const long double X = (long double)x, Y = (long double)y;
-            gic_real out[3];
-            road->height(road, 0, 0, x, y, out);
-            assert_true(fabsl((long double)out[0] - formula(road, X, Y)) < tolerance);
-            const long double along = (formula(road, X + d, Y) - formula(road, X - d, Y)) / (2 * d);
-            const long double across = (formula(road, X, Y + d) - formula(road, X, Y - d)) / (2 * d);
-            assert_true(fabsl((long double)out[1] - along) < tolerance);
-            assert_true(fabsl((long double)out[2] - across) < tolerance);
-        }
-}
-
-static void test_roads(void **unused)
-{
-    (void)unused;
-    const gic_road_plane plane = {{gic_plane_height}, GIC_R(0.25), GIC_R(0.05), GIC_R(-0.03)};
-    const gic_road_sine sine = {{gic_sine_height}, GIC_R(0.04), GIC_R(3.0), GIC_R(0.7), GIC_R(0.9)};
-    const gic_bump bump[] = {{GIC_R(1.0), GIC_R(2.0), GIC_R(0.1), GIC_R(0.0), GIC_R(50.0)},
-                             {GIC_R(2.5), GIC_R(1.5), GIC_R(-0.05), GIC_R(-50.0), GIC_R(50.0)}};
-    const gic_road_bumps bumps = {{gic_bumps_height}, bump, 2};
-    check_road(&plane.head, plane_formula);
-    check_road(&sine.head, sine_formula);
-    check_road(&bumps.head, bumps_formula);
-}
-
-static void test_table(void **unused)
-{
-    (void)unused;
-    enum { COUNT = 7 };
-    const gic_real x[COUNT] = {GIC_R(0.0), GIC_R(1.0), GIC_R(1.5), GIC_R(3.0), GIC_R(4.0), GIC_R(6.0), GIC_R(7.0)};
-    const gic_real left[COUNT] = {GIC_R(0.0), GIC_R(0.125), GIC_R(0.5), GIC_R(0.5), GIC_R(0.25), GIC_R(-0.25),
-                                  GIC_R(1.0)};
-    const gic_real right[COUNT] = {GIC_R(-1.0), GIC_R(0.0), GIC_R(0.5), GIC_R(2.0), GIC_R(3.0), GIC_R(5.0), GIC_R(6.0)};
-    gic_real slope_left[COUNT], slope_right[COUNT], out[3], beside[3];
-    gic_road_table road = {{gic_table_height}, x, left, right, slope_left, slope_right, COUNT};
-    assert_int_equal(gic_road_table_setup(&road), GIC_OK);
-
-    for (int side = 0; side < 2; ++side) {
-        const gic_real y = side ? GIC_R(-0.5) : GIC_R(0.5), *h = side ? right : left;
-        for (int i = 0; i < COUNT; ++i) { /* through the points */
-            gic_table_height(&road.head, 0, 0, x[i], y, out);
-            assert_true(fabs((double)out[0] - (double)h[i]) < 4 * EPSILON);
-            assert_true(out[2] == GIC_R(0.0));
-        }
-        for (int i = 0; i < COUNT - 1; ++i) {
-            gic_real last = h[i];
-            for (int k = 1; k < 100; ++k) { /* monotone between, slope by central differences, no jump of the slope */
-                const double width = (double)(x[i + 1] - x[i]), d = 1e-3 * width;
-                const gic_real at = (gic_real)((double)x[i] + width * k / 100);
-                gic_table_height(&road.head, 0, 0, at, y, out);
-                assert_true((out[0] - last) * (h[i + 1] - h[i]) >= GIC_R(0.0));
-                last = out[0];
-                gic_table_height(&road.head, 0, 0, (gic_real)((double)at + d), y, beside);
-                const double up = (double)beside[0];
-                gic_table_height(&road.head, 0, 0, (gic_real)((double)at - d), y, beside);
-                assert_true(fabs((double)out[1] - (up - (double)beside[0]) / (2 * d)) < 1e-5 + 2e4 * EPSILON);
-            }
-            gic_table_height(&road.head, 0, 0, (gic_real)((double)x[i] + 1e-5), y, out);
-            gic_table_height(&road.head, 0, 0, (gic_real)((double)x[i] - 1e-5), y, beside);
-            assert_true(fabs((double)out[1] - (double)beside[1]) < 1e-3);
-        }
-        for (int i = 0; i < 2; ++i) { /* constant and level outside */
-            gic_table_height(&road.head, 0, 0, i ? GIC_R(99.0) : GIC_R(-9.0), y, out);
-            assert_true(out[0] == h[i ? COUNT - 1 : 0] && out[1] == GIC_R(0.0));
-        }
-    }
-    /* a straight stretch stays straight */
-    gic_table_height(&road.head, 0, 0, GIC_R(3.3), GIC_R(-1.0), out);
-    assert_true(fabs((double)out[1] - 1) < 100 * EPSILON);
-    assert_true(fabs((double)out[0] - 2.3) < 100 * EPSILON);
-
-    const gic_real falling[COUNT] = {0, 1, 2, 2, 3, 4, 5};
-    gic_road_table bad = road;
-    bad.x = falling;
-    assert_int_equal(gic_road_table_setup(&bad), GIC_ERROR_ARGUMENT);
-    bad = road;
-    bad.count = 1;
-    assert_int_equal(gic_road_table_setup(&bad), GIC_ERROR_ARGUMENT);
-}
-
 /* ---- inputs --------------------------------------------------------------------------------------------- */
 
 static void test_quintic(void **unused)
@@ -556,8 +439,6 @@ int main(void)
         cmocka_unit_test(test_finite),
         cmocka_unit_test(test_status_text),
         cmocka_unit_test(test_orientation),
-        cmocka_unit_test(test_roads),
-        cmocka_unit_test(test_table),
         cmocka_unit_test(test_quintic),
     };
     return cmocka_run_group_tests_name("runtime", tests, NULL, NULL);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * A program of somebody who has read hmmwv.h and gic_runtime.h: two vehicles over bumps beside a pendulum, in one
- * process, a step that fails and what is done about it. C and C++, double or float. Prints where the vehicles are. */
+ * A program of somebody who has read hmmwv.h, gic_runtime.h and gic_road.h: two vehicles over bumps beside a pendulum,
+ * in one process, a step that fails and what is done about it. C and C++, double or float. Prints where the vehicles
+ * are. */
+#include "gic_road.h"
 #include "hmmwv.h"
 #include "pendulum.h"
 
@@ -28,6 +30,8 @@ static int start(Fleet *fleet)
     fleet->road.head.height = gic_bumps_height;
     fleet->road.bump = bumps;
     fleet->road.count = 2;
+    if (gic_road_bumps_setup(&fleet->road) != GIC_OK)
+        return 1;
     for (i = 0; i < 2; ++i) {
         hmmwv *car = &fleet->car[i];
         const int status = hmmwv_setup(car);
@@ -85,7 +89,8 @@ int main(void)
     }
     if (pendulum_outputs(&fleet.clock) != GIC_OK)
         return 1;
-    printf("%.9g %.9g %.9g %.9g\n", (double)pendulum_time(&fleet.clock), (double)fleet.clock.output[PENDULUM_OUTPUT_BOB_X],
-           (double)fleet.clock.output[PENDULUM_OUTPUT_BOB_Z], (double)fleet.clock.output[PENDULUM_OUTPUT_ANGLE_VALUE]);
+    printf("%.9g %.9g %.9g %.9g\n", (double)pendulum_time(&fleet.clock),
+           (double)fleet.clock.output[PENDULUM_OUTPUT_BOB_X], (double)fleet.clock.output[PENDULUM_OUTPUT_BOB_Z],
+           (double)fleet.clock.output[PENDULUM_OUTPUT_ANGLE_VALUE]);
     return 0;
 }
