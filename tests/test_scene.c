@@ -99,12 +99,15 @@ static void test_initial(void **unused)
                                         "  angular_velocity: [1, 2, 3],\n"
                                         "  coordinates: {lift: 0.03}, rates: {lift: -2}}\n");
     /* Rz(yaw) Ry(pitch) Rx(roll), written out */
-    const double expected[9] = {
-        cos(yaw) * cos(pitch), cos(yaw) * sin(pitch) * sin(roll) - sin(yaw) * cos(roll),
-        cos(yaw) * sin(pitch) * cos(roll) + sin(yaw) * sin(roll),
-        sin(yaw) * cos(pitch), sin(yaw) * sin(pitch) * sin(roll) + cos(yaw) * cos(roll),
-        sin(yaw) * sin(pitch) * cos(roll) - cos(yaw) * sin(roll),
-        -sin(pitch), cos(pitch) * sin(roll), cos(pitch) * cos(roll)};
+    const double expected[9] = {cos(yaw) * cos(pitch),
+                                cos(yaw) * sin(pitch) * sin(roll) - sin(yaw) * cos(roll),
+                                cos(yaw) * sin(pitch) * cos(roll) + sin(yaw) * sin(roll),
+                                sin(yaw) * cos(pitch),
+                                sin(yaw) * sin(pitch) * sin(roll) + cos(yaw) * cos(roll),
+                                sin(yaw) * sin(pitch) * cos(roll) - cos(yaw) * sin(roll),
+                                -sin(pitch),
+                                cos(pitch) * sin(roll),
+                                cos(pitch) * cos(roll)};
     double A[9];
     mat_from_euler(scene->euler, A);
     for (int i = 0; i < 9; ++i)
@@ -174,6 +177,88 @@ static void test_roads(void **unused)
     pool_free(pool);
 }
 
+static double friction(const Scene *scene, double x, double y)
+{
+    return scene->road->friction(scene->road, 0, 0, x, y);
+}
+
+/* A scene beside a file that holds its road. */
+static const Scene *scene_with(Pool *pool, const char *file, const char *road)
+{
+    char *path = write_temporary(pool, file);
+    const Scene *scene = scene_of(pool, pool_print(pool, "road: {%s, file: %s}\n", road, strrchr(path, '/') + 1));
+    unlink(path);
+    return scene;
+}
+
+static void test_road_files(void **unused)
+{
+    (void)unused;
+    Pool *pool = pool_new();
+    /* a comment, a byte order mark, units, columns in another order */
+    const Scene *scene =
+        scene_with(pool, "\xef\xbb\xbf# ours\nright [m],x [m],left\n5,0,0\n6,1,1\n7,2,0\n", "type: table");
+    assert_near(height(scene, 1, 1), 1, 1e-15);
+    assert_near(height(scene, 0.5, 1), 0.5, 1e-15);
+    assert_near(height(scene, 9, -1), 7, 0);
+    scene = scene_with(pool, "x,height\n0,1\n2,3\n", "type: table");
+    assert_near(height(scene, 1, 1), 2, 1e-15);
+    assert_near(height(scene, 1, -1), 2, 1e-15);
+    /* rows in any order; 0.33 and 0.67 for thirds */
+    scene = scene_with(pool,
+                       "x,y,z\n1,0,0\n0,0,4\n0.3333,0,0\n0.6667,0,0\n1,2,0\n0.6667,2,0\n0.3333,2,0\n0,2,0\n"
+                       "1,4,0\n0.6667,4,5\n0.3333,4,7\n0,4,0\n",
+                       "type: grid");
+    assert_near(height(scene, -9, -9), 4, 0);
+    assert_near(height(scene, 1.0 / 3, 4), 7, 1e-14);
+    assert_near(height(scene, 2.0 / 3, 99), 5, 1e-14);
+    assert_near(height(scene, 1, 4), 0, 1e-14);
+    /* halfway between the nodes: 9/16 of the near ones, -1/16 of the far ones; along y from 0 to 2: level at 0, slope
+     * (h2 - h0) / 2 at 2, so that (h0 + h1) / 2 - (h2 - h0) / 16 */
+    assert_near(height(scene, 0.5, 4), 9.0 / 16 * 12, 1e-13);
+    assert_near(height(scene, 1.0 / 3, 1), -7.0 / 16, 1e-13);
+    pool_free(pool);
+}
+
+static void test_made_roads(void **unused)
+{
+    (void)unused;
+    Pool *pool = pool_new();
+    const Scene *scene = scene_of(pool, "road: {type: iso8608, class: E, seed: 3, length: 40, start: 5, fade: 2,\n"
+                                        "       spacing: 0.1, track: 2}\n");
+    gic_road_grid grid;
+    double node[2 * 401], out[3];
+    const gic_iso8608 profile = {'E', 3, 5, 40, 2, 2};
+    assert_int_equal(gic_road_iso8608_setup(&grid, &profile, node, 401), GIC_OK);
+    for (double x = 4; x < 46; x += 0.37) {
+        grid.head.height(&grid.head, 0, 0, x, 0.3, out);
+        assert_true(height(scene, x, 0.3) == out[0]);
+    }
+    assert_null(scene->road->friction);
+    /* what SCENE.md gives as defaults */
+    scene = scene_of(pool, "road: {type: iso8608, class: E, length: 40}\n");
+    const gic_iso8608 usual = {'E', 1, 0, 40, 1.5, 5};
+    double usual_node[2 * 801];
+    assert_int_equal(gic_road_iso8608_setup(&grid, &usual, usual_node, 801), GIC_OK);
+    grid.head.height(&grid.head, 0, 0, 33, 0.3, out);
+    assert_true(height(scene, 33, 0.3) == out[0]);
+
+    scene = scene_of(pool, "road:\n  type: sum\n  roads:\n    - {type: flat, height: 0.5}\n"
+                           "    - {type: slope, x: 0.25}\n    - {type: flat, height: 2}\n"
+                           "  friction: {value: 0.5, patches: [{x: [0, 4], y: [-1, 1], value: 0.25},\n"
+                           "                                   {x: [2, 6], y: [-1, 1], value: 1, fade: 1}]}\n");
+    assert_near(height(scene, 2, 4), 3, 1e-15);
+    assert_near(friction(scene, 2, 4), 0.5, 0);
+    assert_near(friction(scene, 1, 0), 0.25, 0);
+    assert_near(friction(scene, 5, 0), 1, 0);
+    assert_near(friction(scene, 2, 0), 0.625, 1e-15);
+    assert_near(friction(scene, 0.05, 0), 0.25, 1e-15); /* the default fade: 0.1 */
+    assert_near(friction(scene, -0.05, 0), 0.5, 1e-15);
+    scene = scene_of(pool, "road: {type: flat, friction: {patches: [{x: [0, 4], y: [-1, 1], value: 0.25}]}}\n");
+    assert_near(friction(scene, 9, 0), 1, 0);
+    pool_free(pool);
+}
+
 /* Rate and acceleration are the derivatives of the value, and none of the three jumps. */
 static void check_profile(const Profile *profile, double end, double largest_jerk)
 {
@@ -211,7 +296,7 @@ static void test_profiles(void **unused)
     check_profile(profile, 2, 3 * 0.02 * pow(12.6, 3));
     profile_at(profile, 0.3, out);
     assert_true(out[0] == 0.01 && out[1] == 0 && out[2] == 0); /* from the design value, at rest */
-    profile_at(profile, 0.3 + 0.5 + 0.125, out); /* a quarter period after the fade */
+    profile_at(profile, 0.3 + 0.5 + 0.125, out);               /* a quarter period after the fade */
     assert_near(out[0], 0.01 + 0.02, 1e-16);
 
     double input[] = {9, 9, 9, 9};
@@ -224,8 +309,9 @@ static void test_profiles(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_defaults), cmocka_unit_test(test_times), cmocka_unit_test(test_initial),
-        cmocka_unit_test(test_names),    cmocka_unit_test(test_roads), cmocka_unit_test(test_profiles),
+        cmocka_unit_test(test_defaults),   cmocka_unit_test(test_times),      cmocka_unit_test(test_initial),
+        cmocka_unit_test(test_names),      cmocka_unit_test(test_roads),      cmocka_unit_test(test_profiles),
+        cmocka_unit_test(test_road_files), cmocka_unit_test(test_made_roads),
     };
     return cmocka_run_group_tests_name("scene", tests, NULL, NULL);
 }
