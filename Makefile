@@ -121,7 +121,8 @@ $(BUILD)/check/%_float: VARIANT := -DGIC_FLOAT
 $(BUILD)/check/%_fast: VARIANT := -ffast-math
 $(BUILD)/check/test_runtime_float $(BUILD)/check/test_runtime_fast: tests/test_runtime.c runtime/gic_runtime.c
 $(BUILD)/check/test_dual_float: tests/test_dual.c runtime/gic_runtime.c
-$(BUILD)/check/test_road_float $(BUILD)/check/test_road_fast: tests/test_road.c runtime/gic_road.c runtime/gic_runtime.c
+$(BUILD)/check/test_road_float $(BUILD)/check/test_road_fast: tests/test_road.c runtime/gic_road.c \
+    runtime/gic_runtime.c
 $(addprefix $(BUILD)/check/,$(variants)):
 	@mkdir -p $(@D)
 	$(COMPILE) $(VARIANT) -MF $@.d -o $@ $(filter %.c,$^) $(LDFLAGS) -lcmocka -lm
@@ -206,10 +207,13 @@ PLACE = sed 's|@PREFIX@|$(PREFIX)|g; s|@VERSION@|$(version)|g'
 
 # both number types in one archive: names differ; position-independent, for shared objects may want it
 core := $(foreach part,gic_runtime gic_road,$(BUILD)/install/$(part).double.o $(BUILD)/install/$(part).float.o)
-$(BUILD)/install/%.float.o: VARIANT := -DGIC_FLOAT
-$(BUILD)/install/%.double.o $(BUILD)/install/%.float.o: runtime/%.c
+$(BUILD)/install/%.double.o: runtime/%.c
 	@mkdir -p $(@D)
-	$(COMPILE) -std=c99 -fPIC $(VARIANT) -c -o $@ $<
+	$(COMPILE) -std=c99 -fPIC -c -o $@ $<
+
+$(BUILD)/install/%.float.o: runtime/%.c
+	@mkdir -p $(@D)
+	$(COMPILE) -std=c99 -fPIC -DGIC_FLOAT -c -o $@ $<
 
 $(BUILD)/install/libgic_runtime.a: $(core)
 	rm -f $@

@@ -37,9 +37,10 @@ modes() { [ -z "$(find "$there" "$@")" ] || { find "$there" "$@" -printf '%m %p\
 check 'folders may be read by all' modes -type d ! -perm 0755
 check 'programs may be run by all' modes -path "$there/bin/*" ! -perm 0755
 check 'other files may be read by all and run by none' modes -type f ! -path "$there/bin/*" ! -perm 0644
-for file in bin/gicgen bin/gicrun bin/gicbench include/gic_runtime.h include/gic_road.h lib/libgic_runtime.a lib/pkgconfig/gicgen.pc \
-    share/gicgen/gic_runtime.c share/gicgen/gic_road.c share/gicgen/models/hmmwv.veh share/gicgen/models/parts/chassis.veh \
-    share/gicgen/models/scenes/paper_run.scene share/gicgen/models/roads/field_track.csv share/gicgen/models/tires/hmmwv_pac2002.tir \
+for file in bin/gicgen bin/gicrun bin/gicbench include/gic_runtime.h include/gic_road.h lib/libgic_runtime.a \
+    lib/pkgconfig/gicgen.pc share/gicgen/gic_runtime.c share/gicgen/gic_road.c share/gicgen/models/hmmwv.veh \
+    share/gicgen/models/parts/chassis.veh share/gicgen/models/scenes/paper_run.scene \
+    share/gicgen/models/roads/field_track.csv share/gicgen/models/tires/hmmwv_pac2002.tir \
     share/gicgen/models/FORMAT.md share/man/man1/gicgen.1 \
     share/man/man1/gicrun.1 share/man/man1/gicbench.1; do
     check "$file is there" [ -s "$there/$file" ]

@@ -253,6 +253,16 @@ static void test_nowhere(void **unused)
         grid.head.height(&grid.head, 0, 0, GIC_R(0.0), bad[i], out);
         assert_false(gic_finite(out, 3));
     }
+    gic_real at[] = {GIC_R(0.0), GIC_R(1.0), GIC_R(2.0)}, left[3], right[3];
+    gic_bump bump[] = {{GIC_R(0.0), GIC_R(1.0), GIC_R(0.1), GIC_R(-1.0), GIC_R(1.0)}};
+    gic_road_table table = {{gic_table_height, NULL}, at, at, at, left, right, 3};
+    gic_road_bumps bumps = {{gic_bumps_height, NULL}, bump, 1, 0};
+    assert_int_equal(gic_road_table_setup(&table), GIC_OK);
+    assert_int_equal(gic_road_bumps_setup(&bumps), GIC_OK);
+    for (int i = 0; i < 3; ++i) {
+        table.head.height(&table.head, 0, 0, bad[i], bad[i], out);
+        bumps.head.height(&bumps.head, 0, 0, bad[i], bad[i], out);
+    }
     const gic_real far = GIC_R(1e30); /* more cells away than an int counts */
     grid.head.height(&grid.head, 0, 0, far, -far, out);
     assert_true(out[0] == field[NX - 1] && out[1] == GIC_R(0.0) && out[2] == GIC_R(0.0));

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_roads.sh GICRUN: the HMMWV on every type of road: roads that are the same in two forms give the same run, roughness
-# grows as its class says, and mistakes in scenes and their files are refused where they stand.
+# test_roads.sh GICRUN: the HMMWV on every type of road. Roads that are the same in two forms give the same run,
+# roughness grows as its class says, and mistakes in scenes and their files are refused where they stand.
 gicrun=$1
 models=$(cd "$(dirname "$0")/../models" && pwd)
 work=$(mktemp -d) || exit 1
@@ -20,8 +20,8 @@ check() {
 
 # scene ROAD [SED]: the HMMWV from rest on its springs at 6 m/s over the road that follows `road: `, in $work/scene
 scene() {
-    printf '%s\n' 'gicscene: 1' 'duration: 2' 'step: 0.002' 'output_step: 0.01' 'initial:' '  position: [0, 0, 0.4740625]' \
-        '  orientation: {pitch: 0.0004326}' '  velocity: [6, 0, 0]' \
+    printf '%s\n' 'gicscene: 1' 'duration: 2' 'step: 0.002' 'output_step: 0.01' 'initial:' \
+        '  position: [0, 0, 0.4740625]' '  orientation: {pitch: 0.0004326}' '  velocity: [6, 0, 0]' \
         'outputs: [chassis, chassis_attitude, spring_f_l, spring_r_l]' "road: $1" | sed "$2" >"$work/scene"
 }
 # drive NAME ROAD [SED]: its results in $work/NAME.csv
@@ -55,9 +55,11 @@ same bumps unsorted 0
 drive sum '{type: sum, roads: [{type: bumps, bumps: [{x: 3, length: 2, height: 0.05}]},
     {type: bumps, bumps: [{x: 7, length: 1, height: 0.03, tracks: left}]}], friction: {value: 1}}'
 same bumps sum 0
-# a sine is bumps of one length in a row, and a table of its points follows it to their fourth power or so
-drive sine '{type: sum, roads: [{type: sine, amplitude: -0.01, wavelength: 2, start: -0.5}, {type: flat, height: 0.01}]}'
-drive row "{type: bumps, bumps: [$(awk 'BEGIN { for (x = -4; x < 20; x += 2) printf "{x: %d, length: 2, height: 0.02},", x }')]}"
+# a sine is bumps of one length in a row
+drive sine '{type: sum, roads: [{type: sine, amplitude: -0.01, wavelength: 2, start: -0.5},
+    {type: flat, height: 0.01}]}'
+row=$(awk 'BEGIN { for (x = -4; x < 20; x += 2) printf "{x: %d, length: 2, height: 0.02},", x }')
+drive row "{type: bumps, bumps: [$row]}"
 same sine row 1e-12
 
 drive inline '{type: table, x: [0, 3, 4, 5, 6.5, 30], left: [0, 0, 0.05, -0.02, 0, 0], right: [0, 0, 0.01, 0.01, 0, 0]}'
