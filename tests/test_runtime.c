@@ -429,16 +429,11 @@ static void test_quintic(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order),
-        cmocka_unit_test(test_ab3_starts_with_rk4),
-        cmocka_unit_test(test_rate_and_input),
-        cmocka_unit_test(test_failure_changes_nothing),
-        cmocka_unit_test(test_snapshot),
-        cmocka_unit_test(test_time),
-        cmocka_unit_test(test_arguments),
-        cmocka_unit_test(test_finite),
-        cmocka_unit_test(test_status_text),
-        cmocka_unit_test(test_orientation),
+        cmocka_unit_test(test_order),          cmocka_unit_test(test_ab3_starts_with_rk4),
+        cmocka_unit_test(test_rate_and_input), cmocka_unit_test(test_failure_changes_nothing),
+        cmocka_unit_test(test_snapshot),       cmocka_unit_test(test_time),
+        cmocka_unit_test(test_arguments),      cmocka_unit_test(test_finite),
+        cmocka_unit_test(test_status_text),    cmocka_unit_test(test_orientation),
         cmocka_unit_test(test_quintic),
     };
     return cmocka_run_group_tests_name("runtime", tests, NULL, NULL);
