@@ -79,11 +79,12 @@ static const Law *spin_law(Reader *reader, const Entry *entry, const Value *valu
 }
 
 /* A key that says more of another one, which is not there. */
-static void belongs_check(const Entry *entry, const Value *value, int key, int to)
+static void belongs_check(const Reader *reader, const Entry *entry, const Value *value, int key, int to)
 {
     if (value[key].item && !value[to].item)
-        diag_fail(value[key].item->at, "add it, or take this away", "%s of %s says nothing without %s",
-                  wheel_key[key].name, entry->what, wheel_key[to].name);
+        diag_fail(value[key].item->at,
+                  pool_print(reader->pool, "add `%s: formula`, or take it away", wheel_key[to].name),
+                  "%s of %s says nothing without %s", wheel_key[key].name, entry->what, wheel_key[to].name);
 }
 
 static void rolling_read(Reader *reader, const Entry *entry, const Value *value, Wheel *wheel)
@@ -96,8 +97,8 @@ static void rolling_read(Reader *reader, const Entry *entry, const Value *value,
     if (value[ROLL_FADE].tuned[0])
         diag_fail(value[ROLL_FADE].item->at, "leave out `tunable: true` of that parameter, or use it elsewhere",
                   "fade of %s is fixed when the code is generated, for it has a tire", entry->what);
-    belongs_check(entry, value, ROLL_DRIVE_BODY, ROLL_DRIVE);
-    belongs_check(entry, value, ROLL_WINDUP, ROLL_BRAKE);
+    belongs_check(reader, entry, value, ROLL_DRIVE_BODY, ROLL_DRIVE);
+    belongs_check(reader, entry, value, ROLL_WINDUP, ROLL_BRAKE);
     wheel->tire = value[ROLL_TIRE].index[0];
     wheel->radius = tire->radius;
     wheel->stiffness = tire->stiffness;

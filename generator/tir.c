@@ -386,7 +386,7 @@ static void lines_read(Tir *tir)
 {
     const char *s = tir->source.bytes, *end = s + tir->source.size;
     for (const char *c = s; c < end; ++c)
-        if ((unsigned char)*c < 0x20 && !strchr("\t\n\r\f", *c))
+        if ((unsigned char)*c < 0x20 && !memchr("\t\n\r\f", *c, 4))
             diag_fail(place(tir, c), "name a .tir file, which is text", "%s: this is no text: byte %d", tir->what,
                       (unsigned char)*c);
     if (end - s >= 3 && !memcmp(s, "\xef\xbb\xbf", 3)) /* byte order mark */

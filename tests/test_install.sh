@@ -41,8 +41,7 @@ for file in bin/gicgen bin/gicrun bin/gicbench include/gic_runtime.h include/gic
     lib/pkgconfig/gicgen.pc share/gicgen/gic_runtime.c share/gicgen/gic_road.c share/gicgen/models/hmmwv.veh \
     share/gicgen/models/parts/chassis.veh share/gicgen/models/scenes/paper_run.scene \
     share/gicgen/models/roads/field_track.csv share/gicgen/models/tires/hmmwv_pac2002.tir \
-    share/gicgen/models/FORMAT.md share/man/man1/gicgen.1 \
-    share/man/man1/gicrun.1 share/man/man1/gicbench.1; do
+    share/gicgen/models/FORMAT.md share/man/man1/gicgen.1 share/man/man1/gicrun.1 share/man/man1/gicbench.1; do
     check "$file is there" [ -s "$there/$file" ]
 done
 models() { find "$1/models" -type f | wc -l; }

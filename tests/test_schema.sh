@@ -38,7 +38,9 @@ for name in body_key_missing body_key_unknown body_not_map coordinate_angle_poin
     joint_bodies_three joint_key_foreign joint_length_negative joint_offset_foreign joint_point_missing joint_type \
     joint_type_missing key_unknown load_list mass_negative mass_zero name_bad not_a_map orientation_mixed output_in_foreign \
     output_reaction_body output_reaction_missing output_type parameter_flag port_body_missing port_key point_length section_list \
-    stop_free table_interpolation table_short torsion_bodies torsion_points version_missing version_zero wheel_radius_missing; do
+    stop_free table_interpolation table_short tire_both tire_key_foreign tire_key_missing tire_key_unknown tire_list tire_neither tire_relaxation_one tire_type \
+    torsion_bodies torsion_points version_missing version_zero wheel_radius_missing wheel_side wheel_spin_missing \
+    wheel_spin_plain wheel_spin_zero wheel_tire_radius; do
     fits "$root/tests/bad/$name.veh"
     grep -q '^bad' "$work/said"
     check $? "$name fits the schema"
