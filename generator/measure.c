@@ -21,6 +21,11 @@ typedef struct Named {
     Size size;
 } Named;
 
+/* A macro of two arguments that may stand in a size. */
+typedef struct Macro {
+    const char *name, *argument[2], *text;
+} Macro;
+
 typedef struct Function {
     const char *name;
     bool private; /* to its file */
@@ -33,8 +38,9 @@ typedef struct Function {
 struct Measure {
     Pool *pool;
     const char *prefix; /* of the model's functions that the descriptor points to: "hmmwv_any_" */
-    int types, enumerators, constants, functions;
+    int types, enumerators, constants, functions, macros;
     Named *type, *enumerator, *constant;
+    Macro *macro;
     Function *function;
     int tokens, next; /* of the text that is read, and where reading is */
     const char **token;
@@ -67,10 +73,16 @@ static const char *end_of_nothing(Measure *m, const char *s)
     }
     if (*s != '#')
         return s;
-    char name[64], number[16];
+    char name[64], number[16], argument[2][32], text[128];
     if (sscanf(s, "#define %63[A-Za-z0-9_] %15[0-9]", name, number) == 2)
         *POOL_PUSH(m->pool, m->enumerator, m->enumerators) =
             (Named){pool_print(m->pool, "%s", name), {strtoul(number, NULL, 10), 0}};
+    if (sscanf(s, "#define %63[A-Za-z0-9_](%31[a-z_], %31[a-z_]) %127[^\n]", name, argument[0], argument[1], text) == 4)
+        *POOL_PUSH(m->pool, m->macro, m->macros) = (Macro){
+            pool_print(m->pool, "%s", name),
+            {pool_print(m->pool, "%s", argument[0]), pool_print(m->pool, "%s", argument[1])},
+            pool_print(m->pool, "%s", text),
+        };
     while (*s && *s != '\n')
         s += *s == '\\' && s[1] ? 2 : 1;
     return s;
@@ -160,8 +172,29 @@ static void add_type(Measure *m, const char *name, Size size)
 
 static size_t sum_read(Measure *m);
 
+/* A macro's text with the sizes that its arguments are. */
+static size_t macro_read(Measure *m, const Macro *macro)
+{
+    Named argument[2];
+    for (int i = 0; i < 2; ++i) {
+        if (!accept(m, i ? "," : "("))
+            refuse(m, "a size that can't be read");
+        argument[i] = (Named){macro->argument[i], {sum_read(m), 0}};
+    }
+    if (!accept(m, ")"))
+        refuse(m, "a size that can't be read");
+    Measure inside = {.pool = m->pool, .enumerators = 2, .enumerator = argument};
+    tokens_read(&inside, macro->text);
+    return sum_read(&inside);
+}
+
 static size_t factor_read(Measure *m)
 {
+    for (int i = 0; i < m->macros; ++i)
+        if (!strcmp(m->macro[i].name, token(m, 0))) {
+            ++m->next;
+            return macro_read(m, &m->macro[i]);
+        }
     if (accept(m, "(")) {
         size_t sum = sum_read(m);
         if (!accept(m, ")"))
@@ -176,16 +209,18 @@ static size_t factor_read(Measure *m)
     return enumerator ? enumerator->size.bytes : strtoul(t, NULL, 10);
 }
 
-/* Sizes of arrays are sums of products of numbers and enumerators. */
+/* Sizes of arrays are sums and differences of products of numbers, enumerators and macros of those. */
 static size_t sum_read(Measure *m)
 {
     size_t sum = 0;
+    bool minus = false;
     do {
         size_t product = factor_read(m);
         while (accept(m, "*"))
             product *= factor_read(m);
-        sum += product;
-    } while (accept(m, "+"));
+        sum = minus ? sum - product : sum + product;
+        minus = is(m, "-");
+    } while (accept(m, "+") || accept(m, "-"));
     return sum;
 }
 

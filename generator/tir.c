@@ -127,7 +127,6 @@ static const char *const other_name[] = {
 
 enum { UNKNOWN_MOST = 10 /* warnings about unknown keys; more say nothing new */ };
 
-
 /* Exponents of length, force, angle, time; the other numbers have no unit that counts. */
 static const struct {
     int key, exponent[4];
