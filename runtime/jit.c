@@ -77,6 +77,7 @@ static void add_host_functions(TCCState *state)
         HOST_FUNCTION(memset),
         HOST_FUNCTION(memcpy),
         HOST_FUNCTION(memmove),
+        HOST_FUNCTION(memcmp),
         HOST_FUNCTION(sqrt),
         HOST_FUNCTION(fabs),
         HOST_FUNCTION(sin),
@@ -96,6 +97,7 @@ static void add_host_functions(TCCState *state)
         HOST_FUNCTION(gic_time),
         HOST_FUNCTION(gic_orientation),
         HOST_FUNCTION(gic_table_value),
+        HOST_FUNCTION(gic_restart),
     };
     for (size_t i = 0; i < sizeof function / sizeof *function; ++i)
         tcc_add_symbol(state, function[i].name, (const void *)function[i].address);
