@@ -42,10 +42,11 @@ static Ex slip_at(Dag *dag, Ex p, double once, double twice)
 /* The force of one resultant slip s: initial slope D, maximum Fm at sm, sliding force Fs from ss on. */
 static Ex resultant(Dag *dag, Ex s, Ex D, Ex Fm, Ex Fs, Ex sm, Ex ss)
 {
-    Ex start = ex_mul(dag, D, sm), two = literal(dag, 2);
-    Ex steep = ex_op(dag, OP_MAX, ex_div(dag, start, Fm), two, 0), r = ex_div(dag, s, sm);
-    Ex below = ex_add(dag, literal(dag, 1), ex_mul(dag, r, ex_sub(dag, ex_add(dag, r, steep), two)));
-    Ex rising = ex_div(dag, ex_mul(dag, D, s), below);
+    /* at least so steep that the maximum is at sm */
+    Ex two = literal(dag, 2), start = ex_op(dag, OP_MAX, ex_mul(dag, D, sm), ex_add(dag, Fm, Fm), 0); /* D sm */
+    Ex steep = ex_sub(dag, ex_div(dag, start, Fm), two), r = ex_div(dag, s, sm);
+    Ex below = ex_add(dag, literal(dag, 1), ex_mul(dag, r, ex_add(dag, r, steep)));
+    Ex rising = ex_div(dag, ex_mul(dag, start, r), below);
     Ex drop = ex_sub(dag, Fm, Fs), a = ex_div(dag, square(dag, ex_div(dag, Fm, sm)), start);
     Ex width = ex_sub(dag, ss, sm), past = ex_sub(dag, s, sm), rest = ex_sub(dag, ss, s);
     Ex turn = ex_div(dag, drop, ex_mul(dag, a, width)), b = ex_add(dag, sm, turn); /* turn = b - sm */
