@@ -51,7 +51,7 @@ static double median_step(const Engine *engine, gic_head *self, const Scene *sce
         if (rows)
             read_rows(engine->profile, before);
         const double begun = bench_clock(CLOCK_MONOTONIC);
-        *failed = scene_step(engine->code, scene, NULL, self, 0) != GIC_OK;
+        *failed = scene_step(engine, engine->code, scene, NULL, self, 0) != GIC_OK;
         step[i] = bench_clock(CLOCK_MONOTONIC) - begun;
         if (rows)
             read_rows(engine->profile, after);
@@ -100,7 +100,7 @@ static void profile_outside(const Engine *engine, gic_head *self, const Scene *s
     out->fused = true;
     out->failed = scene_start(engine, scene, self) != GIC_OK;
     for (int i = 0; i < steps && !out->failed; ++i) {
-        out->failed = scene_step(code, scene, NULL, self, 0) != GIC_OK;
+        out->failed = scene_step(engine, code, scene, NULL, self, 0) != GIC_OK;
         memcpy(copy, self, code->size);
         double before = bench_clock(CLOCK_MONOTONIC);
         out->failed |= code->poses(copy, pose) != GIC_OK;

@@ -118,21 +118,22 @@ double trajectory_error(const Trajectory *a, const Trajectory *b)
 /* ---- runs --------------------------------------------------------------------------------------------------- */
 
 /* Up to the next sample. Returns the status of the last step. */
-static int to_sample(const gic_model *code, const Scene *scene, Variable *variable, gic_head *self, int sample,
+static int to_sample(const Engine *engine, const Scene *scene, Variable *variable, gic_head *self, int sample,
                      int64_t *steps)
 {
+    const gic_model *code = engine->code;
     const double end = sample * bench_sample;
     int status = GIC_OK;
     if (variable) {
         while (status == GIC_OK && gic_time(self) < end) {
-            status = scene_step(code, scene, variable, self, end);
+            status = scene_step(engine, code, scene, variable, self, end);
             ++*steps;
         }
         return status;
     }
     const int64_t count = llround(bench_sample / scene->step);
     for (int64_t i = 0; i < count && status == GIC_OK; ++i) {
-        status = scene_step(code, scene, NULL, self, end);
+        status = scene_step(engine, code, scene, NULL, self, end);
         ++*steps;
     }
     return status;
@@ -161,7 +162,7 @@ static double run(const Engine *engine, gic_head *self, const Scene *scene, Tria
         trial->status = record(pool, engine, self, trajectory->pose);
     const double before = bench_clock(CLOCK_PROCESS_CPUTIME_ID);
     for (int k = 1; k < samples && trial->status == GIC_OK; ++k) {
-        trial->status = to_sample(code, &changed, variable, self, k, &trial->steps);
+        trial->status = to_sample(engine, &changed, variable, self, k, &trial->steps);
         if (trajectory && trial->status == GIC_OK)
             trial->status = record(pool, engine, self, trajectory->pose + k * trajectory->numbers);
     }

@@ -16,7 +16,7 @@ static int time_steps(const Engine *engine, gic_head *self, const Scene *scene, 
         return 0;
     for (int i = 0; i < START + steps; ++i) {
         const double before = bench_clock(CLOCK_MONOTONIC);
-        const int status = scene_step(engine->code, scene, NULL, self, 0);
+        const int status = scene_step(engine, engine->code, scene, NULL, self, 0);
         if (i >= START)
             seconds[i - START] = bench_clock(CLOCK_MONOTONIC) - before;
         if (status != GIC_OK)

@@ -57,6 +57,8 @@ typedef struct Profile {
     double amplitude, frequency, offset, start;
 } Profile;
 
+typedef struct Driver Driver; /* driver.h */
+
 typedef struct Scene {
     const Source *source;
     double duration, step, output_step; /* step is 0 where a scene of variable steps has none */
@@ -73,6 +75,7 @@ typedef struct Scene {
     double *parameter;    /* [tunables] */
     int profiles, columns, curves;
     Profile *profile;
+    Driver *driver;      /* changes as the run goes on; NULL: nobody drives */
     int *column, *curve; /* output components in results and picture, indices into output[] */
 } Scene;
 
@@ -83,15 +86,22 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
 int32_t integrator_method(const char *name);
 const char *integrator_name(int32_t method);
 bool tolerance_known(double tolerance); /* can variable steps respect it? */
+/* A profile as it stands in a scene. */
+void profile_read(Pool *pool, const Item *item, Profile *profile);
 /* Value, rate and acceleration of a profile. */
 void profile_at(const Profile *profile, double time, double out[3]);
 /* A gic_input_function; `user` is the Scene. */
 void scene_inputs(void *user, int32_t lane, double time, double *input);
 /* The first time after `time` at which a profile is less smooth than elsewhere, or INFINITY. */
 double scene_next_kink(const Scene *scene, double time);
+/* scene_driver.c: the driver of a `driver:` item; step: s, 0 where steps vary. */
+Driver *driver_read(Pool *pool, const Item *item, const Model *model, double step);
 /* scene_road.c: the road a `road:` item describes. */
 const gic_road *road_read(Pool *pool, const Item *item);
-/* scene_road_file.c: roads whose heights are in the file that the key `file` names. */
+/* scene_road_file.c: the table in the file that `item` names, seen from the folder of the scene; what: "road". header:
+ * the columns it is to have. */
+const struct CsvTable *scene_file(Pool *pool, const Item *item, const char *what, const char *header);
+/* The same file: roads whose heights are in the file that the key `file` names. */
 const gic_road *table_file_read(Pool *pool, const Item *item);
 const gic_road *grid_file_read(Pool *pool, const Item *item);
 
@@ -157,8 +167,10 @@ bool plot_known(const char *path); /* does `path` end in .svg or .png? */
 
 /* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
 int scene_start(const Engine *engine, const Scene *scene, gic_head *self);
-/* One step of a scene: a constant one, of dual rate where the scene says so, or where `variable` is given one towards `end` that stops at kinks of inputs. */
-int scene_step(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end);
+/* One step of a scene, by the engine's code or faster one: a constant one, or where `variable` is given one towards
+ * `end` that stops at kinks of inputs. Before it the driver looks, where it is time for that. */
+int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
+               double end);
 /* Run a scene: results, picture, summary. A failure on the way keeps what was computed and ends in diag_fail. */
 void simulate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);
 /* Evaluate rows of states (--eval). scene may be NULL; only its road is used. */

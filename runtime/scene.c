@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Scenes: models/SCENE.md. */
-#include "gicrun.h"
+#include "driver.h"
 
 #include <math.h>
 #include <string.h>
@@ -291,12 +291,12 @@ static void read_initial(Reader *reader, const Item *initial)
 
 /* ---- inputs --------------------------------------------------------------------------------------------- */
 
-static void read_knots(Reader *reader, const Item *item, Profile *profile)
+static void read_knots(Pool *pool, const Item *item, Profile *profile)
 {
     CHECK_KEYS(item, "knots", "times", "values");
     const Item *times = scene_need(item, "times", "knots"), *values = scene_need(item, "values", "knots");
-    profile->time = scene_numbers(reader->pool, times, "times of knots", 1);
-    profile->value = scene_numbers(reader->pool, values, "values of knots", 1);
+    profile->time = scene_numbers(pool, times, "times of knots", 1);
+    profile->value = scene_numbers(pool, values, "values of knots", 1);
     profile->count = times->count;
     if (values->count != times->count)
         diag_fail(values->at, "one value for each time", "knots have %d times and %d values", times->count,
@@ -315,28 +315,28 @@ static void read_sine(const Item *item, Profile *profile)
     profile->start = scene_number(item, "start", "start", 0);
 }
 
-static void read_constant(Reader *reader, const Item *item, Profile *profile)
+static void read_constant(Pool *pool, const Item *item, Profile *profile)
 {
     profile->count = 1;
-    profile->time = pool_alloc(reader->pool, sizeof(double));
-    profile->value = pool_alloc(reader->pool, sizeof(double));
+    profile->time = pool_alloc(pool, sizeof(double));
+    profile->value = pool_alloc(pool, sizeof(double));
     profile->value[0] = doc_number(item, "value of an input");
 }
 
-static void read_profile(Reader *reader, const Item *item, Profile *profile)
+void profile_read(Pool *pool, const Item *item, Profile *profile)
 {
     const char *remedy = "write a number, or {constant: ..}, {knots: {times: [..], values: [..]}} or {sine: {..}}";
     if (item->kind == ITEM_SCALAR) {
-        read_constant(reader, item, profile);
+        read_constant(pool, item, profile);
         return;
     }
     CHECK_KEYS(item, "an input", "constant", "knots", "sine");
     if (item->count != 1)
         diag_fail(item->at, remedy, "an input must be described in one way");
     if (!strcmp(item->key[0]->text, "constant"))
-        read_constant(reader, item->value[0], profile);
+        read_constant(pool, item->value[0], profile);
     else if (!strcmp(item->key[0]->text, "knots"))
-        read_knots(reader, item->value[0], profile);
+        read_knots(pool, item->value[0], profile);
     else
         read_sine(item->value[0], profile);
 }
@@ -381,7 +381,7 @@ static void read_inputs(Reader *reader, const Item *map)
         const Coordinate *coordinate = driven_by(model, i);
         Profile *profile = POOL_PUSH(reader->pool, scene->profile, scene->profiles);
         *profile = (Profile){.input = i, .driven = coordinate, .offset = model->input[i].initial};
-        read_profile(reader, map->value[k], profile);
+        profile_read(reader->pool, map->value[k], profile);
         if (coordinate)
             check_driven(profile, coordinate, map->value[k]->at);
     }
@@ -440,11 +440,13 @@ void scene_inputs(void *user, int32_t lane, double time, double *input)
         profile_at(profile, time, out);
         memcpy(input + profile->input, out, (profile->driven ? 3 : 1) * sizeof *out);
     }
+    if (scene->driver)
+        driver_inputs(scene->driver, time, input);
 }
 
 double scene_next_kink(const Scene *scene, double time)
 {
-    double next = INFINITY;
+    double next = scene->driver ? scene->driver->next : INFINITY;
     for (int i = 0; i < scene->profiles; ++i) {
         const Profile *profile = &scene->profile[i];
         for (int k = 0; k < profile->count; ++k)
@@ -525,7 +527,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     Scene *scene = pool_alloc(pool, sizeof *scene);
     Reader reader = {pool, model, scene};
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
-               "output_step", "initial", "road", "inputs", "parameters", "outputs", "plot");
+               "output_step", "initial", "road", "inputs", "driver", "parameters", "outputs", "plot");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
     if (doc_number(version, "gicscene") != 1)
@@ -556,6 +558,9 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
         scene->road = road_read(pool, road);
     if (inputs)
         read_inputs(&reader, inputs);
+    if (doc_find(root, "driver"))
+        scene->driver =
+            driver_read(pool, doc_find(root, "driver"), model, scene->method < METHOD_ADAMS ? scene->step : 0);
     scene->parameter = pool_alloc(pool, sizeof(double) * (size_t)(model->tunables + 1));
     for (int i = 0; i < model->parameters; ++i)
         if (model->parameter[i].tunable)

@@ -9,21 +9,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* The table in the file that `item` names, seen from the folder of the scene. header: the columns it is to have. */
-static const CsvTable *road_file(Pool *pool, const Item *item, const char *header)
+const CsvTable *scene_file(Pool *pool, const Item *item, const char *what, const char *header)
 {
-    const char *name = doc_word(item, "file of a road"), *scene = item->at.source->path, *slash = strrchr(scene, '/');
+    const char *name = doc_word(item, pool_print(pool, "file of a %s", what)), *scene = item->at.source->path, *slash = strrchr(scene, '/');
     const char *path = name;
     struct stat about;
     if (name[0] != '/' && slash)
         path = pool_print(pool, "%.*s%s", (int)(slash + 1 - scene), scene, name);
     if (!name[0] || !strcmp(name, "-"))
-        diag_fail(item->at, "name a file; paths start in the folder of the scene", "'%s' is no file of a road", name);
+        diag_fail(item->at, "name a file; paths start in the folder of the scene", "'%s' is no file of a %s", name, what);
     if (stat(path, &about) || access(path, R_OK))
-        diag_fail(item->at, "paths start in the folder of the scene", "can't read the road '%s': %s", path,
+        diag_fail(item->at, "paths start in the folder of the scene", "can't read the %s '%s': %s", what, path,
                   strerror(errno));
     if (S_ISDIR(about.st_mode))
-        diag_fail(item->at, "name a file in it", "can't read the road '%s': it is a folder", path);
+        diag_fail(item->at, "name a file in it", "can't read the %s '%s': it is a folder", what, path);
     return csv_read(pool, path, header);
 }
 
@@ -65,7 +64,7 @@ const gic_road *table_file_read(Pool *pool, const Item *item)
 {
     static const char *const columns[] = {"x", "left", "right", "height"};
     const char *header = "x,left,right or x,height";
-    const CsvTable *table = road_file(pool, doc_find(item, "file"), header);
+    const CsvTable *table = scene_file(pool, doc_find(item, "file"), "road", header);
     gic_road_table *road = pool_alloc(pool, sizeof *road);
     check_columns(pool, table, columns, 4, header);
     const int shared = column_find(table, "height");
@@ -127,7 +126,7 @@ static Point *points_sorted(Pool *pool, const CsvTable *table)
 const gic_road *grid_file_read(Pool *pool, const Item *item)
 {
     static const char *const columns[] = {"x", "y", "z"};
-    const CsvTable *table = road_file(pool, scene_need(item, "file", "a height field"), "x,y,z");
+    const CsvTable *table = scene_file(pool, scene_need(item, "file", "a height field"), "road", "x,y,z");
     check_columns(pool, table, columns, 3, "x,y,z");
     const Point *point = points_sorted(pool, table);
     const Place whole = {table->source, 0, 0};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Run a scene: steps, results, progress, summary. */
-#include "gicrun.h"
+#include "driver.h"
 
 #include <math.h>
 #include <string.h>
@@ -211,6 +211,8 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
     self->road = scene->road;
     self->input_function = scene_inputs;
     self->user = (void *)scene; /* only read */
+    if (scene->driver)
+        driver_start(scene->driver);
     scene_inputs(self->user, 0, 0, instance_array(self, model->input_offset));
     status = set_state(engine, scene, self);
     return status == GIC_OK ? set_fast_states(model, scene, self) : status;
@@ -238,8 +240,36 @@ static void look_around(Run *run)
     show_progress(run);
 }
 
-int scene_step(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end)
+/* What the driver sees; other engines than those with the standard state need a right-hand side to say. */
+static int look(const Engine *engine, gic_head *self, Driver *driver)
 {
+    double state[engine->standard_count + 1], A[9], e[4];
+    const double *own = instance_array(self, engine->code->state_offset);
+    const int status = engine->leave ? engine_look(engine, self, state, NULL) : GIC_OK;
+    const double *y = engine->leave ? state : own;
+    const int half = (engine->standard_count - engine->code->fast_count) / 2;
+    const double norm = sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6]);
+    if (status != GIC_OK)
+        return status;
+    for (int i = 0; i < 4; ++i)
+        e[i] = y[3 + i] / norm;
+    mat_from_euler(e, A);
+    Sight sight = {.yaw = atan2(A[3], A[0])};
+    memcpy(sight.position, y, sizeof sight.position);
+    memcpy(sight.velocity, y + half + 1, sizeof sight.velocity);
+    sight.yaw_rate = vec_dot(A + 6, y + half + 4); /* about the vertical */
+    driver_look(driver, gic_time(self), &sight);
+    return GIC_OK;
+}
+
+int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
+               double end)
+{
+    if (scene->driver && driver_is_due(scene->driver, gic_time(self))) {
+        const int status = look(engine, self, scene->driver);
+        if (status != GIC_OK)
+            return status;
+    }
     if (!variable && scene->method == GIC_AB3)
         return gic_step_dual(model, self, scene->step, scene->ratio);
     if (!variable)
@@ -259,7 +289,7 @@ static int advance(Run *run, double end)
     while (status == GIC_OK && !run->interrupted && (run->variable ? gic_time(run->self) < end : left > 0)) {
         double before = seconds(CLOCK_PROCESS_CPUTIME_ID);
         for (int i = 0; i < BATCH && status == GIC_OK && (run->variable ? gic_time(run->self) < end : left > 0); ++i) {
-            status = scene_step(run->model, run->scene, run->variable, run->self, end);
+            status = scene_step(run->engine, run->model, run->scene, run->variable, run->self, end);
             run->steps += status == GIC_OK;
             --left;
         }

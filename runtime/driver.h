@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A driver that keeps a speed and follows a path: models/SCENE.md section 5. */
+#ifndef DRIVER_H
+#define DRIVER_H
+
+#include "gicrun.h"
+
+/* A quintic in time that starts at `start` and ends at rest after `duration`, s; before it at c[0], after it at `end`.
+ */
+typedef struct Movement {
+    double start, duration, end, c[6];
+} Movement;
+
+/* A line in the plane as points at equal distances `step` along it, m. */
+typedef struct Path {
+    int count; /* at least 2 */
+    double step, (*point)[2];
+    bool closed; /* the last point is the first */
+} Path;
+
+/* What a driver knows of the vehicle: the origin of the base's body frame, m, and its velocity, m/s, world; yaw, rad,
+ * and its rate, rad/s. */
+typedef struct Sight {
+    double position[3], velocity[3], yaw, yaw_rate;
+} Sight;
+
+struct Driver {
+    /* as the scene has it */
+    int accelerator, brake;   /* inputs; -1: no speed is kept */
+    Profile speed;            /* m/s */
+    double gain, integral;    /* 1/s, 1/s^2 */
+    double full[2];           /* m/s^2: of full accelerator, of full brake */
+    int steering;             /* input; -1: no path is followed */
+    bool driven;              /* it is a driven coordinate: rate and acceleration follow */
+    Path path;                /* m, world */
+    double straight;          /* value of the steering to begin with */
+    double per_angle;         /* of the steering over the angle of the front wheels, 1/rad */
+    double wheelbase;         /* m */
+    double preview, shortest; /* how far it looks ahead: s, and m at least */
+    double limit, adapt;      /* largest steering value; 1/s, correction of the curvature driven */
+    double period, reach;     /* s between looks; s that a movement takes */
+    /* as the run has it */
+    int64_t looks; /* so far */
+    double next;   /* time of the next look */
+    double speed_sum, curvature_sum, along;
+    bool seen;
+    Movement pedal[2], wheel;
+};
+
+/* Begin at time 0 with pedals free and steering straight. */
+void driver_start(Driver *driver);
+/* Is it time for a look? */
+bool driver_is_due(const Driver *driver, double time);
+/* Decide on new movements. */
+void driver_look(Driver *driver, double time, const Sight *sight);
+/* Write what it commands into input[]. */
+void driver_inputs(const Driver *driver, double time, double *input);
+
+#endif
