@@ -197,7 +197,7 @@ typedef struct Wheel {
     const char *name;
     Place at;
     int body;
-    double center[3]; /* frame of body */
+    double center[3];                        /* frame of body */
     double radius, stiffness, damping, fade; /* with a tire: those of the tire; fade is the wheel's own */
     int tire;                                /* -1: none, and nothing below counts */
     double axis[3];                          /* s, frame of body */
@@ -214,6 +214,37 @@ enum { FAST_SPIN, FAST_SLIP_X, FAST_SLIP_Y, FAST_BRAKE, FAST_MOST };
 /* 3 or 4; 0 without a tire. */
 int wheel_fast_states(const Wheel *wheel);
 
+/* ---- powertrain: models/POWERTRAIN.md ---- */
+
+/* Passes the torque at its input on to one or two outputs, each a wheel or another differential. */
+typedef struct Differential {
+    const char *name;
+    Place at;
+    int outputs;
+    int wheel[2], differential[2]; /* one of the two, the other -1 */
+    double ratio, split, inertia;
+    const struct Law *lock; /* NULL: none */
+} Differential;
+
+typedef struct Powertrain {
+    Place at;
+    double inertia, idle, limit;         /* of the engine; idle, limit: 0 where there is none */
+    const struct Law *throttle, *torque; /* torque: local 0 speed, 1 throttle */
+    int capacity, multiplication;        /* tables of the converter */
+    int forward, reverse;                /* gears */
+    double *gear;                        /* [reverse + 1 + forward] ratios of gears -reverse to forward; neutral: 0 */
+    const struct Law *selector;          /* NULL: forward */
+    const struct Law **up, **down;       /* [forward - 1] */
+    double latency, duration, turbine;   /* s, s, inertia */
+    int differentials;                   /* outputs stand before what drives them; the last is the root */
+    Differential *differential;
+    int fast;       /* index of its first fast state among the model's */
+    int start_gear; /* at set-up */
+} Powertrain;
+
+enum { POWERTRAIN_SPEED, POWERTRAIN_AGE, POWERTRAIN_FAST };       /* fast states */
+enum { POWERTRAIN_GEAR, POWERTRAIN_BEFORE, POWERTRAIN_DISCRETE }; /* discrete states, behind that of the base */
+
 typedef enum OutputType {
     OUTPUT_POSITION,
     OUTPUT_VELOCITY,
@@ -228,6 +259,7 @@ typedef enum OutputType {
     OUTPUT_WHEEL,
     OUTPUT_TIRE,
     OUTPUT_CONTACT,
+    OUTPUT_POWERTRAIN,
     OUTPUT_ENERGY,
     OUTPUT_TYPES
 } OutputType;
@@ -260,6 +292,7 @@ typedef struct Model {
     Force *force;
     Tire *tire;
     Wheel *wheel;
+    Powertrain *powertrain; /* NULL: none */
     Input *input;
     Output *output;
     Parameter *parameter;

@@ -18,6 +18,7 @@ const char *const output_type_name[OUTPUT_TYPES] = {
     [OUTPUT_WHEEL] = "wheel",
     [OUTPUT_TIRE] = "tire",
     [OUTPUT_CONTACT] = "contact",
+    [OUTPUT_POWERTRAIN] = "powertrain",
     [OUTPUT_ENERGY] = "energy",
 };
 
@@ -78,6 +79,11 @@ static const OutputKind output_kind[OUTPUT_TYPES] = {
                      {"N", "N", "N m", "N m", "N m", "1", "rad", "rad", "rad/s", "rad/s^2", "N m", "N m"},
                      {0}},
     [OUTPUT_CONTACT] = {3, {"x", "y", "z"}, {"m", "m", "m"}, {0}},
+    [OUTPUT_POWERTRAIN] = {8,
+                           {"engine_speed", "engine_torque", "throttle", "gear", "ratio", "turbine_speed",
+                            "turbine_torque", "pump_torque"},
+                           {"rad/s", "N m", "1", "1", "1", "rad/s", "N m", "N m"},
+                           {0}},
     [OUTPUT_ENERGY] = {3, {"kinetic", "potential", "power"}, {"J", "J", "W"}, {0}},
 };
 

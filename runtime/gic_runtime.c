@@ -187,6 +187,8 @@ static void move_on(const gic_model *model, void *self, gic_real step, int32_t m
     copy(array_at(self, model->state_offset), next, n);
     copy(array_at(self, model->rate_offset), rate, n);
     set_inputs(model, self, gic_time(self));
+    if (model->shift)
+        (void)model->shift(self);
 }
 
 int gic_step(const gic_model *model, void *self, gic_real step, int32_t method)

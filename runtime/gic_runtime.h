@@ -165,6 +165,9 @@ typedef struct gic_model {
     int (*fast)(void *self, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate);
     /* let all wheels roll at the present state: TIRES.md section 2 */
     int (*roll)(void *self);
+    /* Discrete states at the present state, after a step (POWERTRAIN.md section 4): 1 where they change; NULL: they
+     * change by themselves. Step functions call it. */
+    int (*shift)(void *self);
 } gic_model;
 
 /* With n = slow_count + fast_count: state has n numbers; rate n, at the start of the last step; history 2 n, two past

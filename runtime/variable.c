@@ -169,5 +169,7 @@ int variable_step(Variable *variable, void *instance, double end)
         gic_restart(self, time);
     }
     refresh_inputs(model, self, gic_time(self));
+    if (status == GIC_OK && model->shift && model->shift(self))
+        variable->fresh = true;
     return status;
 }

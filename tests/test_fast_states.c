@@ -271,7 +271,7 @@ static void test_ratio(void **unused)
     assert_int_equal(scene_start(&bench.engine, scene, &bench.fake->instance.head), GIC_OK);
     for (int k = 0; k < 3; ++k) {
         memset(bench.fake->calls, 0, sizeof bench.fake->calls);
-        assert_int_equal(scene_step(&bench.code, scene, NULL, &bench.fake->instance.head, 0), GIC_OK);
+        assert_int_equal(scene_step(&bench.engine, &bench.code, scene, NULL, &bench.fake->instance.head, 0), GIC_OK);
     }
     assert_int_equal(bench.fake->calls[0], 1);
     assert_int_equal(bench.fake->calls[1], 6);
@@ -282,7 +282,7 @@ static void test_ratio(void **unused)
     /* a scene that is run with another integrator */
     Scene other = *scene;
     other.method = GIC_RK4;
-    assert_int_equal(scene_step(&bench.code, &other, NULL, &bench.fake->instance.head, 0), GIC_OK);
+    assert_int_equal(scene_step(&bench.engine, &bench.code, &other, NULL, &bench.fake->instance.head, 0), GIC_OK);
     assert_int_equal(bench.fake->instance.head.ratio, 1);
     pool_free(bench.pool);
 }
