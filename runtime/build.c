@@ -196,6 +196,7 @@ const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *opt
         fprintf(stderr, "gicrun: note: the compiled model is not kept for the next run: %s\n", b.unkept);
 
     Engine *engine = pool_alloc(pool, sizeof *engine);
-    *engine = (Engine){.name = "cc", .code = code, .standard = code->state, .standard_count = code->slow_count + code->fast_count};
+    *engine = (Engine){
+        .name = "cc", .code = code, .standard = code->state, .standard_count = code->slow_count + code->fast_count};
     return engine;
 }
