@@ -187,6 +187,13 @@ static void operations(const Report *r, Text *out)
             count_row(out, class->name, "react", f->reacting[c], f->react[c]);
     }
     count_row(out, "all together", "forces and equations of motion", 1, f->dynamics);
+    const Wheels *wheels = r->formulation->wheels;
+    if (wheels) {
+        count_row(out, "all together", "motion of the wheels", 1, f->link);
+        count_row(out, "all together", "drives and brakes", 1, f->torque);
+        for (int c = 0; c < wheels->classes; ++c)
+            count_row(out, wheels->class[c].name, "wheel with its tire", wheels->class[c].members, f->wheel[c]);
+    }
     if (formulation_reacts(r->formulation))
         count_row(out, "all together", "wrenches", 1, f->wrenches);
     count_row(out, "all together", "outputs", 1, f->outputs);
@@ -231,6 +238,8 @@ static void totals(const Report *r, Text *out)
     total_row(out, "AB3 step, worst case", worst, 1);
     total_row(out, "RK4 step or one of the first two AB3 steps, usual", usual, STAGES_OF_RK4);
     total_row(out, "RK4 step or one of the first two AB3 steps, worst case", worst, STAGES_OF_RK4);
+    if (r->formulation->wheels)
+        total_row(out, "fast step: all wheels", f->fast, 1);
     total_row(out, "outputs, usual", asked, 1);
     table_close(out);
 }
@@ -396,7 +405,7 @@ static void signal_row(Text *out, int index, const char *name, const char *unit)
 
 static void states(const Report *r, Text *out)
 {
-    int count = r->formulation->plan->states;
+    int count = r->formulation->plan->states + r->model->fast_states;
     if (!signals_open(out, count, "states", "States", "#place|name|unit|#at set-up"))
         return;
     for (int i = 0; i < count; ++i) {

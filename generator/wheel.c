@@ -369,12 +369,12 @@ typedef struct Linking {
     int *place[2]; /* [coordinates] of values and of rates, 0: not there, for a wheel's centre is */
 } Linking;
 
-/* Formulas are evaluated at fast steps, where coordinates come with the link. */
+/* Formulas are evaluated at fast steps, where free coordinates come with the link. */
 static void link_law(Linking *l, const Law *law)
 {
     if (!law)
         return;
-    if (law->op == LAW_VALUE || law->op == LAW_RATE) {
+    if ((law->op == LAW_VALUE || law->op == LAW_RATE) && !l->whole->model->coordinate[law->index].driven) {
         bool rate = law->op == LAW_RATE;
         int *place = &l->place[rate][law->index];
         if (!*place) {
@@ -431,6 +431,12 @@ const Wheels *wheels_formulate(Pool *pool, const Plan *plan)
     wheels->link.dag = l.whole->dag;
     wheels->torque.dag = l.torques->dag;
     classes_find(pool, model, wheels);
+    for (int w = 0; w < model->coordinates; ++w)
+        if (model->coordinate[w].driven) { /* what inputs of the moment make of it */
+            int input = model->coordinate[w].input;
+            l.torques->x[w] = ex_input(l.torques->dag, pool_print(pool, "u[%d]", input), NULL);
+            l.torques->xd[w] = ex_input(l.torques->dag, pool_print(pool, "u[%d]", input + 1), NULL);
+        }
     for (int i = 0; i < model->wheels; ++i)
         if (model->wheel[i].tire >= 0)
             link_wheel(l.whole, &wheels->link, &model->wheel[i], LINK_NUMBERS * wheels->count++);
