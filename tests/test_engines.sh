@@ -78,7 +78,10 @@ sed "s|parts/|$root/models/parts/|g; s/^model: .*/model: steered/; s/^  rack: *{
 echo "$outputs" >>steered.veh
 
 for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" steered.veh; do
-    at_states "$model" 1
+    case $model in
+    */hmmwv_tires.veh | */hmmwv_tmeasy.veh) ;; # below, with states of their wheels
+    *) at_states "$model" 1 ;;
+    esac
 done
 for seed in $(seq 1 "${VEHICLES:-3}"); do
     "$random_vehicle" --seed "$seed" >"random$seed.veh" && at_states "random$seed.veh" "$seed"
@@ -208,6 +211,100 @@ for engine in $engines; do
         "$gicrun" --quiet --engine "$engine" "$root/models/hmmwv.veh" seldom.scene -o seldom.csv >said 2>&1 &&
         [ "$(tail -n 1 often.csv)" = "$(tail -n 1 seldom.csv)" ]
     check $? "$engine: outputs leave no trace"
+done
+
+# ---- wheels with tires ------------------------------------------------------------------------------------------
+
+# rolling MODEL SEED: against generated code at states of any attitude, with any spin, slip and brake, on a wavy road
+cat >wavy.scene <<'END'
+gicscene: 1
+duration: 1
+step: 0.001
+road: {type: sine, amplitude: 0.03, wavelength: 5, phase_per_y: 0.6}
+END
+rolling() {
+    "$gicgen" --dump-model "$1" >dump && "$states" dump --count "${ROWS:-5}" --seed "$2" -o states.csv &&
+        awk -v seed="$2" 'BEGIN { srand(seed); wheels = split("f_l f_r r_l r_r", wheel); parts = split("spin slip_x slip_y brake", part) }
+            {
+                for (w = 1; w <= wheels; ++w)
+                    for (p = 1; p <= parts; ++p)
+                        $0 = $0 "," (NR == 1 ? "tire_" wheel[w] "." part[p] : (p == 1 ? 60 : 2.4) * (rand() - 0.5))
+                print $0 "," (NR == 1 ? "brake,drive_torque" : rand() "," 4000 * (rand() - 0.5))
+            }' states.csv >rolling.csv &&
+        "$gicrun" --engine cc --cc "$cc" --eval rolling.csv "$1" wavy.scene -o generated.csv >said 2>&1
+    check $? "states of $1 with generated code"
+    for engine in $engines; do
+        "$gicrun" --engine "$engine" --cc false --eval rolling.csv "$1" wavy.scene -o results.csv >said 2>&1 &&
+            cut -d, -f"$(columns generated.csv)" generated.csv >wanted &&
+            cut -d, -f"$(columns results.csv)" results.csv >found && near wanted found 1e-10 >said && closed >said
+        check $? "$engine at rolling states of $1"
+    done
+}
+
+# columns FILE: numbers of those that hold what is computed, without residual, status and message
+columns() {
+    head -n 1 "$1" | awk -F, '{ print "1-" NF - 3 }'
+}
+
+for model in hmmwv_tires hmmwv_tmeasy; do
+    rolling "$root/models/$model.veh" 1
+done
+
+# wheels scene NAME: from standard input; a step of which stiff brakes and tires are well within reach
+wheels() {
+    { echo "gicscene: 1" && cat; } >"$1.scene"
+    along "$2" "$1.scene"
+}
+tires=$root/models/hmmwv_tires.veh
+wheels lock "$tires" <<'END'
+duration: 1.5
+step: 0.001
+integrator: rk4
+output_step: 0.01
+initial: {speed: 8}
+inputs: {brake: {knots: {times: [0.2, 0.4], values: [0, 1]}}, rack: 0.005}
+END
+wheels park "$tires" <<'END'
+duration: 1
+step: 0.001
+integrator: rk4
+output_step: 0.01
+initial: {orientation: {pitch: -0.1}}
+road: {type: slope, x: 0.1}
+inputs: {brake: 0.5}
+END
+wheels jump "$tires" <<'END'
+duration: 0.8
+step: 0.001
+integrator: rk4
+output_step: 0.01
+initial: {position: [0, 0, 0.75], velocity: [12, 0, 1], angular_velocity: [0.1, 0, 0.2]}
+inputs: {drive_torque: 800}
+END
+wheels rough "$root/models/hmmwv_tmeasy.veh" <<'END'
+duration: 1
+step: 0.001
+integrator: rk4
+output_step: 0.01
+initial: {speed: 10}
+road: {type: sine, amplitude: 0.02, wavelength: 3, phase_per_y: 0.7}
+inputs: {drive_torque: 1000, rack: {knots: {times: [0, 0.5], values: [0, 0.02]}}}
+END
+# dual rate: gic as generated code; gcp1, whose slow states are others, to the truncation error of 4 ms
+cat >dual.scene <<'END'
+gicscene: 1
+duration: 1
+step: 0.004
+ratio: 4
+initial: {speed: 10}
+inputs: {drive_torque: 1000, rack: {knots: {times: [0, 0.5], values: [0, 0.02]}}}
+END
+"$gicrun" --quiet --engine cc --cc "$cc" "$tires" dual.scene -o generated.csv >said 2>&1
+check $? "dual rate with generated code"
+for engine in gic:1e-9 gcp1:1e-3; do
+    "$gicrun" --quiet --engine "${engine%:*}" "$tires" dual.scene -o interpreted.csv >said 2>&1 &&
+        near generated.csv interpreted.csv "${engine#*:}" >said
+    check $? "${engine%:*} with dual rate"
 done
 
 # a vehicle that turns about makes partitioning change its mind; the two solvers differ in the last digits
