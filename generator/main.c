@@ -108,18 +108,12 @@ static Options read_options(int count, char **word)
     return options;
 }
 
-static bool ends_with(const char *s, const char *end)
-{
-    size_t length = strlen(s), tail = strlen(end);
-    return length >= tail && !strcmp(s + length - tail, end);
-}
-
 /* FILE.c and FILE.h; the code includes <model>.h, so the names must agree. */
 static void write_code(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)
 {
     Text c = {.pool = pool}, h = {.pool = pool};
     const char *path = options->output ? options->output : pool_print(pool, "%s.c", model->name);
-    if (strcmp(path, "-") && !ends_with(path, ".c"))
+    if (strcmp(path, "-") && !path_ends(path, ".c"))
         usage_error("the generated file must end in .c", path);
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
@@ -138,9 +132,9 @@ static void write_graph(Pool *pool, const Model *model, const Sequence *sequence
 {
     Text dot = {.pool = pool};
     graph_draw(&dot, model, sequence);
-    if (ends_with(options->page, ".svg"))
+    if (path_ends(options->page, ".svg"))
         picture_write(pool, options->page, &dot);
-    else if (ends_with(options->page, ".dot") || !strcmp(options->page, "-"))
+    else if (path_ends(options->page, ".dot") || !strcmp(options->page, "-"))
         file_write(options->page, dot.s, dot.size);
     else
         usage_error("the picture's name must end in .svg or .dot", options->page);
@@ -149,7 +143,7 @@ static void write_graph(Pool *pool, const Model *model, const Sequence *sequence
 static void write_report(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)
 {
     Text c = {.pool = pool}, h = {.pool = pool}, page = {.pool = pool};
-    if (strcmp(options->page, "-") && !ends_with(options->page, ".html"))
+    if (strcmp(options->page, "-") && !path_ends(options->page, ".html"))
         usage_error("the report's name must end in .html", options->page);
     const Formulation *formulation = formulate(pool, model, sequence, options->solve);
     generate(pool, formulation, &style_readable, options->templates, NULL, &c, &h);

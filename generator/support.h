@@ -61,6 +61,8 @@ void file_write(const char *path, const char *bytes, size_t size);
 /* Is there something at `path` that is no file, a device or pipe? It is written to as it is: a rename would replace it.
  */
 bool file_is_special(const char *path);
+/* Does a path end so, with something before it? */
+bool path_ends(const char *path, const char *end);
 /* All bytes of a file ("-": standard input), terminated. Exits with a message when it can't be read. */
 char *file_read(Pool *pool, const char *path, size_t *size);
 

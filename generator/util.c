@@ -209,6 +209,12 @@ bool file_is_special(const char *path)
     return !stat(path, &is) && !S_ISREG(is.st_mode) && !S_ISDIR(is.st_mode);
 }
 
+bool path_ends(const char *path, const char *end)
+{
+    const size_t n = strlen(path), m = strlen(end);
+    return n > m && !strcmp(path + n - m, end);
+}
+
 void file_write(const char *path, const char *bytes, size_t size)
 {
     if (!strcmp(path, "-")) {

@@ -161,12 +161,6 @@ static int older_first(const void *a, const void *b)
     return (s->tv_nsec > t->tv_nsec) - (s->tv_nsec < t->tv_nsec);
 }
 
-static bool ends_with(const char *s, const char *end)
-{
-    const size_t length = strlen(s), tail = strlen(end);
-    return length >= tail && !strcmp(s + length - tail, end);
-}
-
 /* Drop the least recently used objects beyond the limit, and what killed processes left an hour ago. */
 static void trim(Pool *pool, const char *folder, int64_t most)
 {
@@ -180,7 +174,7 @@ static void trim(Pool *pool, const char *folder, int64_t most)
         struct stat is;
         Kept one = {.path = pool_print(pool, "%s/%s", folder, entry->d_name),
                     .unfinished = strstr(entry->d_name, ".so.") != NULL};
-        if ((!one.unfinished && !ends_with(entry->d_name, ".so")) || stat(one.path, &is))
+        if ((!one.unfinished && !path_ends(entry->d_name, ".so")) || stat(one.path, &is))
             continue;
         one.size = (int64_t)is.st_size;
         one.used = is.st_mtim;

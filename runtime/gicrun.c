@@ -8,14 +8,17 @@
 
 static const char help[] =
     "usage: gicrun MODEL.veh SCENE [-o results.csv] [--plot picture.svg|picture.png]\n"
+    "              [--animate page.html]\n"
     "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
     "\n"
     "Generates C for a vehicle model, compiles it and runs a scene, or evaluates rows of\n"
     "states: accelerations, poses of all bodies, outputs.\n"
     "\n"
     "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
-    "                     picture is asked for)\n"
+    "                     picture or a page is asked for)\n"
     "      --plot FILE    draw the scene's `plot` outputs over time with gnuplot\n"
+    "      --animate FILE write a page for a browser, complete in itself, in which the model\n"
+    "                     moves along its road\n"
     "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
     "                     a scene gives the road only\n"
     "      --integrator NAME\n"
@@ -78,10 +81,11 @@ static const char *read_engine(const char *name)
 
 static Request read_command_line(int count, char **word)
 {
-    enum { PLOT = 256, EVAL, ENGINE, SOLVE, COMPILER, FLAGS, INTEGRATOR, TOLERANCE, VERSION };
+    enum { PLOT = 256, ANIMATE, EVAL, ENGINE, SOLVE, COMPILER, FLAGS, INTEGRATOR, TOLERANCE, VERSION };
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
         {"plot", required_argument, NULL, PLOT},
+        {"animate", required_argument, NULL, ANIMATE},
         {"eval", required_argument, NULL, EVAL},
         {"integrator", required_argument, NULL, INTEGRATOR},
         {"tolerance", required_argument, NULL, TOLERANCE},
@@ -99,6 +103,7 @@ static Request read_command_line(int count, char **word)
         switch (option) {
         case 'o': request.results = optarg; break;
         case PLOT: request.picture = optarg; break;
+        case ANIMATE: request.page = optarg; break;
         case EVAL: request.states = optarg; break;
         case INTEGRATOR: request.integrator = optarg; break;
         case TOLERANCE: request.tolerance = read_tolerance(optarg); break;
@@ -132,7 +137,11 @@ static Request read_command_line(int count, char **word)
         usage_fail("--plot goes with a scene, not with --eval", NULL);
     if (request.picture && !plot_known(request.picture))
         usage_fail("the picture must end in .svg or .png, unlike", request.picture);
-    if (!request.results && !request.picture)
+    if (request.page && request.states)
+        usage_fail("--animate goes with a scene, not with --eval", NULL);
+    if (request.page && !path_ends(request.page, ".html"))
+        usage_fail("the page must end in .html, unlike", request.page);
+    if (!request.results && !request.picture && !request.page)
         request.results = "-";
     return request;
 }
@@ -144,16 +153,14 @@ int main(int count, char **word)
     const Model *model = model_read(pool, request.model);
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
-    const Engine *engine =
-        engine_open(pool, request.engine, model,
-                    &(EngineOptions){.solve = request.solve,
-                                     .compiler = request.compiler,
-                                     .flags = request.flags,
-                                     .quiet = request.quiet});
+    const Engine *engine = engine_open(
+        pool, request.engine, model,
+        &(EngineOptions){
+            .solve = request.solve, .compiler = request.compiler, .flags = request.flags, .quiet = request.quiet});
     if (request.states)
         evaluate(pool, engine, scene, &request);
     else
-        simulate(pool, engine, scene, &request);
+        simulate(pool, engine, scene, request.page ? animation_new(pool, model, scene, request.scene) : NULL, &request);
     engine_close(engine);
     pool_free(pool);
     return 0;

@@ -17,6 +17,7 @@ typedef struct Request {
     const char *states;        /* --eval, or NULL */
     const char *results;       /* "-": standard output; NULL: none */
     const char *picture;       /* NULL: none */
+    const char *page;          /* --animate, or NULL */
     const char *engine;        /* one of engine_name */
     Solve solve;
     const char *compiler;   /* command, perhaps with options */
@@ -163,6 +164,17 @@ void plot_write(Pool *pool, const Plot *plot, const char *path);
 int gnuplot_run(Pool *pool, const char *script, const char *temporary, const char *path, const char **said);
 bool plot_known(const char *path); /* does `path` end in .svg or .png? */
 
+/* ---- animate.c: a page of HTML in which the model moves ------------------------------------------------- */
+
+typedef struct Animation Animation;
+
+/* Before a run of a scene, whose name the page shows. */
+Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path);
+/* At each output time, with outputs computed: keep what is seen where the time is one of a frame. Returns a status. */
+int animation_frame(Animation *animation, const gic_model *code, gic_head *self);
+/* The page; exits with a message when it can't be written. */
+void animation_write(Animation *animation, const char *path);
+
 /* ---- simulate.c, eval.c --------------------------------------------------------------------------------- */
 
 /* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
@@ -171,8 +183,9 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self);
  * `end` that stops at kinks of inputs. Before it the driver looks, where it is time for that. */
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
                double end);
-/* Run a scene: results, picture, summary. A failure on the way keeps what was computed and ends in diag_fail. */
-void simulate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);
+/* Run a scene: results, picture, page (animation: NULL where none is asked for), summary. A failure on the way keeps
+ * what was computed and ends in diag_fail. */
+void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *animation, const Request *request);
 /* Evaluate rows of states (--eval). scene may be NULL; only its road is used. */
 void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);
 

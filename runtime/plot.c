@@ -8,15 +8,9 @@
 
 enum { WIDTH = 900, PANEL_HEIGHT = 420 };
 
-static bool ends_with(const char *s, const char *end)
-{
-    size_t n = strlen(s), m = strlen(end);
-    return n > m && !strcmp(s + n - m, end);
-}
-
 bool plot_known(const char *path)
 {
-    return ends_with(path, ".svg") || ends_with(path, ".png");
+    return path_ends(path, ".svg") || path_ends(path, ".png");
 }
 
 /* In single quotes of gnuplot, where only the quote itself is special. */
@@ -68,7 +62,7 @@ static const char *plot_script(Pool *pool, const Plot *plot, const char *path, c
         panels += opens_panel(plot, i);
     data_block(&script, plot);
     text_print(&script, "set terminal %s size %d,%d noenhanced\nset output ",
-               ends_with(path, ".svg") ? "svg background 'white'" : "pngcairo", WIDTH, PANEL_HEIGHT * panels + 40);
+               path_ends(path, ".svg") ? "svg background 'white'" : "pngcairo", WIDTH, PANEL_HEIGHT * panels + 40);
     quoted(&script, temporary);
     text_print(&script,
                "\nset grid\nset key outside center top horizontal\nset lmargin 10\nset tmargin 4\n"

@@ -27,6 +27,7 @@ typedef struct Run {
     int64_t steps;
     Csv csv;
     Plot plot;
+    Animation *animation;   /* NULL: none */
     int64_t samples, every; /* output times so far; one in `every` goes into the picture */
     double constraint;      /* largest residual so far */
     double integrating;     /* CPU seconds in steps */
@@ -110,11 +111,12 @@ static void prepare_plot(Run *run)
     run->plot.sample = pool_alloc(run->pool, sizeof(double) * (size_t)rows * (size_t)(scene->curves + 1));
 }
 
-/* Compute outputs at the present time on the copy. */
+/* Compute outputs at the present time on the copy, and what is seen then. Once an output time. */
 static int compute_outputs(Run *run)
 {
     memcpy(run->copy, run->self, run->model->size);
-    return run->model->outputs(run->copy);
+    const int status = run->model->outputs(run->copy);
+    return status == GIC_OK && run->animation ? animation_frame(run->animation, run->model, run->copy) : status;
 }
 
 static void record(Run *run)
@@ -317,11 +319,12 @@ static int run_all(Run *run, const gic_head **failed)
     return GIC_OK;
 }
 
-void simulate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request)
+void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *animation, const Request *request)
 {
     const gic_model *model = engine->code;
     const Place at = {scene->source, 0, 0};
-    Run run = {.pool = pool, .engine = engine, .model = model, .scene = scene, .request = request};
+    Run run = {
+        .pool = pool, .engine = engine, .model = model, .scene = scene, .request = request, .animation = animation};
     run.self = instance_new(pool, engine);
     run.copy = instance_new(pool, engine);
     int status = scene_start(engine, scene, run.self);
@@ -354,6 +357,8 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
     variable_close(run.variable);
     if (!request->quiet)
         summary(&run, seconds(CLOCK_PROCESS_CPUTIME_ID) - before);
+    if (animation)
+        animation_write(animation, request->page);
     if (request->picture)
         plot_write(pool, &run.plot, request->picture);
     if (status != GIC_OK)

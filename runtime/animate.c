@@ -1,0 +1,361 @@
+/* SPDX-License-Identifier: MIT
+ * The page of --animate: poses of all bodies, wheels and curves of the picture at frames, as JSON inside a page that
+ * needs nothing else. How the page shows them: templates/animate*.in. */
+#include "animate.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Frames: 50 a second, more in a run so short that it would have less than FEWEST, less in one so long that it would
+ * have more than MOST. FEWEST: fluent at a tenth of the speed; MOST: some 3 MB of the HMMWV, two minutes. */
+enum { FEWEST = 600, MOST = 6000 };
+
+static const double frame_rate = 50;
+
+enum { POSE = 7, WHEEL_CHANNELS = 7 }; /* angle, force, contact */
+
+struct Animation {
+    Pool *pool;
+    const Model *model;
+    const Scene *scene;
+    const char *scene_path;
+    Shapes shapes;
+    int64_t times, every; /* output times so far; one in `every` is a frame */
+    int frames, channels;
+    int wheels, curves; /* where their channels begin, behind those of the bodies */
+    int *contact;       /* [wheels] index in output[] of fz, deflection, its rate, height; -1: no output tells */
+    double *value;      /* [frames][channels] */
+};
+
+/* The first component of an output about a wheel, -1: there is none. */
+static int wheel_output(const Model *model, int wheel)
+{
+    int at = 0;
+    for (int i = 0; i < model->outputs; at += model->output[i++].count)
+        if (model->output[i].type == OUTPUT_WHEEL && model->output[i].index == wheel)
+            return at;
+    return -1;
+}
+
+Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path)
+{
+    Animation *a = pool_alloc(pool, sizeof *a);
+    const double most = fmin(fmax(frame_rate * scene->duration, FEWEST), MOST);
+    *a = (Animation){.pool = pool, .model = model, .scene = scene, .scene_path = scene_path};
+    a->shapes = shapes_of(pool, model, scene);
+    a->every = (int64_t)fmax(ceil((double)scene->outputs / most), 1);
+    a->wheels = POSE * model->bodies;
+    a->curves = a->wheels + WHEEL_CHANNELS * model->wheels;
+    a->channels = a->curves + scene->curves;
+    a->contact = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *a->contact);
+    for (int w = 0; w < model->wheels; ++w)
+        a->contact[w] = wheel_output(model, w);
+    a->value = pool_alloc(pool, (size_t)(scene->outputs / a->every + 1) * (size_t)a->channels * sizeof *a->value);
+    return a;
+}
+
+/* ---- frames ------------------------------------------------------------------------------------------------------ */
+
+/* Of p and -p, the same orientation, the one near the frame before: what is between frames is interpolated. */
+static void keep_sign(double *pose, const double *before)
+{
+    double product = 0;
+    for (int i = 3; i < POSE; ++i)
+        product += pose[i] * before[i];
+    for (int i = 3; i < POSE && product < 0; ++i)
+        pose[i] = -pose[i];
+}
+
+static const double *pose_of(const double *frame, int body)
+{
+    return frame + POSE * body;
+}
+
+void pose_point(const double *pose, const double s[3], double out[3])
+{
+    double A[9];
+    mat_from_euler(pose + 3, A);
+    mat_apply(A, s, out);
+    for (int i = 0; i < 3; ++i)
+        out[i] += pose[i];
+}
+
+/* The angle of a wheel that rolls: the way of its centre along the road since the frame before, over its radius. */
+static double rolled(const Animation *a, int w, const double *frame, const double *before)
+{
+    const Wheel *wheel = &a->model->wheel[w];
+    const double *shape = a->shapes.axis[w], up[3] = {0, 0, 1};
+    double A[9], axis[3], ahead[3], now[3], then[3];
+    mat_from_euler(pose_of(frame, wheel->body) + 3, A);
+    mat_apply(A, shape, axis);
+    vec_cross(axis, up, ahead);
+    pose_point(pose_of(frame, wheel->body), a->shapes.center[w], now);
+    pose_point(pose_of(before, wheel->body), a->shapes.center[w], then);
+    for (int i = 0; i < 3; ++i)
+        now[i] -= then[i];
+    return vec_dot(now, ahead) / fmax(vec_norm(ahead), 1e-9) / wheel->radius;
+}
+
+static void set_wheel(const Animation *a, int w, const double *output, double *frame, const double *before)
+{
+    double *channel = frame + a->wheels + WHEEL_CHANNELS * w, *force = channel + 1, *contact = channel + 4;
+    channel[0] = before ? before[a->wheels + WHEEL_CHANNELS * w] + rolled(a, w, frame, before) : 0;
+    pose_point(pose_of(frame, a->model->wheel[w].body), a->shapes.center[w], contact);
+    if (a->contact[w] < 0)
+        return;
+    force[2] = output[a->contact[w]];
+    contact[2] = output[a->contact[w] + 3];
+}
+
+int animation_frame(Animation *a, const gic_model *code, gic_head *self)
+{
+    if (a->times++ % a->every)
+        return GIC_OK;
+    const double *output = instance_array(self, code->output_offset);
+    double *frame = a->value + (size_t)a->frames * (size_t)a->channels;
+    const double *before = a->frames ? frame - a->channels : NULL;
+    const int status = code->poses(self, frame);
+    if (status != GIC_OK)
+        return status;
+    for (int b = 0; before && b < a->model->bodies; ++b)
+        keep_sign(frame + POSE * b, before + POSE * b);
+    for (int w = 0; w < a->model->wheels; ++w)
+        set_wheel(a, w, output, frame, before);
+    for (int i = 0; i < a->scene->curves; ++i)
+        frame[a->curves + i] = output[a->scene->curve[i]];
+    ++a->frames;
+    return GIC_OK;
+}
+
+/* ---- JSON -------------------------------------------------------------------------------------------------------- */
+
+/* What ends a script of HTML begins with '<'. */
+static void json_text(Text *out, const char *s)
+{
+    text_print(out, "\"");
+    for (; s && *s; ++s)
+        if (*s == '"' || *s == '\\')
+            text_print(out, "\\%c", *s);
+        else if ((unsigned char)*s < ' ' || *s == '<')
+            text_print(out, "\\u%04x", (unsigned)*s);
+        else
+            text_add(out, s, 1);
+    text_print(out, "\"");
+}
+
+static void json_vector(Text *out, const char *key, const double v[3])
+{
+    text_print(out, "\"%s\":[%.6g,%.6g,%.6g]", key, v[0], v[1], v[2]);
+}
+
+static void json_key(Text *out, const char *key, const char *value)
+{
+    text_print(out, "\"%s\":", key);
+    json_text(out, value);
+    text_print(out, ",");
+}
+
+/* A power of ten, 1e-5 to 1e-4 of x. */
+static double unit_for(double x)
+{
+    return x > 0 ? pow(10, floor(log10(x)) - 4) : 1;
+}
+
+static double channel_unit(const Animation *a, int c, double length)
+{
+    if (c < a->wheels)
+        return c % POSE < 3 ? length : 1e-5;
+    if (c < a->curves && (c - a->wheels) % WHEEL_CHANNELS == 0)
+        return 1e-3;
+    if (c < a->curves && (c - a->wheels) % WHEEL_CHANNELS > 3)
+        return length;
+    double most = 0;
+    for (int k = 0; k < a->frames; ++k)
+        most = fmax(most, fabs(a->value[(size_t)k * (size_t)a->channels + (size_t)c]));
+    return unit_for(most);
+}
+
+/* Motion is smooth: second differences are short numbers. */
+static void json_channel(const Animation *a, int c, double unit, Text *out)
+{
+    int64_t value = 0, step = 0;
+    bool still = true;
+    text_print(out, "{\"unit\":%.9g,\"values\":[", unit);
+    for (int k = 1; k < a->frames; ++k)
+        still = still &&
+                llround(a->value[(size_t)k * (size_t)a->channels + (size_t)c] / unit) == llround(a->value[c] / unit);
+    for (int k = 0; k < (still ? 1 : a->frames); ++k) {
+        const int64_t now = llround(a->value[(size_t)k * (size_t)a->channels + (size_t)c] / unit), change = now - value;
+        text_print(out, "%s%lld", k ? "," : "", (long long)(k > 1 ? change - step : change));
+        step = k ? change : 0;
+        value = now;
+    }
+    text_print(out, "]}");
+}
+
+static void json_bodies(const Animation *a, Text *out)
+{
+    text_print(out, "\"bodies\":[");
+    for (int b = 0; b < a->model->bodies; ++b) {
+        const Shape *shape = &a->shapes.body[b];
+        text_print(out, "%s\n{", b ? "," : "");
+        json_key(out, "name", a->model->body[b].name);
+        text_print(out, "\"motion\":%d,\"mass\":%.6g,", POSE * b, a->model->body[b].mass);
+        json_vector(out, "com", shape->com);
+        text_print(out, ",");
+        json_vector(out, "box", shape->box);
+        text_print(out, ",\"points\":[");
+        for (int i = 0; i < shape->points; ++i)
+            text_print(out, "%s[%.6g,%.6g,%.6g]", i ? "," : "", shape->point[i].x[0], shape->point[i].x[1],
+                       shape->point[i].x[2]);
+        text_print(out, "]}");
+    }
+    text_print(out, "],\n");
+}
+
+static void json_lines(const Animation *a, Text *out)
+{
+    text_print(out, "\"lines\":[");
+    for (int i = 0; i < a->shapes.lines; ++i) {
+        const Line *line = &a->shapes.line[i];
+        text_print(out, "%s\n{", i ? "," : "");
+        json_key(out, "name", line->name);
+        json_key(out, "kind", line->kind);
+        text_print(out, "\"a\":%d,\"b\":%d,", line->body[0], line->body[1]);
+        json_vector(out, "p", line->point[0]);
+        text_print(out, ",");
+        json_vector(out, "q", line->point[1]);
+        text_print(out, "}");
+    }
+    text_print(out, "],\n");
+}
+
+static void json_wheels(const Animation *a, Text *out)
+{
+    text_print(out, "\"wheels\":[");
+    for (int w = 0; w < a->model->wheels; ++w) {
+        const Wheel *wheel = &a->model->wheel[w];
+        const int angle = a->wheels + WHEEL_CHANNELS * w;
+        text_print(out, "%s\n{", w ? "," : "");
+        json_key(out, "name", wheel->name);
+        text_print(out, "\"body\":%d,\"radius\":%.6g,\"width\":%.6g,\"angle\":%d,", wheel->body, wheel->radius,
+                   a->shapes.width[w], angle);
+        json_vector(out, "center", a->shapes.center[w]);
+        text_print(out, ",");
+        json_vector(out, "axis", a->shapes.axis[w]);
+        if (a->contact[w] >= 0)
+            text_print(out, ",\"force\":[%d,%d,%d],\"contact\":[%d,%d,%d]", angle + 1, angle + 2, angle + 3, angle + 4,
+                       angle + 5, angle + 6);
+        text_print(out, "}");
+    }
+    text_print(out, "],\n");
+}
+
+/* The scene's `plot`. */
+static void json_curves(const Animation *a, Text *out)
+{
+    text_print(out, "\"curves\":[");
+    for (int i = 0, first = 0; i < a->model->outputs; first += a->model->output[i++].count)
+        for (int k = 0; k < a->scene->curves; ++k) {
+            const int c = a->scene->curve[k] - first;
+            if (c < 0 || c >= a->model->output[i].count)
+                continue;
+            text_print(out, "%s\n{", out->s[out->size - 1] == '[' ? "" : ",");
+            json_key(out, "name", a->model->output[i].component[c]);
+            json_key(out, "unit", a->model->output[i].unit[c]);
+            text_print(out, "\"values\":%d}", a->curves + k);
+        }
+    text_print(out, "],\n");
+}
+
+/* ---- the page ---------------------------------------------------------------------------------------------------- */
+
+/* Extent of the vehicle as it begins, or of all that moves on a fixed base; and the height below which there is nothing
+ * at any frame. */
+static double extent(const Animation *a, double *lowest)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, x[3];
+    *lowest = INFINITY;
+    for (int k = 0; k < a->frames; ++k)
+        for (int b = 0; b < a->model->bodies; ++b)
+            for (int i = 0; i < a->shapes.body[b].points; ++i) {
+                const double *frame = a->value + (size_t)k * (size_t)a->channels;
+                pose_point(pose_of(frame, b), a->shapes.body[b].point[i].x, x);
+                *lowest = fmin(*lowest, x[2]);
+                for (int c = 0; c < 3 && (!k || !a->model->free_base); ++c) {
+                    low[c] = fmin(low[c], x[c]);
+                    high[c] = fmax(high[c], x[c]);
+                }
+            }
+    double size = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    for (int w = 0; w < a->model->wheels; ++w)
+        size = fmax(size, 4 * a->model->wheel[w].radius);
+    return size > 0 ? size : 1;
+}
+
+/* The way of the base over the frames, which the road goes along; of a fixed base the middle of the other bodies. */
+static double *way_of(const Animation *a)
+{
+    double *way = pool_alloc(a->pool, (size_t)a->frames * 2 * sizeof *way);
+    for (int k = 0; k < a->frames; ++k)
+        for (int i = 0; i < 2; ++i) {
+            const double *frame = a->value + (size_t)k * (size_t)a->channels;
+            const int others = a->model->bodies - 1;
+            if (a->model->free_base)
+                way[2 * k + i] = frame[i];
+            for (int b = 1; b <= others && !a->model->free_base; ++b)
+                way[2 * k + i] += pose_of(frame, b)[i] / others;
+        }
+    return way;
+}
+
+static void json_run(const Animation *a, Text *out)
+{
+    double lowest, ahead[3], A[9];
+    const double size = extent(a, &lowest), length = unit_for(size);
+    const char *slash = strrchr(a->scene_path, '/');
+    text_print(out, "{");
+    json_key(out, "model", a->model->name);
+    json_key(out, "description", a->model->description);
+    json_key(out, "scene", slash ? slash + 1 : a->scene_path);
+    mat_from_euler(a->model->body[BODY_BASE].euler, A);
+    mat_apply_transposed(A, (const double[]){1, 0, 0}, ahead);
+    json_vector(out, "ahead", ahead);
+    text_print(out, ",\"free\":%s,\"size\":%.6g,\"frames\":%d,\"frame_step\":%.15g,\n",
+               a->model->free_base ? "true" : "false", size, a->frames, (double)a->every * a->scene->output_step);
+    json_bodies(a, out);
+    json_lines(a, out);
+    json_wheels(a, out);
+    json_curves(a, out);
+    text_print(out, "\"road\":");
+    const gic_road_plane below = {.head = {gic_plane_height}, .z0 = lowest - 0.05 * size};
+    const gic_road_plane level = {.head = {gic_plane_height}};
+    road_tiles(out,
+               !a->model->wheels ? &below.head
+               : a->scene->road  ? a->scene->road
+                                 : &level.head,
+               size, way_of(a), a->frames);
+    text_print(out, ",\n\"channels\":[");
+    for (int c = 0; c < a->channels; ++c) {
+        text_print(out, c ? ",\n" : "\n");
+        json_channel(a, c, channel_unit(a, c, length), out);
+    }
+    text_print(out, "]}\n");
+}
+
+static void insert(void *context, const char *name, Text *out, int indent)
+{
+    (void)indent;
+    const Animation *a = context;
+    if (!strcmp(name, "data"))
+        json_run(a, out);
+    else /* another template */
+        template_expand(a->pool, out, NULL, name, a->model->name, NULL, insert, context);
+}
+
+void animation_write(Animation *a, const char *path)
+{
+    Text page = {.pool = a->pool};
+    template_expand(a->pool, &page, NULL, "animate.html.in", a->model->name, NULL, insert, a);
+    file_write(path, page.s, page.size);
+}

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The parts of gicrun --animate among themselves. Poses are 7 numbers, FORMAT.md section 1. */
+#ifndef ANIMATE_H
+#define ANIMATE_H
+
+#include "gicrun.h"
+
+/* ---- animate_shape.c: how a model looks, from nothing but its points, axes and masses --------------------------- */
+
+typedef struct Point {
+    double x[3];
+} Point;
+
+/* Body frame: what is fixed to the body, points of joints, springs, wheels and its centre of mass. box: edges of the
+ * solid box that has the body's mass and moments of inertia. */
+typedef struct Shape {
+    Point *point;
+    int points;
+    double com[3], box[3];
+} Shape;
+
+/* From a point of a body to one of another (BODY_GROUND: world). kind: "link", "spring" or "damper". */
+typedef struct Line {
+    const char *name, *kind;
+    int body[2];
+    double point[2][3];
+} Line;
+
+typedef struct Shapes {
+    Shape *body; /* [bodies] */
+    Line *line;
+    int lines;
+    double (*center)[3], (*axis)[3], *width; /* [wheels] frame of the body that carries it; m */
+} Shapes;
+
+/* With the scene's values of parameters. */
+Shapes shapes_of(Pool *pool, const Model *model, const Scene *scene);
+
+/* ---- animate_road.c: the road along a way ------------------------------------------------------------------------ */
+
+/* JSON: heights of the road in square tiles near `way`, [count][x, y]. size: of the vehicle, m. */
+void road_tiles(Text *out, const gic_road *road, double size, const double *way, int count);
+
+#endif
