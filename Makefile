@@ -174,8 +174,9 @@ list-tests:
 demo: all
 	@mkdir -p $(BUILD)/demo
 	$(BUILD)/gicrun models/hmmwv.veh models/scenes/paper_run.scene -o $(BUILD)/demo/hmmwv.csv \
-	    --plot $(BUILD)/demo/hmmwv.svg
+	    --plot $(BUILD)/demo/hmmwv.svg --animate $(BUILD)/demo/hmmwv.html
 	@echo "picture: $(BUILD)/demo/hmmwv.svg"
+	@echo "page:    $(BUILD)/demo/hmmwv.html"
 	@echo "numbers: $(BUILD)/demo/hmmwv.csv"
 
 # QUICK=1: fewer repetitions and settings

@@ -23,7 +23,8 @@ static void vector(const Model *model, const double *at, double out[3])
         out[i] = number(model, at + i);
 }
 
-static void adopt_parameters(Pool *pool, const Model *model, const Scene *scene)
+/* Formulas of the model at other values of parameters [tunables]; NULL: at those of the file, as others expect them. */
+static void set_parameters(Pool *pool, const Model *model, const double *value)
 {
     if (!model->tuning)
         return;
@@ -33,9 +34,8 @@ static void adopt_parameters(Pool *pool, const Model *model, const Scene *scene)
         if (!parameter->tunable)
             continue;
         const Ex input = ex_input(dag, pool_print(pool, "p[%d]", parameter->index), &parameter->value);
-        ex_set_sample(dag, input, 0, scene->parameter[parameter->index]);
+        ex_set_sample(dag, input, 0, value ? value[parameter->index] : parameter->value);
     }
-    ex_set_sample(dag, ex_input(dag, "rest", &(const double){0}), 0, 0);
     dag_evaluate(dag, 0, 1);
 }
 
@@ -192,7 +192,7 @@ Shapes shapes_of(Pool *pool, const Model *model, const Scene *scene)
 {
     Shapes shapes = {.body = pool_alloc(pool, (size_t)model->bodies * sizeof *shapes.body)};
     const Shaper shaper = {pool, model, &shapes};
-    adopt_parameters(pool, model, scene);
+    set_parameters(pool, model, scene->parameter);
     for (int b = 0; b < model->bodies; ++b) {
         vector(model, model->body[b].com, shapes.body[b].com);
         inertia_box(model, &model->body[b], shapes.body[b].box);
@@ -208,5 +208,6 @@ Shapes shapes_of(Pool *pool, const Model *model, const Scene *scene)
         for (int k = 0; k < 2; ++k)
             add_point(&shaper, shapes.line[i].body[k], shapes.line[i].point[k]);
     add_hinges(&shaper);
+    set_parameters(pool, model, NULL);
     return shapes;
 }

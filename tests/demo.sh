@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # demo.sh: installs what is missing, builds, drives the HMMWV over the road of models/scenes/paper_run.scene and says
-# where picture and numbers are.
+# where picture, page and numbers are.
 set -e
 cd "$(dirname "$0")/.."
 sh tests/install.sh

@@ -1,0 +1,132 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+# page.py CHECK ...: checks of the page of `gicrun --animate` for tests/test_animate.sh; prints why one failed. It reads
+# the page's numbers by itself and knows the HMMWV's road from models/scenes/paper_run.scene.
+import csv
+import json
+import math
+import re
+import sys
+
+import yaml
+
+
+def read_run(path):
+    text = open(path, encoding='utf-8').read()
+    run = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', text, re.S).group(1))
+    run['channel'] = []
+    for c in run['channels']:
+        values, step = c['values'][:1], 0
+        for change in c['values'][1:]:
+            step += change
+            values.append(values[-1] + step)
+        values += values[-1:] * (run['frames'] - len(values))
+        run['channel'].append([v * c['unit'] for v in values])
+    return run
+
+
+def read_csv(path):
+    rows = list(csv.reader(open(path)))
+    names = [name.split(' [')[0] for name in rows[0]]
+    return {name: [float(row[k]) for row in rows[1:]] for k, name in enumerate(names)}
+
+
+def point(run, body, s, i):
+    """World coordinates of a body's point at frame i."""
+    q = [run['channel'][run['bodies'][body]['motion'] + k][i] for k in range(7)]
+    e0, e = q[3], q[4:]
+    es = sum(a * b for a, b in zip(e, s))
+    turn = [e[1] * s[2] - e[2] * s[1], e[2] * s[0] - e[0] * s[2], e[0] * s[1] - e[1] * s[0]]
+    return [q[k] + (2 * e0 * e0 - 1) * s[k] + 2 * e[k] * es + 2 * e0 * turn[k] for k in range(3)]
+
+
+def close(what, a, b, tolerance):
+    if not abs(a - b) <= tolerance:
+        sys.exit('%s: %.9g instead of %.9g' % (what, a, b))
+
+
+def check_motion(page, results):
+    """Poses, wheel centres, forces and curves against the results, rounding alone apart: half of 1e-4 m, 1e-5 of an
+    Euler parameter (twice that in rad) at arms below 2.5 m, half a unit of a force or a curve."""
+    run, rows = read_run(page), read_csv(results)
+    every = round(run['frame_step'] / (rows['time'][1] - rows['time'][0]))
+    if run['frames'] != (len(rows['time']) - 1) // every + 1:
+        sys.exit('%d frames' % run['frames'])
+    names = [body['name'] for body in run['bodies']]
+    for i in range(0, run['frames'], 7):
+        for k, axis in enumerate('xyz'):
+            close('chassis.' + axis, run['channel'][run['bodies'][0]['motion'] + k][i],
+                  rows['chassis.' + axis][i * every], 0.51e-4)
+        for wheel in run['wheels']:
+            place = wheel['name'].replace('tire', 'wheel')
+            centre = point(run, names.index(place), wheel['center'], i)
+            for k, axis in enumerate('xyz'):
+                close(place, centre[k], rows[place + '.' + axis][i * every], 2e-4)
+            force = [run['channel'][c][i] for c in wheel['force']]
+            contact = [run['channel'][c][i] for c in wheel['contact']]
+            close('fz of ' + wheel['name'], force[2], rows[wheel['name'] + '.fz'][i * every],
+                  0.51 * run['channels'][wheel['force'][2]]['unit'])
+            close('contact of ' + wheel['name'], contact[2], rows[wheel['name'] + '.height'][i * every], 0.51e-4)
+            # it rolls without slip: way of the centre over the radius; bumps and steering are second order
+            way = rows[place + '.x'][i * every] - rows[place + '.x'][0]
+            close('angle of ' + wheel['name'], run['channel'][wheel['angle']][i], way / wheel['radius'],
+                  2e-3 + 5e-3 * way / wheel['radius'])
+        for curve in run['curves']:
+            close(curve['name'], run['channel'][curve['values']][i], rows[curve['name']][i * every],
+                  0.51 * run['channels'][curve['values']]['unit'])
+
+
+def check_road(page, scene):
+    """Heights at all corners of tiles against the bumps' formula; half of 1e-4 m, where a tile is plain 1e-4 more."""
+    road = read_run(page)['road']
+    bumps = yaml.safe_load(open(scene))['road']['bumps']
+
+    def height(x, y):
+        h = 0
+        for b in bumps:
+            on = {'left': y > 0, 'right': y <= 0, 'both': True}[b['tracks']]
+            if on and 0 < x - b['x'] < b['length']:
+                h += b['height'] * (1 - math.cos(2 * math.pi * (x - b['x']) / b['length'])) / 2
+        return h
+
+    covered = set()
+    for i, j, *step in road['tiles']:
+        covered.add((i, j))
+        n = 2 if len(step) == 4 else road['cells'] + 1
+        z = []
+        for k in range(n * n):
+            z.append(step[k] + (z[k - 1] if k % n else z[k - n] if k else 0))
+        for k, v in enumerate(z):
+            x, y = (i + k % n / (n - 1)) * road['tile'], (j + k // n / (n - 1)) * road['tile']
+            close('road at %g, %g' % (x, y), v * road['unit'], height(x, y), 0.51e-4)
+        if n == 2:
+            for k in range(81):
+                x, y = (i + k % 9 / 8) * road['tile'], (j + k // 9 / 8) * road['tile']
+                close('plain road at %g, %g' % (x, y), z[0] * road['unit'], height(x, y), 2e-4)
+    for x in range(-4, 26):
+        if (math.floor(x / road['tile']), 0) not in covered:
+            sys.exit('no road at x = %g' % x)
+
+
+def check_same(page, other, units):
+    """Two pages with the same motion, to some units of each channel."""
+    a, b = read_run(page), read_run(other)
+    if a['frames'] != b['frames'] or len(a['channel']) != len(b['channel']):
+        sys.exit('%d frames, %d frames' % (a['frames'], b['frames']))
+    for k, (x, y) in enumerate(zip(a['channel'], b['channel'])):
+        for v, w in zip(x, y):
+            close('channel %d' % k, v, w, (units + 0.1) * a['channels'][k]['unit'])
+
+
+def main():
+    check, *words = sys.argv[1:]
+    if check == 'motion':
+        check_motion(*words)
+    elif check == 'road':
+        check_road(*words)
+    elif check == 'same':
+        check_same(words[0], words[1], float(words[2]))
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,111 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_animate.sh GICRUN: the page of --animate: its numbers against the results and the road's formula, with every
+# engine; in a real browser the picture, what moves in it, and every control; names with what HTML means something by.
+gicrun=$1
+root=$(cd "$(dirname "$0")/.." && pwd)
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+passed=0
+failed=0
+
+# check NAME CONDITION...: the command must succeed
+check() {
+    name=$1
+    shift
+    if "$@" >"$work/said" 2>&1; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAILED: $name"
+        sed 's/^/    /' "$work/said" "$work/err"
+    fi
+}
+
+run() {
+    "$gicrun" "$@" >"$work/out" 2>"$work/err"
+    status=$?
+}
+exits() { [ "$status" -eq "$1" ]; }
+says() { grep -q -- "$1" "$work/err"; }
+page() { /usr/bin/python3 -B "$root/tests/animate/page.py" "$@"; }
+
+model=$root/models/hmmwv.veh
+scene=$root/models/scenes/paper_run.scene
+run "$model" "$scene" -o "$work/run.csv" --animate "$work/run.html"
+check 'a run writes a page' exits 0
+check 'no temporary file is left' [ -z "$(find "$work" -name '*.tmp')" ]
+check 'poses, wheels, forces and curves are those of the results' page motion "$work/run.html" "$work/run.csv"
+check 'the road is that of the scene' page road "$work/run.html" "$scene"
+# 401 frames of 73 channels with some 4 bytes a number, and 200 kB of road and page
+check 'the page is small' [ "$(wc -c <"$work/run.html")" -lt 350000 ]
+inside() { ! grep -oE '(src|href)="[^"]*|https?://[^ ]*|@import|url\(' "$1" | grep -v 'href="data:,$'; }
+check 'it refers to nothing outside' inside "$work/run.html"
+cp "$work/run.html" "$work/first.html"
+run "$model" "$scene" --animate "$work/run.html"
+check 'without -o only the page' [ ! -s "$work/out" ]
+check 'the same page again, byte for byte' cmp "$work/run.html" "$work/first.html"
+
+# to rounding, twice a unit, for the last digit may fall either way; partitioned coordinates are integrated themselves,
+# with errors of their own: more
+for engine in cc tape gic gcp1 gcp2; do
+    run -q --engine $engine "$model" "$scene" --animate "$work/$engine.html"
+    case $engine in gcp*) units=10 ;; *) units=2 ;; esac
+    check "engine $engine gives the same motion" page same "$work/run.html" "$work/$engine.html" $units
+done
+
+# names that HTML means something by; a long run of something small on a fixed base, made larger by a parameter
+cat >"$work/odd.veh" <<'END'
+gicgen: 1
+model: odd
+description: "</script><b>\"5 < 6\" & \\ Größe \u2028 <!-- x"
+base: ground
+parameters:
+  length: {value: 0.02, tunable: true}
+bodies:
+  bob: {mass: 1, com: [0, 0, -length], inertia: [1e-6, 1e-6, 1e-6]}
+joints:
+  pivot: {type: revolute, bodies: [ground, bob], point: [0, 0, 0], axis: [0, 1, 0]}
+coordinates:
+  angle: {type: angle, bodies: [ground, bob], axis: [0, 1, 0], range: [-1, 1], initial: 0.5}
+END
+cat >"$work/<i>&.scene" <<'END'
+gicscene: 1
+duration: 500
+step: 0.005
+parameters: {length: 0.03}
+END
+run "$work/odd.veh" "$work/<i>&.scene" --animate "$work/odd.html"
+check 'odd names: a page' exits 0
+check 'the joint is where the parameter puts it' grep -q '"name":"bob".*\[0,0,0.03\]' "$work/odd.html"
+# 100001 output times; at most 6000 frames of two numbers that change, three curves
+check 'a long run has a small page' [ "$(wc -c <"$work/odd.html")" -lt 300000 ]
+
+# ---- in the browser
+
+timeout 300 /usr/bin/python3 -B "$root/tests/animate/browser.py" "$work/profile" "$work/run.html" "$work/run.csv" \
+    "$work/odd.html" >"$work/notes" 2>"$work/err"
+check 'the browser is used to the end' [ $? -eq 0 ]
+while read -r how what; do
+    check "$what" [ "$how" = good ]
+done <"$work/notes"
+
+# ---- mistakes and failures
+
+run "$model" "$scene" --animate "$work/page.txt"
+check 'a page of another kind' exits 2
+check 'a page of another kind: why' says 'must end in .html'
+run --eval "$work/run.csv" "$model" --animate "$work/page.html"
+check 'not with --eval' exits 2
+run "$model" "$scene" -o "$work/kept.csv" --animate "$work/nowhere/page.html"
+check 'a place that is not there' exits 1
+check 'a place that is not there: why' says "nowhere/page.html: error: can't create"
+check 'a place that is not there: the results stay' cmp "$work/run.csv" "$work/kept.csv"
+# the wheels drop into a hole and the springs go beyond reach
+sed 's/height: 0.08, tracks: both/height: -80, tracks: both/' "$scene" >"$work/hole.scene"
+run "$model" "$work/hole.scene" -o "$work/hole.csv" --animate "$work/hole.html"
+check 'a run that fails' exits 1
+check 'a run that fails has its page up to there' page motion "$work/hole.html" "$work/hole.csv"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
