@@ -84,10 +84,10 @@ void pose_point(const double *pose, const double s[3], double out[3])
 static double rolled(const Animation *a, int w, const double *frame, const double *before)
 {
     const Wheel *wheel = &a->model->wheel[w];
-    const double *shape = a->shapes.axis[w], up[3] = {0, 0, 1};
+    const double up[3] = {0, 0, 1};
     double A[9], axis[3], ahead[3], now[3], then[3];
     mat_from_euler(pose_of(frame, wheel->body) + 3, A);
-    mat_apply(A, shape, axis);
+    mat_apply(A, a->shapes.axis[w], axis);
     vec_cross(axis, up, ahead);
     pose_point(pose_of(frame, wheel->body), a->shapes.center[w], now);
     pose_point(pose_of(before, wheel->body), a->shapes.center[w], then);

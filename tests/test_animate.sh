@@ -83,8 +83,9 @@ check 'a long run has a small page' [ "$(wc -c <"$work/odd.html")" -lt 300000 ]
 
 # ---- in the browser
 
+run "$model" "$root/models/scenes/spin.scene" -o "$work/spin.csv" --animate "$work/spin.html"
 timeout 300 /usr/bin/python3 -B "$root/tests/animate/browser.py" "$work/profile" "$work/run.html" "$work/run.csv" \
-    "$work/odd.html" >"$work/notes" 2>"$work/err"
+    "$work/spin.html" "$work/spin.csv" "$work/odd.html" >"$work/notes" 2>"$work/err"
 check 'the browser is used to the end' [ $? -eq 0 ]
 while read -r how what; do
     check "$what" [ "$how" = good ]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-# browser.py PROFILE RUN.html RESULTS.csv ODD.html: opens pages of `gicrun --animate` in chromium without a screen, uses
+# browser.py PROFILE RUN.html RUN.csv SPIN.html SPIN.csv ODD.html: opens pages of `gicrun --animate` in chromium without a screen, uses
 # them by mouse and keys, and looks at pictures of them. Prints `good NAME` or `bad NAME: why` for each check. It talks
 # the browser's DevTools protocol through a pipe: messages are JSON, ended by a zero byte.
 import base64
@@ -182,6 +182,19 @@ def look(browser, path, results):
     note('forces are seen', arrows > 40, '%d red pixels' % arrows)
 
 
+def compare(browser, path, results):
+    """Where the page puts wheel centres while the vehicle turns about, against the results; to two units."""
+    rows, worst = read_csv(results), 0
+    browser.open(path, 't=0')
+    for at in range(0, len(rows['time']), 20):
+        wheels = browser.ask('run.wheels.map((w) => [w.name, add(moved(pose(w.body, moment(%r)), w.center), origin)])'
+                             % rows['time'][at])
+        for name, centre in wheels:
+            there = [rows['%s.%s' % (name.replace('tire', 'wheel'), axis)][at] for axis in 'xyz']
+            worst = max(worst, math.dist(centre, there))
+    note('wheels are where they should be', worst < 2e-4, '%g m beside' % worst)
+
+
 def use(browser, path):
     clock = 'parseFloat(document.getElementById("clock").textContent)'
 
@@ -227,7 +240,8 @@ def use(browser, path):
     shows('a view by button', 'camera.elevation > 1.5')
     for mode in ('chase', 'fixed', 'follow'):
         browser.press('c', 'c')
-        shows('camera ' + mode, '[camera.mode, document.getElementById("camera").value].join() === "%s,%s"' % (mode, mode))
+        shows('camera ' + mode,
+              '[camera.mode, document.getElementById("camera").value].join() === "%s,%s"' % (mode, mode))
         browser.press('Home')
         browser.wait('!state.changed', 5)
         start = browser.ask('camera.target')
@@ -248,9 +262,10 @@ def use(browser, path):
 
 
 def main():
-    profile, run, results, odd = sys.argv[1:]
+    profile, run, results, spin, spin_results, odd = sys.argv[1:]
     browser = Browser(profile)
     look(browser, run, results)
+    compare(browser, spin, spin_results)
     use(browser, run)
     note('no complaint, no request', not browser.complaints, '; '.join(browser.complaints))
     browser.close()
