@@ -8,8 +8,6 @@
 #include "engine.h"
 #include "gicrun.h"
 
-#include <time.h>
-
 /* ---- gicbench.c: the command line ----------------------------------------------------------------------- */
 
 typedef struct Bench {
@@ -19,8 +17,9 @@ typedef struct Bench {
     const Model *model;
     const Scene *scene, *spin; /* spin: makes coordinate partitions change; NULL: none */
     int engines, repetitions;
-    const Engine **engine; /* the first is what the others are compared with */
-    gic_head **instance;   /* [engines] */
+    const Engine **engine;       /* the first is what the others are compared with */
+    const char *const *starting; /* names of the engines whose start is measured, ended by NULL */
+    gic_head **instance;         /* [engines] */
     bool quick;
     struct Report *report;
 } Bench;
@@ -59,8 +58,6 @@ static const double bench_unstable = 0.1;
 bool setting_constant(Setting setting);
 /* "5 ms" or "1e-06" */
 const char *setting_text(Pool *pool, Setting setting);
-/* CPU or elapsed seconds. */
-double bench_clock(clockid_t clock);
 int bench_samples(const Scene *scene);
 /* Scene with another integrator. */
 Scene bench_scene(const Scene *scene, Setting setting);
@@ -81,6 +78,8 @@ void sort_ascending(double *value, int count);
 Spread spread_of(Pool *pool, const double *value, int count);
 /* Of the ratios over / under, repetition by repetition. */
 Spread spread_of_ratio(Pool *pool, const double *over, const double *under, int count);
+/* Median of the seconds between two looks at the clock at once. */
+double bench_look(Pool *pool);
 /* A line for the person who waits. */
 void bench_progress(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
@@ -122,6 +121,8 @@ void report_text(Report *report, const char *format, ...) __attribute__((format(
 /* columns: names separated by | */
 Sheet *report_table(Report *report, const char *name, const char *title, const char *columns);
 void table_cell(Pool *pool, Sheet *table, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Cells for the three, times `scale`. */
+void spread_cells(Pool *pool, Sheet *table, Spread spread, double scale);
 Chart *report_chart(Report *report, const char *name, const char *title, const char *x, const char *y);
 /* Numbers that are no points of a logarithmic axis are left out. */
 void chart_point(Pool *pool, Chart *chart, const char *series, int group, double x, double y);
@@ -142,5 +143,7 @@ void bench_profile(const Bench *bench);
 void bench_spin(const Bench *bench);
 /* bench_worst.c: the longest step. */
 void bench_worst(const Bench *bench);
+/* bench_start.c: compilation and the first step; from how many steps on it is worth it. */
+void bench_start(const Bench *bench);
 
 #endif

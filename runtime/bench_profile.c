@@ -17,18 +17,6 @@ typedef struct Profile3 {
     bool fused, failed;
 } Profile3;
 
-/* Median of what a pair of looks at the clock takes. */
-static double clock_cost(Pool *pool)
-{
-    enum { LOOKS = 1001 };
-    double *seconds = pool_alloc(pool, sizeof *seconds * LOOKS);
-    for (int i = 0; i < LOOKS; ++i) {
-        const double before = bench_clock(CLOCK_MONOTONIC);
-        seconds[i] = bench_clock(CLOCK_MONOTONIC) - before;
-    }
-    return spread_of(pool, seconds, LOOKS).median;
-}
-
 /* The rows so far. */
 static void read_rows(const EngineProfile *profile, double row[ROWS])
 {
@@ -50,9 +38,9 @@ static double median_step(const Engine *engine, gic_head *self, const Scene *sce
     for (int i = 0; i < steps && !*failed; ++i) {
         if (rows)
             read_rows(engine->profile, before);
-        const double begun = bench_clock(CLOCK_MONOTONIC);
+        const double begun = clock_seconds(CLOCK_MONOTONIC);
         *failed = scene_step(engine, engine->code, scene, NULL, self, 0) != GIC_OK;
-        step[i] = bench_clock(CLOCK_MONOTONIC) - begun;
+        step[i] = clock_seconds(CLOCK_MONOTONIC) - begun;
         if (rows)
             read_rows(engine->profile, after);
         for (int k = 0; k < ROWS && rows; ++k)
@@ -96,19 +84,19 @@ static void profile_outside(const Engine *engine, gic_head *self, const Scene *s
     double *all = pool_alloc(pool, sizeof *all * (size_t)steps);
     double *pose = pool_alloc(pool, sizeof *pose * (size_t)(7 * code->body_count));
     double *rate = pool_alloc(pool, sizeof *rate * (size_t)(code->slow_count + code->fast_count));
-    const double look = clock_cost(pool);
+    const double look = bench_look(pool);
     out->fused = true;
     out->failed = scene_start(engine, scene, self) != GIC_OK;
     for (int i = 0; i < steps && !out->failed; ++i) {
         out->failed = scene_step(engine, code, scene, NULL, self, 0) != GIC_OK;
         memcpy(copy, self, code->size);
-        double before = bench_clock(CLOCK_MONOTONIC);
+        double before = clock_seconds(CLOCK_MONOTONIC);
         out->failed |= code->poses(copy, pose) != GIC_OK;
-        recovery[i] = bench_clock(CLOCK_MONOTONIC) - before - look;
+        recovery[i] = clock_seconds(CLOCK_MONOTONIC) - before - look;
         memcpy(copy, self, code->size);
-        before = bench_clock(CLOCK_MONOTONIC);
+        before = clock_seconds(CLOCK_MONOTONIC);
         out->failed |= code->rhs(copy, gic_time(copy), instance_array(copy, code->state_offset), rate) != GIC_OK;
-        all[i] = bench_clock(CLOCK_MONOTONIC) - before - look;
+        all[i] = clock_seconds(CLOCK_MONOTONIC) - before - look;
     }
     out->row[3] = spread_of(pool, recovery, steps).median;
     out->row[0] = spread_of(pool, all, steps).median - out->row[3];

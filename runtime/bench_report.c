@@ -61,6 +61,13 @@ void table_cell(Pool *pool, Sheet *table, const char *format, ...)
     va_end(arguments);
 }
 
+void spread_cells(Pool *pool, Sheet *table, Spread spread, double scale)
+{
+    table_cell(pool, table, "%.4g", scale * spread.median);
+    table_cell(pool, table, "%.4g", scale * spread.low);
+    table_cell(pool, table, "%.4g", scale * spread.high);
+}
+
 Chart *report_chart(Report *report, const char *name, const char *title, const char *x, const char *y)
 {
     Chart *chart = pool_alloc(report->pool, sizeof *chart);

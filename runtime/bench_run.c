@@ -19,13 +19,6 @@ const char *setting_text(Pool *pool, Setting setting)
                                      : pool_print(pool, "%g", setting.value);
 }
 
-double bench_clock(clockid_t clock)
-{
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 int bench_samples(const Scene *scene)
 {
     return (int)floor(scene->duration / bench_sample * (1 + 1e-12) + 1e-9) + 1;
@@ -79,6 +72,17 @@ Spread spread_of_ratio(Pool *pool, const double *over, const double *under, int 
     for (int i = 0; i < count; ++i)
         ratio[i] = over[i] / under[i];
     return spread_of(pool, ratio, count);
+}
+
+double bench_look(Pool *pool)
+{
+    enum { LOOKS = 1001 };
+    double *seconds = pool_alloc(pool, sizeof *seconds * LOOKS);
+    for (int i = 0; i < LOOKS; ++i) {
+        const double before = clock_seconds(CLOCK_MONOTONIC);
+        seconds[i] = clock_seconds(CLOCK_MONOTONIC) - before;
+    }
+    return spread_of(pool, seconds, LOOKS).median;
 }
 
 /* ---- trajectories ----------------------------------------------------------------------------------------- */
@@ -160,13 +164,13 @@ static double run(const Engine *engine, gic_head *self, const Scene *scene, Tria
         setting_constant(trial->setting) ? NULL : variable_open(code, changed.method, changed.tolerance);
     if (trajectory && trial->status == GIC_OK)
         trial->status = record(pool, engine, self, trajectory->pose);
-    const double before = bench_clock(CLOCK_PROCESS_CPUTIME_ID);
+    const double before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     for (int k = 1; k < samples && trial->status == GIC_OK; ++k) {
         trial->status = to_sample(engine, &changed, variable, self, k, &trial->steps);
         if (trajectory && trial->status == GIC_OK)
             trial->status = record(pool, engine, self, trajectory->pose + k * trajectory->numbers);
     }
-    const double seconds = bench_clock(CLOCK_PROCESS_CPUTIME_ID) - before;
+    const double seconds = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
     trial->end = gic_time(self);
     trial->evaluations = self->rhs_count;
     variable_close(variable);

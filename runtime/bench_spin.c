@@ -27,9 +27,9 @@ static void spin_run(Pool *pool, const Engine *engine, gic_head *self, const Sce
     spin->changes = spin->changing = spin->steps = 0;
     for (int64_t i = 0; i < steps && spin->status == GIC_OK; ++i, ++spin->steps) {
         const int64_t changes = profile ? profile->repartitions : 0;
-        const double before = bench_clock(CLOCK_MONOTONIC);
+        const double before = clock_seconds(CLOCK_MONOTONIC);
         spin->status = scene_step(engine, engine->code, scene, NULL, self, 0);
-        const double seconds = bench_clock(CLOCK_MONOTONIC) - before;
+        const double seconds = clock_seconds(CLOCK_MONOTONIC) - before;
         if (profile && profile->repartitions > changes) {
             spin->changes += profile->repartitions - changes;
             ++spin->changing;

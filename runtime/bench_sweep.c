@@ -27,13 +27,6 @@ static Sweep sweep_run(const Bench *bench, int32_t method, const Trajectory *ref
     return sweep;
 }
 
-static void spread_cells(Pool *pool, Sheet *table, Spread spread, double scale)
-{
-    table_cell(pool, table, "%.4g", scale * spread.median);
-    table_cell(pool, table, "%.4g", scale * spread.low);
-    table_cell(pool, table, "%.4g", scale * spread.high);
-}
-
 /* A row: engine with setting. first: the trial of the engine that others are compared with. */
 static void sweep_row(const Bench *bench, Sheet *table, const Trial *trial, const Trial *first)
 {

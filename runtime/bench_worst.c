@@ -15,10 +15,10 @@ static int time_steps(const Engine *engine, gic_head *self, const Scene *scene, 
     if (scene_start(engine, scene, self) != GIC_OK)
         return 0;
     for (int i = 0; i < START + steps; ++i) {
-        const double before = bench_clock(CLOCK_MONOTONIC);
+        const double before = clock_seconds(CLOCK_MONOTONIC);
         const int status = scene_step(engine, engine->code, scene, NULL, self, 0);
         if (i >= START)
-            seconds[i - START] = bench_clock(CLOCK_MONOTONIC) - before;
+            seconds[i - START] = clock_seconds(CLOCK_MONOTONIC) - before;
         if (status != GIC_OK)
             return i < START ? 0 : i - START;
     }

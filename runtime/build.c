@@ -2,12 +2,14 @@
  * From model file to callable code: generate in this process, take the object that an earlier run kept, else compile in
  * a private folder, load, keep a copy, tidy up. The folder is gone in any case; the code stays loaded until the program
  * ends. */
+#define _GNU_SOURCE /* dl_iterate_phdr */
 #include "cache.h"
 #include "gicrun.h"
 
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
+#include <link.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -57,6 +59,7 @@ typedef struct Build {
     const char *shelf, *key; /* where objects are kept, NULL: nowhere; and as what */
     const char *unkept;      /* why the object isn't kept, or NULL */
     const char *copy;        /* where a copy of the object goes, NULL: nowhere */
+    double compiling;        /* s that the compiler took, 0: it had nothing to do */
     Failure failure;
 } Build;
 
@@ -124,7 +127,9 @@ static const gic_model *compile(Build *b, const char *folder)
         *POOL_PUSH(pool, argv, count) = pool_print(pool, "%s", b->words[i]);
     for (size_t i = 0; i < sizeof ours / sizeof *ours; ++i)
         *POOL_PUSH(pool, argv, count) = ours[i] ? pool_print(pool, "%s", ours[i]) : NULL;
+    const double before = clock_seconds(CLOCK_MONOTONIC);
     const int status = process_run(pool, argv, "", &said);
+    b->compiling = clock_seconds(CLOCK_MONOTONIC) - before;
     if (status == PROCESS_INTERRUPTED)
         return NULL;
     if (status == PROCESS_NOT_STARTED) {
@@ -173,6 +178,38 @@ static const gic_model *take_kept(Build *b)
     return code;
 }
 
+typedef struct Extent {
+    uintptr_t inside; /* an address */
+    size_t bytes;     /* of the object that it is in */
+} Extent;
+
+/* A dl_iterate_phdr function: ends at the object with the address. */
+static int add_segments(struct dl_phdr_info *info, size_t size, void *context)
+{
+    Extent *extent = context;
+    size_t bytes = 0;
+    bool here = false;
+    (void)size;
+    for (int i = 0; i < info->dlpi_phnum; ++i) {
+        const ElfW(Phdr) *segment = &info->dlpi_phdr[i];
+        if (segment->p_type != PT_LOAD)
+            continue;
+        bytes += segment->p_memsz;
+        here |= extent->inside - (info->dlpi_addr + segment->p_vaddr) < segment->p_memsz;
+    }
+    if (here)
+        extent->bytes = bytes;
+    return here;
+}
+
+/* What the shared object takes in memory. */
+static size_t object_bytes(const gic_model *code)
+{
+    Extent extent = {(uintptr_t)code, 0};
+    dl_iterate_phdr(add_segments, &extent);
+    return extent.bytes;
+}
+
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options)
 {
     if (!options->compiler[strspn(options->compiler, " \t")])
@@ -196,7 +233,11 @@ const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *opt
         fprintf(stderr, "gicrun: note: the compiled model is not kept for the next run: %s\n", b.unkept);
 
     Engine *engine = pool_alloc(pool, sizeof *engine);
-    *engine = (Engine){
-        .name = "cc", .code = code, .standard = code->state, .standard_count = code->slow_count + code->fast_count};
+    *engine = (Engine){.name = "cc",
+                       .code = code,
+                       .standard = code->state,
+                       .standard_count = code->slow_count + code->fast_count,
+                       .compiling = b.compiling,
+                       .bytes = object_bytes(code)};
     return engine;
 }

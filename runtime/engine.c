@@ -3,7 +3,6 @@
 #include "engine.h"
 
 #include <string.h>
-#include <time.h>
 
 typedef const Engine *Open(Pool *pool, const Model *model, const EngineOptions *options);
 
@@ -30,13 +29,16 @@ const Engine *engine_open(Pool *pool, const char *name, const Model *model, cons
     return engine_opener[engine_index(name)](pool, model, options);
 }
 
-double profile_clock(EngineProfile *profile)
+double clock_seconds(clockid_t clock)
 {
     struct timespec now;
-    if (!profile->on)
-        return 0;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec - (double)profile->looks++ * profile->look;
+    clock_gettime(clock, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double profile_clock(EngineProfile *profile)
+{
+    return profile->on ? clock_seconds(CLOCK_MONOTONIC) - (double)profile->looks++ * profile->look : 0;
 }
 
 gic_head *instance_new(Pool *pool, const Engine *engine)

@@ -158,6 +158,7 @@ const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *op
     const char *text = jit_text(pool, model, options);
     Text said = {.pool = pool};
     Jit *jit = pool_alloc(pool, sizeof *jit);
+    const double before = clock_seconds(CLOCK_MONOTONIC);
     jit->state = tcc_new();
     if (!jit->state)
         diag_fail(gicrun_place, NULL, "no memory for tcc");
@@ -184,6 +185,8 @@ const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *op
     Engine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (Engine){.name = "tcc",
                        .code = code,
+                       .compiling = clock_seconds(CLOCK_MONOTONIC) - before,
+                       .bytes = jit->size,
                        .memory = jit,
                        .standard = code->state,
                        .standard_count = code->slow_count + code->fast_count,

@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 enum {
@@ -34,13 +33,6 @@ typedef struct Run {
     double looked;          /* when the run looked around last */
     bool shown, interrupted;
 } Run;
-
-static double seconds(clockid_t clock_id)
-{
-    struct timespec now;
-    clock_gettime(clock_id, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* Where the base stands in the state, and the free coordinates: FORMAT.md section 10. What the scene doesn't give stays
  * as set-up has it: geometric parameters may have moved it. */
@@ -233,7 +225,7 @@ static void change_code(Run *run)
 /* Now and then: has someone asked to stop, is there faster code, and is someone watching? */
 static void look_around(Run *run)
 {
-    double now = seconds(CLOCK_MONOTONIC);
+    double now = clock_seconds(CLOCK_MONOTONIC);
     if (now - run->looked < refresh)
         return;
     run->looked = now;
@@ -289,13 +281,13 @@ static int advance(Run *run, double end)
     int status = GIC_OK;
     int64_t left = run->scene->per_output; /* of constant steps: their times are not `end` to the last bit */
     while (status == GIC_OK && !run->interrupted && (run->variable ? gic_time(run->self) < end : left > 0)) {
-        double before = seconds(CLOCK_PROCESS_CPUTIME_ID);
+        double before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
         for (int i = 0; i < BATCH && status == GIC_OK && (run->variable ? gic_time(run->self) < end : left > 0); ++i) {
             status = scene_step(run->engine, run->model, run->scene, run->variable, run->self, end);
             run->steps += status == GIC_OK;
             --left;
         }
-        run->integrating += seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
+        run->integrating += clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
         look_around(run);
     }
     return status;
@@ -343,8 +335,8 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *a
     }
 
     interrupt_hold();
-    const double before = seconds(CLOCK_PROCESS_CPUTIME_ID);
-    run.looked = seconds(CLOCK_MONOTONIC);
+    const double before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    run.looked = clock_seconds(CLOCK_MONOTONIC);
     const gic_head *failed = run.self;
     status = run_all(&run, &failed);
     engine_rest(engine);
@@ -356,7 +348,7 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *a
     interrupt_release();
     variable_close(run.variable);
     if (!request->quiet)
-        summary(&run, seconds(CLOCK_PROCESS_CPUTIME_ID) - before);
+        summary(&run, clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before);
     if (animation)
         animation_write(animation, request->page);
     if (request->picture)
