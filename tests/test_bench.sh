@@ -1,10 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_bench.sh GICBENCH: a short benchmark from end to end: all files are there and whole, tables can be read, what is
-# unstable is called so, errors are those of the integrators. No time is tested.
+# unstable is called so, errors are those of the integrators. No time is tested but against others of the same page.
 gicbench=$1
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
+GICGEN_CACHE=$work/kept
+export GICGEN_CACHE
 passed=0
 failed=0
 
@@ -52,7 +54,7 @@ XXX
 "$gicbench" --quick -o "$work/page" "$work/stiff.veh" "$work/cart.scene" "$work/cart.scene" >"$work/out" 2>"$work/err"
 check 'a short benchmark ends well' [ $? -eq 0 ]
 for file in index.html bench.txt table1.csv table2.csv table3.csv work_precision.csv spin.csv worst.csv \
-    operations.csv fig6.svg fig8.svg work_precision.svg; do
+    operations.csv start.csv start_steps.csv break_even.csv fig6.svg fig8.svg work_precision.svg break_even.svg; do
     check "$file is there" [ -s "$work/page/$file" ]
 done
 check 'no temporary file is left' [ -z "$(find "$work/page" -name '*.tmp')" ]
@@ -80,6 +82,40 @@ check 'Adams is stable, its error follows the tolerance' awk -F, '
     END {exit bad || n < 3}' "$work/page/table1.csv"
 check 'faster than real time is yes or no' awk -F, 'NR > 1 && $10 !~ /^(yes|no|unstable)$/ {bad = 1} END {exit bad}' \
     "$work/page/table1.csv"
+
+# ---- generated against interpreted: numbers that must hang together, whatever the machine
+
+# The compiler's time is part of that from file to first step, medians ordered between extremes. What a process waits for
+# it can't compute in more CPU time than passes on the two processors that compiler and gicbench can use at once.
+check 'starts are measured for every engine' awk -F, '
+    NR > 1 {++n; names = names " " $1; for (i = 2; i < 11; i += 3) if (!($(i + 1) <= $i && $i <= $(i + 2))) bad = 1
+        if (!($2 <= $8 && $5 > 0 && $6 <= 2 * $10)) bad = 1}
+    END {exit bad || names != " cc cc (kept) tcc tape gic gcp1 gcp2"}' "$work/page/start.csv"
+check 'cc and tcc compile, what is kept or interpreted is not compiled' awk -F, '
+    NR > 1 && ($1 == "cc" || $1 == "tcc") != ($2 > 0) {bad = 1} END {exit bad || NR != 8}' "$work/page/start.csv"
+check 'a kept object starts sooner than a compiler does' awk -F, '$1 == "cc" {compiled = $9} $1 == "cc (kept)" {kept = $10}
+    END {exit !(kept > 0 && kept < compiled)}' "$work/page/start.csv"
+# the object itself says how large it is: segments end within a page of the sections that they hold
+object=$(ls -S "$GICGEN_CACHE"/*.so | head -n 1)
+check 'code and constants are as large as in the object' awk -F, -v bytes="$(size "$object" | awk 'NR == 2 {print $4}')" '
+    $1 == "cc" || $1 == "cc (kept)" {++n; if (!($11 * 1000 > bytes && $11 * 1000 < bytes + 4096)) bad = 1}
+    $1 == "tcc" && !($11 > 1 && $11 < 1000) {bad = 1}
+    $1 ~ /^(tape|gic|gcp)/ && $11 != "-" {bad = 1}
+    END {exit bad || n != 2}' "$work/page/start.csv"
+check 'right-hand sides and steps take time' awk -F, '
+    NR > 1 {for (i = 2; i <= 10; ++i) if (!($i > 0)) bad = 1} NR == 2 && $8 != 1 {bad = 1}
+    END {exit bad || NR != 8}' "$work/page/start_steps.csv"
+# a kept object or tcc is ahead sooner than what was compiled, and the least of all starts and steps says how soon at best
+check 'break-even follows from starts and steps' awk -F, '
+    FILENAME ~ /start.csv/ {low[$1] = $6; high[$1] = $7; next}
+    FILENAME ~ /start_steps.csv/ {fast[$1] = $6; slow[$1] = $7; next}
+    FNR == 1 {for (i = 2; i < NF; i += 3) name[i] = $i; next}
+    {for (i = 2; i < NF; i += 3) {
+        ++n
+        gain = 1.001 * slow[name[i]] - 0.999 * fast[$1] # cells have four digits
+        least = (0.999 * low[$1] - 1.001 * high[name[i]]) * 1000 / gain
+        if ($i != "never" && !(gain > 0 && $i >= 1 && $(i + 1) >= least)) bad = 1}}
+    END {exit bad || n != 12}' "$work/page/start.csv" "$work/page/start_steps.csv" "$work/page/break_even.csv"
 
 # an undamped one: the order of AB3 shows, eight times less error for half the step: 512 times from 4 to 0.5 ms
 vehicle 0 >"$work/soft.veh"

@@ -153,6 +153,9 @@ if command -v clang >/dev/null; then
     # shellcheck disable=SC2086  # lists of words
     clang -std=c99 -O1 -ffp-contract=off -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
     check $? "two vehicles with clang"
+    # shellcheck disable=SC2086  # lists of words
+    clang++ -x c++ -std=c++17 -O1 -ffp-contract=off -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
+    check $? "two vehicles with clang++"
 fi
 cc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror -DGIC_FLOAT -O2 -I. "$program" hmmwv.float.o \
     pendulum.float.o gic_runtime.float.o gic_road.float.o -no-pie -lm -o ride && ./ride >ride.float
