@@ -335,9 +335,10 @@ static int evaluate(const Interpreted *context, Instance *self, const double *st
         memcpy(memory.near, world->x, sizeof(double) * (size_t)world->model->coordinates);
     if (status != GIC_OK || state != instance_array(&self->head, context->code.state_offset))
         return status;
+    const double *q = world->q[world->first], *qd = world->qd[world->first];
     for (int j = 0; j < gcp->columns; ++j) {
-        memory.shift[j] = world->q[world->first][j] - state[j];
-        memory.shift[gcp->columns + j] = world->qd[world->first][j] - state[gcp->columns + j];
+        memory.shift[j] = q[j] - state[j];
+        memory.shift[gcp->columns + j] = qd[j] - state[gcp->columns + j];
     }
     *memory.shifted = 1;
     return GIC_OK;
@@ -416,10 +417,8 @@ static int enter(gic_head *head, const double *standard)
         head->subset = gcp->start->head.subset;
         return head->status = status;
     }
-    for (int j = 0; j < gcp->columns; ++j) {
-        state[j] = gic->world->q[world->first][j];
-        state[gcp->columns + j] = gic->world->qd[world->first][j];
-    }
+    memcpy(state, gic->world->q[world->first], sizeof *state * (size_t)gcp->columns);
+    memcpy(state + gcp->columns, gic->world->qd[world->first], sizeof *state * (size_t)gcp->columns);
     memcpy(memory.near, gic->world->x, sizeof(double) * (size_t)world->model->coordinates);
     *memory.shifted = 0;
     set_positions(world, state);

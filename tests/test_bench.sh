@@ -85,19 +85,21 @@ check 'faster than real time is yes or no' awk -F, 'NR > 1 && $10 !~ /^(yes|no|u
 
 # ---- generated against interpreted: numbers that must hang together, whatever the machine
 
-# The compiler's time is part of that from file to first step, medians ordered between extremes. What a process waits for
-# it can't compute in more CPU time than passes on the two processors that compiler and gicbench can use at once.
+# The compiler's time is part of that from file to first step; medians stand between extremes; compiler and gicbench
+# use two processors at most.
 check 'starts are measured for every engine' awk -F, '
     NR > 1 {++n; names = names " " $1; for (i = 2; i < 11; i += 3) if (!($(i + 1) <= $i && $i <= $(i + 2))) bad = 1
         if (!($2 <= $8 && $5 > 0 && $6 <= 2 * $10)) bad = 1}
     END {exit bad || names != " cc cc (kept) tcc tape gic gcp1 gcp2"}' "$work/page/start.csv"
 check 'cc and tcc compile, what is kept or interpreted is not compiled' awk -F, '
     NR > 1 && ($1 == "cc" || $1 == "tcc") != ($2 > 0) {bad = 1} END {exit bad || NR != 8}' "$work/page/start.csv"
-check 'a kept object starts sooner than a compiler does' awk -F, '$1 == "cc" {compiled = $9} $1 == "cc (kept)" {kept = $10}
+check 'a kept object starts sooner than a compiler does' awk -F, '
+    $1 == "cc" {compiled = $9} $1 == "cc (kept)" {kept = $10}
     END {exit !(kept > 0 && kept < compiled)}' "$work/page/start.csv"
 # the object itself says how large it is: segments end within a page of the sections that they hold
 object=$(ls -S "$GICGEN_CACHE"/*.so | head -n 1)
-check 'code and constants are as large as in the object' awk -F, -v bytes="$(size "$object" | awk 'NR == 2 {print $4}')" '
+bytes=$(size "$object" | awk 'NR == 2 {print $4}')
+check 'code and constants are as large as in the object' awk -F, -v bytes="$bytes" '
     $1 == "cc" || $1 == "cc (kept)" {++n; if (!($11 * 1000 > bytes && $11 * 1000 < bytes + 4096)) bad = 1}
     $1 == "tcc" && !($11 > 1 && $11 < 1000) {bad = 1}
     $1 ~ /^(tape|gic|gcp)/ && $11 != "-" {bad = 1}
@@ -105,7 +107,7 @@ check 'code and constants are as large as in the object' awk -F, -v bytes="$(siz
 check 'right-hand sides and steps take time' awk -F, '
     NR > 1 {for (i = 2; i <= 10; ++i) if (!($i > 0)) bad = 1} NR == 2 && $8 != 1 {bad = 1}
     END {exit bad || NR != 8}' "$work/page/start_steps.csv"
-# a kept object or tcc is ahead sooner than what was compiled, and the least of all starts and steps says how soon at best
+# extremes of all starts and steps say how soon at best
 check 'break-even follows from starts and steps' awk -F, '
     FILENAME ~ /start.csv/ {low[$1] = $6; high[$1] = $7; next}
     FILENAME ~ /start_steps.csv/ {fast[$1] = $6; slow[$1] = $7; next}
