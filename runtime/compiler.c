@@ -9,6 +9,12 @@
 
 const char build_flags[] = "-std=c99 -O2 -fPIC -shared -ffp-contract=off -fno-math-errno";
 
+const char *compiler_default(void)
+{
+    const char *compiler = getenv("CC");
+    return compiler && *compiler ? compiler : "cc";
+}
+
 static void add_words(Pool *pool, const char ***words, int *count, const char *text)
 {
     char *rest;

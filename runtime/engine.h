@@ -50,7 +50,7 @@ typedef struct Engine {
     Background *background; /* NULL: `code` is all there will be */
     double compiling;       /* s that a compiler took to make the code; 0: none had to */
     size_t bytes;           /* of memory that the code and its constants take; 0: interpreted, or not known */
-    void *memory; /* what `close` gives back */
+    void *memory;           /* what `close` gives back */
     void (*close)(const struct Engine *engine); /* NULL: it has nothing but memory of the pool */
 } Engine;
 
@@ -102,6 +102,8 @@ double *instance_array(gic_head *self, size_t offset);
 
 /* ---- compiler.c: the user's C compiler -------------------------------------------------------------------- */
 
+/* The command where none is given: $CC or cc. */
+const char *compiler_default(void);
 /* Our options of the compiler, behind the command's and before the user's. */
 extern const char build_flags[];
 /* Words of command, our options and the user's; blanks separate them. */

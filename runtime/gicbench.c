@@ -24,13 +24,6 @@ static const char help[] = "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCEN
                            "\n"
                            "Exit status: 0 good, 1 error in a file or during a run, 2 wrong usage.\n";
 
-static _Noreturn void usage_fail(const char *message, const char *word)
-{
-    fprintf(stderr, "gicbench: error: %s%s%s%s\n  remedy: `gicbench -h` shows how\n", message, word ? " '" : "",
-            word ? word : "", word ? "'" : "");
-    exit(2);
-}
-
 /* Names separated by commas. */
 static const char *const *engine_list(Pool *pool, char *names)
 {
@@ -39,11 +32,11 @@ static const char *const *engine_list(Pool *pool, char *names)
     char *rest;
     for (char *name = strtok_r(names, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
         if (!engine_known(name))
-            usage_fail("there is no engine", name);
+            usage_fail("gicbench", "there is no engine", name);
         *POOL_PUSH(pool, list, engines) = name;
     }
     if (!engines)
-        usage_fail("--engines needs at least one name", NULL);
+        usage_fail("gicbench", "--engines needs at least one name", NULL);
     *POOL_PUSH(pool, list, engines) = NULL;
     return list;
 }
@@ -58,9 +51,8 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
         {"cflags", required_argument, NULL, FLAGS}, {"help", no_argument, NULL, 'h'},
         {"version", no_argument, NULL, VERSION},    {NULL, 0, NULL, 0},
     };
-    const char *compiler = getenv("CC");
     Bench bench = {.pool = pool, .folder = "gicbench", .repetitions = 9};
-    bench.options.compiler = compiler && *compiler ? compiler : "cc";
+    bench.options.compiler = compiler_default();
     bench.options.flags = "";
     *names = engine_name + 2;         /* auto and tcc do what cc does, if more slowly: */
     bench.starting = engine_name + 1; /* they are about the start, where auto is tcc */
@@ -79,7 +71,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
         default: fputs("  remedy: `gicbench -h` shows how\n", stderr); exit(2);
         }
     if (count - optind < 2 || count - optind > 3)
-        usage_fail("a model and a scene, please, and perhaps one in which the vehicle turns", NULL);
+        usage_fail("gicbench", "a model and a scene, please, and perhaps one in which the vehicle turns", NULL);
     bench.model_path = word[optind];
     bench.scene_path = word[optind + 1];
     bench.spin_path = word[optind + 2]; /* or the NULL at the end */

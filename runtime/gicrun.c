@@ -46,25 +46,12 @@ static const char help[] =
     "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
     "Exit status: 0 good, 1 error in a file or during the run, 2 wrong usage.\n";
 
-static _Noreturn void usage_fail(const char *message, const char *word)
-{
-    fprintf(stderr, "gicrun: error: %s%s%s%s\n  remedy: `gicrun -h` shows how\n", message, word ? " '" : "",
-            word ? word : "", word ? "'" : "");
-    exit(2);
-}
-
-static const char *default_compiler(void)
-{
-    const char *compiler = getenv("CC");
-    return compiler && *compiler ? compiler : "cc";
-}
-
 static double read_tolerance(const char *word)
 {
     char *end;
     const double value = strtod(word, &end);
     if (*end || !tolerance_known(value))
-        usage_fail("--tolerance must be a number between 1e-13 and 0.1, unlike", word);
+        usage_fail("gicrun", "--tolerance must be a number between 1e-13 and 0.1, unlike", word);
     return value;
 }
 
@@ -98,7 +85,7 @@ static Request read_command_line(int count, char **word)
         {"version", no_argument, NULL, VERSION},
         {NULL, 0, NULL, 0},
     };
-    Request request = {.engine = engine_name[0], .compiler = default_compiler(), .flags = ""};
+    Request request = {.engine = engine_name[0], .compiler = compiler_default(), .flags = ""};
     for (int option; (option = getopt_long(count, word, "o:qh", options, NULL)) != -1;)
         switch (option) {
         case 'o': request.results = optarg; break;
@@ -111,7 +98,7 @@ static Request read_command_line(int count, char **word)
         case SOLVE:
             request.solve = solve_of(optarg);
             if (request.solve == SOLVES)
-                usage_fail("--solve takes reduced or augmented, not", optarg);
+                usage_fail("gicrun", "--solve takes reduced or augmented, not", optarg);
             break;
         case COMPILER: request.compiler = optarg; break;
         case FLAGS: request.flags = optarg; break;
@@ -122,25 +109,25 @@ static Request read_command_line(int count, char **word)
         }
     const int files = count - optind;
     if (files < 1)
-        usage_fail("no model given", NULL);
+        usage_fail("gicrun", "no model given", NULL);
     if (files < 2 && !request.states)
-        usage_fail("no scene given", NULL);
+        usage_fail("gicrun", "no scene given", NULL);
     if (files > 2)
-        usage_fail("one model and one scene, please; what is", word[optind + 2]);
+        usage_fail("gicrun", "one model and one scene, please; what is", word[optind + 2]);
     request.model = word[optind];
     request.scene = files > 1 ? word[optind + 1] : NULL;
     if (!strcmp(request.model, "-"))
-        usage_fail("the model must be a file", NULL);
+        usage_fail("gicrun", "the model must be a file", NULL);
     if (request.integrator && integrator_method(request.integrator) < 0)
-        usage_fail("there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
+        usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
     if (request.picture && request.states)
-        usage_fail("--plot goes with a scene, not with --eval", NULL);
+        usage_fail("gicrun", "--plot goes with a scene, not with --eval", NULL);
     if (request.picture && !plot_known(request.picture))
-        usage_fail("the picture must end in .svg or .png, unlike", request.picture);
+        usage_fail("gicrun", "the picture must end in .svg or .png, unlike", request.picture);
     if (request.page && request.states)
-        usage_fail("--animate goes with a scene, not with --eval", NULL);
+        usage_fail("gicrun", "--animate goes with a scene, not with --eval", NULL);
     if (request.page && !path_ends(request.page, ".html"))
-        usage_fail("the page must end in .html, unlike", request.page);
+        usage_fail("gicrun", "the page must end in .html, unlike", request.page);
     if (!request.results && !request.picture && !request.page)
         request.results = "-";
     return request;

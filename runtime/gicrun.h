@@ -27,6 +27,11 @@ typedef struct Request {
     bool quiet;
 } Request;
 
+/* ---- usage.c: a command line that is none ------------------------------------------------------------------ */
+
+/* `program: error: message 'word'` and how to find out more; exit status 2. word may be NULL. */
+_Noreturn void usage_fail(const char *program, const char *message, const char *word);
+
 /* ---- process.c: other programs, and signals that ask to stop -------------------------------------------- */
 
 /* The place of messages that are not about an input file: `gicrun: error: ...`. */

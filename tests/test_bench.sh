@@ -97,7 +97,7 @@ check 'a kept object starts sooner than a compiler does' awk -F, '
     $1 == "cc" {compiled = $9} $1 == "cc (kept)" {kept = $10}
     END {exit !(kept > 0 && kept < compiled)}' "$work/page/start.csv"
 # the object itself says how large it is: segments end within a page of the sections that they hold
-object=$(ls -S "$GICGEN_CACHE"/*.so | head -n 1)
+object=$(find "$GICGEN_CACHE" -name "*.so")
 bytes=$(size "$object" | awk 'NR == 2 {print $4}')
 check 'code and constants are as large as in the object' awk -F, -v bytes="$bytes" '
     $1 == "cc" || $1 == "cc (kept)" {++n; if (!($11 * 1000 > bytes && $11 * 1000 < bytes + 4096)) bad = 1}

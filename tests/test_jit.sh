@@ -178,6 +178,20 @@ wait $child 2>/dev/null
 [ $? -eq 143 ] && [ -s pid ] && ! kill -0 "$(cat pid)" 2>/dev/null && clean
 check $? "auto: SIGTERM ends run and compiler"
 
+# ---- no support files ---------------------------------------------------------------------------------------------
+
+# an empty folder in their place; a mount that no other process sees
+support=$(dirname "$(tcc -print-search-dirs | sed -n 's/^ *\(.*\/libtcc1\.a\)$/\1/p')")
+if [ -f "$support/libtcc1.a" ] && unshare -m mount -t tmpfs none "$support" 2>said; then
+    "$gicrun" -q --engine tape "$pendulum" "$root/models/scenes/pendulum.scene" -o tape.csv &&
+        unshare -m sh -c 'mount -t tmpfs none "$0" && [ ! -e "$0/libtcc1.a" ] && exec "$@"' "$support" \
+            "$gicrun" -q --engine tcc "$pendulum" "$root/models/scenes/pendulum.scene" -o bare.csv 2>said &&
+        cmp tape.csv bare.csv >>said
+    check $? "tcc without its support files"
+else
+    echo "not tried without the support files of tcc, for this user can't hide them"
+fi
+
 # ---- no executable memory -----------------------------------------------------------------------------------------
 
 "$gicrun" -q --engine tape "$root/models/hmmwv.veh" hmmwv.scene -o tape.csv

@@ -3,8 +3,8 @@
 # test_sanitized.sh GICGEN GICRUN DENY_EXEC: the whole path under the sanitizers for addresses, undefined behaviour and,
 # where the system lets it look, leaks: programs of `make debug` read, generate, compile and run with every engine, with
 # compiled objects that are sanitized too, and fail in the ways that they may; generated code runs in a sanitized
-# program of its own. Results must be those of the ordinary programs to the last digit: sanitizers change nothing that is
-# right.
+# program of its own. Results must be those of the ordinary programs to the last digit: sanitizers change nothing that
+# is right.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 deny_exec=$(realpath "$3")
