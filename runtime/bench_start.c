@@ -7,7 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -35,12 +34,13 @@ static const Way every_way[] = {
 
 enum { WAYS = sizeof every_way / sizeof *every_way };
 
-/* What one start and the steps after it took, s; elapsed but for cpu. */
+/* What one start and the steps after it took, s. */
 typedef struct Start {
     bool good;
-    double compiling, cpu, elapsed; /* from the model's file to the end of the first step, the compiler included */
-    double step, evaluation;        /* medians over the steps that follow */
-    size_t bytes;                   /* of code and constants; 0: interpreted, or not known */
+    double cpu, elapsed;     /* from the model's file to the end of the first step, the compiler included */
+    double compiling;        /* CPU time of compilation alone */
+    double step, evaluation; /* medians of elapsed time over the steps that follow */
+    size_t bytes;            /* of code and constants; 0: interpreted, or not known */
 } Start;
 
 /* The ways that are tried, and their starts by repetition. */
@@ -51,15 +51,6 @@ typedef struct Starts {
 } Starts;
 
 /* ---- the child ------------------------------------------------------------------------------------------------- */
-
-/* CPU time of this process and of those it has waited for. */
-static double cpu_seconds(void)
-{
-    struct rusage children;
-    getrusage(RUSAGE_CHILDREN, &children);
-    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) + (double)(children.ru_utime.tv_sec + children.ru_stime.tv_sec) +
-           1e-6 * (double)(children.ru_utime.tv_usec + children.ru_stime.tv_usec);
-}
 
 /* Steps of the scene, each timed, and at each a right-hand side on a copy. */
 static void time_steps(const Engine *engine, gic_head *self, const Scene *scene, Start *start)
@@ -260,8 +251,7 @@ static void break_even_table(const Bench *bench, const Starts *starts)
 static void start_chart(const Bench *bench, const Starts *starts)
 {
     Pool *pool = bench->pool;
-    Chart *chart =
-        report_chart(bench->report, "break_even", "CPU time, the start included", "steps", "CPU time [s]");
+    Chart *chart = report_chart(bench->report, "break_even", "CPU time, the start included", "steps", "CPU time [s]");
     chart->note = "Where two lines cross, the one has made up for the other.";
     for (int w = 0; w < starts->ways; ++w) {
         const Start *start = starts->start[w];
@@ -310,7 +300,7 @@ void bench_start(const Bench *bench)
     report_text(bench->report,
                 "What it takes from the model's file to the end of the first step, everything included but loading "
                 "gicbench itself: reading, generating or preparing, compiling, set-up, the step. CPU time includes the "
-                "compiler's; compiling is its elapsed time. Each start is a process of its own; cc (kept) finds the "
+                "compiler's, compiling is that alone. Each start is a process of its own; cc (kept) finds the "
                 "object of an earlier start. Memory is that of code and constants. After the first, steps are those of "
                 "AB3 with %s, one right-hand side each: medians over a run. Medians, lowest and highest of %d "
                 "repetitions, engines alternating, ratios formed within a repetition.",

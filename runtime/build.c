@@ -59,7 +59,7 @@ typedef struct Build {
     const char *shelf, *key; /* where objects are kept, NULL: nowhere; and as what */
     const char *unkept;      /* why the object isn't kept, or NULL */
     const char *copy;        /* where a copy of the object goes, NULL: nowhere */
-    double compiling;        /* s that the compiler took, 0: it had nothing to do */
+    double compiling;        /* s of CPU time that the compiler took, 0: it had nothing to do */
     Failure failure;
 } Build;
 
@@ -127,9 +127,9 @@ static const gic_model *compile(Build *b, const char *folder)
         *POOL_PUSH(pool, argv, count) = pool_print(pool, "%s", b->words[i]);
     for (size_t i = 0; i < sizeof ours / sizeof *ours; ++i)
         *POOL_PUSH(pool, argv, count) = ours[i] ? pool_print(pool, "%s", ours[i]) : NULL;
-    const double before = clock_seconds(CLOCK_MONOTONIC);
+    const double before = cpu_seconds();
     const int status = process_run(pool, argv, "", &said);
-    b->compiling = clock_seconds(CLOCK_MONOTONIC) - before;
+    b->compiling = cpu_seconds() - before;
     if (status == PROCESS_INTERRUPTED)
         return NULL;
     if (status == PROCESS_NOT_STARTED) {

@@ -3,6 +3,7 @@
 #include "engine.h"
 
 #include <string.h>
+#include <sys/resource.h>
 
 typedef const Engine *Open(Pool *pool, const Model *model, const EngineOptions *options);
 
@@ -34,6 +35,14 @@ double clock_seconds(clockid_t clock)
     struct timespec now;
     clock_gettime(clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double cpu_seconds(void)
+{
+    struct rusage children;
+    getrusage(RUSAGE_CHILDREN, &children);
+    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) + (double)(children.ru_utime.tv_sec + children.ru_stime.tv_sec) +
+           1e-6 * (double)(children.ru_utime.tv_usec + children.ru_stime.tv_usec);
 }
 
 double profile_clock(EngineProfile *profile)

@@ -12,6 +12,8 @@
 
 /* The time of a clock, s. */
 double clock_seconds(clockid_t clock);
+/* CPU time of this process and of those it has waited for, s. */
+double cpu_seconds(void);
 
 /* Where the time goes, s, in the rows of Serban and Haug 2000, Table 3 (row letters in parentheses), and counts. An
  * engine looks at the clock only while `on`; whoever sets it clears the rest. Generated code fills nothing. */
@@ -48,7 +50,7 @@ typedef struct Engine {
     int (*enter)(gic_head *self, const double *standard);
     void (*leave)(const gic_head *self, double *standard, double *rate);
     Background *background; /* NULL: `code` is all there will be */
-    double compiling;       /* s that a compiler took to make the code; 0: none had to */
+    double compiling;       /* s of CPU time that a compiler took to make the code; 0: none had to */
     size_t bytes;           /* of memory that the code and its constants take; 0: interpreted, or not known */
     void *memory;           /* what `close` gives back */
     void (*close)(const struct Engine *engine); /* NULL: it has nothing but memory of the pool */

@@ -158,7 +158,7 @@ const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *op
     const char *text = jit_text(pool, model, options);
     Text said = {.pool = pool};
     Jit *jit = pool_alloc(pool, sizeof *jit);
-    const double before = clock_seconds(CLOCK_MONOTONIC);
+    const double before = cpu_seconds();
     jit->state = tcc_new();
     if (!jit->state)
         diag_fail(gicrun_place, NULL, "no memory for tcc");
@@ -185,7 +185,7 @@ const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *op
     Engine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (Engine){.name = "tcc",
                        .code = code,
-                       .compiling = clock_seconds(CLOCK_MONOTONIC) - before,
+                       .compiling = cpu_seconds() - before,
                        .bytes = jit->size,
                        .memory = jit,
                        .standard = code->state,

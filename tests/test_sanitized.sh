@@ -191,6 +191,9 @@ for engine in tcc tape gic gcp1 gcp2; do
     fails 0 'warning: 2 of 4 rows have no result' --engine $engine --eval crank.csv crank.veh
 done
 
+"$debug/gicbench" --quick -o page "$pendulum" pendulum.scene pendulum.scene 2>said && [ -s page/index.html ] && clean
+check $? "gicbench"
+
 # ---- generated code in a program of its own -------------------------------------------------------------------------
 
 cp "$root/runtime/gic_runtime.c" "$root/runtime/gic_runtime.h" .
