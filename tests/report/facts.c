@@ -28,7 +28,7 @@ int main(void)
     if (model->setup(&it) != GIC_OK)
         return 1;
     printf("size\t%zu\n", sizeof it);
-    signals("states", model->slow_count, model->state, it.state);
+    signals("states", model->slow_count + model->fast_count, model->state, it.state);
     signals("inputs", model->input_count, model->input, it.input);
     signals("parameters", model->parameter_count, model->parameter, it.parameter);
     signals("ports", model->port_count, model->port, NULL);

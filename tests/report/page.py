@@ -65,7 +65,7 @@ class Page(html.parser.HTMLParser):
 
 # ---- operations, counted in the text of the code ---------------------------------------------------------------------
 
-FUNCTIONS = {"GIC_SQRT": "root", "gic_table_value": "function", "road_height": "function"}
+FUNCTIONS = {"GIC_SQRT": "root", "gic_table_value": "function", "road_height": "function", "road_friction": "function"}
 for function in "SIN COS TAN ASIN ACOS ATAN ATAN2 EXP LOG TANH POW".split():
     FUNCTIONS["GIC_" + function] = "function"
 
@@ -116,6 +116,22 @@ def total(*counts):
     return [sum(numbers) for numbers in zip(*counts)]
 
 
+def check_wheels(told, body):
+    """Operations of a fast step; None: there are no wheels with tires."""
+    if f"{NAME}_grip" not in body:
+        return None
+    calls = body[f"{NAME}_grip"]
+    fast = operations(blocks(calls)[0])
+    same("operations of drives and brakes", told["all together", "drives and brakes"], fast + [sum(fast)])
+    for name in set(re.findall(rf"= {NAME}_wheel_(\w+)\(", calls)):
+        text = body[f"{NAME}_wheel_{name}"]
+        tire = re.search(r"^( +)if \(hub\[0\] > \S+\) \{\n(.*?)^\1\}", text, re.S | re.M).group(2)
+        wheel = total(*[operations(block) for block in blocks(text) + [tire]])
+        same(f"operations of {name}", told[name, "wheel with its tire"], wheel + [sum(wheel)])
+        fast = total(fast, scaled(wheel, len(re.findall(rf"= {NAME}_wheel_{name}\(", calls))))
+    return fast
+
+
 def check_operations(page, code, header):
     body = functions(code)
     bound = {name: int(value) for name, value in re.findall(r"#define GIC_(CHORDS|PASSES|PIECES) (\d+)", code)}
@@ -161,9 +177,15 @@ def check_operations(page, code, header):
     line = re.search(r"outputs, when asked for +([\d ]+)", header)
     same("header's count of outputs", [int(word) for word in line.group(1).split()], outputs)
     rhs, bounded = total(usual, dynamics), total(worst, dynamics)
+    fast = check_wheels(told, body)
+    if fast:
+        link = operations(blocks(body[f"{NAME}_link_wheels"])[0])
+        same("operations of links", told["all together", "motion of the wheels"], link + [sum(link)])
+        rhs, bounded = total(rhs, link, fast), total(bounded, link, fast)
     line = re.search(r"all together +([\d ]+)", header)
     same("header's sum", [int(word) for word in line.group(1).split()], rhs)
     totals = {row[0]: [int(word) for word in row[1:]] for row in page.rows_of("totals")}
+    same("a fast step", totals.get("fast step: all wheels"), fast and fast + [sum(fast)])
     four = "RK4 step or one of the first two AB3 steps, "
     for what, count in (("right-hand side, usual", rhs), ("right-hand side, worst case in one piece", bounded),
                         ("every further piece, worst case", worst), ("AB3 step, usual", rhs),
