@@ -3697,4 +3697,5 @@ const gic_model andrews_model = {
     NULL,
     NULL,
     NULL,
+    NULL,
 };

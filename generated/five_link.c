@@ -5246,4 +5246,5 @@ const gic_model five_link_model = {
     NULL,
     NULL,
     NULL,
+    NULL,
 };

@@ -5443,4 +5443,5 @@ const gic_model hmmwv_model = {
     NULL,
     NULL,
     NULL,
+    NULL,
 };

@@ -7160,4 +7160,5 @@ const gic_model hmmwv14_model = {
     NULL,
     NULL,
     NULL,
+    NULL,
 };

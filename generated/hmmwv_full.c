@@ -5867,4 +5867,5 @@ const gic_model hmmwv_full_model = {
     NULL,
     NULL,
     NULL,
+    NULL,
 };

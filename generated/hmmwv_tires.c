@@ -6192,4 +6192,5 @@ const gic_model hmmwv_tires_model = {
     hmmwv_tires_any_link,
     hmmwv_tires_any_fast,
     hmmwv_tires_any_roll,
+    NULL,
 };

@@ -6178,4 +6178,5 @@ const gic_model hmmwv_tmeasy_model = {
     hmmwv_tmeasy_any_link,
     hmmwv_tmeasy_any_fast,
     hmmwv_tmeasy_any_roll,
+    NULL,
 };

@@ -1145,4 +1145,5 @@ const gic_model pendulum_model = {
     NULL,
     NULL,
     NULL,
+    NULL,
 };

@@ -2670,4 +2670,5 @@ const gic_model quarter_car_model = {
     NULL,
     NULL,
     NULL,
+    NULL,
 };

@@ -5111,4 +5111,5 @@ const gic_model solid_axle_model = {
     NULL,
     NULL,
     NULL,
+    NULL,
 };

@@ -5169,4 +5169,5 @@ const gic_model trailing_arm_model = {
     NULL,
     NULL,
     NULL,
+    NULL,
 };
