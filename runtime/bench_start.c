@@ -66,7 +66,7 @@ static void time_steps(const Engine *engine, gic_head *self, const Scene *scene,
     int done = 0;
     for (int status = GIC_OK; done <= steps && status == GIC_OK; ++done) {
         double before = clock_seconds(CLOCK_MONOTONIC);
-        status = scene_step(code, scene, NULL, self, 0);
+        status = scene_step(engine, code, scene, NULL, self, 0);
         step[done] = clock_seconds(CLOCK_MONOTONIC) - before - look;
         memcpy(copy, self, code->size);
         before = clock_seconds(CLOCK_MONOTONIC);
