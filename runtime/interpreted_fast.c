@@ -40,6 +40,17 @@ int interpreted_link(void *instance, double time, const double *slow, double *li
     return self->head.status = GIC_OK;
 }
 
+/* What formulas may ask for: free coordinates from the links, driven ones from the inputs of the moment. */
+static void set_coordinates(World *world, const double *link)
+{
+    const Model *model = world->model;
+    for (int c = 0; c < model->coordinates; ++c) {
+        const Coordinate *w = &model->coordinate[c];
+        world->x[c] = w->driven ? world->input[w->input] : link[c];
+        world->xd[c] = w->driven ? world->input[w->input + 1] : link[model->coordinates + c];
+    }
+}
+
 int interpreted_fast(void *instance, double time, const double *link, const double *fast, double *rate)
 {
     Instance *self = instance;
@@ -51,12 +62,8 @@ int interpreted_fast(void *instance, double time, const double *link, const doub
     const bool finite = gic_finite(fast, count) && gic_finite(link, context->code.link_count);
     double result[count];
     int status = finite ? interpreted_load(self, time) : GIC_ERROR_INPUT;
-    if (status == GIC_OK) {
-        const size_t coordinates = (size_t)model->coordinates;
-        const double *read = link + context->code.link_count - 2 * coordinates;
-        memcpy(world->x, read, sizeof *read * coordinates);
-        memcpy(world->xd, read + coordinates, sizeof *read * coordinates);
-    }
+    if (status == GIC_OK)
+        set_coordinates(world, link + context->code.link_count - 2 * model->coordinates);
     for (int i = 0; i < model->wheels && status == GIC_OK; ++i)
         if (model->wheel[i].tire >= 0) {
             const int at = model->wheel[i].fast;
