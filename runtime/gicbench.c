@@ -8,21 +8,22 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static const char help[] = "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCENE [TURNING_SCENE]\n"
-                           "\n"
-                           "Runs a scene with all engines and integrators and writes a folder: index.html with\n"
-                           "tables and pictures, the same as text, a CSV file a table.\n"
-                           "\n"
-                           "  -o, --output FOLDER  default: gicbench\n"
-                           "      --engines NAMES  some engines, separated by commas; the others are compared\n"
-                           "                       with the first; default: all\n"
-                           "      --quick          few repetitions, few settings\n"
-                           "      --cc COMMAND     C compiler of generated code; default: $CC or cc\n"
-                           "      --cflags FLAGS   more options for it, behind ours, all in one word\n"
-                           "  -h, --help           this text\n"
-                           "      --version        version\n"
-                           "\n"
-                           "Exit status: 0 good, 1 error in a file or during a run, 2 wrong usage.\n";
+static const char help[] =
+    "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCENE [TURNING_SCENE]\n"
+    "\n"
+    "Runs a scene with all engines and integrators and writes a folder: index.html with\n"
+    "tables and pictures, the same as text, a CSV file a table.\n"
+    "\n"
+    "  -o, --output FOLDER  default: gicbench\n"
+    "      --engines NAMES  some engines, separated by commas; the others are compared\n"
+    "                       with the first; default: all\n"
+    "      --quick          few repetitions, few settings\n"
+    "      --cc COMMAND     C compiler of generated code; default: $CC or cc\n"
+    "      --cflags FLAGS   more options for it, behind ours, all in one word\n"
+    "  -h, --help           this text\n"
+    "      --version        version\n"
+    "\n"
+    "Exit status: 0 good, 1 error in a file or during a run, 2 wrong usage.\n";
 
 /* Names separated by commas. */
 static const char *const *engine_list(Pool *pool, char *names)
@@ -87,6 +88,12 @@ static void make_folder(const char *folder)
                   strerror(errno));
 }
 
+static const Scene *read_scene(const Bench *bench, const char *path)
+{
+    const Scene *scene = scene_read(bench->pool, path, bench->model, NULL, 0);
+    return equilibrium_start(bench->pool, bench->model, scene, bench->options.solve);
+}
+
 int main(int count, char **word)
 {
     Pool *pool = pool_new();
@@ -95,8 +102,8 @@ int main(int count, char **word)
     Report report = {.pool = pool};
     bench.report = &report;
     bench.model = model_read(pool, bench.model_path);
-    bench.scene = scene_read(pool, bench.scene_path, bench.model, NULL, 0);
-    bench.spin = bench.spin_path ? scene_read(pool, bench.spin_path, bench.model, NULL, 0) : NULL;
+    bench.scene = read_scene(&bench, bench.scene_path);
+    bench.spin = bench.spin_path ? read_scene(&bench, bench.spin_path) : NULL;
     if (bench_samples(bench.scene) < 2)
         diag_fail((Place){bench.scene->source, 0, 0}, "a longer duration", "a benchmark takes at least %g s",
                   bench_sample);

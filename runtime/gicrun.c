@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * gicrun: generate, compile and run a model. This file: the command line. */
-#include "gicrun.h"
+#include "linearize.h"
 
 #include <getopt.h>
 #include <stdlib.h>
@@ -10,9 +10,11 @@ static const char help[] =
     "usage: gicrun MODEL.veh SCENE [-o results.csv] [--plot picture.svg|picture.png]\n"
     "              [--animate page.html]\n"
     "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
+    "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
     "\n"
     "Generates C for a vehicle model, compiles it and runs a scene, or evaluates rows of\n"
-    "states: accelerations, poses of all bodies, outputs.\n"
+    "states: accelerations, poses of all bodies, outputs; or finds where it rests, and how it\n"
+    "moves about there.\n"
     "\n"
     "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
     "                     picture or a page is asked for)\n"
@@ -21,6 +23,11 @@ static const char help[] =
     "                     moves along its road\n"
     "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
     "                     a scene gives the road only\n"
+    "      --equilibrium  find the static equilibrium near the scene's initial state, with its\n"
+    "                     inputs and road at time 0, or near the model's: coordinates, forces,\n"
+    "                     wheel loads; -o: the state as a row that --eval reads\n"
+    "      --modes        eigenvalues, frequencies and damping of small motions about it, with\n"
+    "                     the scene's velocities; -o: the same as CSV\n"
     "      --integrator NAME\n"
     "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
     "                     of the scene's\n"
@@ -68,12 +75,27 @@ static const char *read_engine(const char *name)
 
 static Request read_command_line(int count, char **word)
 {
-    enum { PLOT = 256, ANIMATE, EVAL, ENGINE, SOLVE, COMPILER, FLAGS, INTEGRATOR, TOLERANCE, VERSION };
+    enum {
+        PLOT = 256,
+        ANIMATE,
+        EVAL,
+        EQUILIBRIUM,
+        MODES,
+        ENGINE,
+        SOLVE,
+        COMPILER,
+        FLAGS,
+        INTEGRATOR,
+        TOLERANCE,
+        VERSION
+    };
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
         {"plot", required_argument, NULL, PLOT},
         {"animate", required_argument, NULL, ANIMATE},
         {"eval", required_argument, NULL, EVAL},
+        {"equilibrium", no_argument, NULL, EQUILIBRIUM},
+        {"modes", no_argument, NULL, MODES},
         {"integrator", required_argument, NULL, INTEGRATOR},
         {"tolerance", required_argument, NULL, TOLERANCE},
         {"engine", required_argument, NULL, ENGINE},
@@ -92,6 +114,8 @@ static Request read_command_line(int count, char **word)
         case PLOT: request.picture = optarg; break;
         case ANIMATE: request.page = optarg; break;
         case EVAL: request.states = optarg; break;
+        case EQUILIBRIUM: request.rests = true; break;
+        case MODES: request.modes = true; break;
         case INTEGRATOR: request.integrator = optarg; break;
         case TOLERANCE: request.tolerance = read_tolerance(optarg); break;
         case ENGINE: request.engine = read_engine(optarg); break;
@@ -110,7 +134,10 @@ static Request read_command_line(int count, char **word)
     const int files = count - optind;
     if (files < 1)
         usage_fail("gicrun", "no model given", NULL);
-    if (files < 2 && !request.states)
+    if (request.rests + request.modes + (request.states != NULL) > 1)
+        usage_fail("gicrun", "one of --eval, --equilibrium and --modes, please", NULL);
+    const bool runs = !request.states && !request.rests && !request.modes;
+    if (files < 2 && runs)
         usage_fail("gicrun", "no scene given", NULL);
     if (files > 2)
         usage_fail("gicrun", "one model and one scene, please; what is", word[optind + 2]);
@@ -120,17 +147,27 @@ static Request read_command_line(int count, char **word)
         usage_fail("gicrun", "the model must be a file", NULL);
     if (request.integrator && integrator_method(request.integrator) < 0)
         usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
-    if (request.picture && request.states)
-        usage_fail("gicrun", "--plot goes with a scene, not with --eval", NULL);
+    if (request.picture && !runs)
+        usage_fail("gicrun", "--plot goes with a run, not with --eval, --equilibrium or --modes", NULL);
     if (request.picture && !plot_known(request.picture))
         usage_fail("gicrun", "the picture must end in .svg or .png, unlike", request.picture);
-    if (request.page && request.states)
-        usage_fail("gicrun", "--animate goes with a scene, not with --eval", NULL);
+    if (request.page && !runs)
+        usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium or --modes", NULL);
     if (request.page && !path_ends(request.page, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.page);
-    if (!request.results && !request.picture && !request.page)
+    if (!request.results && !request.picture && !request.page && (runs || request.states))
         request.results = "-";
     return request;
+}
+
+/* All that is about the static equilibrium. */
+static void analyse(Pool *pool, const Model *model, const Scene *scene, const Engine *engine, const Request *request)
+{
+    const Equilibrium *found = equilibrium_find(pool, model, scene, request->solve);
+    if (request->rests)
+        equilibrium_report(pool, engine, scene, request, found);
+    else
+        modes_report(pool, scene, request, found);
 }
 
 int main(int count, char **word)
@@ -146,8 +183,11 @@ int main(int count, char **word)
             .solve = request.solve, .compiler = request.compiler, .flags = request.flags, .quiet = request.quiet});
     if (request.states)
         evaluate(pool, engine, scene, &request);
+    else if (request.rests || request.modes)
+        analyse(pool, model, scene, engine, &request);
     else
-        simulate(pool, engine, scene, request.page ? animation_new(pool, model, scene, request.scene) : NULL, &request);
+        simulate(pool, engine, equilibrium_start(pool, model, scene, request.solve),
+                 request.page ? animation_new(pool, model, scene, request.scene) : NULL, &request);
     engine_close(engine);
     pool_free(pool);
     return 0;

@@ -15,6 +15,7 @@
 typedef struct Request {
     const char *model, *scene; /* paths; scene may be NULL with `states` */
     const char *states;        /* --eval, or NULL */
+    bool rests, modes;         /* --equilibrium, --modes */
     const char *results;       /* "-": standard output; NULL: none */
     const char *picture;       /* NULL: none */
     const char *page;          /* --animate, or NULL */
@@ -74,6 +75,8 @@ typedef struct Scene {
     double tolerance;                   /* of variable steps */
     int32_t ratio;                      /* of AB3: fast steps in a step */
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
+    bool along, equilibrium; /* is the velocity one of `speed` along the base's x axis; start in static equilibrium? */
+    double speed;
     double *value, *rate;                                           /* [coordinates] at time 0; not used where driven */
     bool placed, *given;  /* does the scene give the position, [coordinates] the values? Else they are the model's */
     double *fast;         /* [fast states] at time 0, NAN: as wheels roll */
@@ -88,6 +91,8 @@ typedef struct Scene {
 /* Read a scene for a model. Any mistake ends in diag_fail. integrator: instead of the scene's, or NULL; tolerance: the
  * same, or 0. */
 const Scene *scene_read(Pool *pool, const char *path, const Model *model, const char *integrator, double tolerance);
+/* The velocity of a scene with `speed`, from the orientation. */
+void scene_along(Scene *scene);
 /* The method of a name, -1: there is none; the name of a method. */
 int32_t integrator_method(const char *name);
 const char *integrator_name(int32_t method);
@@ -188,6 +193,9 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self);
  * `end` that stops at kinks of inputs. Before it the driver looks, where it is time for that. */
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
                double end);
+/* equilibrium.c: the scene, or where it asks for it one that starts in static equilibrium. Ends in diag_fail where there
+ * is none. */
+const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scene, Solve solve);
 /* Run a scene: results, picture, page (animation: NULL where none is asked for), summary. A failure on the way keeps
  * what was computed and ends in diag_fail. */
 void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *animation, const Request *request);

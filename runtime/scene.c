@@ -191,6 +191,15 @@ static void read_orientation(const Item *item, double e[4])
     e[3] = cr * cp * sy - sr * sp * cy;
 }
 
+void scene_along(Scene *scene)
+{
+    const double along[3] = {scene->speed, 0, 0};
+    double A[9];
+    mat_from_euler(scene->euler, A);
+    if (scene->along)
+        mat_apply(A, along, scene->velocity);
+}
+
 static void read_base(Reader *reader, const Item *initial)
 {
     static const char *const keys[] = {"position", "orientation", "velocity", "speed", "angular_velocity"};
@@ -213,11 +222,9 @@ static void read_base(Reader *reader, const Item *initial)
         diag_fail(speed->at, "keep one of the two", "the initial state has both velocity and speed");
     if (velocity)
         doc_vector(velocity, "initial velocity", scene->velocity, 3);
-    if (speed) {
-        double A[9], along[3] = {doc_number(speed, "initial speed"), 0, 0};
-        mat_from_euler(scene->euler, A);
-        mat_apply(A, along, scene->velocity);
-    }
+    scene->along = speed;
+    scene->speed = speed ? doc_number(speed, "initial speed") : 0;
+    scene_along(scene);
     if (angular)
         doc_vector(angular, "initial angular velocity", scene->angular_velocity, 3);
 }
@@ -271,8 +278,10 @@ static void read_initial(Reader *reader, const Item *initial)
     const Model *model = reader->model;
     Scene *scene = reader->scene;
     CHECK_KEYS(initial, "the initial state", "position", "orientation", "velocity", "speed", "angular_velocity",
-               "coordinates", "rates", "states");
+               "coordinates", "rates", "states", "equilibrium");
     read_base(reader, initial);
+    const Item *equilibrium = doc_find(initial, "equilibrium");
+    scene->equilibrium = equilibrium && doc_bool(equilibrium, "equilibrium");
     const Item *coordinates = doc_find(initial, "coordinates"), *rates = doc_find(initial, "rates");
     const Item *states = doc_find(initial, "states");
     if (coordinates)

@@ -57,4 +57,17 @@ const Tape *tape_record(Pool *pool, const Block *block, const char *const *array
  * least `slots` numbers. */
 int tape_play(const Tape *tape, int member, double *const *array, const TapeWorld *world, double *frame);
 
+/* The same file, the parts of playing: inputs from the arrays, results to them, the status that the checks give; and
+ * height and slopes of the road under a point, false when they are not finite numbers. */
+void tape_load(const Tape *tape, double *const *array, double *frame);
+void tape_store(const Tape *tape, double *const *array, const double *frame);
+int tape_checked(const Tape *tape, const TapeWorld *world, const double *frame);
+bool tape_road(const TapeWorld *world, double x, double y, double out[3]);
+
+/* tape_dual.c: the same with derivatives along one direction: `slope` has an array of derivatives for each array of
+ * values, `rate` as many numbers as `frame`. Values are those of tape_play() to the bit. abs, min, max and conditions
+ * have the derivative of the branch that is taken; constants and what no array holds have none. */
+int tape_play_dual(const Tape *tape, int member, double *const *array, double *const *slope, const TapeWorld *world,
+                   double *frame, double *rate);
+
 #endif

@@ -43,15 +43,14 @@ static void gather(Instance *self, const double *y)
     }
 }
 
-int tape_whole(Instance *self, const Tape *tape, double time, const double *y, const double *e, double *rate,
-               double *acc, double *out)
+void tape_arrays(Instance *self, const double *time, const double *y, const double *e, double *rate, double *acc,
+                 double *out, double *array[WHOLE_COUNT])
 {
     const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
-    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, NULL};
-    double *const array[WHOLE_COUNT] = {
-        [WHOLE_time] = &time,
-        [WHOLE_y] = (double *)y, /* blocks only read these two */
+    double *const all[WHOLE_COUNT] = {
+        [WHOLE_time] = (double *)time, /* blocks only read these three */
+        [WHOLE_y] = (double *)y,
         [WHOLE_e] = (double *)e,
         [WHOLE_x] = tape_array(self, engine->x_offset),
         [WHOLE_xd] = tape_array(self, engine->xd_offset),
@@ -71,6 +70,16 @@ int tape_whole(Instance *self, const Tape *tape, double time, const double *y, c
         [WHOLE_GRIP] = tape_array(self, engine->grip_offset),
         [WHOLE_lambda] = tape_array(self, engine->multiplier_offset),
     };
+    memcpy(array, all, sizeof all);
+}
+
+int tape_whole(Instance *self, const Tape *tape, double time, const double *y, const double *e, double *rate,
+               double *acc, double *out)
+{
+    const TapeEngine *engine = tape_of(self);
+    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, NULL};
+    double *array[WHOLE_COUNT];
+    tape_arrays(self, &time, y, e, rate, acc, out, array);
     return tape_play(tape, 0, array, &world, engine->frame);
 }
 

@@ -47,6 +47,7 @@ typedef struct TapeEngine {
         recovered_offset;       /* the latter: x, xd and angular velocity of the last recovery, 1: it was good */
     double *link_row, *torques; /* a link; what drives and brakes [wheels with tires][2] */
     double *frame, *q, *first, *result, *out;
+    int slots;                              /* of the largest tape: room in `frame` */
     double *standard, *wanted;              /* [tunables] values in the file, and while one is set up */
     double *acc, *unit, *tau0, *tau, *mass; /* [unknowns], and squared */
     TapeLinks links;
@@ -84,7 +85,9 @@ enum { WHOLE_ARRAYS(WHOLE_ENUM) WHOLE_DERIVED, WHOLE_GRIP, WHOLE_COUNT };
 #undef CLASS_ENUM
 #undef WHOLE_ENUM
 
-/* tape_open.c: all but the functions of the descriptor. */
+/* tape_open.c: room for the arrays of the largest class. */
+TapeLinks tape_links_new(Pool *pool, const Formulation *f);
+/* The same file: all but the functions of the descriptor. */
 TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve);
 
 /* tape_recover.c: all bodies at the coordinates of the instance, followed from the last good configuration; and the
@@ -113,6 +116,10 @@ int tape_whole(Instance *self, const Tape *tape, double time, const double *y, c
  * instance. */
 int tape_locate(Instance *self, double time, const double *y, double e[4]);
 double tape_present(Instance *self);
+/* What such a tape reads and writes. */
+void tape_arrays(Instance *self, const double *time, const double *y, const double *e, double *rate, double *acc,
+                 double *out, double *array[WHOLE_COUNT]);
+/* The present state recovered, its rate in the instance. */
 int tape_refresh(Instance *self, double e[4]);
 
 /* tape_wheels.c: the templates wheels.c.in and dual_rate.c.in, over tapes. */

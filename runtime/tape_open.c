@@ -71,6 +71,14 @@ static void make_tables(Pool *pool, TapeEngine *engine)
     }
 }
 
+TapeLinks tape_links_new(Pool *pool, const Formulation *f)
+{
+    return (TapeLinks){.array = pool_alloc(pool, (size_t)(CLASS_KNOWN + 2 * f->known_most) * sizeof(double *)),
+                       .x = numbers(pool, f->dependence_most),
+                       .rate = numbers(pool, f->dependence_most),
+                       .change = numbers(pool, f->dependence_most)};
+}
+
 static void make_scratch(Pool *pool, TapeEngine *engine)
 {
     const Formulation *f = engine->formulation;
@@ -96,6 +104,7 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
         engine->link_row = numbers(pool, f->wheels->links);
         engine->torques = numbers(pool, 2 * f->wheels->count);
     }
+    engine->slots = slots;
     engine->frame = numbers(pool, slots);
     engine->q = numbers(pool, 7 * bodies);
     engine->first = numbers(pool, f->model->coordinates);
@@ -107,10 +116,7 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
     engine->tau0 = numbers(pool, unknowns);
     engine->tau = numbers(pool, unknowns);
     engine->mass = numbers(pool, unknowns * unknowns);
-    engine->links = (TapeLinks){.array = pool_alloc(pool, (size_t)(CLASS_KNOWN + 2 * f->known_most) * sizeof(double *)),
-                                .x = numbers(pool, f->dependence_most),
-                                .rate = numbers(pool, f->dependence_most),
-                                .change = numbers(pool, f->dependence_most)};
+    engine->links = tape_links_new(pool, f);
 }
 
 /* ---- instances --------------------------------------------------------------------------------------------------- */

@@ -15,8 +15,7 @@ static double maximum(double a, double b)
     return a > b ? a : b;
 }
 
-/* Height and slopes under a point; false when they are not finite numbers. */
-static bool road_height(const TapeWorld *world, double x, double y, double out[3])
+bool tape_road(const TapeWorld *world, double x, double y, double out[3])
 {
     out[0] = out[1] = out[2] = 0;
     if (world->road)
@@ -71,7 +70,7 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f)
         case OP_TABLE: RUN(3, gic_table_value(&world->table[at[2]], f[at[1]]));
         case OP_ROAD:
             for (; left; --left, at += 3)
-                on_road = road_height(world, f[at[1]], f[at[2]], f + at[0]) && on_road;
+                on_road = tape_road(world, f[at[1]], f[at[2]], f + at[0]) && on_road;
             break;
         default: break;
         }
@@ -79,15 +78,8 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f)
     return on_road;
 }
 
-int tape_play(const Tape *tape, int member, double *const *array, const TapeWorld *world, double *frame)
+int tape_checked(const Tape *tape, const TapeWorld *world, const double *frame)
 {
-    memcpy(frame, tape->constant + member * tape->constants, (size_t)tape->constants * sizeof *frame);
-    for (int i = 0; i < tape->loads; ++i) {
-        const TapeMove *load = &tape->load[i];
-        for (int j = 0; j < load->count; ++j)
-            frame[load->slot + j] = array[load->array][load->offset + j];
-    }
-    const bool on_road = play_runs(tape, world, frame);
     for (int i = 0; i < tape->checks; ++i) {
         const TapeCheck *check = &tape->check[i];
         const double value = frame[check->slot];
@@ -97,11 +89,36 @@ int tape_play(const Tape *tape, int member, double *const *array, const TapeWorl
             return check->status;
         }
     }
-    if (!on_road)
-        return GIC_ERROR_ROAD;
+    return GIC_OK;
+}
+
+void tape_load(const Tape *tape, double *const *array, double *frame)
+{
+    for (int i = 0; i < tape->loads; ++i) {
+        const TapeMove *load = &tape->load[i];
+        for (int j = 0; j < load->count; ++j)
+            frame[load->slot + j] = array[load->array][load->offset + j];
+    }
+}
+
+void tape_store(const Tape *tape, double *const *array, const double *frame)
+{
     for (int i = 0; i < tape->stores; ++i) {
         const TapeMove *store = &tape->store[i];
         array[store->array][store->offset] = frame[store->slot];
     }
+}
+
+int tape_play(const Tape *tape, int member, double *const *array, const TapeWorld *world, double *frame)
+{
+    memcpy(frame, tape->constant + member * tape->constants, (size_t)tape->constants * sizeof *frame);
+    tape_load(tape, array, frame);
+    const bool on_road = play_runs(tape, world, frame);
+    const int status = tape_checked(tape, world, frame);
+    if (status != GIC_OK)
+        return status;
+    if (!on_road)
+        return GIC_ERROR_ROAD;
+    tape_store(tape, array, frame);
     return GIC_OK;
 }

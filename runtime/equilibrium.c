@@ -1,0 +1,370 @@
+/* SPDX-License-Identifier: MIT
+ * Static equilibrium: places at which all accelerations vanish at rest.
+ *
+ * Near it: Newton's method, with steps of least norm, so that directions in which nothing changes (x, y and yaw on a
+ * plane) stay as they are. Far from it: the motion itself in steps of implicit Euler, with all velocities set to zero
+ * before each, (1/h^2 - K) dx = a, which goes downhill like the real thing and turns into Newton's step as h grows. No
+ * step is taken against the forces, for that would lead to where the mechanism balances on its tip. */
+#include "linearize.h"
+
+#include <math.h>
+#include <string.h>
+
+#include <gsl/gsl_linalg.h>
+
+const double equilibrium_limit = 1e-9;
+
+enum { MOST_STEPS = 500 };
+
+static const double longest = 1e4, shortest = 1e-7, first = 0.02; /* h, s */
+static const double rank_limit = 1e-9; /* of singular values, relative to the largest: below, nothing changes */
+
+/* Unknowns are the places, then the fast states; equations their accelerations, then rates: equation i is row
+ * places + i of A. */
+typedef struct Search {
+    Pool *pool;
+    Equilibrium *found;
+    Instance *trial;
+    int unknowns;
+    double *step, *move; /* [unknowns], [count] as linear_move() wants it */
+    double *f, *A;       /* at the trial */
+    double h;
+    int status; /* of the last trial */
+} Search;
+
+static int column_of(const Linear *linear, int unknown)
+{
+    return unknown < linear->places ? unknown : unknown + linear->places;
+}
+
+static double square_sum(const Search *s, const double *f)
+{
+    double sum = 0;
+    for (int i = 0; i < s->unknowns; ++i)
+        sum += f[s->found->linear->places + i] * f[s->found->linear->places + i];
+    return sum;
+}
+
+static int largest(const Linear *linear, const double *f)
+{
+    int worst = linear->places;
+    for (int i = worst; i < linear->count; ++i)
+        if (!(fabs(f[i]) <= fabs(f[worst])))
+            worst = i;
+    return worst;
+}
+
+/* The step in units of the reach: more than 1 is too far. */
+static double step_size(const Search *s)
+{
+    double size = 0;
+    for (int i = 0; i < s->unknowns; ++i)
+        size = fmax(size, fabs(s->step[i]) / s->found->linear->reach[column_of(s->found->linear, i)]);
+    return size;
+}
+
+/* Singular values and directions of the equations in units of the reach. V: [unknowns][unknowns] by columns. */
+static void decompose(const Search *s, gsl_matrix *U, gsl_matrix *V, gsl_vector *S)
+{
+    const Linear *linear = s->found->linear;
+    const int n = s->unknowns;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const int column = column_of(linear, j);
+            gsl_matrix_set(U, (size_t)i, (size_t)j,
+                           s->found->A[(linear->places + i) * linear->count + column] * linear->reach[column]);
+        }
+    gsl_linalg_SV_decomp_jacobi(U, V, S);
+}
+
+/* Newton's step of least norm. Names of the neutral places, where they are wanted. */
+static void newton_step(Search *s, const char **neutral)
+{
+    const Linear *linear = s->found->linear;
+    const size_t n = (size_t)s->unknowns;
+    gsl_matrix *U = gsl_matrix_alloc(n, n), *V = gsl_matrix_alloc(n, n);
+    gsl_vector *S = gsl_vector_alloc(n);
+    double weight[n];
+    decompose(s, U, V, S);
+    memset(s->step, 0, n * sizeof *s->step);
+    memset(weight, 0, sizeof weight);
+    for (size_t k = 0; k < n; ++k) {
+        const double value = gsl_vector_get(S, k);
+        double part = 0;
+        if (!(value > rank_limit * gsl_vector_get(S, 0))) {
+            for (size_t j = 0; j < n; ++j)
+                weight[j] += gsl_matrix_get(V, j, k) * gsl_matrix_get(V, j, k);
+            continue;
+        }
+        for (size_t i = 0; i < n; ++i)
+            part -= gsl_matrix_get(U, i, k) * s->found->f[linear->places + (int)i] / value;
+        for (size_t j = 0; j < n; ++j)
+            s->step[j] += part * gsl_matrix_get(V, j, k) * linear->reach[column_of(linear, (int)j)];
+    }
+    Text names = {.pool = s->pool};
+    for (int j = 0; neutral && j < linear->places; ++j)
+        if (weight[j] > 0.5)
+            text_print(&names, "%s%s", names.size ? ", " : "", linear->name[j]);
+    if (neutral)
+        *neutral = names.s;
+    gsl_vector_free(S);
+    gsl_matrix_free(V);
+    gsl_matrix_free(U);
+}
+
+/* Implicit Euler from rest over h. */
+static void relaxation_step(Search *s)
+{
+    const Linear *linear = s->found->linear;
+    const int n = s->unknowns;
+    double M[n * n + 1];
+    for (int i = 0; i < n; ++i) {
+        s->step[i] = s->found->f[linear->places + i];
+        for (int j = 0; j < n; ++j)
+            M[n * i + j] = -s->found->A[(linear->places + i) * linear->count + column_of(linear, j)];
+        M[n * i + i] += i < linear->places ? 1 / (s->h * s->h) : 1 / s->h;
+    }
+    if (!linear_solve_numeric(n, M, s->step))
+        s->step[0] = NAN;
+}
+
+/* The work that the forces of the present place do along the step is M a . dx, M the mass matrix. */
+static bool goes_with_forces(Search *s)
+{
+    const TapeEngine *engine = s->found->linear->engine;
+    Instance *self = s->found->self;
+    const gic_model *code = &engine->code;
+    const int n = engine->formulation->plan->unknowns, base = code->free_base ? 6 : 0;
+    const double *y = tape_array(self, code->state_offset), *a = s->found->f + s->found->linear->places;
+    double e[4], step[n + 1], acceleration[n + 1], tau[2][n + 1], work = 0;
+    for (int i = 0; i < n; ++i) {
+        const int from = i < base ? (i + 3) % 6 : i; /* the tape's order is rotation, displacement */
+        step[i] = s->step[from];
+        acceleration[i] = a[from];
+    }
+    if (tape_refresh(self, e) != GIC_OK || tape_whole(self, engine->inverse, 0, y, e, NULL, step, tau[0]) != GIC_OK)
+        return false;
+    memset(step, 0, sizeof step);
+    if (tape_whole(self, engine->inverse, 0, y, e, NULL, step, tau[1]) != GIC_OK)
+        return false;
+    for (int i = 0; i < n; ++i)
+        work += acceleration[i] * (tau[0][i] - tau[1][i]);
+    return work > 0;
+}
+
+/* Evaluate where the step leads. */
+static bool try_step(Search *s)
+{
+    const Linear *linear = s->found->linear;
+    memset(s->move, 0, (size_t)linear->count * sizeof *s->move);
+    for (int i = 0; i < s->unknowns; ++i)
+        s->move[column_of(linear, i)] = s->step[i];
+    memcpy(s->trial, s->found->self, linear->engine->code.size);
+    linear_move(linear, s->trial, s->move);
+    s->status = linearize(linear, s->trial, s->f, s->A);
+    return s->status == GIC_OK;
+}
+
+static void accept(Search *s)
+{
+    const size_t count = (size_t)s->found->linear->count;
+    memcpy(s->found->self, s->trial, s->found->linear->engine->code.size);
+    memcpy(s->found->f, s->f, count * sizeof *s->f);
+    memcpy(s->found->A, s->A, count * count * sizeof *s->A);
+    ++s->found->steps;
+}
+
+/* One of Newton's steps, where that is near enough to be trusted and halves what is left. */
+static bool newton(Search *s)
+{
+    const double near = 1e-3;
+    newton_step(s, NULL);
+    const double size = step_size(s);
+    if (!(size <= 1) || (size > near && !goes_with_forces(s)) || !try_step(s) ||
+        !(square_sum(s, s->f) <= square_sum(s, s->found->f) / 4))
+        return false;
+    accept(s);
+    return true;
+}
+
+/* One step of relaxation, shortened until it is good. */
+static bool relax(Search *s)
+{
+    for (; s->h > shortest; s->h /= 2) {
+        relaxation_step(s);
+        if (!(step_size(s) <= 1) || !goes_with_forces(s) || !try_step(s) ||
+            !(square_sum(s, s->f) <= 100 * square_sum(s, s->found->f)))
+            continue;
+        accept(s);
+        s->h = fmin(2 * s->h, longest);
+        return true;
+    }
+    return false;
+}
+
+/* ---- the start, and failure -------------------------------------------------------------------------------------- */
+
+/* The user's model with outputs for what the tables show. */
+static const Model *watched(Pool *pool, const Model *model)
+{
+    Model *copy = pool_alloc(pool, sizeof *copy);
+    *copy = *model;
+    copy->output = NULL;
+    copy->outputs = 0;
+    for (int i = 0; i < model->outputs; ++i)
+        *POOL_PUSH(pool, copy->output, copy->outputs) = model->output[i];
+    for (int i = 0; i < model->forces; ++i)
+        if (model->force[i].type != FORCE_LOAD) {
+            *POOL_PUSH(pool, copy->output, copy->outputs) = (Output){.name = model->force[i].name,
+                                                                     .type = OUTPUT_FORCE,
+                                                                     .index = i,
+                                                                     .count = 1,
+                                                                     .component = {""},
+                                                                     .unit = {""}};
+            ++copy->output_components;
+        }
+    for (int i = 0; i < model->wheels; ++i) {
+        *POOL_PUSH(pool, copy->output, copy->outputs) = (Output){.name = model->wheel[i].name,
+                                                                 .type = OUTPUT_WHEEL,
+                                                                 .index = i,
+                                                                 .count = 4,
+                                                                 .component = {"", "", "", ""},
+                                                                 .unit = {"", "", "", ""}};
+        copy->output_components += 4;
+    }
+    return copy;
+}
+
+int equilibrium_wheel(const Equilibrium *found, int wheel)
+{
+    return found->model->output_components - 4 * (found->model->wheels - wheel);
+}
+
+int equilibrium_force(const Equilibrium *found, int force)
+{
+    int at = equilibrium_wheel(found, 0);
+    if (found->model->force[force].type == FORCE_LOAD)
+        return -1;
+    for (int i = force; i < found->model->forces; ++i)
+        at -= found->model->force[i].type != FORCE_LOAD;
+    return at;
+}
+
+/* At rest at time 0, inputs fixed. */
+static int start(const Equilibrium *found, const Scene *scene)
+{
+    const gic_model *code = found->engine->code;
+    gic_head *self = &found->self->head;
+    double *state = instance_array(self, code->state_offset), *input = instance_array(self, code->input_offset);
+    const int status = scene ? scene_start(found->engine, scene, self) : code->setup(self);
+    self->input_function = NULL;
+    for (int i = found->linear->places; i < 2 * found->linear->places; ++i)
+        state[i + code->free_base] = 0;
+    for (int c = 0; c < code->coordinate_count; ++c)
+        if (code->coordinate_input[c] >= 0)
+            input[code->coordinate_input[c] + 1] = input[code->coordinate_input[c] + 2] = 0;
+    return status;
+}
+
+static bool is_carried(const Equilibrium *found)
+{
+    const gic_model *code = found->engine->code;
+    gic_head *self = &found->self->head;
+    const double *output = instance_array(self, code->output_offset);
+    bool carried = code->outputs(self) != GIC_OK;
+    for (int i = 0; i < found->model->wheels; ++i)
+        carried = carried || output[equilibrium_wheel(found, i)] > 0;
+    return carried;
+}
+
+static _Noreturn void fail(const Search *s, Place at)
+{
+    const Equilibrium *found = s->found;
+    const Linear *linear = found->linear;
+    const int worst = largest(linear, found->f);
+    const bool of_base = worst - linear->places < 6 && found->model->free_base;
+    const char *remedy = "what pushes there at time 0? see force elements, loads, inputs and the road, or start nearer "
+                         "to where it can rest";
+    if (of_base && !found->model->wheels)
+        remedy = "nothing carries the base: give the model wheels, or forces that hold it";
+    else if (of_base && !is_carried(found))
+        remedy = "no wheel touches the road: start the vehicle upright and just above it (`initial: position`)";
+    if (s->status != GIC_OK && s->status != GIC_ERROR_RESULT) {
+        const char *limit = instance_status(s->pool, found->engine->code, &s->trial->head, s->status);
+        diag_fail(at,
+                  "forces push the mechanism beyond its limits: check springs, free lengths and loads, or add stops",
+                  "no static equilibrium found: the largest acceleration left is %.3g, of %s, and further on: %s",
+                  found->f[worst], linear->name[worst], limit);
+    }
+    diag_fail(at, remedy, "no static equilibrium found: after %d steps the largest acceleration left is %.3g, of %s",
+              found->steps, found->f[worst], linear->name[worst]);
+}
+
+const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve)
+{
+    Equilibrium *found = pool_alloc(pool, sizeof *found);
+    found->model = watched(pool, model);
+    found->engine = engine_open(pool, "tape", found->model, &(EngineOptions){.solve = solve, .quiet = true});
+    found->linear = linear_open(pool, found->engine);
+    found->self = (Instance *)(void *)instance_new(pool, found->engine);
+    const size_t count = (size_t)found->linear->count, square = (count * count + 1) * sizeof(double);
+    const Place at = {scene ? scene->source : model->source, 0, 0};
+    Search s = {.pool = pool, .found = found, .unknowns = (int)count - found->linear->places, .h = first};
+    s.trial = (Instance *)(void *)instance_new(pool, found->engine);
+    found->f = pool_alloc(pool, (count + 1) * sizeof(double));
+    found->A = pool_alloc(pool, square);
+    s.f = pool_alloc(pool, (count + 1) * sizeof(double));
+    s.A = pool_alloc(pool, square);
+    s.step = pool_alloc(pool, (count + 1) * sizeof(double));
+    s.move = pool_alloc(pool, (count + 1) * sizeof(double));
+    if (!s.unknowns)
+        diag_fail(at, "free a coordinate, or the base", "model '%s' has no freedom: there is no equilibrium to find",
+                  model->name);
+    int status = start(found, scene);
+    if (status == GIC_OK)
+        status = linearize(found->linear, found->self, found->f, found->A);
+    if (status != GIC_OK)
+        diag_fail(at, "is the initial state one that the mechanism can reach from its design?",
+                  "the search for equilibrium can't start: %s",
+                  instance_status(pool, found->engine->code, &found->self->head, status));
+    gsl_set_error_handler_off();
+    for (;;) {
+        found->residual = fabs(found->f[largest(found->linear, found->f)]);
+        if (newton(&s))
+            continue;
+        if (found->residual < equilibrium_limit)
+            break;
+        if (found->steps >= MOST_STEPS || !relax(&s))
+            fail(&s, at);
+    }
+    newton_step(&s, &found->neutral);
+    return found;
+}
+
+const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium *found)
+{
+    const gic_model *code = found->engine->code;
+    const double *state = tape_array(found->self, code->state_offset);
+    const size_t coordinates = (size_t)code->coordinate_count + 1;
+    Scene *out = pool_alloc(pool, sizeof *out);
+    *out = *scene;
+    out->value = pool_alloc(pool, coordinates * sizeof *out->value);
+    out->given = pool_alloc(pool, coordinates * sizeof *out->given);
+    for (int c = 0; c < code->coordinate_count; ++c)
+        if (code->coordinate_state[c] >= 0) {
+            out->value[c] = state[code->coordinate_state[c]];
+            out->given[c] = true;
+        }
+    if (!code->free_base)
+        return out;
+    memcpy(out->position, state, sizeof out->position);
+    memcpy(out->euler, state + 3, sizeof out->euler);
+    out->placed = true;
+    scene_along(out);
+    return out;
+}
+
+const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scene, Solve solve)
+{
+    return scene->equilibrium ? equilibrium_scene(pool, scene, equilibrium_find(pool, model, scene, solve)) : scene;
+}

@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: MIT
+ * What people and programs are told about a static equilibrium. */
+#include "linearize.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Largest acceleration that an engine finds there. */
+static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, const Equilibrium *found)
+{
+    const gic_model *code = engine->code, *own = found->engine->code;
+    gic_head *self = instance_new(pool, engine), *from = &found->self->head;
+    double rate[engine->standard_count + 1], worst = 0;
+    int status = code->setup_with(self, instance_array(from, own->parameter_offset));
+    self->road = scene ? scene->road : NULL;
+    memcpy(instance_array(self, code->input_offset), instance_array(from, own->input_offset),
+           (size_t)code->input_count * sizeof(double));
+    if (status == GIC_OK)
+        status = engine_enter(engine, self, instance_array(from, own->state_offset));
+    if (status == GIC_OK)
+        status = engine_look(engine, self, instance_array(from, own->state_offset), rate);
+    if (status != GIC_OK)
+        diag_fail((Place){found->model->source, 0, 0}, "try another --engine",
+                  "engine %s can't evaluate the equilibrium: %s", engine->name,
+                  instance_status(pool, code, self, status));
+    for (int i = found->linear->places + code->free_base; i < engine->standard_count; ++i)
+        worst = fmax(worst, fabs(rate[i]));
+    return worst;
+}
+
+/* ---- tables
+ * ---------------------------------------------------------------------------------------------------------- */
+
+/* Yaw, pitch and roll of A = Rz(yaw) Ry(pitch) Rx(roll). */
+static void print_base(const Equilibrium *found, const double *state)
+{
+    const double degree = 3.141592653589793 / 180;
+    double R[9];
+    mat_from_euler(state + 3, R);
+    printf("\n%-24s  x %.9g m, y %.9g m, z %.9g m\n", found->model->body[BODY_BASE].name, state[0], state[1], state[2]);
+    printf("%-24s  yaw %.6g deg, pitch %.6g deg, roll %.6g deg\n", "", atan2(R[3], R[0]) / degree,
+           asin(fmax(-1, fmin(1, -R[6]))) / degree, atan2(R[7], R[8]) / degree);
+}
+
+static void print_coordinates(const Equilibrium *found, const double *state, const double *input)
+{
+    const gic_model *code = found->engine->code;
+    if (code->coordinate_count)
+        printf("\n%-24s  %16s\n", "coordinate", "value");
+    for (int c = 0; c < code->coordinate_count; ++c) {
+        const int at = code->coordinate_state[c];
+        printf("%-24s  %16.9g %s%s\n", code->coordinate[c].name, at < 0 ? input[code->coordinate_input[c]] : state[at],
+               code->coordinate[c].unit, at < 0 ? ", driven" : "");
+    }
+}
+
+static bool along_angle(const Model *model, const Force *force)
+{
+    return force_is_torque(force) ||
+           (force->coordinate >= 0 && model->coordinate[force->coordinate].type == COORDINATE_ANGLE);
+}
+
+static void print_forces(const Equilibrium *found, const double *output)
+{
+    const Model *model = found->model;
+    bool begun = false;
+    for (int i = 0; i < model->forces; ++i) {
+        const int at = equilibrium_force(found, i);
+        if (at < 0)
+            continue;
+        if (!begun)
+            printf("\n%-24s  %16s\n", "force element", "force");
+        begun = true;
+        printf("%-24s  %16.9g %s\n", model->force[i].name, output[at],
+               along_angle(model, &model->force[i]) ? "N m" : "N");
+    }
+}
+
+/* What the wheels of a free base have to carry; 0: not known. */
+static double weight(const Model *model)
+{
+    double mass = 0;
+    for (int b = 0; b < model->bodies; ++b) {
+        if (tuned_number(model, &model->body[b].mass))
+            return 0;
+        mass += model->body[b].mass;
+    }
+    const bool vertical = model->gravity[0] == 0 && model->gravity[1] == 0;
+    return model->free_base && vertical && !tuned_number(model, &model->gravity[2]) ? -mass * model->gravity[2] : 0;
+}
+
+static void print_wheels(const Equilibrium *found, const double *output)
+{
+    const Model *model = found->model;
+    double sum = 0;
+    if (!model->wheels)
+        return;
+    printf("\n%-24s  %16s  %14s  %14s\n", "wheel", "load", "deflection", "road height");
+    for (int i = 0; i < model->wheels; ++i) {
+        const double *wheel = output + equilibrium_wheel(found, i);
+        printf("%-24s  %14.9g N  %12.6g m  %12.6g m\n", model->wheel[i].name, wheel[0], wheel[1], wheel[3]);
+        sum += wheel[0];
+    }
+    printf("%-24s  %14.9g N", "sum", sum);
+    if (weight(model) > 0)
+        printf(", weight %.9g N", weight(model));
+    printf("\n");
+}
+
+/* What a scene may contain to start there. */
+static void print_initial(const Equilibrium *found, const double *state)
+{
+    const gic_model *code = found->engine->code;
+    bool begun = false;
+    printf("\ninitial:\n");
+    if (code->free_base) {
+        printf("  position: [%.17g, %.17g, %.17g]\n", state[0], state[1], state[2]);
+        printf("  orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}\n", state[3], state[4], state[5], state[6]);
+    }
+    for (int c = 0; c < code->coordinate_count; ++c) {
+        if (code->coordinate_state[c] < 0)
+            continue;
+        printf("%s    %s: %.17g\n", begun ? "" : "  coordinates:\n", code->coordinate[c].name,
+               state[code->coordinate_state[c]]);
+        begun = true;
+    }
+}
+
+/* ---- for programs
+ * ---------------------------------------------------------------------------------------------------- */
+
+/* A row that --eval reads, and evaluates to what was found here. */
+static void write_state(Pool *pool, const Equilibrium *found, const char *path)
+{
+    const gic_model *code = found->engine->code;
+    gic_head *self = &found->self->head;
+    const struct {
+        const gic_signal *signal;
+        int count;
+        size_t offset;
+    } part[] = {{code->state, code->slow_count, code->state_offset},
+                {code->input, code->input_count, code->input_offset},
+                {code->parameter, code->parameter_count, code->parameter_offset}};
+    Csv csv = csv_open(pool, path);
+    for (size_t p = 0; p < sizeof part / sizeof *part; ++p)
+        for (int i = 0; i < part[p].count; ++i)
+            csv_name(&csv, part[p].signal[i].name, part[p].signal[i].unit);
+    csv_end_row(&csv);
+    for (size_t p = 0; p < sizeof part / sizeof *part; ++p)
+        for (int i = 0; i < part[p].count; ++i)
+            csv_number(&csv, instance_array(self, part[p].offset)[i]);
+    csv_end_row(&csv);
+    csv_close(&csv);
+}
+
+/* Does a small disturbance grow? */
+static void warn_unstable(Pool *pool, const Equilibrium *found, Place at)
+{
+    const Modes *modes = modes_find(pool, found->linear, found->A);
+    for (int k = 0; k < modes->count; ++k)
+        if (modes->mode[k].real > 1e-6 * hypot(modes->mode[k].real, modes->mode[k].imaginary)) {
+            diag_warn(at, "--modes shows what moves; start elsewhere to find another one",
+                      "the equilibrium is unstable: eigenvalue %.4g %+.4gi 1/s", modes->mode[k].real,
+                      modes->mode[k].imaginary);
+            return;
+        }
+}
+
+void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, const Request *request,
+                        const Equilibrium *found)
+{
+    const gic_model *code = found->engine->code;
+    const double *state = tape_array(found->self, code->state_offset);
+    const double *input = tape_array(found->self, code->input_offset);
+    const double *output = tape_array(found->self, code->output_offset);
+    const Place at = {scene ? scene->source : found->model->source, 0, 0};
+    const double residual = residual_by(pool, engine, scene, found);
+    const int status = code->outputs(found->self);
+    if (!(residual < equilibrium_limit))
+        diag_fail(at, "try another --engine", "engine %s finds an acceleration of %.3g at the equilibrium",
+                  engine->name, residual);
+    if (status != GIC_OK)
+        diag_fail(at, NULL, "no outputs: %s", instance_status(pool, code, &found->self->head, status));
+    if (!request->quiet)
+        warn_unstable(pool, found, at);
+    if (request->results)
+        write_state(pool, found, request->results);
+    if (request->results && !strcmp(request->results, "-"))
+        return;
+    printf("%s: static equilibrium, found in %d steps\n", found->model->name, found->steps);
+    printf("%-24s  %.2g m/s^2 or rad/s^2 (engine %s)\n", "largest acceleration", residual, engine->name);
+    if (found->neutral)
+        printf("%-24s  %s\n", "rests elsewhere in", found->neutral);
+    if (code->free_base)
+        print_base(found, state);
+    print_coordinates(found, state, input);
+    print_forces(found, output);
+    print_wheels(found, output);
+    print_initial(found, state);
+}
