@@ -112,7 +112,11 @@ $(BUILD)/check/deny_exec: $(BUILD)/tests/deny_exec.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
 
-$(BUILD)/check/compare_dump: $(BUILD)/tests/compare_dump.o $(tested)
+$(BUILD)/check/quad_linear: $(BUILD)/tests/quad_linear.o $(reference)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lgsl -lgslcblas -lquadmath -lm
+
+$(BUILD)/check/compare_dump $(BUILD)/check/linearized: $(BUILD)/check/%: $(BUILD)/tests/%.o $(tested)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 

@@ -29,7 +29,7 @@ typedef struct Search {
     double *step, *move; /* [unknowns], [count] as linear_move() wants it */
     double *f, *A;       /* at the trial */
     double h;
-    int status; /* of the last trial */
+    const char *limit; /* why the last trials since a good step could not be evaluated; NULL: all could */
 } Search;
 
 static int column_of(const Linear *linear, int unknown)
@@ -161,8 +161,10 @@ static bool try_step(Search *s)
         s->move[column_of(linear, i)] = s->step[i];
     memcpy(s->trial, s->found->self, linear->engine->code.size);
     linear_move(linear, s->trial, s->move);
-    s->status = linearize(linear, s->trial, s->f, s->A);
-    return s->status == GIC_OK;
+    const int status = linearize(linear, s->trial, s->f, s->A);
+    if (status != GIC_OK)
+        s->limit = instance_status(s->pool, s->found->engine->code, &s->trial->head, status);
+    return status == GIC_OK;
 }
 
 static void accept(Search *s)
@@ -172,6 +174,7 @@ static void accept(Search *s)
     memcpy(s->found->f, s->f, count * sizeof *s->f);
     memcpy(s->found->A, s->A, count * count * sizeof *s->A);
     ++s->found->steps;
+    s->limit = NULL;
 }
 
 /* One of Newton's steps, where that is near enough to be trusted and halves what is left. */
@@ -202,7 +205,7 @@ static bool relax(Search *s)
     return false;
 }
 
-/* ---- the start, and failure -------------------------------------------------------------------------------------- */
+/* ---- the start, and failure ----------------------------------------------------------------------------- */
 
 /* The user's model with outputs for what the tables show. */
 static const Model *watched(Pool *pool, const Model *model)
@@ -289,13 +292,11 @@ static _Noreturn void fail(const Search *s, Place at)
         remedy = "nothing carries the base: give the model wheels, or forces that hold it";
     else if (of_base && !is_carried(found))
         remedy = "no wheel touches the road: start the vehicle upright and just above it (`initial: position`)";
-    if (s->status != GIC_OK && s->status != GIC_ERROR_RESULT) {
-        const char *limit = instance_status(s->pool, found->engine->code, &s->trial->head, s->status);
+    if (s->limit)
         diag_fail(at,
                   "forces push the mechanism beyond its limits: check springs, free lengths and loads, or add stops",
                   "no static equilibrium found: the largest acceleration left is %.3g, of %s, and further on: %s",
-                  found->f[worst], linear->name[worst], limit);
-    }
+                  found->f[worst], linear->name[worst], s->limit);
     diag_fail(at, remedy, "no static equilibrium found: after %d steps the largest acceleration left is %.3g, of %s",
               found->steps, found->f[worst], linear->name[worst]);
 }

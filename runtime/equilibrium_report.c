@@ -28,8 +28,13 @@ static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, 
     return worst;
 }
 
-/* ---- tables
- * ---------------------------------------------------------------------------------------------------------- */
+/* To 1e-9, for people. */
+static double shown(double value)
+{
+    return round(value * 1e9) / 1e9 + 0.0; /* no -0 */
+}
+
+/* ---- tables --------------------------------------------------------------------------------------------- */
 
 /* Yaw, pitch and roll of A = Rz(yaw) Ry(pitch) Rx(roll). */
 static void print_base(const Equilibrium *found, const double *state)
@@ -37,9 +42,10 @@ static void print_base(const Equilibrium *found, const double *state)
     const double degree = 3.141592653589793 / 180;
     double R[9];
     mat_from_euler(state + 3, R);
-    printf("\n%-24s  x %.9g m, y %.9g m, z %.9g m\n", found->model->body[BODY_BASE].name, state[0], state[1], state[2]);
-    printf("%-24s  yaw %.6g deg, pitch %.6g deg, roll %.6g deg\n", "", atan2(R[3], R[0]) / degree,
-           asin(fmax(-1, fmin(1, -R[6]))) / degree, atan2(R[7], R[8]) / degree);
+    printf("\n%-24s  x %.9g m, y %.9g m, z %.9g m\n", found->model->body[BODY_BASE].name, shown(state[0]),
+           shown(state[1]), shown(state[2]));
+    printf("%-24s  yaw %.6g deg, pitch %.6g deg, roll %.6g deg\n", "", shown(atan2(R[3], R[0]) / degree),
+           shown(asin(fmax(-1, fmin(1, -R[6]))) / degree), shown(atan2(R[7], R[8]) / degree));
 }
 
 static void print_coordinates(const Equilibrium *found, const double *state, const double *input)
@@ -71,7 +77,7 @@ static void print_forces(const Equilibrium *found, const double *output)
         if (!begun)
             printf("\n%-24s  %16s\n", "force element", "force");
         begun = true;
-        printf("%-24s  %16.9g %s\n", model->force[i].name, output[at],
+        printf("%-24s  %16.9g %s\n", model->force[i].name, shown(output[at]),
                along_angle(model, &model->force[i]) ? "N m" : "N");
     }
 }
@@ -126,8 +132,7 @@ static void print_initial(const Equilibrium *found, const double *state)
     }
 }
 
-/* ---- for programs
- * ---------------------------------------------------------------------------------------------------- */
+/* ---- for programs --------------------------------------------------------------------------------------- */
 
 /* A row that --eval reads, and evaluates to what was found here. */
 static void write_state(Pool *pool, const Equilibrium *found, const char *path)
@@ -151,6 +156,16 @@ static void write_state(Pool *pool, const Equilibrium *found, const char *path)
             csv_number(&csv, instance_array(self, part[p].offset)[i]);
     csv_end_row(&csv);
     csv_close(&csv);
+}
+
+static void warn_ranges(const Equilibrium *found, Place at)
+{
+    const gic_model *code = found->engine->code;
+    const double *state = tape_array(found->self, code->state_offset);
+    for (int c = 0; c < code->coordinate_count; ++c)
+        if (code->coordinate_state[c] >= 0)
+            scene_warn_range(&found->model->coordinate[c], at, state[code->coordinate_state[c]],
+                             state[code->coordinate_state[c]]);
 }
 
 /* Does a small disturbance grow? */
@@ -181,8 +196,10 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
                   engine->name, residual);
     if (status != GIC_OK)
         diag_fail(at, NULL, "no outputs: %s", instance_status(pool, code, &found->self->head, status));
-    if (!request->quiet)
+    if (!request->quiet) {
+        warn_ranges(found, at);
         warn_unstable(pool, found, at);
+    }
     if (request->results)
         write_state(pool, found, request->results);
     if (request->results && !strcmp(request->results, "-"))
@@ -190,7 +207,7 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
     printf("%s: static equilibrium, found in %d steps\n", found->model->name, found->steps);
     printf("%-24s  %.2g m/s^2 or rad/s^2 (engine %s)\n", "largest acceleration", residual, engine->name);
     if (found->neutral)
-        printf("%-24s  %s\n", "rests elsewhere in", found->neutral);
+        printf("%-24s  %s: moved along these it rests as well\n", "neutral", found->neutral);
     if (code->free_base)
         print_base(found, state);
     print_coordinates(found, state, input);

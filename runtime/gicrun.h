@@ -93,6 +93,8 @@ typedef struct Scene {
 const Scene *scene_read(Pool *pool, const char *path, const Model *model, const char *integrator, double tolerance);
 /* The velocity of a scene with `speed`, from the orientation. */
 void scene_along(Scene *scene);
+/* Say so where a coordinate's values from low to high are not all in its range. */
+void scene_warn_range(const Coordinate *coordinate, Place at, double low, double high);
 /* The method of a name, -1: there is none; the name of a method. */
 int32_t integrator_method(const char *name);
 const char *integrator_name(int32_t method);

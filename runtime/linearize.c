@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- in Euler parameters: the right-hand side along dy -------------------------------------------------------- */
+/* ---- in Euler parameters: the right-hand side along dy -------------------------------------------------- */
 
 /* The dependent Euler parameter follows from the other three; dy: [states]. */
 static int orient(const Instance *self, const double *y, const double *dy, double e[4], double de[4])
@@ -130,7 +130,7 @@ static int rate_along(const Linear *linear, const Instance *self, const double *
     return tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
 }
 
-/* ---- in small motions ------------------------------------------------------------------------------------------- */
+/* ---- in small motions ----------------------------------------------------------------------------------- */
 
 /* Where a free base's numbers stand in the state, and its places and rates among small motions. */
 enum { POSITION = 0, PARAMETERS = 3, DISPLACEMENT = 0, ROTATION = 3, BASE_PLACES = 6 };
@@ -284,7 +284,7 @@ void linear_move(const Linear *linear, Instance *self, const double *z)
     code->settle(self, y);
 }
 
-/* ---- opening ---------------------------------------------------------------------------------------------------- */
+/* ---- opening -------------------------------------------------------------------------------------------- */
 
 static void add_number(Pool *pool, Linear *linear, const char *name, double reach)
 {

@@ -32,7 +32,7 @@ int linearize(const Linear *linear, Instance *self, double *f, double *A);
  * stay. */
 void linear_move(const Linear *linear, Instance *self, const double *z);
 
-/* ---- equilibrium.c: static equilibrium ------------------------------------------------------------------------- */
+/* ---- equilibrium.c: static equilibrium ------------------------------------------------------------------ */
 
 /* Accelerations (m/s^2, rad/s^2) and rates of fast states below which nothing moves. */
 extern const double equilibrium_limit;
@@ -57,14 +57,14 @@ int equilibrium_wheel(const Equilibrium *found, int wheel);
 /* The scene, but for places, which are those of the equilibrium; a `speed` is along the base there. */
 const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium *found);
 
-/* ---- equilibrium_report.c ---------------------------------------------------------------------------------------- */
+/* ---- equilibrium_report.c ------------------------------------------------------------------------------- */
 
 /* --equilibrium: tables, and with -o the state as a row that --eval reads. The residual by `engine` too, which must
  * respect the limit. */
 void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, const Request *request,
                         const Equilibrium *found);
 
-/* ---- modes.c: eigenvalues ---------------------------------------------------------------------------------------- */
+/* ---- modes.c: eigenvalues ------------------------------------------------------------------------------- */
 
 /* A pair of complex eigenvalues (imaginary > 0), or a real one; 1/s. */
 typedef struct Mode {

@@ -13,8 +13,7 @@
 
 static const double pi = 3.141592653589793;
 
-/* ---- what is neutral -----------------------------------------------------------------------------------------------
- */
+/* ---- what is neutral ------------------------------------------------------------------------------------ */
 
 /* A direction in which nothing happens makes a multiple eigenvalue 0, of a place and of its rate, that rounding would
  * scatter widely. Such directions are taken out, one layer after the other: with N the null vectors of A and Q the rest
@@ -76,8 +75,7 @@ static Deflation deflate(const gsl_matrix *A)
     return d;
 }
 
-/* ---- eigenvalues ----------------------------------------------------------------------------------------------------
- */
+/* ---- eigenvalues ---------------------------------------------------------------------------------------- */
 
 /* Eigenvalues and right eigenvectors of A, or of its transpose. */
 typedef struct Spectrum {
@@ -229,8 +227,7 @@ const Modes *modes_find(Pool *pool, const Linear *linear, const double *A)
     return modes;
 }
 
-/* ---- for people and programs ----------------------------------------------------------------------------------------
- */
+/* ---- for people and programs ---------------------------------------------------------------------------- */
 
 /* The name of number i of the shares. */
 static const char *share_name(const Linear *linear, int i)
@@ -257,6 +254,12 @@ static void print_shares(const Linear *linear, const Mode *mode)
     printf("\n");
 }
 
+/* To four places, for people; no -0. */
+static double shown(double value)
+{
+    return round(value * 1e4) / 1e4 + 0.0;
+}
+
 static void print_table(const Linear *linear, const Modes *modes)
 {
     printf("\n%22s  %14s  %7s  %13s  %s\n", "eigenvalue [1/s]", "frequency [Hz]", "damping", "time constant", "moves");
@@ -264,11 +267,11 @@ static void print_table(const Linear *linear, const Modes *modes)
         const Mode *mode = &modes->mode[k];
         const double size = hypot(mode->real, mode->imaginary);
         if (mode->imaginary > 0)
-            printf("%10.4f +- %7.4fi  %14.4f  %7.4f  ", mode->real, mode->imaginary, size / (2 * pi),
-                   -mode->real / size);
+            printf("%10.4f +- %7.4fi  %14.4f  %7.4f  ", shown(mode->real), mode->imaginary, size / (2 * pi),
+                   shown(-mode->real / size));
         else
             printf("%10.4f %11s  %14s  %7s  ", mode->real, "", "", "");
-        if (mode->real != 0)
+        if (shown(mode->real) != 0)
             printf("%11.4g s  ", 1 / fabs(mode->real));
         else
             printf("%13s  ", "");

@@ -265,7 +265,7 @@ static void read_states(Reader *reader, const Item *map, double *out)
     }
 }
 
-static void warn_range(const Coordinate *coordinate, Place at, double low, double high)
+void scene_warn_range(const Coordinate *coordinate, Place at, double low, double high)
 {
     if (low < coordinate->range[0] || high > coordinate->range[1])
         diag_warn(at, "the model may not reach that far; `range` of the coordinate states what it is made for",
@@ -294,7 +294,7 @@ static void read_initial(Reader *reader, const Item *initial)
         const Item *item = doc_find(coordinates, model->coordinate[i].name);
         scene->given[i] = item;
         if (item)
-            warn_range(&model->coordinate[i], item->at, scene->value[i], scene->value[i]);
+            scene_warn_range(&model->coordinate[i], item->at, scene->value[i], scene->value[i]);
     }
 }
 
@@ -366,7 +366,7 @@ static void check_driven(const Profile *profile, const Coordinate *coordinate, P
         low = i ? fmin(low, profile->value[i]) : profile->value[i];
         high = i ? fmax(high, profile->value[i]) : profile->value[i];
     }
-    warn_range(coordinate, at, low, high);
+    scene_warn_range(coordinate, at, low, high);
 }
 
 static void read_inputs(Reader *reader, const Item *map)
