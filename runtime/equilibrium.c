@@ -331,7 +331,7 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
     gsl_set_error_handler_off();
     for (;;) {
         found->residual = fabs(found->f[largest(found->linear, found->f)]);
-        if (newton(&s))
+        if (found->residual > 0 && newton(&s))
             continue;
         if (found->residual < equilibrium_limit)
             break;
