@@ -17,6 +17,7 @@ const double equilibrium_limit = 1e-9;
 enum { MOST_STEPS = 500 };
 
 static const double longest = 1e4, shortest = 1e-7, first = 0.02; /* h, s */
+static const double near = 1e-3;       /* of the reach: steps so small need not be asked where they go */
 static const double rank_limit = 1e-9; /* of singular values, relative to the largest: below, nothing changes */
 
 /* Unknowns are the places, then the fast states; equations their accelerations, then rates: equation i is row
@@ -128,8 +129,9 @@ static void relaxation_step(Search *s)
         s->step[0] = NAN;
 }
 
-/* The work that the forces of the present place do along the step is M a . dx, M the mass matrix. */
-static bool goes_with_forces(Search *s)
+/* The work that the forces of the present place do along the step is M a . dx, M the mass matrix; of a step of size 1,
+ * for M dx is found as a difference. */
+static bool goes_with_forces(Search *s, double size)
 {
     const TapeEngine *engine = s->found->linear->engine;
     Instance *self = s->found->self;
@@ -139,7 +141,7 @@ static bool goes_with_forces(Search *s)
     double e[4], step[n + 1], acceleration[n + 1], tau[2][n + 1], work = 0;
     for (int i = 0; i < n; ++i) {
         const int from = i < base ? (i + 3) % 6 : i; /* the tape's order is rotation, displacement */
-        step[i] = s->step[from];
+        step[i] = s->step[from] / size;
         acceleration[i] = a[from];
     }
     if (tape_refresh(self, e) != GIC_OK || tape_whole(self, engine->inverse, 0, y, e, NULL, step, tau[0]) != GIC_OK)
@@ -180,10 +182,9 @@ static void accept(Search *s)
 /* One of Newton's steps, where that is near enough to be trusted and halves what is left. */
 static bool newton(Search *s)
 {
-    const double near = 1e-3;
     newton_step(s, NULL);
     const double size = step_size(s);
-    if (!(size <= 1) || (size > near && !goes_with_forces(s)) || !try_step(s) ||
+    if (!(size <= 1) || (size > near && !goes_with_forces(s, size)) || !try_step(s) ||
         !(square_sum(s, s->f) <= square_sum(s, s->found->f) / 4))
         return false;
     accept(s);
@@ -195,7 +196,8 @@ static bool relax(Search *s)
 {
     for (; s->h > shortest; s->h /= 2) {
         relaxation_step(s);
-        if (!(step_size(s) <= 1) || !goes_with_forces(s) || !try_step(s) ||
+        const double size = step_size(s);
+        if (!(size <= 1) || (size > near && !goes_with_forces(s, size)) || !try_step(s) ||
             !(square_sum(s, s->f) <= 100 * square_sum(s, s->found->f)))
             continue;
         accept(s);
