@@ -294,6 +294,8 @@ static _Noreturn void fail(const Search *s, Place at)
         remedy = "nothing carries the base: give the model wheels, or forces that hold it";
     else if (of_base && !is_carried(found))
         remedy = "no wheel touches the road: start the vehicle upright and just above it (`initial: position`)";
+    else if (of_base)
+        remedy = "nothing holds the vehicle against that: check loads, the direction of gravity and the road";
     if (s->limit)
         diag_fail(at,
                   "forces push the mechanism beyond its limits: check springs, free lengths and loads, or add stops",
