@@ -10,9 +10,8 @@ Road road_parse(const char *text)
 {
     Road road = {0};
     char end;
-    if (strcmp(text, "flat")
-        && sscanf(text, "sine:%lf,%lf,%lf,%lf%c", &road.amplitude, &road.wavelength, &road.x0, &road.phase_per_y, &end)
-               != 4)
+    if (strcmp(text, "flat") && sscanf(text, "sine:%lf,%lf,%lf,%lf%c", &road.amplitude, &road.wavelength, &road.x0,
+                                       &road.phase_per_y, &end) != 4)
         fail("--road '%s': 'flat' or 'sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y' is wanted", text);
     if (road.amplitude != 0 && !(road.wavelength > 0))
         fail("--road '%s': the wavelength must be greater than zero", text);
@@ -35,7 +34,7 @@ static quad coordinate_cell(const Table *table, int row, const char *coordinate,
 void state_read(const Model *model, const Table *table, int row, State *state)
 {
     static const char *const r[] = {"r.x", "r.y", "r.z"}, *const e[] = {"e0", "e1", "e2", "e3"},
-                            *const v[] = {"v.x", "v.y", "v.z"}, *const omega[] = {"omega.x", "omega.y", "omega.z"};
+                             *const v[] = {"v.x", "v.y", "v.z"}, *const omega[] = {"omega.x", "omega.y", "omega.z"};
     if (model->free_base) {
         vector_cells(table, row, r, 3, state->r);
         vector_cells(table, row, e, 4, state->e);
