@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* Numbers of one kind of a row of states. */
-static void take(const States *table, int row, const gic_signal *signal, int count, double *out)
+static void take(const CsvTable *table, int row, const gic_signal *signal, int count, double *out)
 {
     for (int i = 0; i < count; ++i)
         for (int k = 0; k < table->columns; ++k)
@@ -26,7 +26,7 @@ int main(int argc, char **argv)
     }
     Pool *pool = pool_new();
     const Model *model = model_read(pool, argv[1]);
-    const States *table = csv_read(pool, argv[2]);
+    const CsvTable *table = csv_read(pool, argv[2], "r.x,r.y,...");
     const Scene *scene = argc > 3 ? scene_read(pool, argv[3], model, NULL, 0) : NULL;
     const Engine *engine = engine_open(pool, "tape", model, &(EngineOptions){.quiet = true});
     const Linear *linear = linear_open(pool, engine);
