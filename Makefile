@@ -134,8 +134,8 @@ $(addprefix $(BUILD)/check/,$(variants)):
 # ---- tests that drive generated code: of the models, and of variants of the HMMWV
 
 code := $(BUILD)/check/code
-driven := hmmwv quarter_car pendulum steered undamped glider
-driving := test_motion test_instance test_threads
+driven := hmmwv hmmwv_tires quarter_car pendulum steered undamped glider
+driving := test_motion test_instance test_rolling test_threads
 
 # the rack moved by inputs
 steered := s/^  rack: *{type: translation,/& driven: true,/; s/^  energy: .*/&\n  drive: {type: drive_force, coordinate: rack}/
