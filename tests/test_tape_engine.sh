@@ -126,6 +126,24 @@ same_run "$work/steered.veh" "$work/steered.scene" "steered"
 grep -q 'parameter switches *[1-9]' "$work/said.played"
 check $? "the dependent parameter changes"
 
+# wheels with tires: rolling, steering, locking up on patches of ice, in one rate and in two
+for ratio in 1 4; do
+    cat >"$work/tires.scene" <<END
+gicscene: 1
+duration: 3
+step: 0.002
+ratio: $ratio
+integrator: ab3
+output_step: 0.02
+initial: {position: [0, 0, 0.485], velocity: [14, 0, 0]}
+inputs: {rack: {knots: {times: [0.2, 1], values: [0, 0.01]}}, brake: {knots: {times: [1, 1.2], values: [0, 0.8]}}}
+road: {type: sine, amplitude: 0.02, wavelength: 5, friction: {value: 0.9, patches: [{x: [15, 30], y: [-9, 0], value: 0.2}]}}
+END
+    for tire in tires tmeasy; do
+        same_run "$root/models/hmmwv_$tire.veh" "$work/tires.scene" "hmmwv_$tire, ratio $ratio"
+    done
+done
+
 # a failure on the way is the same one at the same time
 sed 's/^duration.*/duration: 2/; s/^step:.*/step: 0.02/; s/^output_step:.*/output_step: 0.02/
     s/height: 0.06/height: 3/' \
