@@ -76,7 +76,8 @@ static inline double *tape_start(Instance *self)
 #define WHOLE_ARRAYS(X) \
     X(time) \
     X(y) \
-    X(e) X(x) X(xd) X(u) X(m) X(n) X(p) X(port) X(s) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) \
+    X(e) \
+    X(x) X(xd) X(u) X(m) X(n) X(p) X(port) X(s) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) \
         X(fast) X(torque) X(hub) X(force) X(grip)
 #define CLASS_ENUM(name) CLASS_##name,
 #define WHOLE_ENUM(name) WHOLE_##name,

@@ -137,7 +137,9 @@ integrator: ab3
 output_step: 0.02
 initial: {position: [0, 0, 0.485], velocity: [14, 0, 0]}
 inputs: {rack: {knots: {times: [0.2, 1], values: [0, 0.01]}}, brake: {knots: {times: [1, 1.2], values: [0, 0.8]}}}
-road: {type: sine, amplitude: 0.02, wavelength: 5, friction: {value: 0.9, patches: [{x: [15, 30], y: [-9, 0], value: 0.2}]}}
+road:
+  {type: sine, amplitude: 0.02, wavelength: 5,
+   friction: {value: 0.9, patches: [{x: [15, 30], y: [-9, 0], value: 0.2}]}}
 END
     for tire in tires tmeasy; do
         same_run "$root/models/hmmwv_$tire.veh" "$work/tires.scene" "hmmwv_$tire, ratio $ratio"
