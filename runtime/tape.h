@@ -63,6 +63,7 @@ void tape_load(const Tape *tape, double *const *array, double *frame);
 void tape_store(const Tape *tape, double *const *array, const double *frame);
 int tape_checked(const Tape *tape, const TapeWorld *world, const double *frame);
 bool tape_road(const TapeWorld *world, double x, double y, double out[3]);
+double tape_friction(const TapeWorld *world, double x, double y);
 
 /* tape_dual.c: the same with derivatives along one direction: `slope` has an array of derivatives for each array of
  * values, `rate` as many numbers as `frame`. Values are those of tape_play() to the bit. abs, min, max and conditions

@@ -59,6 +59,20 @@ static bool road_change(const TapeWorld *world, double x, double y, double dx, d
     return good;
 }
 
+/* How friction changes on the way: by the same difference. */
+static double friction_change(const TapeWorld *world, double x, double y, double dx, double dy)
+{
+    const double step = 1e-3, length = hypot(dx, dy);
+    double side[4];
+    if (!world->road || length == 0)
+        return 0;
+    for (int i = 0; i < 4; ++i) {
+        const double reach = (i < 2 ? i - 2 : i - 1) * step / length;
+        side[i] = tape_friction(world, x + reach * dx, y + reach * dy);
+    }
+    return length / (12 * step) * (side[0] - side[3] + 8 * (side[2] - side[1]));
+}
+
 static double power_change(double a, double b, double da, double db)
 {
     return chain(b * pow(a, b - 1), da) + (db == 0 ? 0 : pow(a, b) * log(a) * db);
@@ -126,6 +140,7 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f, doubl
                 f[at[0]] = f[taken];
             }
             break;
+        case OP_FRICTION: RUN_2(tape_friction(world, a, b), friction_change(world, a, b, da, db));
         case OP_TABLE:
             for (; left; --left, at += 3) {
                 const gic_table *table = &world->table[at[2]];

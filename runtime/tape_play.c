@@ -23,7 +23,7 @@ bool tape_road(const TapeWorld *world, double x, double y, double out[3])
     return gic_finite(out, 3);
 }
 
-static double road_friction(const TapeWorld *world, double x, double y)
+double tape_friction(const TapeWorld *world, double x, double y)
 {
     const gic_road *road = world->road;
     return road && road->friction ? road->friction(road, world->lane, world->time, x, y) : 1;
@@ -66,7 +66,7 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f)
         case OP_MIN: RUN(3, minimum(f[at[1]], f[at[2]]));
         case OP_MAX: RUN(3, maximum(f[at[1]], f[at[2]]));
         case OP_POSITIVE: RUN(4, f[at[1]] > 0 ? f[at[2]] : f[at[3]]);
-        case OP_FRICTION: RUN(3, road_friction(world, f[at[1]], f[at[2]]));
+        case OP_FRICTION: RUN(3, tape_friction(world, f[at[1]], f[at[2]]));
         case OP_TABLE: RUN(3, gic_table_value(&world->table[at[2]], f[at[1]]));
         case OP_ROAD:
             for (; left; --left, at += 3)
