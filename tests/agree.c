@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions]
+ * agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions] [--wheels]
  *
  * Compares what `gicrun --eval` wrote (EVAL) with what `reference` wrote (ACCEL) for the same states. Accelerations by
  * group, relative to the sum of magnitudes of the contributing terms; places relative to the model's length scale;
  * Euler parameters up to their common sign. With --reactions EVAL has a `reaction` output for each joint, which bears
- * its name, and a `drive_force` output `drive_NAME` for each driven coordinate; they are compared like accelerations. A
- * row counts where the reference reached it with a subset condition within the limit; at least half of the rows must.
- * Exit status 1 unless every counted row agrees. */
-#include "reference/dump.h"
+ * its name, and a `drive_force` output `drive_NAME` for each driven coordinate; with --wheels it has the outputs that
+ * wheels.sh asks for, and rates of fast states. They are compared like accelerations. A row counts where the reference
+ * reached it with a subset condition within the limit; at least half of the rows must. Exit status 1 unless every
+ * counted row agrees. */
+#include "reference/solve.h"
 #include "reference/support.h"
 #include "reference/table.h"
 
@@ -16,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char usage[] = "usage: agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions]\n";
+static const char usage[] = "usage: agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions] [--wheels]\n";
 
 /* Numbers that are compared as one vector. */
 typedef struct Group {
@@ -89,12 +90,39 @@ static void find_reactions(Groups *groups, const Model *model, const Table *refe
         }
 }
 
-static Groups groups_find(const Model *model, const Table *reference, const Table *eval, bool reactions)
+/* One number that is its own group. */
+static void add_number(Groups *groups, const Table *reference, const Table *eval, const char *name, bool output)
+{
+    Group *group = add_group(groups, name, "");
+    if (output)
+        add_output(group, reference, eval, name);
+    else
+        add_column(group, reference, eval, name, "");
+    add_scale(group, reference, name);
+}
+
+static void find_wheels(Groups *groups, const Model *model, const Table *reference, const Table *eval)
+{
+    char name[128];
+    for (int w = 0; w < model->wheels; ++w)
+        for (int i = 0; i < WHEEL_COLUMNS; ++i)
+            if (wheel_shows(&model->wheel[w], i)) {
+                snprintf(name, sizeof name, "%s%s", model->wheel[w].name, wheel_column[i].name);
+                add_number(groups, reference, eval, name, !wheel_column[i].is_rate);
+            }
+    for (int i = 0; i < 3; ++i) {
+        snprintf(name, sizeof name, "energies.%s", energy_name[i]);
+        add_number(groups, reference, eval, name, true);
+    }
+}
+
+static Groups groups_find(const Model *model, const Table *reference, const Table *eval, bool reactions, bool wheels)
 {
     static const char *const xyz[] = {".x", ".y", ".z"}, *const e[] = {".e0", ".e1", ".e2", ".e3"};
     static const char *const base[] = {"a", "alpha"};
     Groups groups = {
-        .group = grab((size_t)(2 + 2 * (model->coordinates + model->bodies + model->joints)), sizeof *groups.group)};
+        .group = grab((size_t)(5 + 2 * (model->coordinates + model->bodies + model->joints)
+                               + WHEEL_COLUMNS * model->wheels), sizeof *groups.group)};
     for (int i = 0; i < 2 && model->free_base; ++i) {
         Group *group = add_group(&groups, base[i], "");
         for (int j = 0; j < 3; ++j)
@@ -119,6 +147,8 @@ static Groups groups_find(const Model *model, const Table *reference, const Tabl
     }
     if (reactions)
         find_reactions(&groups, model, reference, eval);
+    if (wheels)
+        find_wheels(&groups, model, reference, eval);
     return groups;
 }
 
@@ -156,7 +186,7 @@ int main(int argc, char **argv)
     const char *path[3] = {NULL};
     double tolerance = 1e-12, limit = 1e4;
     int paths = 0;
-    bool reactions = false;
+    bool reactions = false, wheels = false;
     for (int i = 1; i < argc; ++i) {
         if (!strcmp(argv[i], "--tolerance") && i + 1 < argc) {
             tolerance = number_of(argv[++i], "--tolerance");
@@ -164,6 +194,8 @@ int main(int argc, char **argv)
             limit = number_of(argv[++i], "--condition");
         } else if (!strcmp(argv[i], "--reactions")) {
             reactions = true;
+        } else if (!strcmp(argv[i], "--wheels")) {
+            wheels = true;
         } else if (argv[i][0] != '-' && paths < 3) {
             path[paths++] = argv[i];
         } else {
@@ -182,7 +214,7 @@ int main(int argc, char **argv)
     int status = table_want(reference, "status"), eval_status = table_want(eval, "status"),
         condition = table_want(reference, "condition");
     int unreached = 0, ill = 0, refused = 0, passed = 0, failed = 0;
-    Groups groups = groups_find(model, reference, eval, reactions);
+    Groups groups = groups_find(model, reference, eval, reactions, wheels);
     for (int row = 0; row < reference->rows; ++row) {
         if (table_number(reference, row, status) != 0) {
             ++unreached;

@@ -52,6 +52,7 @@ static void displace(const Motions *m, int j, quad h)
     memcpy(to->w, from->w, coordinates);
     memcpy(to->w_rate, from->w_rate, coordinates);
     memcpy(to->w_second, from->w_second, coordinates);
+    memcpy(to->fast, from->fast, (size_t)m->model->wheels * sizeof *to->fast);
     memcpy(to->r, from->r, sizeof to->r);
     memcpy(to->omega, from->omega, sizeof to->omega);
     const int place = j % m->places;
@@ -222,7 +223,7 @@ int main(int argc, char **argv)
         else if (!strcmp(argv[i], "--modes") && i + 1 < argc)
             modes = argv[++i];
         else if (!strcmp(argv[i], "--road") && i + 1 < argc)
-            road = road_parse(argv[++i]);
+            road_parse(argv[++i], &road);
         else if (!strcmp(argv[i], "--tolerance") && i + 1 < argc)
             tolerance = number_of(argv[++i], "--tolerance");
         else if (argv[i][0] != '-' && paths < 2)

@@ -3,9 +3,13 @@
  *
  * Random candidates for `gicrun --eval` and `reference`: coordinates uniform in their ranges; base anywhere within
  * 100 m, its height within 0.3 m of design so that tires touch in some rows and not in others; every orientation in
- * even rows, every yaw with small roll and pitch in odd ones. */
+ * even rows, every yaw with small roll and pitch in odd ones. Of a model with wheels that roll, every second odd row has
+ * its tires near the road, every fourth row is slow and every sixteenth stands still with nothing wound up; slips are
+ * small in most rows and far beyond all ranges in others, wheels spin either way, inputs go up to 1 beside their
+ * defaults. */
 #include "reference/dump.h"
 #include "reference/support.h"
+#include "reference/wheel.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -56,9 +60,19 @@ static void any_orientation(uint64_t *random, double p[4])
     p[3] = sqrt(share) * sin(b);
 }
 
+/* How a row of a model with wheels that roll moves. */
+enum { FAST_ROW, SLOW_ROW, STILL_ROW };
+
+static int motion_of(const Model *model, int row)
+{
+    return !model->tires || row % 4 != 3 ? FAST_ROW : row % 16 != 15 ? SLOW_ROW : STILL_ROW;
+}
+
 static void write_base(FILE *out, const Model *model, uint64_t *random, int row)
 {
-    double v[3], omega[3], p[4];
+    static const double speed[] = {30, 0.5, 0}, turning[] = {2, 0.1, 0};
+    double v[3], omega[3], p[4], high = model->tires && row % 4 == 1 ? 0.05 : 0.3;
+    int motion = motion_of(model, row);
     memcpy(p, model->body[0].euler, sizeof p);
     if (row % 2 == 0) {
         any_orientation(random, p);
@@ -68,11 +82,46 @@ static void write_base(FILE *out, const Model *model, uint64_t *random, int row)
     }
     fprintf(out, "%.17g,", uniform(random, -100, 100));
     fprintf(out, "%.17g,", uniform(random, -100, 100));
-    fprintf(out, "%.17g,", model->body[0].position[2] + uniform(random, -0.3, 0.3));
-    direction(random, 30, v);
-    direction(random, 2, omega);
+    fprintf(out, "%.17g,", model->body[0].position[2] + uniform(random, -high, high));
+    direction(random, speed[motion], v);
+    direction(random, turning[motion], omega);
     fprintf(out, "%.17g,%.17g,%.17g,%.17g,", p[0], p[1], p[2], p[3]);
     fprintf(out, "%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,", v[0], v[1], v[2], omega[0], omega[1], omega[2]);
+}
+
+/* Small mostly, up to `most` at times. */
+static double skewed(uint64_t *random, double most)
+{
+    double x = uniform(random, -1, 1);
+    return most * x * x * x * x * x;
+}
+
+static void write_wheel(FILE *out, const Wheel *wheel, uint64_t *random, int motion)
+{
+    double state[FAST_STATES] = {uniform(random, -80, 80), skewed(random, 6), skewed(random, 60),
+                                 uniform(random, -1.3, 1.3)};
+    for (int k = 0; k < FAST_STATES; ++k)
+        if (wheel_has(wheel, k))
+            fprintf(out, ",%.17g", motion == STILL_ROW ? 0 : motion == SLOW_ROW && k == 0 ? state[k] / 60 : state[k]);
+}
+
+/* Fast states, and inputs that are not those of driven coordinates. */
+static void write_wheels(FILE *out, const Model *model, uint64_t *random, int row)
+{
+    for (int i = 0; i < model->wheels; ++i)
+        write_wheel(out, &model->wheel[i], random, motion_of(model, row));
+    for (int i = model->driven_inputs; i < model->inputs && model->tires; ++i)
+        fprintf(out, ",%.17g", model->input[i] + uniform(random, 0, 1));
+}
+
+static void write_wheel_names(FILE *out, const Model *model)
+{
+    for (int i = 0; i < model->wheels; ++i)
+        for (int k = 0; k < FAST_STATES; ++k)
+            if (wheel_has(&model->wheel[i], k))
+                fprintf(out, ",%s.%s", model->wheel[i].name, fast_name[k]);
+    for (int i = model->driven_inputs; i < model->inputs && model->tires; ++i)
+        fprintf(out, ",%s", model->input_name[i]);
 }
 
 static void write_states(FILE *out, const Model *model, int count, uint64_t *random)
@@ -85,17 +134,20 @@ static void write_states(FILE *out, const Model *model, int count, uint64_t *ran
         if (coordinate->driven)
             fprintf(out, ",%s.acceleration", coordinate->name);
     }
+    write_wheel_names(out, model);
     fputc('\n', out);
     for (int row = 0; row < count; ++row) {
         if (model->free_base)
             write_base(out, model, random, row);
         for (int c = 0; c < model->coordinates; ++c) {
             const Coordinate *coordinate = &model->coordinate[c];
-            double w = uniform(random, coordinate->range[0], coordinate->range[1]), rate = uniform(random, -1, 1);
+            double w = uniform(random, coordinate->range[0], coordinate->range[1]);
+            double rate = motion_of(model, row) == STILL_ROW ? 0 : uniform(random, -1, 1);
             fprintf(out, "%s%.17g,%.17g", c ? "," : "", w, rate);
             if (coordinate->driven)
                 fprintf(out, ",%.17g", uniform(random, -5, 5));
         }
+        write_wheels(out, model, random, row);
         fputc('\n', out);
     }
 }

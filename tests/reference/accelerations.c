@@ -252,6 +252,10 @@ static void contribution_forces(Solver *solver, Sum *sum)
 static void contribution(Solver *solver, Sum *sum)
 {
     const Model *model = solver->model;
+    quad power = 0;
+    for (int k = solver->first; k < model->bodies; ++k)
+        power += quad_dot(solver->force[k], solver->configuration->rate[k], BODY_COORDINATES);
+    solver->energy_scale[2] += fabsq(power);
     memset(solver->unknown, 0, (size_t)solver->augmented->size * sizeof *solver->unknown);
     memcpy(solver->unknown, solver->force[solver->first], (size_t)solver->moving * sizeof *solver->force);
     quad_solve(solver->augmented, solver->unknown);
@@ -297,14 +301,14 @@ static void compare_forces(Solver *solver, const Sum *sum)
     }
 }
 
-static void scales(Solver *solver, const Road *road)
+static void scales(Solver *solver)
 {
     const Model *model = solver->model;
     size_t coordinates = (size_t)model->coordinates;
     Sum sum = {.w = grab(coordinates, sizeof *sum.w),
                .drive = grab(coordinates, sizeof *sum.drive),
                .reaction = grab((size_t)model->joints, sizeof *sum.reaction)};
-    solver->a_scale = solver->alpha_scale = solver->sum_error = 0;
+    solver->a_scale = solver->alpha_scale = solver->energy_scale[2] = solver->sum_error = 0;
     memset(solver->w_scale, 0, coordinates * sizeof *solver->w_scale);
     memset(solver->drive_scale, 0, coordinates * sizeof *solver->drive_scale);
     clear_force(solver);
@@ -320,7 +324,7 @@ static void scales(Solver *solver, const Road *road)
         contribution(solver, &sum);
     }
     for (int i = 0; i < model->wheels; ++i) {
-        add_wheel(model, solver->configuration, road, i, solver->force);
+        add_wheel(model, solver->configuration, i, solver->wheel[i].value, solver->force);
         contribution(solver, &sum);
     }
     for (int i = 0; i < 3 && model->free_base; ++i) {
@@ -353,8 +357,10 @@ bool solve_accelerations(Solver *solver, const State *state, const Road *road)
     }
     for (int i = 0; i < model->forces; ++i)
         add_force_element(model, at, solver->row, i, solver->force);
-    for (int i = 0; i < model->wheels; ++i)
-        add_wheel(model, at, road, i, solver->force);
+    for (int i = 0; i < model->wheels; ++i) {
+        wheel_evaluate(model, at, road, i, state->fast[i], &solver->wheel[i]);
+        add_wheel(model, at, i, solver->wheel[i].value, solver->force);
+    }
     memcpy(solver->unknown, solver->force[solver->first], (size_t)solver->moving * sizeof *solver->force);
     second_sides(solver, state, solver->first, unknown_row(solver, 0));
     quad_solve(solver->augmented, solver->unknown);
@@ -373,6 +379,7 @@ bool solve_accelerations(Solver *solver, const State *state, const Road *road)
         memcpy(solver->a, groups.a, sizeof groups.a);
         memcpy(solver->alpha, groups.alpha, sizeof groups.alpha);
     }
-    scales(solver, road);
+    scales(solver);
+    solve_energy(solver);
     return true;
 }

@@ -128,14 +128,68 @@ static void read_force(Force *force, const Json *json, const Model *model)
         force->law[i] = formula_read(law->item[i]);
 }
 
-static void read_wheel(Wheel *wheel, const Json *json, int bodies)
+static void add_number(Tire *tire, const char *name, const char *suffix, const Json *number)
 {
-    wheel->body = index_of(json, "body", 0, bodies);
+    if (number->kind != JSON_NUMBER)
+        fail("'%s' of a tire is no number", name);
+    snprintf(tire->name[tire->count], sizeof *tire->name, "%s%s", name, suffix);
+    tire->value[tire->count++] = number->number;
+}
+
+static void read_tire(Tire *tire, const Json *json)
+{
+    static const char *const type[] = {"pac2002", "tmeasy"};
+    tire->tmeasy = type_of(json, type, 2) == 1;
+    tire->mode = (int)json_number(json, "mode");
+    tire->radius = json_number(json, "radius");
+    tire->stiffness = json_number(json, "stiffness");
+    tire->damping = json_number(json, "damping");
+    tire->bottom_stiffness = json_number(json, "bottom_stiffness");
+    tire->bottom = json_number(json, "bottom");
+    tire->low_speed = json_number(json, "low_speed");
+    json_numbers(json, "relaxation", tire->relaxation, 2);
+    const Json *data = json_get(json, "data");
+    tire->name = grab((size_t)data->count * 2, sizeof *tire->name);
+    tire->value = grab((size_t)data->count * 2, sizeof *tire->value);
+    for (int i = 0; i < data->count; ++i) {
+        const Json *value = data->item[i];
+        add_number(tire, data->key[i], "", value->kind == JSON_LIST ? value->item[0] : value);
+        if (value->kind == JSON_LIST)
+            add_number(tire, data->key[i], ".2", value->item[1]);
+    }
+}
+
+double tire_number(const Tire *tire, const char *name)
+{
+    for (int i = 0; i < tire->count; ++i)
+        if (!strcmp(tire->name[i], name))
+            return tire->value[i];
+    fail("a tire has no '%s'", name);
+}
+
+static void read_wheel(Wheel *wheel, const Json *json, const Model *model)
+{
+    wheel->name = strcpy(grab(strlen(json_text(json, "name")) + 1, 1), json_text(json, "name"));
+    wheel->body = index_of(json, "body", 0, model->bodies);
     json_numbers(json, "center", wheel->center, 3);
     wheel->radius = json_number(json, "radius");
     wheel->stiffness = json_number(json, "stiffness");
     wheel->damping = json_number(json, "damping");
     wheel->fade = json_number(json, "fade");
+    if (json_get(json, "tire")->kind == JSON_NULL)
+        return;
+    wheel->tire = &model->tire[index_of(json, "tire", 0, model->tires)];
+    json_numbers(json, "axis", wheel->axis, 3);
+    wheel->spin_inertia = json_number(json, "spin_inertia");
+    wheel->mirrored = json_number(json, "mirrored") != 0;
+    if (json_get(json, "drive")->kind != JSON_NULL) {
+        wheel->drive = formula_read(json_get(json, "drive"));
+        wheel->drive_body = index_of(json, "drive_body", GROUND, model->bodies);
+    }
+    if (json_get(json, "brake")->kind != JSON_NULL) {
+        wheel->brake = formula_read(json_get(json, "brake"));
+        wheel->windup = json_number(json, "windup");
+    }
 }
 
 static int *read_indices(const Json *json, const char *key, int limit, int *count)
@@ -254,18 +308,24 @@ Model *model_parse(const char *text, const char *name)
     const Json *bodies = list_of(json, "bodies", &model->bodies), *joints = list_of(json, "joints", &model->joints),
                *coordinates = list_of(json, "coordinates", &model->coordinates),
                *forces = list_of(json, "forces", &model->forces), *wheels = list_of(json, "wheels", &model->wheels),
+               *tires = list_of(json, "tires", &model->tires),
                *subsets = list_of(json, "sequence", &model->subsets),
                *inputs = list_of(json, "inputs", &model->inputs), *tables = list_of(json, "tables", &model->tables);
     model->input = grab((size_t)model->inputs, sizeof *model->input);
     model->table = grab((size_t)model->tables, sizeof *model->table);
-    for (int i = 0; i < model->inputs; ++i)
+    model->input_name = grab((size_t)model->inputs, sizeof *model->input_name);
+    for (int i = 0; i < model->inputs; ++i) {
+        const char *input = json_text(inputs->item[i], "name");
+        model->input_name[i] = strcpy(grab(strlen(input) + 1, 1), input);
         model->input[i] = json_number(inputs->item[i], "default");
+    }
     for (int i = 0; i < model->tables; ++i)
         lookup_read(&model->table[i], tables->item[i]);
     model->body = grab((size_t)model->bodies, sizeof *model->body);
     model->joint = grab((size_t)model->joints, sizeof *model->joint);
     model->coordinate = grab((size_t)model->coordinates, sizeof *model->coordinate);
     model->force = grab((size_t)model->forces, sizeof *model->force);
+    model->tire = grab((size_t)model->tires, sizeof *model->tire);
     model->wheel = grab((size_t)model->wheels, sizeof *model->wheel);
     model->subset = grab((size_t)model->subsets, sizeof *model->subset);
     for (int i = 0; i < model->bodies; ++i)
@@ -274,10 +334,14 @@ Model *model_parse(const char *text, const char *name)
         read_joint(&model->joint[i], joints->item[i], model->bodies);
     for (int i = 0; i < model->coordinates; ++i)
         read_coordinate(&model->coordinate[i], coordinates->item[i], model->bodies);
+    for (int i = 0; i < model->coordinates; ++i)
+        model->driven_inputs += 3 * model->coordinate[i].driven;
     for (int i = 0; i < model->forces; ++i)
         read_force(&model->force[i], forces->item[i], model);
+    for (int i = 0; i < model->tires; ++i)
+        read_tire(&model->tire[i], tires->item[i]);
     for (int i = 0; i < model->wheels; ++i)
-        read_wheel(&model->wheel[i], wheels->item[i], model->bodies);
+        read_wheel(&model->wheel[i], wheels->item[i], model);
     for (int i = 0; i < model->subsets; ++i) {
         Subset *subset = &model->subset[i];
         subset->body = read_indices(subsets->item[i], "bodies", model->bodies, &subset->bodies);
@@ -315,12 +379,25 @@ void model_free(Model *model)
             formula_free(model->force[i].law[k]);
     for (int i = 0; i < model->tables; ++i)
         lookup_free(&model->table[i]);
+    for (int i = 0; i < model->tires; ++i) {
+        free(model->tire[i].name);
+        free(model->tire[i].value);
+    }
+    for (int i = 0; i < model->wheels; ++i) {
+        free(model->wheel[i].name);
+        formula_free(model->wheel[i].drive);
+        formula_free(model->wheel[i].brake);
+    }
+    for (int i = 0; i < model->inputs; ++i)
+        free(model->input_name[i]);
+    free(model->input_name);
     free(model->input);
     free(model->table);
     free(model->body);
     free(model->joint);
     free(model->coordinate);
     free(model->force);
+    free(model->tire);
     free(model->wheel);
     free(model->subset);
     free(model);

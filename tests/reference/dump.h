@@ -60,9 +60,25 @@ typedef struct Force {
     bool load;
 } Force;
 
+/* A tire, with its data by their names; a pair of TMeasy's is `name` and `name.2`. */
+typedef struct Tire {
+    bool tmeasy;
+    int mode; /* USE_MODE */
+    double radius, stiffness, damping, bottom_stiffness, bottom, low_speed, relaxation[2];
+    int count;
+    char (*name)[24];
+    double *value;
+} Tire;
+
 typedef struct Wheel {
+    char *name;
     int body;
     double center[3], radius, stiffness, damping, fade;
+    const Tire *tire; /* NULL: it presses and nothing else; what follows does not count then */
+    double axis[3], spin_inertia, windup;
+    bool mirrored;
+    Formula *drive, *brake; /* brake NULL: has none */
+    int drive_body;
 } Wheel;
 
 typedef struct Subset {
@@ -72,15 +88,18 @@ typedef struct Subset {
 typedef struct Model {
     double gravity[3];
     bool free_base;
-    int bodies, joints, coordinates, forces, wheels, subsets;
+    int bodies, joints, coordinates, forces, tires, wheels, subsets;
     Body *body;
     Joint *joint;
     Coordinate *coordinate;
     Force *force;
+    Tire *tire;
     Wheel *wheel;
     Subset *subset;
     int inputs, tables;
-    double *input; /* values */
+    int driven_inputs; /* how many belong to driven coordinates: the first ones */
+    double *input;     /* values */
+    char **input_name;
     Lookup *table;
     double length; /* length scale, m: largest distance between two points at design; 1 when all coincide */
 } Model;
@@ -91,6 +110,8 @@ extern const int joint_rows[JOINT_TYPES]; /* scalar equations */
 Model *model_read(const char *path);
 Model *model_parse(const char *text, const char *name);
 void model_free(Model *model);
+/* A number of a tire's data. */
+double tire_number(const Tire *tire, const char *name);
 /* A point given in the frame of a body, in the model frame at design. */
 void design_point(const Model *model, int body, const double point[3], double out[3]);
 /* Characteristic length of a subset, m: largest distance at design between its bodies' centres of mass and the points

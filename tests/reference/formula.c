@@ -100,6 +100,8 @@ quad formula_value(const Formula *formula, const Surroundings *around)
         return around->length;
     if (!strcmp(op, "speed"))
         return around->speed;
+    if (!strcmp(op, "spin"))
+        return around->spin;
     if (!strcmp(op, "if"))
         return x[0] > 0 ? x[1] : x[2];
     for (size_t i = 0; i < sizeof operation / sizeof *operation; ++i)

@@ -25,7 +25,7 @@ typedef struct Surroundings {
     const quad *w, *w_rate; /* of the coordinates */
     const quad *input;
     const Lookup *table;
-    quad time, length, speed; /* length: or angle */
+    quad time, length, speed, spin; /* length: or angle */
 } Surroundings;
 
 Formula *formula_read(const Json *json);

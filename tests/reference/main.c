@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * reference DUMP STATES [-o ACCEL] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]
+ *     [--friction X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE]
  *
- * Accelerations, poses, drive forces, reactions of joints, subset condition and scales of a dumped model (`gicgen --dump-model`) at the states of a CSV
- * file with the columns of `gicrun --eval`. A row's status is 0, or 1 where the state can't be reached from design or
- * is singular; its other cells are empty then. */
+ * Accelerations, poses, drive forces, reactions of joints, what wheels do, energies, subset condition and scales of a
+ * dumped model (`gicgen --dump-model`) at the states of a CSV file with the columns of `gicrun --eval`; columns of fast
+ * states and of inputs that are no coordinates may be missing. The road's friction is 1 but on one patch. A row's status
+ * is 0, or 1 where the state can't be reached from design or is singular; its other cells are empty then. */
 #include "row.h"
 
 #include "support.h"
@@ -12,7 +14,8 @@
 #include <string.h>
 
 static const char usage[] =
-    "usage: reference DUMP STATES [-o ACCEL] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]\n";
+    "usage: reference DUMP STATES [-o ACCEL] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]\n"
+    "                 [--friction X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE]\n";
 
 static void write_head(FILE *out, const Model *model)
 {
@@ -38,6 +41,14 @@ static void write_head(FILE *out, const Model *model)
             const char *joint = model->joint[j].name, *kind = part == 0 ? "force" : "torque";
             fprintf(out, "%s.%s.x,%s.%s.y,%s.%s.z,scale.%s.%s,", joint, kind, joint, kind, joint, kind, joint, kind);
         }
+    for (int w = 0; w < model->wheels; ++w)
+        for (int i = 0; i < WHEEL_COLUMNS; ++i)
+            if (wheel_shows(&model->wheel[w], i)) {
+                const char *wheel = model->wheel[w].name, *name = wheel_column[i].name;
+                fprintf(out, "%s%s,scale.%s%s,", wheel, name, wheel, name);
+            }
+    for (int i = 0; i < 3; ++i)
+        fprintf(out, "energies.%s,scale.energies.%s,", energy_name[i], energy_name[i]);
     fputs("condition,status\n", out);
 }
 
@@ -82,13 +93,26 @@ static void write_row(FILE *out, Solver *solver)
         write_numbers(out, reaction->torque, 3);
         write_numbers(out, &reaction->torque_scale, 1);
     }
+    for (int w = 0; w < model->wheels; ++w)
+        for (int i = 0; i < WHEEL_COLUMNS; ++i)
+            if (wheel_shows(&model->wheel[w], i)) {
+                write_numbers(out, &solver->wheel[w].value[wheel_column[i].result], 1);
+                write_numbers(out, &solver->wheel[w].scale[wheel_column[i].result], 1);
+            }
+    for (int i = 0; i < 3; ++i) {
+        write_numbers(out, &solver->energy[i], 1);
+        write_numbers(out, &solver->energy_scale[i], 1);
+    }
     fprintf(out, "%.6g,0\n", worst_condition(solver));
 }
 
 static void write_unreached(FILE *out, const Model *model)
 {
     int cells = (model->free_base ? 8 : 0) + 7 * (model->bodies - (model->free_base ? 0 : 1)) + 1;
-    cells += 2 * model->coordinates + 8 * model->joints;
+    cells += 2 * model->coordinates + 8 * model->joints + 6;
+    for (int w = 0; w < model->wheels; ++w)
+        for (int i = 0; i < WHEEL_COLUMNS; ++i)
+            cells += 2 * wheel_shows(&model->wheel[w], i);
     while (cells--)
         fputc(',', out);
     fputs("1\n", out);
@@ -103,7 +127,9 @@ int main(int argc, char **argv)
         if (!strcmp(argv[i], "-o") && i + 1 < argc) {
             out_path = argv[++i];
         } else if (!strcmp(argv[i], "--road") && i + 1 < argc) {
-            road = road_parse(argv[++i]);
+            road_parse(argv[++i], &road);
+        } else if (!strcmp(argv[i], "--friction") && i + 1 < argc) {
+            friction_parse(argv[++i], &road);
         } else if (argv[i][0] != '-' && paths < 2) {
             path[paths++] = argv[i];
         } else {

@@ -364,8 +364,9 @@ static void point_motion(const Model *model, const Configuration *configuration,
     memcpy(v, arrow.rate, sizeof arrow.rate);
 }
 
-/* What a formula sees; the first inputs are those of driven coordinates (FORMAT.md section 5). */
-static quad law_value(const Model *model, const Configuration *configuration, const Formula *law, quad length, quad speed)
+/* The first inputs are those of driven coordinates (FORMAT.md section 5). */
+quad law_value(const Model *model, const Configuration *configuration, const Formula *law, quad length, quad speed,
+               quad spin)
 {
     if (!law)
         return 0;
@@ -380,7 +381,7 @@ static quad law_value(const Model *model, const Configuration *configuration, co
             next += 3;
         }
     Surroundings around = {.w = configuration->w, .w_rate = configuration->w_rate, .input = input, .table = model->table,
-                           .length = length, .speed = speed};
+                           .length = length, .speed = speed, .spin = spin};
     return formula_value(law, &around);
 }
 
@@ -403,18 +404,27 @@ static quad resistance(const Force *force, quad value, quad rate)
     return (force->table ? lookup_at(force->table, extension) : force->stiffness * extension) + force->damping * rate;
 }
 
-static void add_between(const Model *model, const Configuration *configuration, const Force *force,
-                        quad (*Q)[BODY_COORDINATES])
+/* From the first of its points to the second, with length and rate. */
+static void span(const Model *model, const Configuration *configuration, const Force *force, quad d[3], quad *length,
+                 quad *rate)
 {
-    quad x[2][3], v[2][3], d[3], d_rate[3];
+    quad x[2][3], v[2][3], d_rate[3];
     for (int k = 0; k < 2; ++k)
         point_motion(model, configuration, force->body[k], force->point[k], x[k], v[k]);
     for (int i = 0; i < 3; ++i) {
         d[i] = x[1][i] - x[0][i];
         d_rate[i] = v[1][i] - v[0][i];
     }
-    quad length = sqrtq(quad_dot(d, d, 3)), rate = quad_dot(d, d_rate, 3) / length;
-    quad tension = resistance(force, length, rate) + law_value(model, configuration, force->law[0], length, rate);
+    *length = sqrtq(quad_dot(d, d, 3));
+    *rate = quad_dot(d, d_rate, 3) / *length;
+}
+
+static void add_between(const Model *model, const Configuration *configuration, const Force *force,
+                        quad (*Q)[BODY_COORDINATES])
+{
+    quad d[3], length, rate;
+    span(model, configuration, force, d, &length, &rate);
+    quad tension = resistance(force, length, rate) + law_value(model, configuration, force->law[0], length, rate, 0);
     for (int k = 0; k < 2; ++k) {
         if (force->body[k] == GROUND)
             continue;
@@ -436,9 +446,8 @@ static Arrow direction(const Configuration *configuration, int body, int side, c
     return arrow;
 }
 
-/* Virtual work of a torque against the angle atan2(y, x), y = e_2 . f_1, x = e_1 . f_1. */
-static void add_about(const Model *model, const Configuration *configuration, const Force *force,
-                      quad (*Q)[BODY_COORDINATES])
+/* The angle atan2(y, x), y = e_2 . f_1, x = e_1 . f_1: its slopes and rate; its value by itself. */
+static Row turned(const Configuration *configuration, const Force *force, quad *value)
 {
     quad axis[3], reference[2][3], third[3];
     widen(force->axis, axis, 3);
@@ -449,31 +458,47 @@ static void add_about(const Model *model, const Configuration *configuration, co
           e_2 = direction(configuration, force->body[0], 0, third),
           f_1 = direction(configuration, force->body[1], 1, reference[1]);
     Row x = dot(&e_1, &f_1), angle = dot(&e_2, &f_1);
-    quad value = atan2q(angle.value, x.value), square = x.value * x.value + angle.value * angle.value;
+    quad square = x.value * x.value + angle.value * angle.value;
+    *value = atan2q(angle.value, x.value);
     combine(&angle, x.value / square, -angle.value / square, &x);
+    return angle;
+}
+
+/* Virtual work of a torque against that angle. */
+static void add_about(const Model *model, const Configuration *configuration, const Force *force,
+                      quad (*Q)[BODY_COORDINATES])
+{
+    quad value;
+    Row angle = turned(configuration, force, &value);
     quad torque = resistance(force, value, angle.rate) +
-                  law_value(model, configuration, force->law[0], value, angle.rate);
+                  law_value(model, configuration, force->law[0], value, angle.rate, 0);
     for (int side = 0; side < 2; ++side)
         for (int j = 0; j < BODY_COORDINATES && force->body[side] != GROUND; ++j)
             Q[force->body[side]][j] -= torque * angle.slope[side][j];
 }
 
-/* Force and torque on a body: the torque's generalized force is 2 G^T times its components in the body. */
-static void add_load(const Model *model, const Configuration *configuration, const Force *force, quad (*Q)[BODY_COORDINATES])
+/* 2 G^T times its components in the body */
+void add_torque(const Configuration *configuration, int body, const quad torque[3], quad (*Q)[BODY_COORDINATES])
 {
-    quad given[6], world[6], s[3], own[3], G[3][4];
-    int body = force->body[0], in = force->body[1];
-    for (int i = 0; i < 6; ++i)
-        world[i] = given[i] = law_value(model, configuration, force->law[i], 0, 0);
-    for (int part = 0; in != GROUND && part < 2; ++part)
-        rotate(configuration->q[in] + 3, given + 3 * part, world + 3 * part);
-    from_com(model, body, force->point[0], s);
-    add_force(configuration, body, s, world, Q);
-    rotate_back(configuration->q[body] + 3, world + 3, own);
+    quad own[3], G[3][4];
+    rotate_back(configuration->q[body] + 3, torque, own);
     euler_rate_matrix(configuration->q[body] + 3, G);
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 4; ++j)
             Q[body][3 + j] += 2 * G[i][j] * own[i];
+}
+
+static void add_load(const Model *model, const Configuration *configuration, const Force *force, quad (*Q)[BODY_COORDINATES])
+{
+    quad given[6], world[6], s[3];
+    int body = force->body[0], in = force->body[1];
+    for (int i = 0; i < 6; ++i)
+        world[i] = given[i] = law_value(model, configuration, force->law[i], 0, 0, 0);
+    for (int part = 0; in != GROUND && part < 2; ++part)
+        rotate(configuration->q[in] + 3, given + 3 * part, world + 3 * part);
+    from_com(model, body, force->point[0], s);
+    add_force(configuration, body, s, world, Q);
+    add_torque(configuration, body, world + 3, Q);
 }
 
 void add_force_element(const Model *model, const Configuration *configuration, const Row *rows, int force,
@@ -485,7 +510,7 @@ void add_force_element(const Model *model, const Configuration *configuration, c
         return;
     }
     int c = element->coordinate;
-    quad along = law_value(model, configuration, element->law[0], 0, 0) -
+    quad along = law_value(model, configuration, element->law[0], 0, 0, 0) -
                  resistance(element, configuration->w[c], configuration->w_rate[c]);
     /* virtual work: along * dw, with dw = -(dc/dq dq) / (dc/dw) */
     const Row *row = &rows[joint_row(model, model->joints) + c];
@@ -494,24 +519,16 @@ void add_force_element(const Model *model, const Configuration *configuration, c
             Q[row->body[side]][j] -= along * row->slope[side][j] / row->w_slope;
 }
 
-void add_wheel(const Model *model, const Configuration *configuration, const Road *road, int wheel,
-               quad (*Q)[BODY_COORDINATES])
+void element_extension(const Model *model, const Configuration *configuration, int force, quad *value, quad *rate)
 {
-    const Wheel *tire = &model->wheel[wheel];
-    quad x[3], v[3], s[3], h = 0, h_x = 0, h_y = 0;
-    from_com(model, tire->body, tire->center, s);
-    point_motion(model, configuration, tire->body, tire->center, x, v);
-    if (road->amplitude != 0) {
-        quad k = 2 * acosq(-1) / road->wavelength, phase = k * (x[0] - road->x0) + road->phase_per_y * x[1];
-        h = road->amplitude * sinq(phase);
-        h_x = road->amplitude * k * cosq(phase);
-        h_y = road->amplitude * road->phase_per_y * cosq(phase);
+    const Force *element = &model->force[force];
+    quad d[3];
+    if (element->coordinate >= 0) {
+        *value = configuration->w[element->coordinate];
+        *rate = configuration->w_rate[element->coordinate];
+    } else if (element->about) {
+        *rate = turned(configuration, element, value).rate;
+    } else {
+        span(model, configuration, element, d, value, rate);
     }
-    quad d = tire->radius + h - x[2], d_rate = h_x * v[0] + h_y * v[1] - v[2];
-    if (d <= 0)
-        return;
-    quad fade = fminq(d / tire->fade, 1);
-    fade = fade * fade * (3 - 2 * fade);
-    const quad F[3] = {0, 0, fmaxq(0, tire->stiffness * d + tire->damping * fade * d_rate)};
-    add_force(configuration, tire->body, s, F, Q);
 }

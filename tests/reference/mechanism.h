@@ -36,9 +36,11 @@ int row_count(const Model *model);
 int joint_row(const Model *model, int joint);
 void rows_evaluate(const Model *model, const Configuration *configuration, Row *rows);
 
-/* A road z = amplitude sin(2 pi (x - x0) / wavelength + phase_per_y y); amplitude 0: flat. */
+/* A road z = amplitude sin(2 pi (x - x0) / wavelength + phase_per_y y); amplitude 0: flat. Its friction is 1 but for one
+ * patch of it (SCENE.md section 3.4); fade 0: none. */
 typedef struct Road {
     double amplitude, wavelength, x0, phase_per_y;
+    double x[2], y[2], friction, fade;
 } Road;
 
 /* A point given in the frame of a body (FORMAT.md), relative to its centre of mass. */
@@ -46,10 +48,16 @@ void from_com(const Model *model, int body, const double point[3], quad out[3]);
 /* Add to Q[body][7] the generalized force of a force F (world) at a point of the body (relative to its com). */
 void add_force(const Configuration *configuration, int body, const quad point[3], const quad F[3],
                quad (*Q)[BODY_COORDINATES]);
-/* Add the generalized force of one force element, or of one wheel. `rows` are those of the same configuration. */
+/* The same of a torque (world) on the body. */
+void add_torque(const Configuration *configuration, int body, const quad torque[3], quad (*Q)[BODY_COORDINATES]);
+/* A formula at a configuration; NULL: 0. What it sees of forces and wheels beyond that: the length (or angle) of its
+ * element and the rate of that; the wheel's spin. */
+quad law_value(const Model *model, const Configuration *configuration, const Formula *law, quad length, quad speed,
+               quad spin);
+/* Length, angle or coordinate along which a force element acts, and its rate. Not for loads. */
+void element_extension(const Model *model, const Configuration *configuration, int force, quad *value, quad *rate);
+/* Add the generalized force of one force element. `rows` are those of the same configuration. */
 void add_force_element(const Model *model, const Configuration *configuration, const Row *rows, int force,
                        quad (*Q)[BODY_COORDINATES]);
-void add_wheel(const Model *model, const Configuration *configuration, const Road *road, int wheel,
-               quad (*Q)[BODY_COORDINATES]);
 
 #endif

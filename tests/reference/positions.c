@@ -33,6 +33,7 @@ Solver *solver_new(const Model *model)
     solver->drive_force = grab(coordinates, sizeof *solver->drive_force);
     solver->w_scale = grab(coordinates, sizeof *solver->w_scale);
     solver->drive_scale = grab(coordinates, sizeof *solver->drive_scale);
+    solver->wheel = grab((size_t)model->wheels, sizeof *solver->wheel);
     solver->reaction = grab((size_t)model->joints, sizeof *solver->reaction);
     return solver;
 }
@@ -53,6 +54,7 @@ void solver_free(Solver *solver)
     free(solver->w_scale);
     free(solver->drive_scale);
     free(solver->reaction);
+    free(solver->wheel);
     free(solver);
 }
 
@@ -63,6 +65,7 @@ State *state_new(const Model *model)
     state->w = grab((size_t)model->coordinates, sizeof *state->w);
     state->w_rate = grab((size_t)model->coordinates, sizeof *state->w_rate);
     state->w_second = grab((size_t)model->coordinates, sizeof *state->w_second);
+    state->fast = grab((size_t)model->wheels, sizeof *state->fast);
     return state;
 }
 
@@ -71,6 +74,7 @@ void state_free(State *state)
     free(state->w);
     free(state->w_rate);
     free(state->w_second);
+    free(state->fast);
     free(state);
 }
 

@@ -6,16 +6,22 @@
 
 #include <string.h>
 
-Road road_parse(const char *text)
+void road_parse(const char *text, Road *road)
 {
-    Road road = {0};
     char end;
-    if (strcmp(text, "flat") && sscanf(text, "sine:%lf,%lf,%lf,%lf%c", &road.amplitude, &road.wavelength, &road.x0,
-                                       &road.phase_per_y, &end) != 4)
+    if (strcmp(text, "flat") && sscanf(text, "sine:%lf,%lf,%lf,%lf%c", &road->amplitude, &road->wavelength, &road->x0,
+                                       &road->phase_per_y, &end) != 4)
         fail("--road '%s': 'flat' or 'sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y' is wanted", text);
-    if (road.amplitude != 0 && !(road.wavelength > 0))
+    if (road->amplitude != 0 && !(road->wavelength > 0))
         fail("--road '%s': the wavelength must be greater than zero", text);
-    return road;
+}
+
+void friction_parse(const char *text, Road *road)
+{
+    char end;
+    if (sscanf(text, "%lf,%lf,%lf,%lf,%lf,%lf%c", &road->x[0], &road->x[1], &road->y[0], &road->y[1], &road->friction,
+               &road->fade, &end) != 6 || !(road->fade > 0))
+        fail("--friction '%s': X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE is wanted", text);
 }
 
 static void vector_cells(const Table *table, int row, const char *const *name, int size, quad *out)
@@ -31,7 +37,25 @@ static quad coordinate_cell(const Table *table, int row, const char *coordinate,
     return table_number(table, row, table_want(table, name));
 }
 
-void state_read(const Model *model, const Table *table, int row, State *state)
+/* A cell whose column may be missing. */
+static quad optional_cell(const Table *table, int row, const char *column, quad otherwise)
+{
+    int index = table_find(table, column);
+    return index < 0 ? otherwise : table_number(table, row, index);
+}
+
+static void wheels_read(const Model *model, const Table *table, int row, State *state)
+{
+    char column[128];
+    for (int i = 0; i < model->wheels; ++i)
+        for (int k = 0; k < FAST_STATES; ++k)
+            if (wheel_has(&model->wheel[i], k)) {
+                snprintf(column, sizeof column, "%s.%s", model->wheel[i].name, fast_name[k]);
+                state->fast[i][k] = optional_cell(table, row, column, 0);
+            }
+}
+
+void state_read(Model *model, const Table *table, int row, State *state)
 {
     static const char *const r[] = {"r.x", "r.y", "r.z"}, *const e[] = {"e0", "e1", "e2", "e3"},
                              *const v[] = {"v.x", "v.y", "v.z"}, *const omega[] = {"omega.x", "omega.y", "omega.z"};
@@ -48,4 +72,7 @@ void state_read(const Model *model, const Table *table, int row, State *state)
         if (coordinate->driven)
             state->w_second[c] = coordinate_cell(table, row, coordinate->name, ".acceleration");
     }
+    for (int i = model->driven_inputs; i < model->inputs; ++i)
+        model->input[i] = (double)optional_cell(table, row, model->input_name[i], model->input[i]);
+    wheels_read(model, table, row, state);
 }

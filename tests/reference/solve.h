@@ -5,12 +5,14 @@
 #define REFERENCE_SOLVE_H
 
 #include "mechanism.h"
+#include "wheel.h"
 
 /* A state as FORMAT.md section 10 has it, with driven coordinates among the others. */
 typedef struct State {
     quad r[3], e[4], v[3], omega[3];            /* free base: origin, Euler parameters, world velocity of the origin,
                                                    angular velocity in the base frame */
     quad *w, *w_rate, *w_second;                /* [coordinates]; w_second is read where they are driven */
+    quad (*fast)[FAST_STATES];                  /* [wheels] */
 } State;
 
 /* What a joint exerts on its second body at its point of that, world frame; scales: sums of magnitudes of the
@@ -40,6 +42,8 @@ typedef struct Solver {
     quad a_scale, alpha_scale, *w_scale;
     quad *drive_scale;                          /* result: the same for drive_force */
     Reaction *reaction;                         /* result: [joints] */
+    WheelState *wheel;                          /* result: [wheels] */
+    quad energy[3], energy_scale[3];            /* result: kinetic, potential; rate of their sum but for its own, W */
     quad sum_error;                             /* result: largest deviation of the contributions' sum from the whole,
                                                    relative to the scale */
 } Solver;
@@ -62,6 +66,10 @@ bool solve_accelerations(Solver *solver, const State *state, const Road *road);
 
 /* A joint's share of what solver->unknown solves; its scales are those of this solution alone. reactions.c. */
 Reaction joint_reaction(const Solver *solver, int joint);
+
+/* Energies and power (TIRES.md section 4) with their scales, from all other results. energy.c. */
+void solve_energy(Solver *solver);
+extern const char *const energy_name[3];
 
 /* World position of a body's frame origin. */
 void body_origin(const Model *model, const Configuration *configuration, int body, quad out[3]);
