@@ -22,7 +22,7 @@ cat >"$dump" <<'END'
  "forces": [
   {"name": "spring", "type": "coordinate", "coordinate": 0, "a": null, "b": null, "point_a": null, "point_b": null,
    "stiffness": 300, "damping": 5, "free": 0, "low": null, "high": null, "fade": null, "table": null, "law": []}],
- "wheels": [{"name": "tire", "body": 0, "center": [0, 0, 0], "radius": 0.5, "stiffness": 5000, "damping": 50, "fade": 0.01}],
+ "wheels": [{"name": "tire", "body": 0, "center": [0, 0, 0], "radius": 0.5, "stiffness": 5000, "damping": 50, "fade": 0.01, "tire": null}], "tires": [],
  "inputs": [], "tables": [], "outputs": [],
  "sequence": [{"stage": 1, "class": null, "bodies": [0], "joints": [], "coordinates": []},
   {"stage": 2, "class": "arm", "bodies": [1], "joints": [0], "coordinates": [0]}]}
@@ -73,6 +73,12 @@ sed '1s/,hinge\./,output.hinge./g' "$work/accel" >"$work/eval"
 expect 0 "the same reactions" --reactions
 cp "$work/accel" "$work/eval"
 expect 1 "no outputs of reactions" --reactions
+expect 1 "no outputs of wheels" --wheels
+edit tire_load.fz 'x * (1 + 1e-9) + 1e-9'
+sed -i '1s/,tire_load\./,output.tire_load./g; 1s/,energies\./,output.energies./g' "$work/eval"
+expect 1 "one load off" --wheels
+sed '1s/,tire_load\./,output.tire_load./g; 1s/,energies\./,output.energies./g' "$work/accel" >"$work/eval"
+expect 0 "the same of wheels" --wheels
 edit alpha.z '"nan"'
 expect 1 "not a number"
 edit a.x '""'
@@ -97,4 +103,4 @@ else
 fi
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -eq 16 ]
+[ "$failed" -eq 0 ] && [ "$passed" -eq 19 ]

@@ -217,7 +217,7 @@ static void free_body(const char *dump, const Road *road, const real spring_poin
                  end_rate[2][3] = {{0}, {x_rate[0], x_rate[1], x_rate[2]}};
             spring_force(&spring, end, end_rate, F);
         } else {
-            static const Wheel wheel = {0, {0}, 0.75, 500, 30, 0.01};
+            static const Wheel wheel = {.radius = 0.75, .stiffness = 500, .damping = 30, .fade = 0.01};
             tire_force(&wheel, road, x, x_rate, F);
         }
         apply_back(A, F, F_body);

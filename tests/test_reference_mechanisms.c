@@ -101,8 +101,8 @@ static Mechanism *corners(void)
          .stiffness = 700, .damping = 90, .free = 2},
     };
     static const Wheel wheel[] = {
-        {KNUCKLE, {0.02, 0.01, 0}, 0.47, 300000, 500, 0.01},
-        {TRAILING, {-0.1, 0.1, 0}, 0.45, 250000, 500, 0.01},
+        {.body = KNUCKLE, .center = {0.02, 0.01, 0}, .radius = 0.47, .stiffness = 300000, .damping = 500, .fade = 0.01},
+        {.body = TRAILING, .center = {-0.1, 0.1, 0}, .radius = 0.45, .stiffness = 250000, .damping = 500, .fade = 0.01},
     };
     memcpy(mechanism->force, force, sizeof force);
     memcpy(mechanism->wheel, wheel, sizeof wheel);
@@ -177,8 +177,8 @@ static Mechanism *train(void)
          .stiffness = 700, .damping = 90, .free = 2},
     };
     static const Wheel wheel[] = {
-        {SLIDER, {0.02, 0.01, 0}, 2, 3000, 50, 0.01},
-        {HULL, {-0.1, 0.1, 0}, 1.5, 2500, 50, 0.01},
+        {.body = SLIDER, .center = {0.02, 0.01, 0}, .radius = 2, .stiffness = 3000, .damping = 50, .fade = 0.01},
+        {.body = HULL, .center = {-0.1, 0.1, 0}, .radius = 1.5, .stiffness = 2500, .damping = 50, .fade = 0.01},
     };
     memcpy(mechanism->force, force, sizeof force);
     memcpy(mechanism->wheel, wheel, sizeof wheel);
