@@ -17,7 +17,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char usage[] = "usage: agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions] [--wheels]\n";
+static const char usage[] =
+    "usage: agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions] [--wheels]\n";
 
 /* Numbers that are compared as one vector. */
 typedef struct Group {
@@ -120,9 +121,9 @@ static Groups groups_find(const Model *model, const Table *reference, const Tabl
 {
     static const char *const xyz[] = {".x", ".y", ".z"}, *const e[] = {".e0", ".e1", ".e2", ".e3"};
     static const char *const base[] = {"a", "alpha"};
-    Groups groups = {
-        .group = grab((size_t)(5 + 2 * (model->coordinates + model->bodies + model->joints)
-                               + WHEEL_COLUMNS * model->wheels), sizeof *groups.group)};
+    Groups groups = {.group = grab((size_t)(5 + 2 * (model->coordinates + model->bodies + model->joints) +
+                                            WHEEL_COLUMNS * model->wheels),
+                                   sizeof *groups.group)};
     for (int i = 0; i < 2 && model->free_base; ++i) {
         Group *group = add_group(&groups, base[i], "");
         for (int j = 0; j < 3; ++j)

@@ -3,9 +3,9 @@
  *
  * Random candidates for `gicrun --eval` and `reference`: coordinates uniform in their ranges; base anywhere within
  * 100 m, its height within 0.3 m of design so that tires touch in some rows and not in others; every orientation in
- * even rows, every yaw with small roll and pitch in odd ones. Of a model with wheels that roll, every second odd row has
- * its tires near the road, every fourth row is slow and every sixteenth stands still with nothing wound up; slips are
- * small in most rows and far beyond all ranges in others, wheels spin either way, inputs go up to 1 beside their
+ * even rows, every yaw with small roll and pitch in odd ones. Of a model with wheels that roll, every second odd row
+ * has its tires near the road, every fourth row is slow and every sixteenth stands still with nothing wound up; slips
+ * are small in most rows and far beyond all ranges in others, wheels spin either way, inputs go up to 1 beside their
  * defaults. */
 #include "reference/dump.h"
 #include "reference/support.h"

@@ -37,7 +37,7 @@
 #define COORDINATES "], \"coordinates\": ["
 #define FORCES "], \"forces\": ["
 #define WHEELS "], \"wheels\": ["
-#define SEQUENCE "], \"inputs\": [], \"tables\": [], \"outputs\": [], \"sequence\": ["
+#define SEQUENCE "], \"tires\": [], \"inputs\": [], \"tables\": [], \"outputs\": [], \"sequence\": ["
 #define TAIL "]}"
 
 /* A body of mass 2 on a hinge at the origin about y, centre of mass (0.5, 0.1, -0.3) at design. */

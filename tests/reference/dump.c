@@ -90,11 +90,16 @@ static void read_force(Force *force, const Json *json, const Model *model)
         const char *name;
         int place, laws;
         bool stop;
-    } known[] = {{"coordinate", COORDINATE, 0, false},     {"points", POINTS, 0, false},
-                 {"axis", AXIS, 0, false},                 {"coordinate_law", COORDINATE, 1, false},
-                 {"points_law", POINTS, 1, false},         {"axis_law", AXIS, 1, false},
-                 {"coordinate_stop", COORDINATE, 0, true}, {"points_stop", POINTS, 0, true},
-                 {"axis_stop", AXIS, 0, true},             {"load", LOAD, 6, false}};
+    } known[] = {{"coordinate", COORDINATE, 0, false},
+                 {"points", POINTS, 0, false},
+                 {"axis", AXIS, 0, false},
+                 {"coordinate_law", COORDINATE, 1, false},
+                 {"points_law", POINTS, 1, false},
+                 {"axis_law", AXIS, 1, false},
+                 {"coordinate_stop", COORDINATE, 0, true},
+                 {"points_stop", POINTS, 0, true},
+                 {"axis_stop", AXIS, 0, true},
+                 {"load", LOAD, 6, false}};
     enum { TYPES = sizeof known / sizeof *known };
     const char *name[TYPES];
     for (int i = 0; i < TYPES; ++i)
@@ -308,8 +313,7 @@ Model *model_parse(const char *text, const char *name)
     const Json *bodies = list_of(json, "bodies", &model->bodies), *joints = list_of(json, "joints", &model->joints),
                *coordinates = list_of(json, "coordinates", &model->coordinates),
                *forces = list_of(json, "forces", &model->forces), *wheels = list_of(json, "wheels", &model->wheels),
-               *tires = list_of(json, "tires", &model->tires),
-               *subsets = list_of(json, "sequence", &model->subsets),
+               *tires = list_of(json, "tires", &model->tires), *subsets = list_of(json, "sequence", &model->subsets),
                *inputs = list_of(json, "inputs", &model->inputs), *tables = list_of(json, "tables", &model->tables);
     model->input = grab((size_t)model->inputs, sizeof *model->input);
     model->table = grab((size_t)model->tables, sizeof *model->table);

@@ -55,8 +55,8 @@ typedef struct Force {
     double axis[3], reference[2][3]; /* as of a coordinate */
     bool stop;                       /* contact beyond: */
     double low, high, fade;          /* infinite where there is no end */
-    const Lookup *table; /* in place of stiffness, or NULL */
-    Formula *law[6]; /* NULL, or [0]: what is added to spring and damper; a load: force and torque */
+    const Lookup *table;             /* in place of stiffness, or NULL */
+    Formula *law[6];                 /* NULL, or [0]: what is added to spring and damper; a load: force and torque */
     bool load;
 } Force;
 

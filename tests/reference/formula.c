@@ -46,10 +46,22 @@ static quad negative(quad a, quad b)
     return -a;
 }
 
-static quad plus(quad a, quad b) { return a + b; }
-static quad minus(quad a, quad b) { return a - b; }
-static quad times(quad a, quad b) { return a * b; }
-static quad over(quad a, quad b) { return a / b; }
+static quad plus(quad a, quad b)
+{
+    return a + b;
+}
+static quad minus(quad a, quad b)
+{
+    return a - b;
+}
+static quad times(quad a, quad b)
+{
+    return a * b;
+}
+static quad over(quad a, quad b)
+{
+    return a / b;
+}
 
 #define OF_ONE(name, function) \
     static quad name(quad a, quad b) \
@@ -73,10 +85,11 @@ static const struct {
     const char *name;
     int arguments;
     quad (*function)(quad a, quad b);
-} operation[] = {{"-", 1, negative},  {"+", 2, plus},       {"-", 2, minus},      {"*", 2, times},      {"/", 2, over},
-                 {"sqrt", 1, of_sqrt}, {"abs", 1, of_abs},   {"sin", 1, of_sin},   {"cos", 1, of_cos},   {"tan", 1, of_tan},
-                 {"asin", 1, of_asin}, {"acos", 1, of_acos}, {"atan", 1, of_atan}, {"exp", 1, of_exp},   {"log", 1, of_log},
-                 {"tanh", 1, of_tanh}, {"atan2", 2, atan2q}, {"pow", 2, powq},     {"min", 2, fminq},    {"max", 2, fmaxq}};
+} operation[] = {{"-", 1, negative},   {"+", 2, plus},       {"-", 2, minus},      {"*", 2, times},
+                 {"/", 2, over},       {"sqrt", 1, of_sqrt}, {"abs", 1, of_abs},   {"sin", 1, of_sin},
+                 {"cos", 1, of_cos},   {"tan", 1, of_tan},   {"asin", 1, of_asin}, {"acos", 1, of_acos},
+                 {"atan", 1, of_atan}, {"exp", 1, of_exp},   {"log", 1, of_log},   {"tanh", 1, of_tanh},
+                 {"atan2", 2, atan2q}, {"pow", 2, powq},     {"min", 2, fminq},    {"max", 2, fmaxq}};
 
 quad formula_value(const Formula *formula, const Surroundings *around)
 {

@@ -7,9 +7,9 @@
 #include "quad.h"
 
 typedef struct Formula {
-    char *op;      /* NULL: a number */
+    char *op; /* NULL: a number */
     double number;
-    int index;     /* of a coordinate, input or table */
+    int index; /* of a coordinate, input or table */
     int arguments;
     struct Formula *argument[3];
 } Formula;

@@ -95,8 +95,8 @@ static Row dot(const Arrow *a, const Arrow *b)
     Row row = {.coordinate = -1,
                .value = quad_dot(a->value, b->value, 3),
                .rate = quad_dot(a->value, b->rate, 3) + quad_dot(a->rate, b->value, 3),
-               .bias = quad_dot(a->value, b->bias, 3) + 2 * quad_dot(a->rate, b->rate, 3)
-                       + quad_dot(a->bias, b->value, 3)};
+               .bias =
+                   quad_dot(a->value, b->bias, 3) + 2 * quad_dot(a->rate, b->rate, 3) + quad_dot(a->bias, b->value, 3)};
     for (int side = 0; side < 2; ++side)
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < BODY_COORDINATES; ++j) {
@@ -197,9 +197,7 @@ static void joint_evaluate(const Model *model, const Configuration *configuratio
         row = points_meet(row, &d);
         row = along_axis(row, configuration, a, axis[0], &u[1]);
         break;
-    case SPHERICAL:
-        row = points_meet(row, &d);
-        break;
+    case SPHERICAL: row = points_meet(row, &d); break;
     case PRISMATIC:
         row = no_rotation(row, model, configuration, joint->body);
         row = along_axis(row, configuration, a, axis[0], &d);
@@ -224,20 +222,11 @@ static void joint_evaluate(const Model *model, const Configuration *configuratio
         *row = dot(&d, &d);
         row++->value -= (quad)joint->length * joint->length;
         break;
-    case POINT_ON_LINE:
-        row = along_axis(row, configuration, a, axis[0], &d);
-        break;
-    case POINT_IN_PLANE:
-        *row++ = dot(&u[0], &d);
-        break;
-    case PARALLEL:
-        row = along_axis(row, configuration, a, axis[0], &u[1]);
-        break;
-    case PERPENDICULAR:
-        *row++ = dot(&u[0], &u[1]);
-        break;
-    case JOINT_TYPES:
-        break;
+    case POINT_ON_LINE: row = along_axis(row, configuration, a, axis[0], &d); break;
+    case POINT_IN_PLANE: *row++ = dot(&u[0], &d); break;
+    case PARALLEL: row = along_axis(row, configuration, a, axis[0], &u[1]); break;
+    case PERPENDICULAR: *row++ = dot(&u[0], &u[1]); break;
+    case JOINT_TYPES: break;
     }
     for (Row *r = start; r < row; ++r)
         memcpy(r->body, joint->body, sizeof r->body);
@@ -380,8 +369,13 @@ quad law_value(const Model *model, const Configuration *configuration, const For
             input[next + 1] = configuration->w_rate[c];
             next += 3;
         }
-    Surroundings around = {.w = configuration->w, .w_rate = configuration->w_rate, .input = input, .table = model->table,
-                           .length = length, .speed = speed, .spin = spin};
+    Surroundings around = {.w = configuration->w,
+                           .w_rate = configuration->w_rate,
+                           .input = input,
+                           .table = model->table,
+                           .length = length,
+                           .speed = speed,
+                           .spin = spin};
     return formula_value(law, &around);
 }
 
@@ -470,8 +464,8 @@ static void add_about(const Model *model, const Configuration *configuration, co
 {
     quad value;
     Row angle = turned(configuration, force, &value);
-    quad torque = resistance(force, value, angle.rate) +
-                  law_value(model, configuration, force->law[0], value, angle.rate, 0);
+    quad torque =
+        resistance(force, value, angle.rate) + law_value(model, configuration, force->law[0], value, angle.rate, 0);
     for (int side = 0; side < 2; ++side)
         for (int j = 0; j < BODY_COORDINATES && force->body[side] != GROUND; ++j)
             Q[force->body[side]][j] -= torque * angle.slope[side][j];
@@ -488,7 +482,8 @@ void add_torque(const Configuration *configuration, int body, const quad torque[
             Q[body][3 + j] += 2 * G[i][j] * own[i];
 }
 
-static void add_load(const Model *model, const Configuration *configuration, const Force *force, quad (*Q)[BODY_COORDINATES])
+static void add_load(const Model *model, const Configuration *configuration, const Force *force,
+                     quad (*Q)[BODY_COORDINATES])
 {
     quad given[6], world[6], s[3];
     int body = force->body[0], in = force->body[1];

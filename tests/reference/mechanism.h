@@ -36,8 +36,8 @@ int row_count(const Model *model);
 int joint_row(const Model *model, int joint);
 void rows_evaluate(const Model *model, const Configuration *configuration, Row *rows);
 
-/* A road z = amplitude sin(2 pi (x - x0) / wavelength + phase_per_y y); amplitude 0: flat. Its friction is 1 but for one
- * patch of it (SCENE.md section 3.4); fade 0: none. */
+/* A road z = amplitude sin(2 pi (x - x0) / wavelength + phase_per_y y); amplitude 0: flat. Its friction is 1 but for
+ * one patch of it (SCENE.md section 3.4); fade 0: none. */
 typedef struct Road {
     double amplitude, wavelength, x0, phase_per_y;
     double x[2], y[2], friction, fade;

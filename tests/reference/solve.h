@@ -9,10 +9,10 @@
 
 /* A state as FORMAT.md section 10 has it, with driven coordinates among the others. */
 typedef struct State {
-    quad r[3], e[4], v[3], omega[3];            /* free base: origin, Euler parameters, world velocity of the origin,
-                                                   angular velocity in the base frame */
-    quad *w, *w_rate, *w_second;                /* [coordinates]; w_second is read where they are driven */
-    quad (*fast)[FAST_STATES];                  /* [wheels] */
+    quad r[3], e[4], v[3], omega[3]; /* free base: origin, Euler parameters, world velocity of the origin,
+                                        angular velocity in the base frame */
+    quad *w, *w_rate, *w_second;     /* [coordinates]; w_second is read where they are driven */
+    quad (*fast)[FAST_STATES];       /* [wheels] */
 } State;
 
 /* What a joint exerts on its second body at its point of that, world frame; scales: sums of magnitudes of the
@@ -24,28 +24,28 @@ typedef struct Reaction {
 /* Work space and results for one model after another state. */
 typedef struct Solver {
     const Model *model;
-    int rows, moving, first;                    /* constraint rows; bodies that move; the first of them */
+    int rows, moving, first; /* constraint rows; bodies that move; the first of them */
     Configuration *configuration, *trial;
     Row *row;
-    Factors *dependent;                         /* bodies 1.. where base and coordinates are given */
-    Factors *augmented;                         /* all accelerations and multipliers */
-    quad *unknown;                              /* work: right-hand side, then solution */
-    quad (*force)[BODY_COORDINATES];            /* work: generalized forces, [bodies] */
-    quad (*second)[BODY_COORDINATES];           /* result: q'' of every body */
-    quad (*bias)[BODY_COORDINATES];             /* result: q'' where those of base and free coordinates are 0 */
-    quad a[3], alpha[3];                        /* result, free base: world acceleration of the origin; rate of omega */
-    quad *w_second;                             /* result: [coordinates]; driven: as given */
-    quad *drive_force;                          /* result: [coordinates] multiplier along a driven one; free: 0 */
+    Factors *dependent;               /* bodies 1.. where base and coordinates are given */
+    Factors *augmented;               /* all accelerations and multipliers */
+    quad *unknown;                    /* work: right-hand side, then solution */
+    quad (*force)[BODY_COORDINATES];  /* work: generalized forces, [bodies] */
+    quad (*second)[BODY_COORDINATES]; /* result: q'' of every body */
+    quad (*bias)[BODY_COORDINATES];   /* result: q'' where those of base and free coordinates are 0 */
+    quad a[3], alpha[3];              /* result, free base: world acceleration of the origin; rate of omega */
+    quad *w_second;                   /* result: [coordinates]; driven: as given */
+    quad *drive_force;                /* result: [coordinates] multiplier along a driven one; free: 0 */
     /* result: sums of magnitudes of the contributions of the single terms to a, alpha, w'': gravity and velocity term
      * of every body, every force element, every wheel; to w'' with those to the accelerations of both its ends, whose
      * difference it is */
     quad a_scale, alpha_scale, *w_scale;
-    quad *drive_scale;                          /* result: the same for drive_force */
-    Reaction *reaction;                         /* result: [joints] */
-    WheelState *wheel;                          /* result: [wheels] */
-    quad energy[3], energy_scale[3];            /* result: kinetic, potential; rate of their sum but for its own, W */
-    quad sum_error;                             /* result: largest deviation of the contributions' sum from the whole,
-                                                   relative to the scale */
+    quad *drive_scale;               /* result: the same for drive_force */
+    Reaction *reaction;              /* result: [joints] */
+    WheelState *wheel;               /* result: [wheels] */
+    quad energy[3], energy_scale[3]; /* result: kinetic, potential; rate of their sum but for its own, W */
+    quad sum_error;                  /* result: largest deviation of the contributions' sum from the whole,
+                                        relative to the scale */
 } Solver;
 
 Solver *solver_new(const Model *model);

@@ -43,9 +43,9 @@ typedef struct Pacejka {
     const Tire *tire;
     quad nominal, scaled, load, share, d; /* F_z0, F_z0', F, Fz / F */
     quad kappa, alpha, camber, lmux, lmuy;
-    quad kx, fx;                          /* Kx, Fx */
+    quad kx, fx; /* Kx, Fx */
     quad shy, svy, muy, ky, bycy;
-    quad fyk, fy;                         /* Fyk, Fy */
+    quad fyk, fy; /* Fyk, Fy */
 } Pacejka;
 
 static Pacejka pacejka(const Tire *t, const TireInput *in)
@@ -86,11 +86,11 @@ static void across(Pacejka *p)
     const Tire *t = p->tire;
     quad d = p->d, g = p->camber * n(t, "LGAY");
     p->shy = line(t, "PHY1", "PHY2", d) * n(t, "LHY") + n(t, "PHY3") * g * n(t, "LKG");
-    p->svy = p->load * p->lmuy
-             * (line(t, "PVY1", "PVY2", d) * n(t, "LVY") + line(t, "PVY3", "PVY4", d) * g * n(t, "LKG"));
+    p->svy =
+        p->load * p->lmuy * (line(t, "PVY1", "PVY2", d) * n(t, "LVY") + line(t, "PVY3", "PVY4", d) * g * n(t, "LKG"));
     p->muy = line(t, "PDY1", "PDY2", d) * (1 - n(t, "PDY3") * g * g) * p->lmuy;
-    p->ky = n(t, "PKY1") * p->nominal * sinq(2 * atanq(p->load / (n(t, "PKY2") * p->scaled)))
-            * (1 - n(t, "PKY3") * fabsq(g)) * n(t, "LFZO") * n(t, "LKY");
+    p->ky = n(t, "PKY1") * p->nominal * sinq(2 * atanq(p->load / (n(t, "PKY2") * p->scaled))) *
+            (1 - n(t, "PKY3") * fabsq(g)) * n(t, "LFZO") * n(t, "LKY");
     quad a = p->alpha + p->shy, C = n(t, "PCY1") * n(t, "LCY"), D = p->muy * p->load, B = p->ky / (C * D);
     quad E = line(t, "PEY1", "PEY2", d) * (1 - line(t, "PEY3", "PEY4", g) * sgn(a)) * n(t, "LEY");
     p->bycy = B * C;
@@ -110,11 +110,11 @@ static quad aligning(const Pacejka *p)
     quad d = p->d, g = p->camber * n(t, "LGAZ"), R = t->radius, d2 = d * d, C = n(t, "QCZ1");
     quad at = p->alpha + line(t, "QHZ1", "QHZ2", d) + line(t, "QHZ3", "QHZ4", d) * g;
     quad ar = p->alpha + p->shy + p->svy / p->ky;
-    quad B = (line(t, "QBZ1", "QBZ2", d) + n(t, "QBZ3") * d2) * (1 + n(t, "QBZ4") * g + n(t, "QBZ5") * fabsq(g))
-             * n(t, "LKY") / p->lmuy;
+    quad B = (line(t, "QBZ1", "QBZ2", d) + n(t, "QBZ3") * d2) * (1 + n(t, "QBZ4") * g + n(t, "QBZ5") * fabsq(g)) *
+             n(t, "LKY") / p->lmuy;
     quad D = p->load * line(t, "QDZ1", "QDZ2", d) * (1 + n(t, "QDZ3") * g + n(t, "QDZ4") * g * g) * R / p->nominal;
-    quad E = (line(t, "QEZ1", "QEZ2", d) + n(t, "QEZ3") * d2)
-             * (1 + line(t, "QEZ4", "QEZ5", g) * 2 / acosq(-1) * atanq(B * C * at));
+    quad E = (line(t, "QEZ1", "QEZ2", d) + n(t, "QEZ3") * d2) *
+             (1 + line(t, "QEZ4", "QEZ5", g) * 2 / acosq(-1) * atanq(B * C * at));
     quad Br = n(t, "QBZ9") * n(t, "LKY") / p->lmuy + n(t, "QBZ10") * p->bycy;
     quad Dr = p->load * R * p->lmuy * (line(t, "QDZ6", "QDZ7", d) * n(t, "LRES") + line(t, "QDZ8", "QDZ9", d) * g);
     if (t->mode == 4) {
@@ -125,8 +125,8 @@ static quad aligning(const Pacejka *p)
     quad trail = D * n(t, "LTR") * cosq(magic(B, C, fminq(1, E), at)) * cosq(p->alpha);
     quad moment = -trail * p->fyk + Dr * cosq(atanq(Br * ar)) * cosq(p->alpha);
     if (t->mode == 4)
-        moment += p->fx * R * n(t, "LS")
-                  * (line(t, "SSZ1", "SSZ2", p->fy / p->nominal) + line(t, "SSZ3", "SSZ4", d) * p->camber);
+        moment += p->fx * R * n(t, "LS") *
+                  (line(t, "SSZ1", "SSZ2", p->fy / p->nominal) + line(t, "SSZ3", "SSZ4", d) * p->camber);
     return moment;
 }
 
@@ -140,16 +140,16 @@ static TireForces pacejka_forces(const Tire *t, const TireInput *in)
     if (!has_x)
         p.fx = 0;
     if (has_y) {
-        out.mx = t->radius * p.load
-                 * (n(t, "QSX1") * n(t, "LVMX")
-                    + (n(t, "QSX3") * p.fy / p.nominal - n(t, "QSX2") * p.camber) * n(t, "LMX"));
+        out.mx =
+            t->radius * p.load *
+            (n(t, "QSX1") * n(t, "LVMX") + (n(t, "QSX3") * p.fy / p.nominal - n(t, "QSX2") * p.camber) * n(t, "LMX"));
         out.mz = aligning(&p);
         out.fy = p.fy;
     }
     if (t->mode != 2) {
         quad v = n(t, "LONGVL") != 0 ? in->forward / n(t, "LONGVL") : 0;
-        out.my = -t->radius * p.load * n(t, "LMY") * tanhq(in->spin)
-                 * (line(t, "QSY1", "QSY2", p.fx / p.nominal) + n(t, "QSY3") * fabsq(v) + n(t, "QSY4") * powq(v, 4));
+        out.my = -t->radius * p.load * n(t, "LMY") * tanhq(in->spin) *
+                 (line(t, "QSY1", "QSY2", p.fx / p.nominal) + n(t, "QSY3") * fabsq(v) + n(t, "QSY4") * powq(v, 4));
     }
     out.fx = p.fx;
     quad *each[] = {&out.fx, &out.fy, &out.mx, &out.my, &out.mz};
@@ -208,8 +208,9 @@ static TireForces tmeasy_forces(const Tire *t, const TireInput *in)
     quad x = sxm / (sxm + sym) + fxm / dx / whole, y = sym / (sxm + sym) + fym / dy / whole;
     quad sx = in->kappa / x, sy = -tanq(in->alpha) / y, s = sqrtq(sx * sx + sy * sy + 1e-12);
     quad c = sqrtq(sx * sx + 5e-13) / s, d = sqrtq(sy * sy + 5e-13) / s;
-    quad H = characteristic(s, hypotq(dx * x * c, dy * y * d), hypotq(fxm * c, fym * d),
-                            hypotq(sxm / x * c, sym / y * d), hypotq(fxs * c, fys * d), hypotq(sxs / x * c, sys / y * d));
+    quad H =
+        characteristic(s, hypotq(dx * x * c, dy * y * d), hypotq(fxm * c, fym * d), hypotq(sxm / x * c, sym / y * d),
+                       hypotq(fxs * c, fys * d), hypotq(sxs / x * c, sys / y * d));
     TireForces out = {0};
     H *= in->load / (p * pn);
     out.fx = H * sx / s;
@@ -249,8 +250,8 @@ void relaxation_lengths(const Tire *t, const TireInput *in, quad length[2])
     if (n(t, "PTX1") != 0)
         length[0] = p.load * line(t, "PTX1", "PTX2", p.d) * expq(-n(t, "PTX3") * p.d) * R / p.nominal * n(t, "LSGKP");
     if (n(t, "PTY1") != 0)
-        length[1] = n(t, "PTY1") * sinq(2 * atanq(p.load / (n(t, "PTY2") * p.scaled))) * R * n(t, "LFZO") * n(t, "LSGAL")
-                    * (1 - n(t, "PKY3") * fabsq(p.camber * n(t, "LGAY")));
+        length[1] = n(t, "PTY1") * sinq(2 * atanq(p.load / (n(t, "PTY2") * p.scaled))) * R * n(t, "LFZO") *
+                    n(t, "LSGAL") * (1 - n(t, "PKY3") * fabsq(p.camber * n(t, "LGAY")));
     length[0] = fmaxq(length[0], R / 5);
     length[1] = fmaxq(length[1], R / 5);
 }

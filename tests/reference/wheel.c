@@ -13,15 +13,29 @@ bool wheel_has(const Wheel *wheel, int state)
     return wheel->tire && (state < 3 || wheel->brake);
 }
 
-const WheelColumn wheel_column[WHEEL_COLUMNS] = {
-    {"_load.fz", FZ, false},           {"_load.deflection", RHO, false},    {"_load.deflection_rate", RHO_RATE, false},
-    {"_load.height", HEIGHT, false},   {"_tire.fx", FX, false},             {"_tire.fy", FY, false},
-    {"_tire.mx", MX, false},           {"_tire.my", MY, false},             {"_tire.mz", MZ, false},
-    {"_tire.kappa", KAPPA, false},     {"_tire.alpha", ALPHA, false},       {"_tire.camber", CAMBER, false},
-    {"_tire.spin", SPIN, false},       {"_tire.spin_rate", SPIN_RATE, false}, {"_tire.drive", DRIVE, false},
-    {"_tire.brake", BRAKE, false},     {"_contact.x", CONTACT, false},      {"_contact.y", CONTACT_Y, false},
-    {"_contact.z", CONTACT_Z, false},  {".spin.rate", SPIN_RATE, true},     {".slip_x.rate", SLIP_X_RATE, true},
-    {".slip_y.rate", SLIP_Y_RATE, true}, {".brake.rate", WINDUP_RATE, true}};
+const WheelColumn wheel_column[WHEEL_COLUMNS] = {{"_load.fz", FZ, false},
+                                                 {"_load.deflection", RHO, false},
+                                                 {"_load.deflection_rate", RHO_RATE, false},
+                                                 {"_load.height", HEIGHT, false},
+                                                 {"_tire.fx", FX, false},
+                                                 {"_tire.fy", FY, false},
+                                                 {"_tire.mx", MX, false},
+                                                 {"_tire.my", MY, false},
+                                                 {"_tire.mz", MZ, false},
+                                                 {"_tire.kappa", KAPPA, false},
+                                                 {"_tire.alpha", ALPHA, false},
+                                                 {"_tire.camber", CAMBER, false},
+                                                 {"_tire.spin", SPIN, false},
+                                                 {"_tire.spin_rate", SPIN_RATE, false},
+                                                 {"_tire.drive", DRIVE, false},
+                                                 {"_tire.brake", BRAKE, false},
+                                                 {"_contact.x", CONTACT, false},
+                                                 {"_contact.y", CONTACT_Y, false},
+                                                 {"_contact.z", CONTACT_Z, false},
+                                                 {".spin.rate", SPIN_RATE, true},
+                                                 {".slip_x.rate", SLIP_X_RATE, true},
+                                                 {".slip_y.rate", SLIP_Y_RATE, true},
+                                                 {".brake.rate", WINDUP_RATE, true}};
 
 bool wheel_shows(const Wheel *wheel, int column)
 {
@@ -146,7 +160,11 @@ static void slip_and_forces(const Rolling *of, const quad *in, const Contact *at
     quad side = of->wheel->mirrored ? -1 : 1;
     quad vx = quad_dot(at->e_x, at->v, 3), vy = quad_dot(at->e_y, at->v, 3);
     quad vsx = vx - spin * rolling_radius(tire, out[RHO]), low = 1 - smooth(fabsq(vx) / tire->low_speed), sigma[2];
-    TireInput input = {.load = out[FZ], .deflection = out[RHO], .camber = side * at->gamma, .forward = vx, .spin = spin,
+    TireInput input = {.load = out[FZ],
+                       .deflection = out[RHO],
+                       .camber = side * at->gamma,
+                       .forward = vx,
+                       .spin = spin,
                        .friction = friction_at(of->road, out[CONTACT], out[CONTACT + 1])};
     relaxation_lengths(tire, &input, sigma);
     out[SLIP_X_RATE] = (-at->fade * vsx - (fabsq(vx) + low * fabsq(vsx) / kappa_0) * kappa) / sigma[0];

@@ -12,12 +12,31 @@ bool wheel_has(const Wheel *wheel, int state);
 
 /* Results of a wheel; of one without tire up to HEIGHT, and FORCE. */
 enum {
-    FZ, RHO, RHO_RATE, HEIGHT,
-    FX, FY, MX, MY, MZ, KAPPA, ALPHA, CAMBER, SPIN, SPIN_RATE, DRIVE, BRAKE,
-    CONTACT, CONTACT_Y, CONTACT_Z,
-    SLIP_X_RATE, SLIP_Y_RATE, WINDUP_RATE,
-    FORCE, TORQUE = FORCE + 3,    /* on the carrier, at the wheel centre; world */
-    REACTION = TORQUE + 3,        /* torque on the body that takes the reaction of the drive; world */
+    FZ,
+    RHO,
+    RHO_RATE,
+    HEIGHT,
+    FX,
+    FY,
+    MX,
+    MY,
+    MZ,
+    KAPPA,
+    ALPHA,
+    CAMBER,
+    SPIN,
+    SPIN_RATE,
+    DRIVE,
+    BRAKE,
+    CONTACT,
+    CONTACT_Y,
+    CONTACT_Z,
+    SLIP_X_RATE,
+    SLIP_Y_RATE,
+    WINDUP_RATE,
+    FORCE,
+    TORQUE = FORCE + 3,    /* on the carrier, at the wheel centre; world */
+    REACTION = TORQUE + 3, /* torque on the body that takes the reaction of the drive; world */
     WHEEL_RESULTS = REACTION + 3
 };
 
@@ -28,8 +47,8 @@ typedef struct WheelState {
     quad value[WHEEL_RESULTS], scale[WHEEL_RESULTS];
 } WheelState;
 
-/* Results by the names that they have as outputs (`NAME_load`, `NAME_tire`, `NAME_contact` of the types `wheel`, `tire`,
- * `contact`) and as rates of fast states, without the wheel's name before them. */
+/* Results by the names that they have as outputs (`NAME_load`, `NAME_tire`, `NAME_contact` of the types `wheel`,
+ * `tire`, `contact`) and as rates of fast states, without the wheel's name before them. */
 enum { WHEEL_COLUMNS = 23 };
 typedef struct WheelColumn {
     const char *name;
