@@ -353,6 +353,62 @@ static void wheels(Text *out, const Model *model)
     }
 }
 
+static void formulas(Text *out, const char *name, const Law *const *law, int count, const Model *model)
+{
+    key(out, name);
+    add(out, "[");
+    for (int i = 0; i < count; ++i) {
+        add(out, i ? ", " : "");
+        formula(out, law[i], model);
+    }
+    add(out, "]");
+}
+
+static void indices(Text *out, const char *name, const int *index, int count)
+{
+    key(out, name);
+    add(out, "[");
+    for (int i = 0; i < count; ++i)
+        text_print(out, "%s%d", i ? ", " : "", index[i]);
+    add(out, "]");
+}
+
+static void powertrain(Text *out, const Model *model)
+{
+    const Powertrain *p = model->powertrain;
+    text_print(out, ",\n  \"powertrain\": {\"inertia\": %.17g", p->inertia);
+    number_pair(out, "idle", &p->idle, 0, p->idle > 0);
+    number_pair(out, "limit", &p->limit, 0, p->limit > 0);
+    formula_pair(out, "throttle", p->throttle, model);
+    formula_pair(out, "torque", p->torque, model);
+    integer_pair(out, "capacity", p->capacity);
+    integer_pair(out, "multiplication", p->multiplication);
+    integer_pair(out, "reverse", p->reverse);
+    key(out, "gears");
+    vector(out, p->gear, p->reverse + 1 + p->forward);
+    formula_pair(out, "selector", p->selector, model);
+    formulas(out, "up", p->up, p->forward - 1, model);
+    formulas(out, "down", p->down, p->forward - 1, model);
+    number_pair(out, "latency", &p->latency, 0, true);
+    number_pair(out, "duration", &p->duration, 0, true);
+    number_pair(out, "turbine", &p->turbine, 0, true);
+    integer_pair(out, "fast", p->fast);
+    integer_pair(out, "start_gear", p->start_gear);
+    add(out, ", \"differentials\": [");
+    for (int i = 0; i < p->differentials; ++i) {
+        const Differential *differential = &p->differential[i];
+        begin(out, i, differential->name);
+        indices(out, "wheels", differential->wheel, differential->outputs);
+        indices(out, "differentials", differential->differential, differential->outputs);
+        number_pair(out, "ratio", &differential->ratio, 0, true);
+        number_pair(out, "split", &differential->split, 0, true);
+        number_pair(out, "inertia", &differential->inertia, 0, true);
+        formula_pair(out, "lock", differential->lock, model);
+        add(out, "}");
+    }
+    add(out, "]}");
+}
+
 static void inputs(Text *out, const Model *model)
 {
     for (int i = 0; i < model->inputs; ++i) {
@@ -384,15 +440,6 @@ static void outputs(Text *out, const Model *model)
         strings(out, "unit", output->unit, output->count);
         add(out, "}");
     }
-}
-
-static void indices(Text *out, const char *name, const int *index, int count)
-{
-    key(out, name);
-    add(out, "[");
-    for (int i = 0; i < count; ++i)
-        text_print(out, "%s%d", i ? ", " : "", index[i]);
-    add(out, "]");
 }
 
 static void subsets(Text *out, const Sequence *sequence)
@@ -430,6 +477,8 @@ void model_dump(Text *out, const Model *model, const Sequence *sequence)
         list[i].entries(out, model);
         add(out, "]");
     }
+    if (model->powertrain)
+        powertrain(out, model);
     add(out, ",\n  \"sequence\": [");
     if (sequence)
         subsets(out, sequence);

@@ -60,6 +60,12 @@ bool formulation_reacts(const Formulation *f)
 static StateNumber fast_number(Pool *pool, const Model *model, int index)
 {
     static const char *const name[FAST_MOST] = {"spin", "slip_x", "slip_y", "brake"};
+    const Powertrain *powertrain = model->powertrain;
+    if (powertrain && index >= powertrain->fast) {
+        bool speed = index - powertrain->fast == POWERTRAIN_SPEED;
+        return (StateNumber){powertrain_fast_name[index - powertrain->fast], speed ? "rad/s" : "s",
+                             speed ? powertrain->idle : POWERTRAIN_FIRST_AGE};
+    }
     const Wheel *wheel = model->wheel;
     while (index >= wheel->fast + wheel_fast_states(wheel) || wheel->tire < 0)
         ++wheel;

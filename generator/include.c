@@ -129,6 +129,8 @@ static const Item *part_placed(Pool *pool, const Item *file, const Value *value)
         Item *to = from;
         if (!strcmp(key->text, "base"))
             to = name_rewrite(&rewrite, "bodies", from);
+        else if (!strcmp(key->text, "powertrain") && from->kind == ITEM_MAP)
+            to = map_rewrite(&rewrite, &powertrain_section, from);
         else if (is_named_group(key, from)) {
             to = map_new(pool, from->at);
             for (int k = 0; k < from->count; ++k)

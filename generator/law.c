@@ -419,6 +419,8 @@ double law_number(const Law *law, const Model *model)
             x[i] = law_number(law->arg[i], model);
         return op_value((Op)law->call, x[0], x[1], x[2]);
     }
+    case LAW_INPUT: return model->input[law->index].initial;
+    case LAW_VALUE: return model->coordinate[law->index].initial;
     default: return 0;
     }
 }

@@ -42,7 +42,7 @@ typedef struct LawNames {
 const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNames *names);
 /* Does the law change through a tunable parameter? */
 bool law_is_tunable(const Law *law, const struct Model *model);
-/* Its value with parameters at their file's values, for laws of numbers and parameters alone. */
+/* Its value at set-up, with parameters and inputs at their file's values; without locals. */
 double law_number(const Law *law, const struct Model *model);
 
 /* ---- read.c, dump.c: the model, as models/FORMAT.md defines it ----------------------------------- */
@@ -242,8 +242,13 @@ typedef struct Powertrain {
     int start_gear; /* at set-up */
 } Powertrain;
 
-enum { POWERTRAIN_SPEED, POWERTRAIN_AGE, POWERTRAIN_FAST };       /* fast states */
+enum { POWERTRAIN_SPEED, POWERTRAIN_AGE, POWERTRAIN_FAST };       /* fast states, rad/s and s */
 enum { POWERTRAIN_GEAR, POWERTRAIN_BEFORE, POWERTRAIN_DISCRETE }; /* discrete states, behind that of the base */
+
+extern const char *const powertrain_fast_name[POWERTRAIN_FAST];
+extern const char *const powertrain_discrete_name[POWERTRAIN_DISCRETE];
+/* Time since the last shift at set-up, s: long ago. */
+#define POWERTRAIN_FIRST_AGE 100.0
 
 typedef enum OutputType {
     OUTPUT_POSITION,
@@ -301,6 +306,11 @@ typedef struct Model {
     struct Tuning *tuning; /* tune.c; NULL: no number but those of force laws is tunable */
     const Body *drawn;     /* [bodies] where they stand in the drawing; `body` is assembled */
 } Model;
+
+/* Discrete states: that of a free base, those of a powertrain. */
+int model_discretes(const Model *model);
+/* Does a `drive` of its own or the powertrain turn this wheel? */
+bool wheel_is_driven(const Model *model, int wheel);
 
 extern const char *const joint_type_name[JOINT_TYPES]; /* as in the file: "revolute" */
 extern const int joint_equations[JOINT_TYPES];         /* FORMAT.md section 4 */

@@ -23,6 +23,7 @@ enum {
     FILE_FORCES,
     FILE_TIRES,
     FILE_WHEELS,
+    FILE_POWERTRAIN,
     FILE_OUTPUTS,
     FILE_KEYS
 };
@@ -45,6 +46,7 @@ static const Key file_key[FILE_KEYS] = {
     [FILE_FORCES] = {"forces", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_TIRES] = {"tires", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_WHEELS] = {"wheels", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_POWERTRAIN] = {"powertrain", KEY_POWERTRAIN, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_OUTPUTS] = {"outputs", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
@@ -66,6 +68,7 @@ static const char *const file_about[FILE_KEYS] = {
     [FILE_FORCES] = "force elements: springs, dampers, force laws, loads",
     [FILE_TIRES] = "tires of wheels that roll, from .tir files or with their data",
     [FILE_WHEELS] = "contacts of bodies with the road of the scene",
+    [FILE_POWERTRAIN] = "engine, converter, transmission and differentials that drive wheels with tires",
     [FILE_OUTPUTS] = "results and their names; default: poses and velocity of a free base, and coordinates",
 };
 
@@ -107,7 +110,9 @@ const Model *model_read(Pool *pool, const char *path)
     ports_read(&reader, value[FILE_PORTS].item);
     forces_read(&reader, value[FILE_FORCES].item);
     tires_read(&reader, value[FILE_TIRES].item);
+    reader.powertrain = value[FILE_POWERTRAIN].item;
     wheels_read(&reader, value[FILE_WHEELS].item);
+    powertrain_read(&reader, reader.powertrain);
     outputs_read(&reader, value[FILE_OUTPUTS].item);
     model->drawn = model->body;
     tuning_close(model);

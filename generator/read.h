@@ -49,6 +49,13 @@ typedef enum KeyKind {
     KEY_TIRE,          /* index[0] */
     KEY_WHEEL,         /* index[0] */
     KEY_TABLE,         /* index[0] */
+    KEY_SERIES,        /* a list of any length: item */
+    KEY_OUTPUTS,       /* names of one or two wheels or differentials: item */
+    KEY_ENGINE,        /* item: a map of engine_section, and so on */
+    KEY_CONVERTER,
+    KEY_TRANSMISSION,
+    KEY_DIFFERENTIALS, /* item: a map of named entries of differential_section */
+    KEY_POWERTRAIN,    /* item: a map of powertrain_section */
     KEY_KINDS
 } KeyKind;
 
@@ -96,7 +103,8 @@ typedef struct Reader {
     Model *model;
     Point *point;
     int points;
-    bool fixed; /* what is being read may follow no tunable parameter */
+    bool fixed;             /* what is being read may follow no tunable parameter */
+    const Item *powertrain; /* of the file, NULL: none */
 } Reader;
 
 /* One entry of a map of named things. */
@@ -111,6 +119,7 @@ extern const Section file_section, part_section;
 extern const Section parameter_section, table_section, port_section;
 extern const Section body_section, inertia_section, orientation_section, joint_section, coordinate_section;
 extern const Section input_section, force_section, tire_section, wheel_section, output_section;
+extern const Section powertrain_section, engine_section, converter_section, transmission_section, differential_section;
 
 /* What to write for each kind of value, for people. */
 extern const char *const kind_example[KEY_KINDS];
@@ -137,6 +146,8 @@ bool is_group(const char *group);
  * group or the name of an entry of it. What doesn't fit the tables stays as it is, for the reader to refuse. */
 Item *entry_rewrite(const Rewrite *rewrite, const char *group, Item *entry);
 Item *name_rewrite(const Rewrite *rewrite, const char *group, Item *item);
+/* A map of a section, in which what can be written anew is. */
+Item *map_rewrite(const Rewrite *rewrite, const Section *section, Item *map);
 /* The name on the other side: `_l` becomes `_r` and `_r` becomes `_l`; NULL for any other name. */
 const char *name_mirrored(Pool *pool, const char *name);
 
@@ -207,6 +218,13 @@ void tires_read(Reader *reader, const Item *map);
 /* The tire of the `.tir` file that `item` names, all but what the model says of it. what: "tire 'front'". */
 void tir_read(const Reader *reader, const Item *item, const char *what, Tire *tire);
 void wheels_read(Reader *reader, const Item *map);
+
+/* ---- read_powertrain.c ---- */
+
+void powertrain_read(Reader *reader, const Item *item);
+/* Is a wheel of this name an output of a differential? Of a powertrain that is still to be read; what is wrong with it
+ * is not this function's matter. */
+bool powertrain_drives(const Item *powertrain, const char *wheel);
 
 /* The unit vector perpendicular to a unit axis that is as near as can be to the axis of the model frame to which it is
  * least parallel (e_1 of FORMAT.md section 5), fixed in both bodies; all in the model frame but `out`, its places in

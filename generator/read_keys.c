@@ -48,6 +48,13 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_TIRE] = "tire",
     [KEY_WHEEL] = "wheel",
     [KEY_TABLE] = "table",
+    [KEY_SERIES] = "[first, ...]",
+    [KEY_OUTPUTS] = "[first, second]",
+    [KEY_ENGINE] = "{...}",
+    [KEY_CONVERTER] = "{...}",
+    [KEY_TRANSMISSION] = "{...}",
+    [KEY_DIFFERENTIALS] = "{name: {...}}",
+    [KEY_POWERTRAIN] = "{...}",
 };
 
 const char *const kind_words[KEY_KINDS][2] = {
@@ -374,6 +381,13 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     case KEY_TORQUE_VECTOR:
     case KEY_INERTIA:
     case KEY_ORIENTATION:
+    case KEY_SERIES:
+    case KEY_OUTPUTS:
+    case KEY_ENGINE:
+    case KEY_CONVERTER:
+    case KEY_TRANSMISSION:
+    case KEY_DIFFERENTIALS:
+    case KEY_POWERTRAIN:
     case KEY_KINDS: break;
     }
 }

@@ -150,6 +150,9 @@ static void output_read(Reader *reader, const Entry *entry, Output *output)
     if ((type == OUTPUT_TIRE || type == OUTPUT_CONTACT) && reader->model->wheel[output->index].tire < 0)
         diag_fail(value[WATCH_WHEEL].item->at, "give that wheel a tire, or ask for `type: wheel`",
                   "%s: wheel '%s' has no tire", entry->what, reader->model->wheel[output->index].name);
+    if (type == OUTPUT_POWERTRAIN && !reader->model->powertrain)
+        diag_fail(entry->at, "add a `powertrain`, or ask for something else", "%s: the model has no powertrain",
+                  entry->what);
     components_set(reader, output);
 }
 

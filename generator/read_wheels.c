@@ -97,7 +97,8 @@ static void rolling_read(Reader *reader, const Entry *entry, const Value *value,
     if (value[ROLL_FADE].tuned[0])
         diag_fail(value[ROLL_FADE].item->at, "leave out `tunable: true` of that parameter, or use it elsewhere",
                   "fade of %s is fixed when the code is generated, for it has a tire", entry->what);
-    belongs_check(reader, entry, value, ROLL_DRIVE_BODY, ROLL_DRIVE);
+    if (!powertrain_drives(reader->powertrain, entry->name))
+        belongs_check(reader, entry, value, ROLL_DRIVE_BODY, ROLL_DRIVE);
     belongs_check(reader, entry, value, ROLL_WINDUP, ROLL_BRAKE);
     wheel->tire = value[ROLL_TIRE].index[0];
     wheel->radius = tire->radius;

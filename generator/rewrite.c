@@ -6,7 +6,7 @@
 #include <ctype.h>
 #include <string.h>
 
-enum { X = 1 << 0, Y = 1 << 1, Z = 1 << 2, LONGEST = 4 /* list of numbers that a kind has */ };
+enum { X = 1 << 0, Y = 1 << 1, Z = 1 << 2, LONGEST = 4 /* list of numbers whose components differ */ };
 
 /* Formulas name coordinates, inputs and what else can stand in them. */
 typedef enum Words { WORDS_NONE, WORDS_FORMULA, WORDS_NAME, WORDS_SIDE } Words;
@@ -15,14 +15,21 @@ typedef struct Rule {
     unsigned odd;           /* bit i: component i changes its sign in the mirror y -> -y */
     bool place;             /* components are those of a point, which can be moved */
     bool pair;              /* a list of two such values */
+    bool series;            /* a list of any length, of components like the first */
     Words words;            /* what a scalar that is no number may be */
-    const char *group;      /* WORDS_NAME: of an entry of this group */
+    const char *group;      /* WORDS_NAME: of an entry of this group, */
+    const char *other;      /* or of this one */
     const Section *section; /* a map of keys with rules of their own, where it is a map */
+    bool entries;           /* of named entries of that section, which belong to `group` */
 } Rule;
+
+/* Named entries within the powertrain. */
+static const char differentials[] = "differentials";
 
 static const Rule rule[KEY_KINDS] = {
     [KEY_ITEM] = {.words = WORDS_FORMULA},
-    [KEY_LIST] = {.words = WORDS_FORMULA},
+    [KEY_LIST] = {.series = true, .words = WORDS_FORMULA},
+    [KEY_SERIES] = {.series = true, .words = WORDS_FORMULA},
     [KEY_FORMULA] = {.words = WORDS_FORMULA},
     [KEY_FORCE_VECTOR] = {.odd = Y, .words = WORDS_FORMULA},
     [KEY_TORQUE_VECTOR] = {.odd = X | Z, .words = WORDS_FORMULA},
@@ -50,6 +57,11 @@ static const Rule rule[KEY_KINDS] = {
     [KEY_SIDE] = {.words = WORDS_SIDE},
     [KEY_WHEEL] = {.words = WORDS_NAME, .group = "wheels"},
     [KEY_TABLE] = {.words = WORDS_NAME, .group = "tables"},
+    [KEY_OUTPUTS] = {.pair = true, .words = WORDS_NAME, .group = "wheels", .other = differentials},
+    [KEY_ENGINE] = {.section = &engine_section},
+    [KEY_CONVERTER] = {.section = &converter_section},
+    [KEY_TRANSMISSION] = {.section = &transmission_section},
+    [KEY_DIFFERENTIALS] = {.section = &differential_section, .entries = true, .group = differentials},
 };
 
 /* Maps of named entries in a file; without a section an entry is a point. */
@@ -99,7 +111,10 @@ const char *name_mirrored(Pool *pool, const char *name)
 
 static bool has(const Rewrite *rewrite, const char *group, const char *name)
 {
-    const Item *map = doc_find(rewrite->file, group);
+    const Item *map = rewrite->file;
+    if (group == differentials)
+        map = doc_find(map, "powertrain");
+    map = map && map->kind == ITEM_MAP ? doc_find(map, group) : NULL;
     return map && map->kind == ITEM_MAP && doc_find(map, name);
 }
 
@@ -173,24 +188,28 @@ static Item *number_rewrite(const Rewrite *rewrite, const Rule *how, int compone
     return other;
 }
 
-static Item *map_rewrite(const Rewrite *rewrite, const Section *section, Item *map);
+static Item *entries_rewrite(const Rewrite *rewrite, const Rule *how, Item *map);
 
 /* pair: whether this is the list of two values, or one of them. */
 static Item *value_rewrite(const Rewrite *rewrite, const Rule *how, bool pair, Item *item)
 {
+    if (item->kind == ITEM_MAP && how->entries)
+        return entries_rewrite(rewrite, how, item);
     if (item->kind == ITEM_MAP)
         return how->section ? map_rewrite(rewrite, how->section, item) : item;
-    if (item->kind == ITEM_SCALAR && how->words == WORDS_NAME && !pair)
-        return name_rewrite(rewrite, how->group, item);
+    if (item->kind == ITEM_SCALAR && how->words == WORDS_NAME && !pair) {
+        bool other = how->other && has(rewrite, how->other, item->text);
+        return name_rewrite(rewrite, other ? how->other : how->group, item);
+    }
     if (item->kind == ITEM_SCALAR)
         return number_rewrite(rewrite, how, 0, item);
-    if (item->count > (pair ? 2 : how->place ? 3 : LONGEST))
+    if (!how->series && item->count > (pair ? 2 : how->place ? 3 : LONGEST))
         return item;
     Item *other = copy(rewrite, item);
     other->value = copies(rewrite, item->value, item->count);
     for (int i = 0; i < item->count; ++i)
-        other->value[i] =
-            pair ? value_rewrite(rewrite, how, false, item->value[i]) : number_rewrite(rewrite, how, i, item->value[i]);
+        other->value[i] = pair ? value_rewrite(rewrite, how, false, item->value[i])
+                               : number_rewrite(rewrite, how, how->series ? 0 : i, item->value[i]);
     return other;
 }
 
@@ -208,7 +227,20 @@ static KeyKind kind_of(const Section *section, const Item *map, const char *name
     return angle ? KEY_TURN : KEY_AXIS;
 }
 
-static Item *map_rewrite(const Rewrite *rewrite, const Section *section, Item *map)
+static Item *entries_rewrite(const Rewrite *rewrite, const Rule *how, Item *map)
+{
+    Item *other = copy(rewrite, map);
+    other->value = copies(rewrite, map->value, map->count);
+    other->key = copies(rewrite, map->key, map->count);
+    for (int i = 0; i < map->count; ++i) {
+        other->key[i] = name_rewrite(rewrite, how->group, map->key[i]);
+        if (map->value[i]->kind == ITEM_MAP)
+            other->value[i] = map_rewrite(rewrite, how->section, map->value[i]);
+    }
+    return other;
+}
+
+Item *map_rewrite(const Rewrite *rewrite, const Section *section, Item *map)
 {
     Item *other = copy(rewrite, map);
     other->value = copies(rewrite, map->value, map->count);

@@ -31,6 +31,20 @@ static void pair(Text *out, const char *name)
 
 static void object(Text *out, const Section *section, int indent);
 
+/* The start of a map of named entries, up to the schema of an entry. */
+static void entries_begin(Text *out, int indent)
+{
+    text_print(out, "{\"type\": \"object\", \"propertyNames\": {\"pattern\": \"%s\"}, \"additionalProperties\":\n%*s",
+               name_pattern, indent, "");
+}
+
+static void entries(Text *out, const Section *section, int indent)
+{
+    entries_begin(out, indent + 2);
+    object(out, section, indent + 2);
+    text_print(out, "}");
+}
+
 static void value(Text *out, const Key *key, int indent)
 {
     switch (key->kind) {
@@ -79,6 +93,16 @@ static void value(Text *out, const Key *key, int indent)
     case KEY_ORIENTATION: object(out, &orientation_section, indent); break;
     case KEY_ITEM: text_print(out, "{}"); break;
     case KEY_LIST: reference(out, "numbers"); break;
+    case KEY_SERIES: text_print(out, "{\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}}"); break;
+    case KEY_OUTPUTS:
+        text_print(out,
+                   "{\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/name\"}, \"minItems\": 1, \"maxItems\": 2}");
+        break;
+    case KEY_ENGINE: object(out, &engine_section, indent); break;
+    case KEY_CONVERTER: object(out, &converter_section, indent); break;
+    case KEY_TRANSMISSION: object(out, &transmission_section, indent); break;
+    case KEY_DIFFERENTIALS: entries(out, &differential_section, indent); break;
+    case KEY_POWERTRAIN: object(out, &powertrain_section, indent); break;
     case KEY_INTERPOLATION:
     case KEY_BEYOND:
     case KEY_SIDE:
@@ -171,9 +195,7 @@ static void inclusion(Text *out)
 /* A map of named entries; of points where `section` is NULL. */
 static void group(Text *out, const Section *section)
 {
-    text_print(out,
-               "{\"type\": \"object\", \"propertyNames\": {\"pattern\": \"%s\"}, \"additionalProperties\":\n      ",
-               name_pattern);
+    entries_begin(out, 6);
     if (section == &parameter_section)
         text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, ");
     if (section)
@@ -258,11 +280,16 @@ static void section_keys(Text *out, const char *name, const Section *section)
 
 void keys_print(Text *out)
 {
-    text_print(out, "Keys of a .veh file; models/FORMAT.md and models/TIRES.md say more of each.\n");
+    text_print(out, "Keys of a .veh file; models/FORMAT.md, TIRES.md and POWERTRAIN.md say more of each.\n");
     section_keys(out, "the file", &file_section);
     for (int k = 0; k < file_section.keys; ++k)
         if (group_section(file_section.key[k].name))
             section_keys(out, file_section.key[k].name, group_section(file_section.key[k].name));
+    section_keys(out, "powertrain", &powertrain_section);
+    section_keys(out, "engine", &engine_section);
+    section_keys(out, "converter", &converter_section);
+    section_keys(out, "transmission", &transmission_section);
+    section_keys(out, "an entry of differentials", &differential_section);
     section_keys(out, "an entry of include", &part_section);
     section_keys(out, "inertia as a map", &inertia_section);
     section_keys(out, "orientation (one of the three ways)", &orientation_section);

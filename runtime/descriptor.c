@@ -19,6 +19,8 @@ const gic_signal *descriptor_fast_states(Pool *pool, const Model *model)
     for (int i = 0; i < model->wheels; ++i)
         for (int k = 0; k < wheel_fast_states(&model->wheel[i]); ++k)
             *next++ = (gic_signal){pool_print(pool, "%s.%s", model->wheel[i].name, part[k].name), part[k].unit};
+    for (int i = 0; model->powertrain && i < POWERTRAIN_FAST; ++i)
+        *next++ = (gic_signal){powertrain_fast_name[i], i == POWERTRAIN_SPEED ? "rad/s" : "s"};
     return signal;
 }
 
@@ -59,7 +61,10 @@ static const gic_signal *port_signals(Pool *pool, const Model *model)
 
 static void set_signals(Pool *pool, const Model *model, gic_model *code)
 {
-    static const gic_signal discrete = {"dependent_euler_parameter", "1"};
+    gic_signal *discrete = signals(pool, 1 + POWERTRAIN_DISCRETE);
+    discrete[0] = (gic_signal){"dependent_euler_parameter", "1"};
+    for (int i = 0; model->powertrain && i < POWERTRAIN_DISCRETE; ++i)
+        discrete[model->free_base + i] = (gic_signal){powertrain_discrete_name[i], "1"};
     gic_signal *input = signals(pool, model->inputs), *parameter = signals(pool, model->tunables);
     gic_signal *output = signals(pool, model->output_components), *coordinate = signals(pool, model->coordinates);
     for (int i = 0; i < model->inputs; ++i)
@@ -74,7 +79,7 @@ static void set_signals(Pool *pool, const Model *model, gic_model *code)
         coordinate[i] =
             (gic_signal){model->coordinate[i].name, model->coordinate[i].type == COORDINATE_ANGLE ? "rad" : "m"};
     code->state = state_signals(pool, model, code->slow_count + code->fast_count);
-    code->discrete = &discrete;
+    code->discrete = discrete;
     code->input = input;
     code->parameter = parameter;
     code->output = output;
@@ -137,7 +142,7 @@ static void place_arrays(gic_model *code)
                  {&code->rate_offset, states},
                  {&code->history_offset, 2 * states},
                  {&code->scratch_offset, GIC_SCRATCH(states, (size_t)code->input_count)},
-                 {&code->discrete_offset, 1},
+                 {&code->discrete_offset, 1 + POWERTRAIN_DISCRETE},
                  {&code->input_offset, (size_t)code->input_count},
                  {&code->parameter_offset, (size_t)code->parameter_count},
                  {&code->output_offset, (size_t)code->output_count},
@@ -165,7 +170,7 @@ gic_model descriptor_new(Pool *pool, const Model *model, const Sequence *sequenc
                       .free_base = model->free_base,
                       .slow_count = model->free_base ? 13 : 0,
                       .fast_count = model->fast_states,
-                      .discrete_count = model->free_base,
+                      .discrete_count = model_discretes(model),
                       .input_count = model->inputs,
                       .parameter_count = model->tunables,
                       .output_count = model->output_components,

@@ -61,4 +61,4 @@ for file in "$here"/bad/*.veh; do
 done
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 260 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 300 ]
