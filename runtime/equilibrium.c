@@ -55,12 +55,12 @@ static int largest(const Linear *linear, const double *f)
     return worst;
 }
 
-/* The step in units of the reach: more than 1 is too far. */
-static double step_size(const Search *s)
+/* The first so many numbers of a step in units of the reach: more than 1 is too far. */
+static double step_size(const Search *s, const double *step, int count)
 {
     double size = 0;
-    for (int i = 0; i < s->unknowns; ++i)
-        size = fmax(size, fabs(s->step[i]) / s->found->linear->reach[column_of(s->found->linear, i)]);
+    for (int i = 0; i < count; ++i)
+        size = fmax(size, fabs(step[i]) / s->found->linear->reach[column_of(s->found->linear, i)]);
     return size;
 }
 
@@ -78,39 +78,42 @@ static void decompose(const Search *s, gsl_matrix *U, gsl_matrix *V, gsl_vector 
     gsl_linalg_SV_decomp_jacobi(U, V, S);
 }
 
-/* Newton's step of least norm. Names of the neutral places, where they are wanted. */
-static void newton_step(Search *s, const char **neutral)
+/* Directions in which nothing changes have no share in steps. */
+static bool is_flat(const gsl_vector *S, size_t k)
+{
+    return !(gsl_vector_get(S, k) > rank_limit * gsl_vector_get(S, 0));
+}
+
+/* step: Newton's of least norm, from the decomposed equations, for f. */
+static void solve_decomposed(const Search *s, const gsl_matrix *U, const gsl_matrix *V, const gsl_vector *S,
+                             const double *f, double *step)
 {
     const Linear *linear = s->found->linear;
     const size_t n = (size_t)s->unknowns;
-    gsl_matrix *U = gsl_matrix_alloc(n, n), *V = gsl_matrix_alloc(n, n);
-    gsl_vector *S = gsl_vector_alloc(n);
-    double weight[n];
-    decompose(s, U, V, S);
-    memset(s->step, 0, n * sizeof *s->step);
-    memset(weight, 0, sizeof weight);
+    memset(step, 0, n * sizeof *step);
     for (size_t k = 0; k < n; ++k) {
-        const double value = gsl_vector_get(S, k);
         double part = 0;
-        if (!(value > rank_limit * gsl_vector_get(S, 0))) {
-            for (size_t j = 0; j < n; ++j)
-                weight[j] += gsl_matrix_get(V, j, k) * gsl_matrix_get(V, j, k);
-            continue;
-        }
-        for (size_t i = 0; i < n; ++i)
-            part -= gsl_matrix_get(U, i, k) * s->found->f[linear->places + (int)i] / value;
+        for (size_t i = 0; i < n && !is_flat(S, k); ++i)
+            part -= gsl_matrix_get(U, i, k) * f[linear->places + (int)i] / gsl_vector_get(S, k);
         for (size_t j = 0; j < n; ++j)
-            s->step[j] += part * gsl_matrix_get(V, j, k) * linear->reach[column_of(linear, (int)j)];
+            step[j] += part * gsl_matrix_get(V, j, k) * linear->reach[column_of(linear, (int)j)];
     }
+}
+
+/* Names of the places in which more is flat than not. */
+static const char *name_flat(const Search *s, const gsl_matrix *V, const gsl_vector *S)
+{
+    const Linear *linear = s->found->linear;
     Text names = {.pool = s->pool};
-    for (int j = 0; neutral && j < linear->places; ++j)
-        if (weight[j] > 0.5)
+    for (int j = 0; j < linear->places; ++j) {
+        double weight = 0;
+        for (size_t k = 0; k < V->size1; ++k)
+            if (is_flat(S, k))
+                weight += gsl_matrix_get(V, (size_t)j, k) * gsl_matrix_get(V, (size_t)j, k);
+        if (weight > 0.5)
             text_print(&names, "%s%s", names.size ? ", " : "", linear->name[j]);
-    if (neutral)
-        *neutral = names.s;
-    gsl_vector_free(S);
-    gsl_matrix_free(V);
-    gsl_matrix_free(U);
+    }
+    return names.s;
 }
 
 /* Implicit Euler from rest over h. */
@@ -129,20 +132,31 @@ static void relaxation_step(Search *s)
         s->step[0] = NAN;
 }
 
-/* The work that the forces of the present place do along the step is M a . dx, M the mass matrix; of a step of size 1,
- * for M dx is found as a difference. */
+/* Acceleration number i of the present place, with fast states as the step has them. */
+static double pushed(const Search *s, int i)
+{
+    const Linear *linear = s->found->linear;
+    const int row = linear->places + i;
+    double a = s->found->f[row];
+    for (int j = linear->places; j < s->unknowns; ++j)
+        a += s->found->A[row * linear->count + column_of(linear, j)] * s->step[j];
+    return a;
+}
+
+/* The work that the forces of the present place, tires stretched as the step has them, do along the step is M a . dx, M
+ * the mass matrix; of a step of size 1, for M dx is found as a difference. */
 static bool goes_with_forces(Search *s, double size)
 {
     const TapeEngine *engine = s->found->linear->engine;
     Instance *self = s->found->self;
     const gic_model *code = &engine->code;
     const int n = engine->formulation->plan->unknowns, base = code->free_base ? 6 : 0;
-    const double *y = tape_array(self, code->state_offset), *a = s->found->f + s->found->linear->places;
+    const double *y = tape_array(self, code->state_offset);
     double e[4], step[n + 1], acceleration[n + 1], tau[2][n + 1], work = 0;
     for (int i = 0; i < n; ++i) {
         const int from = i < base ? (i + 3) % 6 : i; /* the tape's order is rotation, displacement */
         step[i] = s->step[from] / size;
-        acceleration[i] = a[from];
+        acceleration[i] = pushed(s, from);
     }
     if (tape_refresh(self, e) != GIC_OK || tape_whole(self, engine->inverse, 0, y, e, NULL, step, tau[0]) != GIC_OK)
         return false;
@@ -179,16 +193,39 @@ static void accept(Search *s)
     s->limit = NULL;
 }
 
-/* One of Newton's steps, where that is near enough to be trusted and halves what is left. */
+/* May a step be taken? */
+static bool is_fair(Search *s)
+{
+    const double places = step_size(s, s->step, s->found->linear->places);
+    return step_size(s, s->step, s->unknowns) <= 1 && (places <= near || goes_with_forces(s, places));
+}
+
+/* One of Newton's steps, where that is near enough to be trusted and halves what is left: accelerations, or the way
+ * that is still to go as the same equations see it, for where slips are all that can balance a small force (wheels that
+ * are free to turn, against what tires push to the side) accelerations of stiffer directions grow before they vanish.
+ */
 static bool newton(Search *s)
 {
-    newton_step(s, NULL);
-    const double size = step_size(s);
-    if (!(size <= 1) || (size > near && !goes_with_forces(s, size)) || !try_step(s) ||
-        !(square_sum(s, s->f) <= square_sum(s, s->found->f) / 4))
-        return false;
-    accept(s);
-    return true;
+    Equilibrium *found = s->found;
+    const size_t n = (size_t)s->unknowns;
+    gsl_matrix *U = gsl_matrix_alloc(n, n), *V = gsl_matrix_alloc(n, n);
+    gsl_vector *S = gsl_vector_alloc(n);
+    decompose(s, U, V, S);
+    solve_decomposed(s, U, V, S, found->f, s->step);
+    bool good = found->residual > 0 && is_fair(s) && try_step(s);
+    if (good && square_sum(s, s->f) > square_sum(s, found->f) / 4) {
+        solve_decomposed(s, U, V, S, s->f, s->move);
+        good = found->residual >= equilibrium_limit && found->steps < MOST_STEPS &&
+               step_size(s, s->move, s->unknowns) <= step_size(s, s->step, s->unknowns) / 2;
+    }
+    if (good)
+        accept(s);
+    else if (found->residual < equilibrium_limit)
+        found->neutral = name_flat(s, V, S);
+    gsl_vector_free(S);
+    gsl_matrix_free(V);
+    gsl_matrix_free(U);
+    return good;
 }
 
 /* One step of relaxation, shortened until it is good. */
@@ -196,9 +233,7 @@ static bool relax(Search *s)
 {
     for (; s->h > shortest; s->h /= 2) {
         relaxation_step(s);
-        const double size = step_size(s);
-        if (!(size <= 1) || (size > near && !goes_with_forces(s, size)) || !try_step(s) ||
-            !(square_sum(s, s->f) <= 100 * square_sum(s, s->found->f)))
+        if (!is_fair(s) || !try_step(s) || !(square_sum(s, s->f) <= 100 * square_sum(s, s->found->f)))
             continue;
         accept(s);
         s->h = fmin(2 * s->h, longest);
@@ -335,14 +370,13 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
     gsl_set_error_handler_off();
     for (;;) {
         found->residual = fabs(found->f[largest(found->linear, found->f)]);
-        if (found->residual > 0 && newton(&s))
+        if (newton(&s))
             continue;
         if (found->residual < equilibrium_limit)
             break;
         if (found->steps >= MOST_STEPS || !relax(&s))
             fail(&s, at);
     }
-    newton_step(&s, &found->neutral);
     return found;
 }
 

@@ -127,7 +127,11 @@ static int rate_along(const Linear *linear, const Instance *self, const double *
     const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, NULL};
     tape_arrays(linear->value, &time, y, e, linear->rate, NULL, NULL, array);
     tape_arrays(linear->slope, &dtime, dy, de, drate, NULL, NULL, slope);
-    return tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
+    if (engine->wheel)
+        status = tape_turn_wheels_dual(engine, &world, array, slope, linear->frame);
+    if (status == GIC_OK)
+        status = tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
+    return status;
 }
 
 /* ---- in small motions ----------------------------------------------------------------------------------- */
@@ -293,6 +297,12 @@ static void add_number(Pool *pool, Linear *linear, const char *name, double reac
     *POOL_PUSH(pool, linear->reach, linear->count) = reach;
 }
 
+/* The same of a fast state: of what turns 1 rad/s, of slips and windups, which are places of springs, 0.1. */
+static double fast_reach(const gic_signal *state)
+{
+    return strcmp(state->unit, "rad/s") ? 0.1 : 1;
+}
+
 /* Places; their rates under the same names; fast states under their own. */
 static void name_numbers(Pool *pool, Linear *linear)
 {
@@ -308,7 +318,8 @@ static void name_numbers(Pool *pool, Linear *linear)
         linear->places = half ? linear->places : linear->count;
     }
     for (int i = 0; i < code->fast_count; ++i)
-        add_number(pool, linear, code->state[code->slow_count + i].name, 1);
+        add_number(pool, linear, code->state[code->slow_count + i].name,
+                   fast_reach(&code->state[code->slow_count + i]));
 }
 
 Linear *linear_open(Pool *pool, const Engine *engine)

@@ -11,9 +11,10 @@ static double chain(double factor, double change)
     return change == 0 ? 0 : factor * change;
 }
 
+/* At 0 the mean of both sides. */
 static double sign(double x)
 {
-    return x < 0 ? -1 : 1;
+    return (x > 0) - (x < 0);
 }
 
 /* Slope of the piece of a table at x; at a point of it, that of the piece that the value is taken from. */

@@ -126,6 +126,11 @@ int tape_refresh(Instance *self, double e[4]);
 /* tape_wheels.c: the templates wheels.c.in and dual_rate.c.in, over tapes. */
 void tape_record_wheels(Pool *pool, TapeEngine *engine, const char *const *array);
 int tape_turn_wheels(Instance *self, double time, const double *y, const double *e, double *rate);
+/* The same in dual numbers. array, slope: what tape_arrays() gives, of an instance at the state and of its derivatives;
+ * rate (and the grip) are written there, as far as they are those of the fast states. slope_frame: as many numbers as
+ * the engine's frame. */
+int tape_turn_wheels_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
+                          double *slope_frame);
 /* Recovery, unless the last one was for the very same coordinates and velocities. */
 int tape_recover_once(Instance *self, const double turn[3]);
 /* For the descriptor. */

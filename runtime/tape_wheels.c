@@ -19,6 +19,23 @@ void tape_record_wheels(Pool *pool, TapeEngine *engine, const char *const *array
                                        .balance = tape_record(pool, &wheels->class[c].balance, array, WHOLE_COUNT)};
 }
 
+/* What blocks about wheels read and write: numbers, and where slope_frame is not NULL their derivatives along one
+ * direction beside them. */
+typedef struct Turning {
+    const TapeEngine *engine;
+    TapeWorld world;
+    double *array[2][WHOLE_COUNT]; /* of numbers, of derivatives */
+    double *slope_frame;
+} Turning;
+
+static int play(const Turning *t, const Tape *tape, int member)
+{
+    double *frame = t->engine->frame;
+    if (!t->slope_frame)
+        return tape_play(tape, member, t->array[0], &t->world, frame);
+    return tape_play_dual(tape, member, t->array[0], t->array[1], &t->world, frame, t->slope_frame);
+}
+
 /* How the multibody system moves the wheels. */
 static void links_of(Instance *self, const double *y, const double *e, double *link)
 {
@@ -36,51 +53,68 @@ static void links_of(Instance *self, const double *y, const double *e, double *l
     tape_play(engine->link, 0, array, &none, engine->frame);
 }
 
-/* One wheel; array[] has what belongs to it. */
-static int wheel_of(const TapeEngine *engine, const TapeWheel *wheel, int member, double **array,
-                    const TapeWorld *world)
+/* One wheel; t->array[] has what belongs to it. */
+static int wheel_of(Turning *t, const TapeWheel *wheel, int member)
 {
-    double hub[HUB_NUMBERS], force[TIRE_FORCES] = {0};
-    array[WHOLE_hub] = hub;
-    array[WHOLE_force] = force;
-    int status = tape_play(wheel->contact, member, array, world, engine->frame);
+    double hub[2][HUB_NUMBERS], force[2][TIRE_FORCES] = {{0}};
+    for (int side = 0; side < 2; ++side) {
+        t->array[side][WHOLE_hub] = hub[side];
+        t->array[side][WHOLE_force] = force[side];
+    }
+    int status = play(t, wheel->contact, member);
     if (status != GIC_OK)
         return status;
-    if (hub[HUB_LOAD] > 0) /* a wheel in the air has no tire forces */
-        tape_play(wheel->tire, member, array, world, engine->frame);
-    return tape_play(wheel->balance, member, array, world, engine->frame);
+    if (hub[0][HUB_LOAD] > 0) /* a wheel in the air has no tire forces */
+        play(t, wheel->tire, member);
+    return play(t, wheel->balance, member);
 }
 
-/* All wheels at their links: rate[] of the fast states, and the instance's grip. */
-static int grip(Instance *self, double time, const double *link, const double *fast, double *rate)
+/* All wheels at their links: rates of the fast states, and the instance's grip. */
+static int turn(const Turning *all)
 {
-    const TapeEngine *engine = tape_of(self);
+    const TapeEngine *engine = all->engine;
     const Wheels *wheels = engine->formulation->wheels;
     const Model *model = engine->formulation->model;
-    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, NULL};
-    double *array[WHOLE_COUNT] = {
-        [WHOLE_time] = &time,
-        [WHOLE_link] = (double *)link, /* blocks only read these two */
-        [WHOLE_fast] = (double *)fast,
-        [WHOLE_u] = tape_array(self, engine->code.input_offset),
-        [WHOLE_p] = tape_array(self, engine->code.parameter_offset),
-        [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
-        [WHOLE_torque] = engine->torques,
-    };
-    int status = tape_play(engine->torque, 0, array, &world, engine->frame);
+    int status = play(all, engine->torque, 0);
     for (int c = 0; c < wheels->classes; ++c) {
         const WheelClass *class = &wheels->class[c];
         for (int i = 0; i < class->members && status == GIC_OK; ++i) {
             const int place = wheel_rolling(model, class->member[i]), first = model->wheel[class->member[i]].fast;
-            array[WHOLE_link] = (double *)link + LINK_NUMBERS * place;
-            array[WHOLE_fast] = (double *)fast + first;
-            array[WHOLE_torque] = engine->torques + 2 * place;
-            array[WHOLE_rate] = rate + first;
-            array[WHOLE_grip] = tape_array(self, engine->grip_offset) + GRIP_NUMBERS * place;
-            status = wheel_of(engine, &engine->wheel[c], i, array, &world);
+            Turning one = *all;
+            for (int side = 0; side < (all->slope_frame ? 2 : 1); ++side) {
+                double **array = one.array[side];
+                array[WHOLE_link] += LINK_NUMBERS * place;
+                array[WHOLE_fast] += first;
+                array[WHOLE_torque] += 2 * place;
+                array[WHOLE_rate] += first;
+                array[WHOLE_grip] += GRIP_NUMBERS * place;
+            }
+            status = wheel_of(&one, &engine->wheel[c], i);
         }
     }
     return status;
+}
+
+/* The same of an instance: rate[] of the fast states. */
+static int grip(Instance *self, double time, const double *link, const double *fast, double *rate)
+{
+    const TapeEngine *engine = tape_of(self);
+    const Turning all = {
+        .engine = engine,
+        .world = {engine->table, self->head.road, self->head.lane, time, NULL},
+        .array = {{
+            [WHOLE_time] = &time,
+            [WHOLE_link] = (double *)link, /* blocks only read these two */
+            [WHOLE_fast] = (double *)fast,
+            [WHOLE_u] = tape_array(self, engine->code.input_offset),
+            [WHOLE_p] = tape_array(self, engine->code.parameter_offset),
+            [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
+            [WHOLE_torque] = engine->torques,
+            [WHOLE_rate] = rate,
+            [WHOLE_grip] = tape_array(self, engine->grip_offset),
+        }},
+    };
+    return turn(&all);
 }
 
 int tape_turn_wheels(Instance *self, double time, const double *y, const double *e, double *rate)
@@ -90,6 +124,26 @@ int tape_turn_wheels(Instance *self, double time, const double *y, const double 
         return GIC_ERROR_INPUT;
     links_of(self, y, e, engine->link_row);
     return grip(self, time, engine->link_row, y + engine->code.slow_count, rate);
+}
+
+int tape_turn_wheels_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
+                          double *slope_frame)
+{
+    const int slow = engine->code.slow_count, links = engine->formulation->wheels->links;
+    const int torques = 2 * engine->formulation->wheels->count;
+    double link[2][links + 1], torque[2][torques + 1];
+    Turning all = {.engine = engine, .world = *world, .slope_frame = slope_frame};
+    for (int side = 0; side < 2; ++side) {
+        double **own = all.array[side];
+        memcpy(own, side ? slope : array, sizeof all.array[side]);
+        own[WHOLE_link] = link[side];
+        own[WHOLE_fast] = own[WHOLE_y] + slow;
+        own[WHOLE_torque] = torque[side];
+        own[WHOLE_rate] += slow;
+        own[WHOLE_grip] = own[WHOLE_GRIP];
+    }
+    const int status = play(&all, engine->link, 0);
+    return status == GIC_OK ? turn(&all) : status;
 }
 
 int tape_recover_once(Instance *self, const double turn[3])
