@@ -122,7 +122,7 @@ int animation_frame(Animation *a, const gic_model *code, gic_head *self)
     for (int w = 0; w < a->model->wheels; ++w)
         set_wheel(a, w, output, frame, before);
     for (int i = 0; i < a->scene->curves; ++i)
-        frame[a->curves + i] = output[a->scene->curve[i]];
+        frame[a->curves + i] = scene_value(code, self, a->scene->curve[i]);
     ++a->frames;
     return GIC_OK;
 }
@@ -251,20 +251,17 @@ static void json_wheels(const Animation *a, Text *out)
     text_print(out, "],\n");
 }
 
-/* The scene's `plot`. */
+/* What the scene's `plot` shows over time. */
 static void json_curves(const Animation *a, Text *out)
 {
     text_print(out, "\"curves\":[");
-    for (int i = 0, first = 0; i < a->model->outputs; first += a->model->output[i++].count)
-        for (int k = 0; k < a->scene->curves; ++k) {
-            const int c = a->scene->curve[k] - first;
-            if (c < 0 || c >= a->model->output[i].count)
-                continue;
-            text_print(out, "%s\n{", out->s[out->size - 1] == '[' ? "" : ",");
-            json_key(out, "name", a->model->output[i].component[c]);
-            json_key(out, "unit", a->model->output[i].unit[c]);
-            text_print(out, "\"values\":%d}", a->curves + k);
-        }
+    for (int k = 0; k < a->scene->curves; ++k) {
+        const gic_signal *signal = &a->scene->signal[a->scene->curve[k]];
+        text_print(out, "%s\n{", k ? "," : "");
+        json_key(out, "name", signal->name);
+        json_key(out, "unit", signal->unit);
+        text_print(out, "\"values\":%d}", a->curves + k);
+    }
     text_print(out, "],\n");
 }
 

@@ -18,7 +18,7 @@ static const char help[] =
     "\n"
     "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
     "                     picture or a page is asked for)\n"
-    "      --plot FILE    draw the scene's `plot` outputs over time with gnuplot\n"
+    "      --plot FILE    draw what the scene's `plot` names, with gnuplot\n"
     "      --animate FILE write a page for a browser, complete in itself, in which the model\n"
     "                     moves along its road\n"
     "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"

@@ -53,7 +53,7 @@ int process_run(Pool *pool, char *const argv[], const char *input, const char **
 /* $TMPDIR or /tmp. */
 const char *temporary_folder(void);
 
-/* ---- scene.c, scene_road.c, scene_road_file.c: what the vehicle does and where; models/SCENE.md --------- */
+/* ---- scene.c, scene_*.c: what the vehicle does and where; models/SCENE.md --------- */
 
 /* How an input runs over time: `count` knots joined by quintics, or a sine that is faded in over its first period. */
 typedef struct Profile {
@@ -77,15 +77,18 @@ typedef struct Scene {
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
     bool along, equilibrium; /* is the velocity one of `speed` along the base's x axis; start in static equilibrium? */
     double speed;
-    double *value, *rate;                                           /* [coordinates] at time 0; not used where driven */
+    double *value, *rate; /* [coordinates] at time 0; not used where driven */
     bool placed, *given;  /* does the scene give the position, [coordinates] the values? Else they are the model's */
     double *fast;         /* [fast states] at time 0, NAN: as wheels roll */
     const gic_road *road; /* NULL: flat at z = 0 */
     double *parameter;    /* [tunables] */
-    int profiles, columns, curves;
+    int profiles, columns, curves, panels;
     Profile *profile;
-    Driver *driver;      /* changes as the run goes on; NULL: nobody drives */
-    int *column, *curve; /* output components in results and picture, indices into output[] */
+    Driver *driver; /* changes as the run goes on; NULL: nobody drives */
+    /* What can be written and drawn: components of outputs, in the order of output[], then inputs. Indices into it:
+     * columns of the results; curves over time of the picture; its panels of one over another, x and y. */
+    const gic_signal *signal;
+    int *column, *curve, (*panel)[2];
 } Scene;
 
 /* Read a scene for a model. Any mistake ends in diag_fail. integrator: instead of the scene's, or NULL; tolerance: the
@@ -107,6 +110,10 @@ void profile_at(const Profile *profile, double time, double out[3]);
 void scene_inputs(void *user, int32_t lane, double time, double *input);
 /* The first time after `time` at which a profile is less smooth than elsewhere, or INFINITY. */
 double scene_next_kink(const Scene *scene, double time);
+/* scene_outputs.c: columns, curves and panels of a scene. */
+void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene *scene);
+/* The present value of signal[i], of an instance whose outputs are computed. */
+double scene_value(const gic_model *code, gic_head *self, int i);
 /* scene_driver.c: the driver of a `driver:` item; step: s, 0 where steps vary. */
 Driver *driver_read(Pool *pool, const Item *item, const Model *model, double step);
 /* scene_road.c: the road a `road:` item describes. */
@@ -117,6 +124,10 @@ const struct CsvTable *scene_file(Pool *pool, const Item *item, const char *what
 /* The same file: roads whose heights are in the file that the key `file` names. */
 const gic_road *table_file_read(Pool *pool, const Item *item);
 const gic_road *grid_file_read(Pool *pool, const Item *item);
+
+/* Index of `word` among names, or failure with the nearest one, or all of them where they are few; kind: "output". */
+int scene_name_index(Pool *pool, const Item *item, const char *word, const char *kind, const char *const *name,
+                     int count);
 
 /* Checked access beyond doc.c. need: the value of a key that must be there; number: or `absent` where there is none;
  * numbers: a list of at least `least` numbers. */
@@ -161,11 +172,12 @@ Place csv_place(const CsvTable *table, int row);
 
 /* ---- plot.c --------------------------------------------------------------------------------------------- */
 
-/* Curves over time; `sample` holds rows of time and `curves` values. */
+/* Curves over time, and panels of one signal over another; `sample` holds rows of time, `curves` values, and x and y of
+ * each panel. */
 typedef struct Plot {
     const char *title;
-    int curves, rows;
-    const char **name, **unit;
+    int curves, panels, rows;
+    const gic_signal *signal; /* [curves + 2 panels] of what stands in a row behind the time */
     double *sample;
 } Plot;
 
@@ -195,8 +207,8 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self);
  * `end` that stops at kinks of inputs. Before it the driver looks, where it is time for that. */
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
                double end);
-/* equilibrium.c: the scene, or where it asks for it one that starts in static equilibrium. Ends in diag_fail where there
- * is none. */
+/* equilibrium.c: the scene, or where it asks for it one that starts in static equilibrium. Ends in diag_fail where
+ * there is none. */
 const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scene, Solve solve);
 /* Run a scene: results, picture, page (animation: NULL where none is asked for), summary. A failure on the way keeps
  * what was computed and ends in diag_fail. */

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Pictures by gnuplot: curves over time, one panel a unit. */
+ * Pictures by gnuplot: curves over time, one panel a unit, and panels of one signal over another. */
 #include "gicrun.h"
 
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -26,40 +27,77 @@ static void quoted(Text *text, const char *s)
 static bool opens_panel(const Plot *plot, int i)
 {
     for (int k = 0; k < i; ++k)
-        if (!strcmp(plot->unit[k], plot->unit[i]))
+        if (!strcmp(plot->signal[k].unit, plot->signal[i].unit))
             return false;
     return true;
 }
 
 static void data_block(Text *script, const Plot *plot)
 {
+    const int signals = plot->curves + 2 * plot->panels;
     text_print(script, "$data << END\n");
     for (int row = 0; row < plot->rows; ++row)
-        for (int k = 0; k <= plot->curves; ++k)
-            text_print(script, "%.9g%c", plot->sample[row * (plot->curves + 1) + k], k < plot->curves ? ' ' : '\n');
+        for (int k = 0; k <= signals; ++k)
+            text_print(script, "%.9g%c", plot->sample[row * (signals + 1) + k], k < signals ? ' ' : '\n');
     text_print(script, "END\n");
 }
 
 static void panel(Text *script, const Plot *plot, int first, bool last)
 {
     text_print(script, "set xlabel %s\nset ylabel ", last ? "'time [s]'" : "''");
-    quoted(script, plot->unit[first]);
+    quoted(script, plot->signal[first].unit);
     text_print(script, "\nplot ");
     for (int i = first, drawn = 0; i < plot->curves; ++i) {
-        if (strcmp(plot->unit[i], plot->unit[first]))
+        if (strcmp(plot->signal[i].unit, plot->signal[first].unit))
             continue;
         text_print(script, "%s$data using 1:%d with lines linewidth 1.5 title ", drawn++ ? ", " : "", i + 2);
-        quoted(script, plot->name[i]);
+        quoted(script, plot->signal[i].name);
     }
     text_print(script, "\n");
+}
+
+static void axis_label(Text *script, char axis, const gic_signal *signal)
+{
+    text_print(script, "set %clabel ", axis);
+    quoted(script, pool_print(script->pool, "%s [%s]", signal->name, signal->unit));
+    text_print(script, "\n");
+}
+
+/* From the least to the largest value of a signal. */
+static double spread(const Plot *plot, int signal)
+{
+    const int row = plot->curves + 2 * plot->panels + 1;
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < plot->rows; ++i) {
+        low = fmin(low, plot->sample[i * row + signal + 1]);
+        high = fmax(high, plot->sample[i * row + signal + 1]);
+    }
+    return high - low;
+}
+
+/* Of lengths over lengths the shape is to be seen as it is, where both extend far enough to be seen at all. */
+static bool equal_scales(const Plot *plot, int x, int y)
+{
+    const double most = 10, across = spread(plot, x), up = spread(plot, y);
+    return !strcmp(plot->signal[x].unit, plot->signal[y].unit) && across <= most * up && up <= most * across;
+}
+
+static void panel_over(Text *script, const Plot *plot, int panel)
+{
+    const int x = plot->curves + 2 * panel, y = x + 1;
+    axis_label(script, 'x', &plot->signal[x]);
+    axis_label(script, 'y', &plot->signal[y]);
+    text_print(script, "set size %s\n", equal_scales(plot, x, y) ? "ratio -1" : "noratio");
+    text_print(script, "plot $data using %d:%d with lines linewidth 1.5 notitle\n", x + 2, y + 2);
 }
 
 static const char *plot_script(Pool *pool, const Plot *plot, const char *path, const char *temporary)
 {
     Text script = {.pool = pool};
-    int panels = 0, done = 0;
+    int over_time = 0, done = 0;
     for (int i = 0; i < plot->curves; ++i)
-        panels += opens_panel(plot, i);
+        over_time += opens_panel(plot, i);
+    const int panels = over_time + plot->panels;
     data_block(&script, plot);
     text_print(&script, "set terminal %s size %d,%d noenhanced\nset output ",
                path_ends(path, ".svg") ? "svg background 'white'" : "pngcairo", WIDTH, PANEL_HEIGHT * panels + 40);
@@ -72,7 +110,9 @@ static const char *plot_script(Pool *pool, const Plot *plot, const char *path, c
     text_print(&script, "\n");
     for (int i = 0; i < plot->curves; ++i)
         if (opens_panel(plot, i))
-            panel(&script, plot, i, ++done == panels);
+            panel(&script, plot, i, ++done == over_time);
+    for (int i = 0; i < plot->panels; ++i)
+        panel_over(&script, plot, i);
     text_print(&script, "unset multiplot\nset output\n");
     return script.s;
 }

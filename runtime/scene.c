@@ -48,14 +48,13 @@ double *scene_numbers(Pool *pool, const Item *item, const char *what, int least)
     return out;
 }
 
-/* Index of `word` among names, or failure with the nearest one, or all of them where they are few. */
-static int name_index(Reader *reader, const Item *item, const char *word, const char *kind, const char *const *name,
-                      int count)
+int scene_name_index(Pool *pool, const Item *item, const char *word, const char *kind, const char *const *name,
+                     int count)
 {
     for (int i = 0; i < count; ++i)
         if (!strcmp(name[i], word))
             return i;
-    Text remedy = {.pool = reader->pool};
+    Text remedy = {.pool = pool};
     const char *nearest = diag_nearest(word, name, count);
     if (nearest)
         text_print(&remedy, "did you mean '%s'?", nearest);
@@ -240,7 +239,7 @@ static void read_coordinates(Reader *reader, const Item *map, const char *what, 
         diag_fail(map->at, "write {name: number}", "initial %ss must be a map", what);
     for (int k = 0; k < map->count; ++k) {
         const Item *key = map->key[k];
-        int i = name_index(reader, key, key->text, "coordinate", name, model->coordinates);
+        int i = scene_name_index(reader->pool, key, key->text, "coordinate", name, model->coordinates);
         if (model->coordinate[i].driven)
             diag_fail(key->at, "describe it under `inputs`", "coordinate '%s' is driven, not part of the state",
                       name[i]);
@@ -260,7 +259,7 @@ static void read_states(Reader *reader, const Item *map, double *out)
         diag_fail(map->at, "write {name: number}", "initial states must be a map");
     for (int k = 0; k < map->count; ++k) {
         const Item *key = map->key[k];
-        const int i = name_index(reader, key, key->text, "fast state", name, count);
+        const int i = scene_name_index(reader->pool, key, key->text, "fast state", name, count);
         out[i] = doc_number(map->value[k], pool_print(reader->pool, "initial value of '%s'", name[i]));
     }
 }
@@ -380,7 +379,7 @@ static void read_inputs(Reader *reader, const Item *map)
         diag_fail(map->at, "write {name: number or profile}", "inputs must be a map");
     for (int k = 0; k < map->count; ++k) {
         const Item *key = map->key[k];
-        int i = name_index(reader, key, key->text, "input", name, model->inputs);
+        int i = scene_name_index(reader->pool, key, key->text, "input", name, model->inputs);
         const char *dot = strchr(name[i], '.');
         if (dot)
             diag_fail(key->at,
@@ -408,7 +407,7 @@ static void read_parameters(Reader *reader, const Item *map)
     for (int k = 0; k < map->count; ++k) {
         const Item *key = map->key[k];
         const Parameter *parameter =
-            &model->parameter[name_index(reader, key, key->text, "parameter", name, model->parameters)];
+            &model->parameter[scene_name_index(reader->pool, key, key->text, "parameter", name, model->parameters)];
         if (!parameter->tunable)
             diag_fail(
                 key->at,
@@ -470,64 +469,6 @@ double scene_next_kink(const Scene *scene, double time)
     return next;
 }
 
-/* ---- outputs -------------------------------------------------------------------------------------------- */
-
-/* Components named by a list of output or component names, each once, in the order of the list. */
-static int *read_names(Reader *reader, const Item *list, const char *what, int *count)
-{
-    const Model *model = reader->model;
-    const int names = model->outputs + model->output_components;
-    const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(names + 1));
-    int *first = pool_alloc(reader->pool, sizeof *first * (size_t)(names + 1));
-    int *size = pool_alloc(reader->pool, sizeof *size * (size_t)(names + 1)), *out = NULL, n = 0, component = 0;
-    for (int i = 0; i < model->outputs; ++i) {
-        const Output *output = &model->output[i];
-        first[n] = component;
-        size[n] = output->count;
-        name[n++] = output->name;
-        for (int k = 0; k < output->count; ++k) {
-            first[n] = component++;
-            size[n] = 1;
-            name[n++] = output->component[k];
-        }
-    }
-    bool *taken = pool_alloc(reader->pool, (size_t)component + 1);
-    if (list->kind != ITEM_LIST || !list->count)
-        diag_fail(list->at, "write [name, name, ...]", "%s must be a list of names of outputs", what);
-    for (int i = 0; i < list->count; ++i) {
-        const Item *item = list->value[i];
-        int found = name_index(reader, item, doc_word(item, "name of an output"), "output", name, n);
-        for (int k = first[found]; k < first[found] + size[found]; ++k)
-            if (!taken[k]) {
-                taken[k] = true;
-                *POOL_PUSH(reader->pool, out, *count) = k;
-            }
-    }
-    return out;
-}
-
-static int *all_outputs(Reader *reader, int *count)
-{
-    int *out = NULL;
-    for (int i = 0; i < reader->model->output_components; ++i)
-        *POOL_PUSH(reader->pool, out, *count) = i;
-    return out;
-}
-
-/* Without a list the picture shows heights, as the paper's does, or else values of coordinates, or else all. */
-static int *default_curves(Reader *reader, int *count)
-{
-    const Model *model = reader->model;
-    int *out = NULL;
-    for (int pass = 0; pass < 2 && !*count; ++pass)
-        for (int i = 0, component = 0; i < model->outputs; component += model->output[i++].count)
-            if (!pass && model->output[i].type == OUTPUT_POSITION)
-                *POOL_PUSH(reader->pool, out, *count) = component + 2;
-            else if (pass && model->output[i].type == OUTPUT_COORDINATE)
-                *POOL_PUSH(reader->pool, out, *count) = component;
-    return *count ? out : all_outputs(reader, count);
-}
-
 /* ---- the scene ------------------------------------------------------------------------------------------ */
 
 const Scene *scene_read(Pool *pool, const char *path, const Model *model, const char *integrator, double tolerance)
@@ -560,7 +501,6 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     for (int i = 0; i < model->fast_states; ++i)
         scene->fast[i] = NAN;
     const Item *initial = doc_find(root, "initial"), *road = doc_find(root, "road"), *inputs = doc_find(root, "inputs");
-    const Item *outputs = doc_find(root, "outputs"), *plot = doc_find(root, "plot");
     if (initial)
         read_initial(&reader, initial);
     if (road)
@@ -576,8 +516,6 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
             scene->parameter[model->parameter[i].index] = model->parameter[i].value;
     if (doc_find(root, "parameters"))
         read_parameters(&reader, doc_find(root, "parameters"));
-    scene->column =
-        outputs ? read_names(&reader, outputs, "outputs", &scene->columns) : all_outputs(&reader, &scene->columns);
-    scene->curve = plot ? read_names(&reader, plot, "plot", &scene->curves) : default_curves(&reader, &scene->curves);
+    scene_read_outputs(pool, root, model, scene);
     return scene;
 }

@@ -26,6 +26,7 @@ typedef struct Run {
     int64_t steps;
     Csv csv;
     Plot plot;
+    const int *drawn;       /* indices of the picture's signals among the scene's */
     Animation *animation;   /* NULL: none */
     int64_t samples, every; /* output times so far; one in `every` goes into the picture */
     double constraint;      /* largest residual so far */
@@ -80,10 +81,21 @@ static void write_header(Run *run)
 {
     csv_name(&run->csv, "time", "s");
     for (int i = 0; i < run->scene->columns; ++i) {
-        const gic_signal *signal = &run->model->output[run->scene->column[i]];
+        const gic_signal *signal = &run->scene->signal[run->scene->column[i]];
         csv_name(&run->csv, signal->name, signal->unit);
     }
     csv_end_row(&run->csv);
+}
+
+/* What stands in a row of the picture behind the time. */
+static const int *drawn_signals(Pool *pool, const Scene *scene)
+{
+    int *drawn = pool_alloc(pool, sizeof *drawn * (size_t)(scene->curves + 2 * scene->panels + 1)), *next = drawn;
+    for (int i = 0; i < scene->curves; ++i)
+        *next++ = scene->curve[i];
+    for (int i = 0; i < 2 * scene->panels; ++i)
+        *next++ = scene->panel[i / 2][i % 2];
+    return drawn;
 }
 
 static void prepare_plot(Run *run)
@@ -92,15 +104,16 @@ static void prepare_plot(Run *run)
     const char *slash = strrchr(run->request->scene, '/');
     run->plot.title = pool_print(run->pool, "%s: %s", run->model->name, slash ? slash + 1 : run->request->scene);
     run->plot.curves = scene->curves;
-    run->plot.name = pool_alloc(run->pool, sizeof *run->plot.name * (size_t)scene->curves);
-    run->plot.unit = pool_alloc(run->pool, sizeof *run->plot.unit * (size_t)scene->curves);
-    for (int i = 0; i < scene->curves; ++i) {
-        run->plot.name[i] = run->model->output[scene->curve[i]].name;
-        run->plot.unit[i] = run->model->output[scene->curve[i]].unit;
-    }
+    run->plot.panels = scene->panels;
+    run->drawn = drawn_signals(run->pool, scene);
+    const int drawn = scene->curves + 2 * scene->panels;
+    gic_signal *signal = pool_alloc(run->pool, sizeof *signal * (size_t)(drawn + 1));
+    for (int i = 0; i < drawn; ++i)
+        signal[i] = scene->signal[run->drawn[i]];
+    run->plot.signal = signal;
     run->every = (scene->outputs + MOST_POINTS) / MOST_POINTS;
     int64_t rows = scene->outputs / run->every + 1;
-    run->plot.sample = pool_alloc(run->pool, sizeof(double) * (size_t)rows * (size_t)(scene->curves + 1));
+    run->plot.sample = pool_alloc(run->pool, sizeof(double) * (size_t)rows * (size_t)(drawn + 1));
 }
 
 /* Compute outputs at the present time on the copy, and what is seen then. Once an output time. */
@@ -114,18 +127,19 @@ static int compute_outputs(Run *run)
 static void record(Run *run)
 {
     const Scene *scene = run->scene;
-    const double *output = instance_array(run->copy, run->model->output_offset), time = gic_time(run->self);
+    const double time = gic_time(run->self);
     if (run->csv.file) {
         csv_time(&run->csv, time);
         for (int i = 0; i < scene->columns; ++i)
-            csv_number(&run->csv, output[scene->column[i]]);
+            csv_number(&run->csv, scene_value(run->model, run->copy, scene->column[i]));
         csv_end_row(&run->csv);
     }
     if (run->samples++ % run->every == 0) {
-        double *sample = run->plot.sample + run->plot.rows++ * (scene->curves + 1);
+        const int drawn = scene->curves + 2 * scene->panels;
+        double *sample = run->plot.sample + run->plot.rows++ * (drawn + 1);
         *sample++ = time;
-        for (int i = 0; i < scene->curves; ++i)
-            *sample++ = output[scene->curve[i]];
+        for (int i = 0; i < drawn; ++i)
+            *sample++ = scene_value(run->model, run->copy, run->drawn[i]);
     }
     gic_self_test test;
     if (run->model->self_test(run->copy, &test) == GIC_OK)

@@ -84,6 +84,14 @@ check 'the driven cart follows its knots' awk -F, 'function off(a, b) {return a 
     NR > 1 && off($8, 3 * $7) {bad = 1} $1 == 1 {seen = 1; if (off($5, 0.1) || off($6, 0.375) || off($7, 0)) bad = 1}
     END {exit bad || !seen || off($5, 0.2)}' "$work/a.csv"
 
+# the same numbers as the outputs that repeat them
+sed '$a outputs: [drive.value, input.drive, drive.acceleration, input.drive.acceleration]' "$work/swing.scene" \
+    >"$work/inputs.scene"
+run "$work/carts.veh" "$work/inputs.scene" -o "$work/inputs.csv"
+check 'inputs are columns' awk -F, 'NR == 1 && $3 $5 != "input.drive [m]input.drive.acceleration [m/s^2]" {bad = 1}
+    NR > 1 && ($2 != $3 || $4 != $5) {bad = 1} $3 == 0.2 {seen = 1} END {exit bad || !seen || NR != 102}' \
+    "$work/inputs.csv"
+
 sed '/^output_step/d' "$work/swing.scene" >"$work/often.scene"
 run "$work/carts.veh" "$work/often.scene" -q
 check 'results go to standard output by default' [ "$(wc -l <"$work/out")" -eq 1002 ]
@@ -96,6 +104,13 @@ if command -v gnuplot >/dev/null; then
     check 'a picture is drawn' grep -q '</svg>' "$work/a.svg"
     check 'curves are named' grep -q 'drive.value' "$work/a.svg"
     check 'a picture alone writes no results' [ ! -s "$work/out" ]
+    sed '$a plot: [{x: drive.value, y: drive.rate}, input.drive, {x: x.value, y: drive.value}]' \
+        "$work/swing.scene" >"$work/over.scene"
+    run "$work/carts.veh" "$work/over.scene" --plot "$work/over.svg"
+    check 'panels of one output over another have axes' [ 2 -eq \
+        "$(grep -oE '>(drive.value \[m\]|drive.rate \[m/s\]|x.value \[m\])<' "$work/over.svg" | sort | uniq -c |
+            awk '/drive.value/ {n = $1} END {print n}')" ]
+    check 'inputs are curves' grep -q 'input.drive' "$work/over.svg"
 fi
 mkdir "$work/bin"
 for tool in cc gcc as ld; do
@@ -226,6 +241,10 @@ change 's/times: \[0.5, 1.5\]/times: [1.5, 0.5]/' 8:32 'must rise'
 change '$s/knots/ramp/' 8:11 "unknown key 'ramp'"
 change '$a outputs: [x, speed]' 9:14 "no output 'speed'"
 change '$a outputs: []' 9:10 'list of names'
+change '$a outputs: [input.drives]' 9:11 "no output 'input.drives'"
+change '$a outputs: [{x: x.value, y: x.rate}]' 9:11 'name of an output'
+change '$a plot: [{x: x.value}]' 9:8 "needs the key 'y'"
+change '$a plot: [{x: x.value, y: x}]' 9:24 "output 'x' has 3 components"
 change '$a road: {type: bump}' 9:14 "no road of type 'bump'"
 change '$a road: {type: sine, amplitude: 1}' 9:7 "needs the key 'wavelength'"
 change '$a road: {type: table, x: [0, 0], height: [0, 1]}' 9:28 'must rise'

@@ -135,6 +135,15 @@ static void test_names(void **unused)
     assert_int_equal(scene->columns, 7);
     assert_memory_equal(scene->column, expected, sizeof expected);
     assert_true(scene->curves == 1 && scene->curve[0] == 4);
+    /* inputs stand behind the nine components: value, rate and acceleration of the rack */
+    scene = scene_of(pool, "outputs: [input.rack.rate, hull.x]\n"
+                           "plot: [{x: hull.x, y: hull.y}, lift.rate, {x: input.rack, y: slide.z}]\n");
+    const int panel[] = {0, 1, 9, 8};
+    assert_true(scene->columns == 2 && scene->column[0] == 10 && scene->column[1] == 0);
+    assert_string_equal(scene->signal[10].name, "input.rack.rate");
+    assert_string_equal(scene->signal[10].unit, "m/s");
+    assert_true(scene->curves == 1 && scene->curve[0] == 4 && scene->panels == 2);
+    assert_memory_equal(scene->panel, panel, sizeof panel);
     pool_free(pool);
 }
 
