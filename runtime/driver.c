@@ -151,6 +151,12 @@ bool driver_is_due(const Driver *driver, double time)
     return time >= driver->next - 1e-9 * driver->period;
 }
 
+double driver_next_kink(const Driver *driver, double time)
+{
+    const double end = driver->looks ? driver->next - driver->period + driver->reach : driver->next;
+    return end > time ? fmin(end, driver->next) : driver->next;
+}
+
 void driver_look(Driver *driver, double time, const Sight *sight)
 {
     const double speed = cos(sight->yaw) * sight->velocity[0] + sin(sight->yaw) * sight->velocity[1];

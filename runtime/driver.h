@@ -52,6 +52,9 @@ struct Driver {
 void driver_start(Driver *driver);
 /* Is it time for a look? */
 bool driver_is_due(const Driver *driver, double time);
+/* The first time after `time` at which its commands are less smooth than elsewhere: the next look, or the end of
+ * movements before it. */
+double driver_next_kink(const Driver *driver, double time);
 /* Decide on new movements. */
 void driver_look(Driver *driver, double time, const Sight *sight);
 /* Write what it commands into input[]. */

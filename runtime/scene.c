@@ -454,7 +454,7 @@ void scene_inputs(void *user, int32_t lane, double time, double *input)
 
 double scene_next_kink(const Scene *scene, double time)
 {
-    double next = scene->driver ? scene->driver->next : INFINITY;
+    double next = scene->driver ? driver_next_kink(scene->driver, time) : INFINITY;
     for (int i = 0; i < scene->profiles; ++i) {
         const Profile *profile = &scene->profile[i];
         for (int k = 0; k < profile->count; ++k)

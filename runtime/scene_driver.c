@@ -81,8 +81,7 @@ static void read_file(Pool *pool, const Item *file, Path *path)
     path_through(pool, path, (const double(*)[2])point, table->rows + path->closed, (Place){table->source, 0, 0});
 }
 
-/* To the left where the radius is positive, from the point of the circle that is nearest to the origin of its own
- * angle. */
+/* To the left where the radius is positive; it begins where it goes along x. */
 static void read_circle(Pool *pool, const Item *item, Path *path)
 {
     CHECK_KEYS(item, "a circle", "center", "radius");
@@ -135,10 +134,10 @@ static int find_input(Pool *pool, const Model *model, const Item *map, const cha
             if (!strcmp(model->input[i].name, name))
                 return i;
         }
-    const char *nearest = diag_nearest(name, known, count);
-    diag_fail(item ? item->at : map->at,
-              nearest ? pool_print(pool, "did you mean '%s'?", nearest) : pool_print(pool, "add `%s: NAME`", key),
-              "the model has no input '%s' for the driver's %s", name, key);
+    if (item)
+        scene_name_index(pool, item, name, "input", known, count);
+    diag_fail(map->at, pool_print(pool, "add `%s: NAME`, one of the model's inputs", key),
+              "the model has no input '%s' for the driver", name);
 }
 
 static bool is_driven(const Model *model, int input)
@@ -155,6 +154,15 @@ static double positive(const Item *map, const char *key, double absent)
     return item ? scene_positive(item, key) : absent;
 }
 
+static double not_negative(const Item *map, const char *key, double absent)
+{
+    const Item *item = doc_find(map, key);
+    const double value = scene_number(map, key, key, absent);
+    if (value < 0)
+        diag_fail(item->at, "write a number from 0 on", "%s must not be negative", key);
+    return value;
+}
+
 static void read_speed(Pool *pool, const Model *model, const Item *item, Driver *driver)
 {
     CHECK_KEYS(item, "the driver's speed", "target", "accelerator", "brake", "gain", "integral", "full");
@@ -162,15 +170,14 @@ static void read_speed(Pool *pool, const Model *model, const Item *item, Driver 
     driver->accelerator = find_input(pool, model, item, "accelerator", "accelerator");
     driver->brake = find_input(pool, model, item, "brake", "brake");
     driver->gain = positive(item, "gain", 1);
-    driver->integral = scene_number(item, "integral", "integral", 0.1);
+    driver->integral = not_negative(item, "integral", 0.1);
     driver->full[0] = 3;
     driver->full[1] = 8;
     const Item *full = doc_find(item, "full");
     if (full)
         doc_vector(full, "full", driver->full, 2);
-    if (driver->full[0] <= 0 || driver->full[1] <= 0 || driver->integral < 0)
-        diag_fail((full ? full : item)->at, "write positive numbers: [acceleration, deceleration] at full pedals",
-                  "full and integral of the driver must be positive");
+    if (driver->full[0] <= 0 || driver->full[1] <= 0)
+        diag_fail(full->at, "write [acceleration, deceleration] at full pedals, m/s^2", "full must be positive");
 }
 
 static void read_steering(Pool *pool, const Model *model, const Item *item, Driver *driver)
@@ -182,11 +189,15 @@ static void read_steering(Pool *pool, const Model *model, const Item *item, Driv
     driver->driven = is_driven(model, driver->steering);
     driver->straight = model->input[driver->steering].initial;
     driver->wheelbase = scene_positive(scene_need(item, "wheelbase", "the driver's steering"), "wheelbase");
-    driver->per_angle = doc_number(scene_need(item, "per_angle", "the driver's steering"), "per_angle");
+    const Item *per_angle = scene_need(item, "per_angle", "the driver's steering");
+    driver->per_angle = doc_number(per_angle, "per_angle");
+    if (driver->per_angle == 0)
+        diag_fail(per_angle->at, "write its value for 1 rad of the front wheels to the left, negative ones are fine",
+                  "the driver's steering does nothing");
     driver->preview = positive(item, "preview", 0.6);
     driver->shortest = positive(item, "shortest", 4);
     driver->limit = positive(item, "limit", INFINITY);
-    driver->adapt = scene_number(item, "adapt", "adapt", 0.5);
+    driver->adapt = not_negative(item, "adapt", 0.5);
 }
 
 Driver *driver_read(Pool *pool, const Item *item, const Model *model, double step)
