@@ -11,12 +11,16 @@ void count_add(Count *sum, Count more, int times)
     sum->function += times * more.function;
 }
 
-static void wheel_figures(Pool *pool, Figures *figures, const Wheels *wheels)
+static void wheel_figures(Pool *pool, Figures *figures, const Wheels *wheels, bool drives)
 {
     figures->link = block_count(&wheels->link);
     figures->torque = block_count(&wheels->torque);
     figures->wheel = pool_alloc(pool, (size_t)wheels->classes * sizeof *figures->wheel);
     figures->fast = figures->torque;
+    if (drives) {
+        figures->drive = block_count(&wheels->drive);
+        count_add(&figures->fast, figures->drive, 1);
+    }
     for (int c = 0; c < wheels->classes; ++c) {
         const WheelClass *class = &wheels->class[c];
         count_add(&figures->wheel[c], block_count(&class->contact), 1);
@@ -42,7 +46,7 @@ const Figures *figures_new(Pool *pool, const Formulation *f)
             (ClassFigures){block_count(&formula->predict), block_count(&formula->chord), block_count(&formula->solve)};
     }
     if (f->wheels)
-        wheel_figures(pool, figures, f->wheels);
+        wheel_figures(pool, figures, f->wheels, f->model->powertrain);
     if (!formulation_reacts(f))
         return figures;
     figures->wrenches = block_count(f->wrenches);

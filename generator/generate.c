@@ -115,7 +115,7 @@ static void write_sizes(Generation *g, Text *out, int indent)
                 {"OUTPUTS", model->output_components},
                 {"PARAMETERS", model->tunables},
                 {"PORTS", 6 * model->ports},
-                {"DISCRETES", model->free_base},
+                {"DISCRETES", model_discretes(model)},
                 {"COORDINATES", model->coordinates},
                 {"UNKNOWNS", plan->unknowns},
                 {"SUBSETS", g->sequence->subsets},
@@ -127,7 +127,7 @@ static void write_sizes(Generation *g, Text *out, int indent)
                 {"OUTPUT_ROOM", room(model->output_components)},
                 {"PARAMETER_ROOM", room(model->tunables)},
                 {"PORT_ROOM", room(6 * model->ports)},
-                {"DISCRETE_ROOM", 1},
+                {"DISCRETE_ROOM", room(model_discretes(model))},
                 {"COORDINATE_ROOM", room(model->coordinates)},
                 {"UNKNOWN_ROOM", room(plan->unknowns)},
                 {"START_ROOM", room(plan->start_size)},
@@ -491,8 +491,11 @@ static void write_signal_tables(Generation *g, Text *out)
         write_signal(g, out, number.name, number.unit);
     }
     close_table(out, states(g), none);
-    open_table(g, out, "gic_signal ", "discrete_signal", 1);
-    write_signal(g, out, "dependent_euler_parameter", "1");
+    open_table(g, out, "gic_signal ", "discrete_signal", room(model_discretes(model)));
+    if (model->free_base || !model->powertrain)
+        write_signal(g, out, "dependent_euler_parameter", "1");
+    for (int i = 0; model->powertrain && i < POWERTRAIN_DISCRETE; ++i)
+        write_signal(g, out, powertrain_discrete_name[i], "1");
     close_table(out, 1, none);
     open_table(g, out, "gic_signal ", "input_signal", model->inputs);
     for (int i = 0; i < model->inputs; ++i)
@@ -761,6 +764,8 @@ static void insert_code(void *context, const char *name, Text *out, int indent)
             line(out, indent + 4, "status = %s_turn_wheels(self, time, y, e, result + %s_SLOW);", g->model->name,
                  g->upper);
         }
+    } else if (!strcmp(name, "gears")) {
+        write_start_gears(g, out, indent);
     } else if (!strcmp(name, "wheel functions")) {
         write_wheel_functions(g, out);
     } else if (!strcmp(name, "dual rate")) {

@@ -36,4 +36,12 @@ void write_wheel_sizes(Generation *g, Text *out, int indent);
 void write_wheel_members(Generation *g, Text *out, int indent); /* of the instance */
 void wheel_counts(Generation *g, Text *out, const Figures *figures);
 
+/* generate_powertrain.c: nothing where there is none. */
+void write_powertrain(Generation *g, Text *out);              /* its functions, after those of each wheel */
+void write_drive(Generation *g, Text *out, int indent);       /* the call of them after all wheels */
+void write_shift(Generation *g, Text *out);                   /* what the descriptor calls */
+void write_start_gears(Generation *g, Text *out, int indent); /* discrete states at set-up */
+void write_powertrain_sizes(Generation *g, Text *out, int indent);
+void write_powertrain_members(Generation *g, Text *out, int indent); /* of the instance */
+
 #endif

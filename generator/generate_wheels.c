@@ -89,8 +89,12 @@ static void insert_wheels(void *context, const char *name, Text *out, int indent
     Constants none = {0};
     if (!strcmp(name, "wheel classes"))
         write_classes(g, out);
+    else if (!strcmp(name, "powertrain"))
+        write_powertrain(g, out);
     else if (!strcmp(name, "wheel calls"))
         write_calls(g, out, indent);
+    else if (!strcmp(name, "drive"))
+        write_drive(g, out, indent);
     else
         block_emit(out, !strcmp(name, "link") ? &wheels->link : &wheels->torque, g->style, &none, indent);
 }
@@ -121,6 +125,7 @@ void write_wheel_functions(Generation *g, Text *out)
 {
     if (g->formulation->wheels)
         template_expand(g->pool, out, g->templates, "dual_rate.c.in", g->model->name, NULL, insert_rolling, g);
+    write_shift(g, out);
 }
 
 void write_dual_rate(Generation *g, Text *out, int indent)
@@ -132,11 +137,12 @@ void write_dual_rate(Generation *g, Text *out, int indent)
         line(out, indent, "%s_any_link,", name);
         line(out, indent, "%s_any_fast,", name);
         line(out, indent, "%s_any_roll,", name);
+        line(out, indent, "%s", g->model->powertrain ? pool_print(g->pool, "%s_any_shift,", name) : "NULL,");
         return;
     }
     line(out, indent, "0,");
     line(out, indent, "0,");
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 4; ++i)
         line(out, indent, "NULL,");
 }
 
@@ -151,6 +157,7 @@ void write_wheel_members(Generation *g, Text *out, int indent)
     line(out, indent,
          "gic_real recovered_at[2 * %s_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the last recovery */",
          g->upper);
+    write_powertrain_members(g, out, indent);
     line(out, indent, "int32_t recovered; /* 1: and it was good */");
 }
 
@@ -162,6 +169,7 @@ void write_wheel_sizes(Generation *g, Text *out, int indent)
     line(out, indent, "%s_ROLLING = %d,", g->upper, wheels->count);
     line(out, indent, "%s_LINKS = %d,", g->upper, wheels->links);
     line(out, indent, "%s_GRIP = %d,", g->upper, GRIP_NUMBERS);
+    write_powertrain_sizes(g, out, indent);
 }
 
 void wheel_counts(Generation *g, Text *out, const Figures *figures)
@@ -174,5 +182,7 @@ void wheel_counts(Generation *g, Text *out, const Figures *figures)
     for (int c = 0; c < wheels->classes; ++c)
         count_line(out, pool_print(g->pool, "wheel '%s' (%d times)", wheels->class[c].name, wheels->class[c].members),
                    figures->wheel[c]);
-    count_line(out, "a fast step: all wheels", figures->fast);
+    if (g->model->powertrain)
+        count_line(out, "powertrain", figures->drive);
+    count_line(out, g->model->powertrain ? "a fast step: all of these" : "a fast step: all wheels", figures->fast);
 }

@@ -496,6 +496,8 @@ void whole_inertia(Whole *whole, int body, Ex J[6]);
 Ex whole_fast(Whole *whole, const char *array, int wheel, int state);
 /* What a wheel with a tire does: a number of its grip[]. */
 Ex whole_grip(Whole *whole, int wheel, int number);
+/* What the powertrain does: a number of its watch[]. */
+Ex whole_watch(Whole *whole, int number);
 /* Coordinates that a body's motion depends on. */
 const Subset *whole_subset(const Whole *whole, int body);
 
@@ -523,7 +525,7 @@ Loads *loads_make(Whole *whole);
 /* A formula as an expression; local: what its place offers. */
 Ex whole_law(Whole *whole, const Law *law, const Ex *local);
 
-/* ---- wheel.c, tire_pac2002.c, tire_tmeasy.c: wheels with tires, models/TIRES.md ----------------------------- */
+/* ---- wheel.c, tire_*.c, powertrain.c: wheels with tires, models/TIRES.md, POWERTRAIN.md --------------------- */
 
 /* How the multibody system moves a wheel: its link, world components. Behind those of all wheels a link has the
  * coordinates that formulas of wheels read. */
@@ -568,6 +570,9 @@ typedef struct Wheels {
     int links;    /* numbers of a link */
     Block link;   /* link[], from a Whole */
     Block torque; /* torque[2 i]: drive and brake of the i-th wheel with a tire, from link, fast, u, p, time */
+    Block drive;  /* of a powertrain, after the wheels: what it changes in rate[] and grip[] of all, and watch[]; from
+                   * these, link, fast, gear, u, p, time (powertrain.h) */
+    Block shift;  /* choice[] after a step, from fast, gear, x, xd, u, p, time */
 } Wheels;
 
 const Wheels *wheels_formulate(Pool *pool, const Plan *plan);
@@ -716,8 +721,9 @@ typedef struct Figures {
     ClassFigures *class; /* [classes] */
     Count dynamics;
     Count link, torque; /* of wheels with tires: their motion; what drives and brakes them */
+    Count drive;        /* of the powertrain */
     Count *wheel;       /* [classes of wheels] one wheel on the road */
-    Count fast;         /* a fast step: torque, and all wheels */
+    Count fast;         /* a fast step: torque, all wheels, powertrain */
     Count outputs;      /* of what outputs are made of; where they need multipliers that the dynamics don't give: */
     Count wrenches;     /* what they follow from */
     Count *react;       /* [classes] multipliers of one subset */

@@ -290,7 +290,7 @@ static void add_rolling_wheel(Whole *whole, Loads *loads, int index)
     add_load(whole, loads, wheel->body, BODY_GROUND, wheel->center, grip + GRIP_FORCE, grip + GRIP_TORQUE);
     loads->power = ex_add(dag, loads->power, grip[GRIP_POWER]);
     memcpy(loads->wheel[index], grip + GRIP_LOAD, sizeof *loads->wheel);
-    if (!wheel->drive)
+    if (!wheel_is_driven(whole->model, index))
         return;
     /* the reaction of the drive */
     for (int i = 0; i < 3; ++i)

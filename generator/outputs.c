@@ -135,6 +135,10 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         for (int i = 0; i < 3; ++i)
             out[i] = whole_grip(whole, output->index, GRIP_POINT + i);
         break;
+    case OUTPUT_POWERTRAIN:
+        for (int i = 0; i < output->count; ++i)
+            out[i] = whole_watch(whole, i);
+        break;
     case OUTPUT_ENERGY: {
         out[0] = 0;
         out[1] = s->loads->potential;

@@ -102,7 +102,8 @@ static void identity(const Report *r, Text *out)
                model->coordinates, model->forces, model->wheels, sequence->unknowns, sequence->equations,
                sequence->dof);
     if (model->fast_states)
-        text_print(out, "<p>Wheels with tires have %d fast states.</p>\n", model->fast_states);
+        text_print(out, "<p>Wheels with tires%s have %d fast states.</p>\n",
+                   model->powertrain ? " and the powertrain" : "", model->fast_states);
     text_print(out, "<p>Equations of motion in the %s form. Code of gicgen %s; model hash <code>%s</code>.</p>\n",
                solve_name[r->formulation->plan->solve], GICGEN_VERSION, r->formulation->hash);
 }

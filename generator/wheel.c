@@ -51,13 +51,12 @@ static Ex absolute(Dag *dag, Ex x)
     return ex_op(dag, OP_ABS, x, 0, 0);
 }
 
-static Ex positive_part(Dag *dag, Ex x)
+Ex positive_part(Dag *dag, Ex x)
 {
     return ex_op(dag, OP_MAX, x, 0, 0);
 }
 
-/* S(s): 0 for s <= 0, 1 for s >= 1. */
-static Ex smooth_step(Dag *dag, Ex s)
+Ex smooth_step(Dag *dag, Ex s)
 {
     s = ex_op(dag, OP_MIN, positive_part(dag, s), ex_literal(dag, 1), 0);
     return ex_mul(dag, ex_mul(dag, s, s), ex_sub(dag, ex_literal(dag, 3), ex_add(dag, s, s)));
@@ -361,16 +360,8 @@ static void classes_find(Pool *pool, const Model *model, Wheels *wheels)
 /* ---- what moves wheels, and turns them
  * ------------------------------------------------------------------------------- */
 
-/* Which numbers of the multibody system formulas read, and where they stand in the link. */
-typedef struct Linking {
-    Whole *whole;   /* of the link */
-    Whole *torques; /* of the formulas */
-    Wheels *wheels;
-    int *place[2]; /* [coordinates] of values and of rates, 0: not there, for a wheel's centre is */
-} Linking;
-
-/* Formulas are evaluated at fast steps, where free coordinates come with the link. */
-static void link_law(Linking *l, const Law *law)
+/* The free coordinates that a formula reads become part of the link. */
+static void link_coordinates(Linking *l, const Law *law)
 {
     if (!law)
         return;
@@ -380,12 +371,18 @@ static void link_law(Linking *l, const Law *law)
         if (!*place) {
             *place = l->wheels->links++;
             block_store(&l->wheels->link, (rate ? l->whole->xd : l->whole->x)[law->index], "link[%d]", *place);
-            (rate ? l->torques->xd : l->torques->x)[law->index] =
-                ex_input(l->torques->dag, pool_print(l->torques->dag->pool, "link[%d]", *place), NULL);
+            (rate ? l->formulas->xd : l->formulas->x)[law->index] =
+                ex_input(l->formulas->dag, pool_print(l->formulas->dag->pool, "link[%d]", *place), NULL);
         }
     }
     for (int i = 0; i < 3; ++i)
-        link_law(l, law->arg[i]);
+        link_coordinates(l, law->arg[i]);
+}
+
+Ex fast_law(Linking *l, const Law *law, const Ex *local)
+{
+    link_coordinates(l, law);
+    return whole_law(l->formulas, law, local);
 }
 
 static void link_wheel(Whole *whole, Block *block, const Wheel *wheel, int offset)
@@ -410,12 +407,11 @@ static void link_wheel(Whole *whole, Block *block, const Wheel *wheel, int offse
 
 static void formula_torques(Linking *l, const Wheel *wheel, int place)
 {
-    Dag *dag = l->torques->dag;
+    Dag *dag = l->formulas->dag;
     const Ex spin = ex_input(dag, pool_print(dag->pool, "fast[%d]", wheel->fast + FAST_SPIN), NULL);
     const Law *const law[2] = {wheel->drive, wheel->brake};
     for (int i = 0; i < 2; ++i) {
-        link_law(l, law[i]);
-        block_store(&l->wheels->torque, law[i] ? whole_law(l->torques, law[i], &spin) : 0, "torque[%d]", place + i);
+        block_store(&l->wheels->torque, law[i] ? fast_law(l, law[i], &spin) : 0, "torque[%d]", place + i);
     }
 }
 
@@ -425,17 +421,17 @@ const Wheels *wheels_formulate(Pool *pool, const Plan *plan)
     const size_t coordinates = (size_t)model->coordinates + 1;
     Wheels *wheels = pool_alloc(pool, sizeof *wheels);
     Linking l = {.whole = whole_new(pool, plan),
-                 .torques = whole_new(pool, plan),
+                 .formulas = whole_new(pool, plan),
                  .wheels = wheels,
                  .place = {pool_alloc(pool, coordinates * sizeof(int)), pool_alloc(pool, coordinates * sizeof(int))}};
     wheels->link.dag = l.whole->dag;
-    wheels->torque.dag = l.torques->dag;
+    wheels->torque.dag = l.formulas->dag;
     classes_find(pool, model, wheels);
     for (int w = 0; w < model->coordinates; ++w)
         if (model->coordinate[w].driven) { /* what inputs of the moment make of it */
             int input = model->coordinate[w].input;
-            l.torques->x[w] = ex_input(l.torques->dag, pool_print(pool, "u[%d]", input), NULL);
-            l.torques->xd[w] = ex_input(l.torques->dag, pool_print(pool, "u[%d]", input + 1), NULL);
+            l.formulas->x[w] = ex_input(l.formulas->dag, pool_print(pool, "u[%d]", input), NULL);
+            l.formulas->xd[w] = ex_input(l.formulas->dag, pool_print(pool, "u[%d]", input + 1), NULL);
         }
     for (int i = 0; i < model->wheels; ++i)
         if (model->wheel[i].tire >= 0)
@@ -444,5 +440,7 @@ const Wheels *wheels_formulate(Pool *pool, const Plan *plan)
     for (int i = 0; i < model->wheels; ++i)
         if (model->wheel[i].tire >= 0)
             formula_torques(&l, &model->wheel[i], 2 * wheel_rolling(model, i));
+    if (model->powertrain)
+        powertrain_formulate(pool, &l);
     return wheels;
 }

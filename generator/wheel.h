@@ -43,4 +43,22 @@ Ex pac2002_radius(Dag *dag, const Tire *tire, Ex deflection);
 void tmeasy_forces(Dag *dag, const Tire *tire, const Rolling *rolling, Ex force[TIRE_FORCES]);
 Ex tmeasy_radius(Dag *dag, const Tire *tire, Ex loaded);
 
+/* ---- wheel.c: what the powertrain shares ---- */
+
+/* Formulas at fast steps: free coordinates that they read come with the link. */
+typedef struct Linking {
+    Whole *whole;    /* of the link */
+    Whole *formulas; /* of the formulas */
+    Wheels *wheels;
+    int *place[2]; /* [coordinates] of values and of rates in the link, 0: not there, for a wheel's centre is */
+} Linking;
+
+Ex fast_law(Linking *l, const Law *law, const Ex *local);
+Ex positive_part(Dag *dag, Ex x);
+/* S(s): 0 for s <= 0, 1 for s >= 1. */
+Ex smooth_step(Dag *dag, Ex s);
+
+/* powertrain.c: the blocks of the model's powertrain. */
+void powertrain_formulate(Pool *pool, Linking *l);
+
 #endif

@@ -102,6 +102,11 @@ Ex whole_grip(Whole *whole, int wheel, int number)
     return indexed(whole, "self->grip", GRIP_NUMBERS * wheel_rolling(whole->model, wheel) + number);
 }
 
+Ex whole_watch(Whole *whole, int number)
+{
+    return indexed(whole, "self->watch", number);
+}
+
 Whole *whole_new(Pool *pool, const Plan *plan)
 {
     const Model *model = plan->model;

@@ -30,7 +30,7 @@ static int orient(Instance *self, const double *y, double e[4], double turn[3])
 }
 
 /* Coordinates and rates, from the state where they are free, from the inputs where they are driven. */
-static void gather(Instance *self, const double *y)
+void tape_gather(Instance *self, const double *y)
 {
     const TapeEngine *engine = tape_of(self);
     const Plan *plan = engine->formulation->plan;
@@ -68,6 +68,7 @@ void tape_arrays(Instance *self, const double *time, const double *y, const doub
         [WHOLE_energy] = out,
         [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
         [WHOLE_GRIP] = tape_array(self, engine->grip_offset),
+        [WHOLE_WATCH] = tape_array(self, engine->watch_offset),
         [WHOLE_lambda] = tape_array(self, engine->multiplier_offset),
     };
     memcpy(array, all, sizeof all);
@@ -99,7 +100,7 @@ int tape_locate(Instance *self, double time, const double *y, double e[4])
     const double begun = profile_clock(engine->profile);
     int status = orient(self, y, e, turn);
     if (status == GIC_OK) {
-        gather(self, y);
+        tape_gather(self, y);
         status = engine->wheel ? tape_recover_once(self, turn) : tape_recover(self, turn, false);
     }
     engine->profile->recovery += profile_clock(engine->profile) - begun;
@@ -211,6 +212,7 @@ static int setup_with(void *instance, const double *wanted)
     for (int i = 0; i < model->inputs; ++i)
         input[i] = model->input[i].initial;
     memcpy(tape_array(self, code->parameter_offset), engine->wanted, (size_t)code->parameter_count * sizeof *wanted);
+    tape_start_gears(self);
     if (!gic_finite(engine->wanted, code->parameter_count))
         return self->head.status = GIC_ERROR_INPUT;
     /* from the design poses alone, then on to the initial values of the coordinates */
@@ -224,7 +226,7 @@ static int setup_with(void *instance, const double *wanted)
     int status = orient(self, state, e, turn);
     if (status == GIC_OK)
         status = engine->draw ? tape_assemble(self, turn) : tape_recover(self, turn, true);
-    gather(self, state);
+    tape_gather(self, state);
     if (status == GIC_OK)
         status = tape_recover(self, turn, false);
     return self->head.status = status;
@@ -252,6 +254,8 @@ const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *o
         tape->code.fast = tape_fast;
         tape->code.roll = tape_roll;
     }
+    if (model->powertrain)
+        tape->code.shift = tape_shift;
     Engine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (Engine){.name = "tape",
                        .code = &tape->code,

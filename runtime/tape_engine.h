@@ -39,13 +39,16 @@ typedef struct TapeEngine {
     const Tape *derive, *draw; /* NULL: no parameter is geometric */
     const bool *reacts;        /* [subsets] whose multipliers outputs need */
     const Tape *link, *torque; /* NULL: no wheel has a tire */
+    const Tape *drive, *shift; /* NULL: no powertrain */
     TapeWheel *wheel;          /* [classes of wheels] */
     gic_table *table;
     double *piece, *initial; /* [coordinates], [states] */
     size_t x_offset, xd_offset, start_offset[2], motion_offset, inertia_offset, multiplier_offset, derived_offset;
     size_t grip_offset,
-        recovered_offset;       /* the latter: x, xd and angular velocity of the last recovery, 1: it was good */
+        recovered_offset; /* the latter: x, xd and angular velocity of the last recovery, 1: it was good */
+    size_t watch_offset;
     double *link_row, *torques; /* a link; what drives and brakes [wheels with tires][2] */
+    double *choice;             /* powertrain.h */
     double *frame, *q, *first, *result, *out;
     int slots;                              /* of the largest tape: room in `frame` */
     double *standard, *wanted;              /* [tunables] values in the file, and while one is set up */
@@ -77,12 +80,13 @@ static inline double *tape_start(Instance *self)
     X(time) \
     X(y) \
     X(e) \
-    X(x) X(xd) X(u) X(m) X(n) X(p) X(port) X(s) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) \
-        X(fast) X(torque) X(hub) X(force) X(grip)
+    X(x) \
+    X(xd) X(u) X(m) X(n) X(p) X(port) X(s) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) \
+        X(torque) X(hub) X(force) X(grip) X(gear) X(watch) X(choice)
 #define CLASS_ENUM(name) CLASS_##name,
 #define WHOLE_ENUM(name) WHOLE_##name,
 enum { CLASS_ARRAYS(CLASS_ENUM) CLASS_KNOWN };
-enum { WHOLE_ARRAYS(WHOLE_ENUM) WHOLE_DERIVED, WHOLE_GRIP, WHOLE_COUNT };
+enum { WHOLE_ARRAYS(WHOLE_ENUM) WHOLE_DERIVED, WHOLE_GRIP, WHOLE_WATCH, WHOLE_COUNT };
 #undef CLASS_ENUM
 #undef WHOLE_ENUM
 
@@ -108,6 +112,9 @@ void tape_record_derived(Pool *pool, TapeEngine *engine);
 
 /* tape_react.c: multipliers of the subsets that outputs need, at the present rate; e: Euler parameters of the base. */
 int tape_react(Instance *self, const double e[4]);
+
+/* tape_engine.c: coordinates of the instance and their rates, at a state. */
+void tape_gather(Instance *self, const double *y);
 
 /* tape_engine.c: play a tape about the whole mechanism, with the instance's arrays but for `rate`, `acc` and `out`
  * (which is also pose, tau and energy); NULL: not used. */
@@ -137,6 +144,11 @@ int tape_recover_once(Instance *self, const double turn[3]);
 int tape_link_wheels(void *self, double time, const double *slow, double *link);
 int tape_fast(void *self, double time, const double *link, const double *fast, double *rate);
 int tape_roll(void *self);
+
+/* tape_powertrain.c: as in powertrain.c.in and shift.c.in; gears at set-up. */
+int tape_drive(Instance *self, double time, const double *link, const double *fast, double *rate);
+int tape_shift(void *self);
+void tape_start_gears(Instance *self);
 
 /* tape_self_test.c: as the generated code tests itself. */
 int tape_self_test(void *self, gic_self_test *result);

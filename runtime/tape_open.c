@@ -2,6 +2,8 @@
  * Opening the engine `tape` for a model: record its formulas, lay out instances, describe them. */
 #include "tape_engine.h"
 
+#include "../generator/powertrain.h"
+
 #include "../templates/bounds.c.in"
 
 static double *numbers(Pool *pool, int count)
@@ -45,6 +47,7 @@ static void record_whole(Pool *pool, TapeEngine *engine)
 #define NAME(name) #name,
         WHOLE_ARRAYS(NAME) "self->derived",
         "self->grip",
+        "self->watch",
 #undef NAME
     };
     const Formulation *f = engine->formulation;
@@ -101,6 +104,10 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
     }
     if (f->wheels) {
         slots = GIC_MAX(slots, GIC_MAX(engine->link->slots, engine->torque->slots));
+        if (engine->drive) {
+            slots = GIC_MAX(slots, GIC_MAX(engine->drive->slots, engine->shift->slots));
+            engine->choice = numbers(pool, 2 * f->model->powertrain->forward);
+        }
         engine->link_row = numbers(pool, f->wheels->links);
         engine->torques = numbers(pool, 2 * f->wheels->count);
     }
@@ -140,6 +147,7 @@ static void lay_out(TapeEngine *engine)
         code->link_offset = descriptor_place(code, 5 * (size_t)wheels->links);
         engine->grip_offset = descriptor_place(code, GRIP_NUMBERS * (size_t)wheels->count);
         engine->recovered_offset = descriptor_place(code, 2 * coordinates + 4);
+        engine->watch_offset = descriptor_place(code, engine->drive ? WATCH_NUMBERS : 0);
     }
 }
 

@@ -12,6 +12,10 @@ void tape_record_wheels(Pool *pool, TapeEngine *engine, const char *const *array
     const Wheels *wheels = engine->formulation->wheels;
     engine->link = tape_record(pool, &wheels->link, array, WHOLE_COUNT);
     engine->torque = tape_record(pool, &wheels->torque, array, WHOLE_COUNT);
+    if (engine->formulation->model->powertrain) {
+        engine->drive = tape_record(pool, &wheels->drive, array, WHOLE_COUNT);
+        engine->shift = tape_record(pool, &wheels->shift, array, WHOLE_COUNT);
+    }
     engine->wheel = pool_alloc(pool, (size_t)wheels->classes * sizeof *engine->wheel);
     for (int c = 0; c < wheels->classes; ++c)
         engine->wheel[c] = (TapeWheel){.contact = tape_record(pool, &wheels->class[c].contact, array, WHOLE_COUNT),
@@ -92,7 +96,7 @@ static int turn(const Turning *all)
             status = wheel_of(&one, &engine->wheel[c], i);
         }
     }
-    return status;
+    return status == GIC_OK && engine->drive ? tape_drive(self, time, link, fast, rate) : status;
 }
 
 /* The same of an instance: rate[] of the fast states. */

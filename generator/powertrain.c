@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: MIT
+ * The powertrain (models/POWERTRAIN.md sections 3 and 4): what it makes of the wheels' balances, and what a change of
+ * gear follows. */
+#include "powertrain.h"
+#include "wheel.h"
+
+/* What both blocks are made of. */
+typedef struct Shafts {
+    const Model *model;
+    const Powertrain *powertrain;
+    Dag *dag;
+    int wheels, *wheel;   /* those that it drives, in the order of the model */
+    Ex *spin;             /* [wheels] */
+    Ex *speed;            /* [differentials] of the input */
+    double **coefficient; /* [differentials][wheels] of the spins in it */
+    Ex ratio, engaged;    /* i, e */
+    Ex turbine;           /* omega_t */
+} Shafts;
+
+/* ---- speeds -------------------------------------------------------------------------------------------------- */
+
+static Ex input(Dag *dag, const char *array, int index)
+{
+    return ex_input(dag, pool_print(dag->pool, "%s[%d]", array, index), NULL);
+}
+
+static bool in_tree(const Powertrain *powertrain, int wheel)
+{
+    for (int i = 0; i < powertrain->differentials; ++i)
+        if (powertrain->differential[i].wheel[0] == wheel || powertrain->differential[i].wheel[1] == wheel)
+            return true;
+    return false;
+}
+
+static int place_of(const Shafts *shafts, int wheel)
+{
+    int i = 0;
+    while (shafts->wheel[i] != wheel)
+        ++i;
+    return i;
+}
+
+/* Speed of an output of a differential. */
+static Ex output_speed(const Shafts *shafts, const Differential *differential, int which)
+{
+    int wheel = differential->wheel[which];
+    return wheel >= 0 ? shafts->spin[place_of(shafts, wheel)] : shafts->speed[differential->differential[which]];
+}
+
+static void differential_speed(Shafts *shafts, int index)
+{
+    Dag *dag = shafts->dag;
+    const Differential *differential = &shafts->powertrain->differential[index];
+    shafts->speed[index] = 0;
+    for (int k = 0; k < differential->outputs; ++k) {
+        const double weight = differential->ratio * (k ? 1 - differential->split : differential->split);
+        const int other = differential->differential[k];
+        Ex part = ex_mul(dag, ex_literal(dag, weight), output_speed(shafts, differential, k));
+        shafts->speed[index] = ex_add(dag, shafts->speed[index], part);
+        for (int i = 0; i < shafts->wheels; ++i)
+            shafts->coefficient[index][i] +=
+                weight * (other >= 0 ? shafts->coefficient[other][i] : shafts->wheel[i] == differential->wheel[k]);
+    }
+}
+
+/* From `before` to `now` with a share of the way. */
+static Ex between(Dag *dag, Ex before, Ex now, Ex share)
+{
+    return ex_add(dag, before, ex_mul(dag, share, ex_sub(dag, now, before)));
+}
+
+static Shafts shafts_new(Whole *whole)
+{
+    Dag *dag = whole->dag;
+    const Powertrain *powertrain = whole->model->powertrain;
+    const size_t wheels = (size_t)whole->model->wheels, differentials = (size_t)powertrain->differentials;
+    Shafts shafts = {.model = whole->model,
+                     .powertrain = powertrain,
+                     .dag = dag,
+                     .wheel = pool_alloc(dag->pool, wheels * sizeof *shafts.wheel),
+                     .spin = pool_alloc(dag->pool, wheels * sizeof *shafts.spin),
+                     .speed = pool_alloc(dag->pool, differentials * sizeof *shafts.speed),
+                     .coefficient = pool_alloc(dag->pool, differentials * sizeof *shafts.coefficient)};
+    for (int i = 0; i < whole->model->wheels; ++i)
+        if (in_tree(powertrain, i)) {
+            shafts.spin[shafts.wheels] = input(dag, "fast", whole->model->wheel[i].fast + FAST_SPIN);
+            shafts.wheel[shafts.wheels++] = i;
+        }
+    for (int i = 0; i < powertrain->differentials; ++i) {
+        shafts.coefficient[i] = pool_alloc(dag->pool, wheels * sizeof **shafts.coefficient);
+        differential_speed(&shafts, i);
+    }
+    Ex age = input(dag, "fast", powertrain->fast + POWERTRAIN_AGE);
+    Ex share = smooth_step(dag, ex_mul(dag, ex_literal(dag, 1 / powertrain->duration), age));
+    shafts.ratio = between(dag, input(dag, "gear", GEAR_RATIO + 1), input(dag, "gear", GEAR_RATIO), share);
+    shafts.engaged = between(dag, input(dag, "gear", GEAR_ENGAGED + 1), input(dag, "gear", GEAR_ENGAGED), share);
+    shafts.turbine = ex_mul(dag, shafts.ratio, shafts.speed[powertrain->differentials - 1]);
+    return shafts;
+}
+
+/* ---- engine and converter ------------------------------------------------------------------------------------ */
+
+static Ex throttle(const Linking *l, const Powertrain *powertrain, Ex demand, Ex speed)
+{
+    const double governed = 0.2, fading = 0.05; /* bands below idle and limit, relative to these */
+    Dag *dag = l->formulas->dag;
+    const double idle = powertrain->idle, limit = powertrain->limit;
+    if (idle > 0) {
+        Ex below = ex_sub(dag, ex_literal(dag, idle), speed);
+        demand = ex_op(dag, OP_MAX, demand, ex_mul(dag, ex_literal(dag, 1 / (governed * idle)), below), 0);
+    }
+    Ex theta = ex_op(dag, OP_MIN, positive_part(dag, demand), ex_literal(dag, 1), 0);
+    if (limit > 0) {
+        Ex below = ex_sub(dag, ex_literal(dag, limit), speed);
+        theta = ex_mul(dag, theta, smooth_step(dag, ex_mul(dag, ex_literal(dag, 1 / (fading * limit)), below)));
+    }
+    return theta;
+}
+
+/* Torques of pump and turbine. In overrun the turbine drives the pump. */
+static void converter(const Shafts *shafts, Ex speed, Ex *pump, Ex *turbine)
+{
+    const double coupled = 0.05; /* difference of speeds, relative, below which the torque fades */
+    Dag *dag = shafts->dag;
+    Ex one = ex_literal(dag, 1), over = ex_sub(dag, shafts->turbine, speed);
+    Ex driving = ex_op(dag, OP_POSITIVE, over, shafts->turbine, speed);
+    Ex driven = ex_op(dag, OP_POSITIVE, over, speed, shafts->turbine);
+    Ex nu = ex_div(dag, positive_part(dag, driven), ex_op(dag, OP_MAX, driving, one, 0));
+    Ex slip = ex_mul(dag, ex_literal(dag, 1 / coupled), ex_sub(dag, one, nu));
+    Ex root = ex_div(dag, driving, ex_op(dag, OP_TABLE, nu, (Ex)shafts->powertrain->capacity, 0));
+    Ex torque = ex_mul(dag, shafts->engaged, ex_mul(dag, root, root));
+    torque = ex_mul(dag, torque, ex_op(dag, OP_MIN, one, slip, 0));
+    Ex multiplied = ex_mul(dag, ex_op(dag, OP_TABLE, nu, (Ex)shafts->powertrain->multiplication, 0), torque);
+    *pump = ex_op(dag, OP_POSITIVE, over, ex_neg(dag, torque), torque);
+    *turbine = ex_op(dag, OP_POSITIVE, over, ex_neg(dag, torque), multiplied);
+}
+
+/* ---- torques of the tree, and the wheels' accelerations ------------------------------------------------------- */
+
+/* What the tree passes to each wheel, from the torque at the root's input. */
+static void pass(Linking *l, const Shafts *shafts, Ex torque, Ex *onto)
+{
+    Dag *dag = shafts->dag;
+    const int count = shafts->powertrain->differentials;
+    Ex at[count];
+    at[count - 1] = torque;
+    for (int i = count - 1; i >= 0; --i) {
+        const Differential *differential = &shafts->powertrain->differential[i];
+        Ex lock = 0;
+        if (differential->lock) {
+            Ex apart = ex_sub(dag, output_speed(shafts, differential, 1), output_speed(shafts, differential, 0));
+            lock = ex_mul(dag, fast_law(l, differential->lock, NULL), ex_op(dag, OP_TANH, apart, 0, 0));
+        }
+        for (int k = 0; k < differential->outputs; ++k) {
+            const double weight = differential->ratio * (k ? 1 - differential->split : differential->split);
+            Ex out = ex_mul(dag, ex_literal(dag, weight), at[i]);
+            out = k ? ex_sub(dag, out, lock) : ex_add(dag, out, lock);
+            if (differential->differential[k] >= 0)
+                at[differential->differential[k]] = out;
+            else
+                onto[place_of(shafts, differential->wheel[k])] = out;
+        }
+    }
+}
+
+/* Rates of the spins with all that turns with the wheels, and from them the torques of the half shafts. rate: as each
+ * wheel has it by itself. */
+static void turn_wheels(Linking *l, const Shafts *shafts, Block *block, Ex torque)
+{
+    Dag *dag = shafts->dag;
+    const int n = shafts->wheels, differentials = shafts->powertrain->differentials;
+    Ex A[n * n], b[n], onto[n], inertia[n], alone[n];
+    Ex turbine = ex_mul(dag, ex_literal(dag, shafts->powertrain->turbine), ex_mul(dag, shafts->ratio, shafts->ratio));
+    pass(l, shafts, torque, onto);
+    for (int i = 0; i < n; ++i) {
+        const Wheel *wheel = &shafts->model->wheel[shafts->wheel[i]];
+        inertia[i] = ex_literal(dag, wheel->spin_inertia);
+        alone[i] = input(dag, "rate", wheel->fast + FAST_SPIN);
+        b[i] = ex_add(dag, ex_mul(dag, inertia[i], alone[i]), onto[i]);
+        for (int j = 0; j < n; ++j) {
+            double sum = i == j ? wheel->spin_inertia : 0;
+            for (int k = 0; k < differentials; ++k)
+                sum +=
+                    shafts->powertrain->differential[k].inertia * shafts->coefficient[k][i] * shafts->coefficient[k][j];
+            const double *root = shafts->coefficient[differentials - 1];
+            A[n * i + j] = ex_add(dag, ex_literal(dag, sum), ex_mul(dag, turbine, ex_literal(dag, root[i] * root[j])));
+        }
+    }
+    linear_solve(dag, linear_factor_symmetric(dag, n, A, NULL), b, b);
+    for (int i = 0; i < n; ++i) {
+        const int index = shafts->wheel[i], grip = GRIP_NUMBERS * wheel_rolling(shafts->model, index);
+        const Wheel *wheel = &shafts->model->wheel[index];
+        Ex drive = wheel->drive ? input(dag, "grip", grip + GRIP_DRIVE) : 0;
+        Ex more = ex_mul(dag, inertia[i], ex_sub(dag, b[i], alone[i]));
+        block_store(block, b[i], "rate[%d]", wheel->fast + FAST_SPIN);
+        block_store(block, ex_add(dag, drive, more), "grip[%d]", grip + GRIP_DRIVE);
+        block_store(block, ex_mul(dag, ex_mul(dag, inertia[i], b[i]), shafts->spin[i]), "grip[%d]", grip + GRIP_POWER);
+    }
+}
+
+/* ---- the blocks ---------------------------------------------------------------------------------------------------
+ */
+
+static void drive_block(Linking *l, const Powertrain *powertrain, Block *block)
+{
+    Dag *dag = block->dag = l->formulas->dag;
+    const Shafts shafts = shafts_new(l->formulas);
+    Ex pump, turbine, speed = input(dag, "fast", powertrain->fast + POWERTRAIN_SPEED);
+    Ex theta = throttle(l, powertrain, fast_law(l, powertrain->throttle, NULL), speed);
+    Ex torque = fast_law(l, powertrain->torque, (const Ex[]){speed, theta});
+    torque = ex_op(dag, OP_POSITIVE, speed, torque, positive_part(dag, torque)); /* nothing turns an engine backwards */
+    converter(&shafts, speed, &pump, &turbine);
+    turn_wheels(l, &shafts, block, ex_mul(dag, shafts.ratio, turbine));
+    Ex rate = ex_div(dag, ex_sub(dag, torque, pump), ex_literal(dag, powertrain->inertia));
+    block_store(block, rate, "rate[%d]", powertrain->fast + POWERTRAIN_SPEED);
+    block_store(block, ex_literal(dag, 1), "rate[%d]", powertrain->fast + POWERTRAIN_AGE);
+    const Ex watch[WATCH_NUMBERS] = {[WATCH_ENGINE_SPEED] = speed,     [WATCH_ENGINE_TORQUE] = torque,
+                                     [WATCH_THROTTLE] = theta,         [WATCH_GEAR] = input(dag, "gear", GEAR_NUMBER),
+                                     [WATCH_RATIO] = shafts.ratio,     [WATCH_TURBINE_SPEED] = shafts.turbine,
+                                     [WATCH_TURBINE_TORQUE] = turbine, [WATCH_PUMP_TORQUE] = pump};
+    for (int i = 0; i < WATCH_NUMBERS; ++i)
+        block_store(block, watch[i], "watch[%d]", i);
+}
+
+static void shift_block(Whole *whole, const Powertrain *powertrain, Block *block)
+{
+    Dag *dag = block->dag = whole->dag;
+    const Ex always = ex_literal(dag, 1);
+    block_store(block, powertrain->selector ? whole_law(whole, powertrain->selector, NULL) : always, "choice[%d]",
+                CHOICE_SELECTOR);
+    block_store(block, shafts_new(whole).turbine, "choice[%d]", CHOICE_TURBINE);
+    for (int i = 0; i < powertrain->forward - 1; ++i) {
+        block_store(block, whole_law(whole, powertrain->up[i], NULL), "choice[%d]", CHOICE_UP + i);
+        block_store(block, whole_law(whole, powertrain->down[i], NULL), "choice[%d]",
+                    CHOICE_UP + powertrain->forward - 1 + i);
+    }
+}
+
+void powertrain_formulate(Pool *pool, Linking *l)
+{
+    const Powertrain *powertrain = l->whole->model->powertrain;
+    drive_block(l, powertrain, &l->wheels->drive);
+    shift_block(whole_new(pool, l->whole->plan), powertrain, &l->wheels->shift);
+}
