@@ -278,10 +278,10 @@ void world_wheel_motion(const World *world, int index, WheelMotion *motion)
     motion->drive_turn = dot3(motion->axis, world->omega[wheel->drive_body]);
 }
 
-int world_wheel_turn(const World *world, int index, const WheelMotion *motion, const double *fast, double *rate,
-                     Rolling *rolling)
+/* A wheel for itself, as if it had no powertrain. */
+static int turn_wheel(const World *world, const Wheel *wheel, const WheelMotion *motion, const double *fast,
+                      double *rate, Rolling *rolling)
 {
-    const Wheel *wheel = &world->model->wheel[index];
     const Tire *tire = &world->model->tire[wheel->tire];
     const Ground ground = {world->road, world->lane, world->time};
     const double *spin = &fast[FAST_SPIN];
@@ -293,17 +293,29 @@ int world_wheel_turn(const World *world, int index, const WheelMotion *motion, c
     return status;
 }
 
-static int add_tire(World *world, int index)
+int world_wheels_turn(World *world, const double *fast, double *rate)
+{
+    const Model *model = world->model;
+    for (int i = 0; i < model->wheels; ++i) {
+        const Wheel *wheel = &model->wheel[i];
+        const int at = wheel->fast;
+        int status = GIC_OK;
+        if (wheel->tire >= 0)
+            status = turn_wheel(world, wheel, &world->motion[i], fast + at, rate + at, &world->rolling[i]);
+        if (status != GIC_OK)
+            return status;
+    }
+    if (model->powertrain)
+        world_drive(world, fast, rate);
+    return GIC_OK;
+}
+
+static void add_tire(World *world, int index)
 {
     const Wheel *wheel = &world->model->wheel[index];
-    WheelMotion *motion = &world->motion[index];
-    Rolling *rolling = &world->rolling[index];
+    const WheelMotion *motion = &world->motion[index];
+    const Rolling *rolling = &world->rolling[index];
     double arm[3], moment[3], *carrier = world->wrench[wheel->body], *driver = world->wrench[wheel->drive_body] + 3;
-    world_wheel_motion(world, index, motion);
-    const int status =
-        world_wheel_turn(world, index, motion, world->fast + wheel->fast, world->fast_rate + wheel->fast, rolling);
-    if (status != GIC_OK)
-        return status;
     sub3(motion->center, world->q[wheel->body], arm);
     cross3(arm, rolling->force, moment);
     add3(carrier, rolling->force, carrier);
@@ -314,7 +326,24 @@ static int add_tire(World *world, int index)
     memcpy(world->wheel[index],
            (const double[4]){rolling->fz, rolling->deflection, rolling->deflection_rate, rolling->height},
            sizeof world->wheel[index]);
-    return GIC_OK;
+}
+
+/* Wheels, with tires or not. */
+static int add_wheels(World *world)
+{
+    const Model *model = world->model;
+    int status = GIC_OK;
+    for (int i = 0; i < model->wheels && status == GIC_OK; ++i)
+        if (model->wheel[i].tire < 0)
+            status = add_contact(world, i);
+        else
+            world_wheel_motion(world, i, &world->motion[i]);
+    if (status == GIC_OK)
+        status = world_wheels_turn(world, world->fast, world->fast_rate);
+    for (int i = 0; i < model->wheels && status == GIC_OK; ++i)
+        if (model->wheel[i].tire >= 0)
+            add_tire(world, i);
+    return status;
 }
 
 int world_forces(World *world)
@@ -335,12 +364,7 @@ int world_forces(World *world)
         add_load(world, port->body, port->in, port->point, world->port + 6 * i);
     }
     world->power += world->stored;
-    for (int i = 0; i < model->wheels; ++i) {
-        const int status = model->wheel[i].tire < 0 ? add_contact(world, i) : add_tire(world, i);
-        if (status != GIC_OK)
-            return status;
-    }
-    return GIC_OK;
+    return add_wheels(world);
 }
 
 void world_spread(World *world)

@@ -28,6 +28,12 @@ static int32_t *dependent_of(const Instance *self)
     return (int32_t *)(void *)((char *)self + context_of(self)->code.discrete_offset);
 }
 
+/* Discrete states of the powertrain. */
+static int32_t *gear_of(const Instance *self)
+{
+    return dependent_of(self) + context_of(self)->code.free_base;
+}
+
 int interpreted_orient(const Instance *self, const double *state, double e[4])
 {
     static const double level[4] = {1, 0, 0, 0};
@@ -156,6 +162,18 @@ static void load(const Instance *self, double time)
     world->port = array_of(self, code->port_offset);
     world->road = self->head.road;
     world->lane = self->head.lane;
+    world->gear = gear_of(self);
+}
+
+/* Are the gears some that the transmission has? */
+static bool gears_exist(const Instance *self)
+{
+    const Powertrain *powertrain = context_of(self)->world->model->powertrain;
+    const int32_t *gear = gear_of(self);
+    for (int i = 0; i < POWERTRAIN_DISCRETE && powertrain; ++i)
+        if (gear[i] < -powertrain->reverse || gear[i] > powertrain->forward)
+            return false;
+    return true;
 }
 
 /* The parameters that set-up was given: geometric ones must stay so. */
@@ -183,7 +201,7 @@ int interpreted_load(Instance *self, double time)
     self->head.subset = -1;
     if (!gic_finite(&time, 1) || !finite(self, code->input_offset, code->input_count) ||
         !finite(self, code->parameter_offset, code->parameter_count) ||
-        !finite(self, code->port_offset, code->port_count))
+        !finite(self, code->port_offset, code->port_count) || !gears_exist(self))
         return GIC_ERROR_INPUT;
     load(self, time);
     return match_geometry(self);
@@ -269,6 +287,29 @@ static int any_settle(void *instance, double *state)
     return status;
 }
 
+/* Gears at the present state. */
+static int any_shift(void *instance)
+{
+    Instance *self = instance;
+    const Interpreted *context = self->context;
+    const double *state = array_of(self, context->code.state_offset);
+    int status = interpreted_load(self, gic_time(self));
+    if (status == GIC_OK && powertrain_watches_coordinates(context->world->model->powertrain))
+        status = context->place(context, self, state);
+    return status == GIC_OK && world_shift(context->world, state + context->code.slow_count, gear_of(self));
+}
+
+/* Everything stands still, but an engine that idles. */
+static void set_powertrain(const Instance *self, const Powertrain *powertrain)
+{
+    const gic_model *code = &context_of(self)->code;
+    double *fast = array_of(self, code->state_offset) + code->slow_count + powertrain->fast;
+    fast[POWERTRAIN_SPEED] = powertrain->idle;
+    fast[POWERTRAIN_AGE] = 100;
+    for (int i = 0; i < POWERTRAIN_DISCRETE; ++i)
+        gear_of(self)[i] = powertrain->start_gear;
+}
+
 /* State and inputs at their initial values. */
 static void set_initial(Instance *self)
 {
@@ -286,6 +327,8 @@ static void set_initial(Instance *self)
         const Coordinate *w = &model->coordinate[c];
         *(w->driven ? &input[w->input] : &state[context->code.coordinate_state[c]]) = w->initial;
     }
+    if (model->powertrain)
+        set_powertrain(self, model->powertrain);
 }
 
 static int any_setup_with(void *instance, const double *parameter)
@@ -342,6 +385,8 @@ Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *seq
         context->code.fast = interpreted_fast;
         context->code.roll = interpreted_roll;
     }
+    if (model->powertrain)
+        context->code.shift = any_shift;
     context->geometry = geometry_new(pool, model);
     context->setup_offset = descriptor_place(&context->code, (size_t)model->tunables + own);
     context->own_offset = context->setup_offset + sizeof(double) * (size_t)model->tunables;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Wheels with tires apart from the bodies that carry them, for dual rate: models/TIRES.md section 9. */
+ * Wheels with tires and the powertrain apart from the bodies that carry them, for dual rate: models/TIRES.md section 9.
+ */
 #include "interpreted.h"
 
 #include <string.h>
@@ -64,14 +65,13 @@ int interpreted_fast(void *instance, double time, const double *link, const doub
     int status = finite ? interpreted_load(self, time) : GIC_ERROR_INPUT;
     if (status == GIC_OK)
         set_coordinates(world, link + context->code.link_count - 2 * model->coordinates);
-    for (int i = 0; i < model->wheels && status == GIC_OK; ++i)
+    for (int i = 0; i < model->wheels; ++i)
         if (model->wheel[i].tire >= 0) {
-            const int at = model->wheel[i].fast;
-            WheelMotion motion;
-            memcpy(&motion, link, sizeof motion);
+            memcpy(&world->motion[i], link, sizeof *world->motion);
             link += MOTION_NUMBERS;
-            status = world_wheel_turn(world, i, &motion, fast + at, result + at, &world->rolling[i]);
         }
+    if (status == GIC_OK)
+        status = world_wheels_turn(world, fast, result);
     if (status == GIC_OK && !gic_finite(result, count))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK)

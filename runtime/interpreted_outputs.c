@@ -120,6 +120,20 @@ static void tire(const World *world, int index, double *out)
     memcpy(out, value, sizeof value);
 }
 
+static void powertrain(const World *world, double *out)
+{
+    const Driveline *d = &world->driveline;
+    const double value[] = {world->fast[world->model->powertrain->fast + POWERTRAIN_SPEED],
+                            d->engine_torque,
+                            d->throttle,
+                            world->gear[POWERTRAIN_GEAR],
+                            d->ratio,
+                            d->turbine_speed,
+                            d->turbine_torque,
+                            d->pump_torque};
+    memcpy(out, value, sizeof value);
+}
+
 /* Of a row, what its multiplier puts on the body at one end as force and torque about the centre of mass: -J^T
  * multiplier. */
 static void add_row_force(const World *world, const Tie *tie, int row, int end, double out[6])
@@ -174,6 +188,7 @@ static void one_output(const World *world, const Output *output, double *out)
     case OUTPUT_WHEEL: memcpy(out, world->wheel[i], sizeof world->wheel[i]); break;
     case OUTPUT_TIRE: tire(world, i, out); break;
     case OUTPUT_CONTACT: copy3(world->rolling[i].point, out); break;
+    case OUTPUT_POWERTRAIN: powertrain(world, out); break;
     case OUTPUT_ENERGY: {
         double all[3];
         energy(world, all);

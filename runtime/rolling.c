@@ -157,6 +157,14 @@ static double brake_torque(const Wheel *wheel, double most, double u, double zet
     return fmax(0, most) * fmin(1, fmax(-1, zeta + tau * *rate));
 }
 
+void wheel_drive(const WheelMotion *motion, double spin, double drive, Rolling *out)
+{
+    out->power += (drive - out->drive) * (spin - motion->drive_turn);
+    out->drive = drive;
+    for (int i = 0; i < 3; ++i)
+        out->reaction[i] = -drive * motion->axis[i];
+}
+
 void wheel_turn(const Wheel *wheel, const Tire *tire, const WheelMotion *motion, double drive, double brake,
                 const double *fast, double *rate, Rolling *out)
 {
@@ -164,7 +172,7 @@ void wheel_turn(const Wheel *wheel, const Tire *tire, const WheelMotion *motion,
     double arm[3], moment[3], momentum[3], gyro[3], turn[3];
     find_slip(wheel, tire, fast, rate, out);
     find_tire_forces(wheel, tire, spin, out);
-    out->drive = drive;
+    out->drive = 0;
     out->brake = wheel->brake ? brake_torque(wheel, brake, u, fast[FAST_BRAKE], &rate[FAST_BRAKE]) : 0;
 
     for (int i = 0; i < 3; ++i)
@@ -174,19 +182,17 @@ void wheel_turn(const Wheel *wheel, const Tire *tire, const WheelMotion *motion,
     add_scaled3(out->tire.mx, out->forward, moment);
     add_scaled3(out->tire.my, out->left, moment);
     add_scaled3(out->tire.mz, out->normal, moment);
-    const double about = dot3(s, moment);
-    rate[FAST_SPIN] = (about + drive - out->brake) / wheel->spin_inertia;
+    out->about = dot3(s, moment);
+    rate[FAST_SPIN] = (out->about + drive - out->brake) / wheel->spin_inertia;
 
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3; ++i)
         momentum[i] = wheel->spin_inertia * spin * s[i];
-        out->reaction[i] = -drive * s[i];
-    }
     cross3(motion->omega, momentum, gyro);
     sub3(moment, gyro, out->torque);
-    add_scaled3(out->brake - about, s, out->torque);
+    add_scaled3(out->brake - out->about, s, out->torque);
     across_axis(motion, turn);
-    out->power = dot3(out->force, motion->velocity) + dot3(moment, turn) + about * spin - out->brake * u +
-                 drive * (spin - motion->drive_turn);
+    out->power = dot3(out->force, motion->velocity) + dot3(moment, turn) + out->about * spin - out->brake * u;
+    wheel_drive(motion, spin, drive, out);
 }
 
 void wheel_roll(const Wheel *wheel, const Tire *tire, const Rolling *rolling, double *fast)

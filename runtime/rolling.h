@@ -34,7 +34,7 @@ typedef struct Rolling {
     double speed[2], rolling_radius, kappa, alpha;
     /* forces on the wheel at the contact point, torques on it about its axis */
     TireForces tire;
-    double drive, brake;
+    double about, drive, brake; /* s . M, torque of the drive, T_b */
     /* on the carrier: force at c, torque; on drive_body: torque */
     double force[3], torque[3], reaction[3];
     double power; /* W, of tire, brake and drive */
@@ -47,6 +47,8 @@ int wheel_touch(const Wheel *wheel, const Tire *tire, const Ground *ground, cons
  * formulas, N m. */
 void wheel_turn(const Wheel *wheel, const Tire *tire, const WheelMotion *motion, double drive, double brake,
                 const double *fast, double *rate, Rolling *out);
+/* Another torque of the drive than wheel_turn() was called with; the rate of `spin` is the caller's then. */
+void wheel_drive(const WheelMotion *motion, double spin, double drive, Rolling *out);
 /* The fast states of a wheel that rolls, after wheel_touch(). */
 void wheel_roll(const Wheel *wheel, const Tire *tire, const Rolling *rolling, double *fast);
 

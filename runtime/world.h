@@ -32,6 +32,11 @@ typedef struct TieVectors {
     double arm[2][3], d[3] /* from the first point to the second */, axis[2][3], side[2][3], other[3];
 } TieVectors;
 
+/* The powertrain at one moment, POWERTRAIN.md section 3: theta, i, T_e, omega_t, T_t, T_p. */
+typedef struct Driveline {
+    double throttle, ratio, engine_torque, turbine_speed, turbine_torque, pump_torque;
+} Driveline;
+
 typedef struct World {
     const Model *model; /* assembled */
     const Sequence *sequence;
@@ -49,7 +54,9 @@ typedef struct World {
     const double *input, *parameter, *port;
     const gic_road *road;
     int32_t lane;
-    const double *fast; /* [fast states] of wheels with tires: TIRES.md section 2 */
+    const double
+        *fast; /* [fast states] of wheels with tires and of the powertrain: TIRES.md, POWERTRAIN.md section 2 */
+    const int32_t *gear; /* [POWERTRAIN_DISCRETE] of the powertrain */
 
     /* configuration: engines fill it, body by body (world_set_q, world_set_rate) and coordinate by coordinate. Ground
      * of a fixed base is there from the beginning. */
@@ -72,6 +79,7 @@ typedef struct World {
     double (*wheel)[4];  /* [wheels] fz, deflection, deflection rate, road height */
     WheelMotion *motion; /* [wheels] with tires */
     Rolling *rolling;    /* [wheels] with tires */
+    Driveline driveline; /* of the powertrain */
     double *fast_rate;   /* [fast states] */
     double potential;    /* J, of springs */
     double stored;       /* W, its rate */
@@ -120,15 +128,24 @@ double world_residual(World *world);
 double world_law(const World *world, const Law *law, const double *local);
 /* How the carrier of a wheel with a tire moves at the present configuration. */
 void world_wheel_motion(const World *world, int wheel, WheelMotion *motion);
-/* A wheel with a tire that moves so: its fast states' rates and all else of it. Of the World's configuration only the
- * formulas of drive and brake depend on coordinates. GIC_ERROR_ROAD as below. */
-int world_wheel_turn(const World *world, int wheel, const WheelMotion *motion, const double *fast, double *rate,
-                     Rolling *rolling);
+/* All wheels with tires, and the powertrain, where carriers move as motion[] says: rates of these fast states, and
+ * rolling and driveline. Of the World's configuration only formulas depend on coordinates. GIC_ERROR_ROAD as below. */
+int world_wheels_turn(World *world, const double *fast, double *rate);
 /* wrench, along, element, wheel, fast_rate at the present configuration. Forces along coordinates are not among the
  * wrenches before world_spread(). GIC_ERROR_ROAD where the road has no finite height. */
 int world_forces(World *world);
 /* Forces along coordinates as wrenches on the bodies; needs J and dual of the coordinates' ties. */
 void world_spread(World *world);
+
+/* ---- driveline.c: the powertrain (POWERTRAIN.md) ----------------------------------------------------------- */
+
+/* Rates of its fast states and of the spins of its wheels, half shaft torques as their drive, and driveline; after the
+ * wheels have turned by themselves. */
+void world_drive(World *world, const double *fast, double *rate);
+/* Section 4 at these fast states: does a shift begin? Then gear has changed. */
+bool world_shift(const World *world, const double *fast, int32_t gear[POWERTRAIN_DISCRETE]);
+/* Do formulas that shifting depends on use coordinates of the mechanism? */
+bool powertrain_watches_coordinates(const Powertrain *powertrain);
 
 /* ---- accelerate.c: equations of motion ------------------------------------------------------------------- */
 
