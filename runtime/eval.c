@@ -4,20 +4,22 @@
 
 #include <string.h>
 
-/* Which column of the table fills which number of the instance: states first, then inputs, then parameters; -1: keeps
- * its default. */
+/* Which column of the table fills which number of the instance: states first, then inputs, then parameters, then gears;
+ * -1: keeps its default. */
 typedef struct Columns {
-    int states, inputs, parameters;
-    int *column; /* [states + inputs + parameters] */
+    int states, inputs, parameters, gears;
+    int *column; /* [states + inputs + parameters + gears] */
 } Columns;
 
 static const char *number_name(const Engine *engine, int i)
 {
     const gic_model *model = engine->code;
     int input = i - engine->standard_count, parameter = input - model->input_count;
+    int gear = parameter - model->parameter_count;
     return input < 0       ? engine->standard[i].name
            : parameter < 0 ? model->input[input].name
-                           : model->parameter[parameter].name;
+           : gear < 0      ? model->parameter[parameter].name
+                           : model->discrete[model->free_base + gear].name;
 }
 
 /* Must the table have it? All slow states, and what driven coordinates do. */
@@ -38,9 +40,11 @@ static bool is_needed(const Engine *engine, int i)
 static Columns find_columns(Pool *pool, const Engine *engine, const CsvTable *table)
 {
     const gic_model *model = engine->code;
-    Columns columns = {
-        .states = engine->standard_count, .inputs = model->input_count, .parameters = model->parameter_count};
-    const int numbers = columns.states + columns.inputs + columns.parameters;
+    Columns columns = {.states = engine->standard_count,
+                       .inputs = model->input_count,
+                       .parameters = model->parameter_count,
+                       .gears = model->discrete_count - model->free_base};
+    const int numbers = columns.states + columns.inputs + columns.parameters + columns.gears;
     const char **name = pool_alloc(pool, sizeof *name * (size_t)(numbers + 1));
     columns.column = pool_alloc(pool, sizeof *columns.column * (size_t)(numbers + 1));
     for (int i = 0; i < numbers; ++i) {
@@ -90,7 +94,7 @@ static void write_header(const Engine *engine, Csv *csv)
     for (int i = engine->standard_count - model->fast_count; i < engine->standard_count; ++i) {
         const gic_signal *state = &engine->standard[i];
         snprintf(name, sizeof name, "%s.rate", state->name);
-        csv_name(csv, name, strcmp(state->unit, "1") ? "rad/s^2" : "1/s");
+        csv_name(csv, name, !strcmp(state->unit, "rad/s") ? "rad/s^2" : strcmp(state->unit, "s") ? "1/s" : "1");
     }
     for (int i = 0; i < model->body_count; ++i)
         for (int k = 0; k < 7 && !is_ground(model, i); ++k) {
@@ -141,6 +145,20 @@ static void write_row(Pool *pool, const Engine *engine, Csv *csv, const gic_head
     csv_end_row(csv);
 }
 
+/* Gears that the row gives: whole numbers; engines know which there are. */
+static int set_gears(const gic_model *model, const Columns *columns, const double *value, gic_head *self)
+{
+    const int *column = columns->column + columns->states + columns->inputs + columns->parameters;
+    int32_t *gear = (int32_t *)(void *)((char *)self + model->discrete_offset) + model->free_base;
+    for (int i = 0; i < columns->gears; ++i) {
+        const double given = column[i] < 0 ? gear[i] : value[column[i]];
+        if (!(given >= -128 && given <= 127 && given == (int32_t)given))
+            return GIC_ERROR_INPUT;
+        gear[i] = (int32_t)given;
+    }
+    return GIC_OK;
+}
+
 void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request)
 {
     const gic_model *model = engine->code;
@@ -148,6 +166,7 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
     const Columns columns = find_columns(pool, engine, table);
     gic_head *self = instance_new(pool, engine);
     double *input = instance_array(self, model->input_offset);
+    const double *fast = instance_array(self, model->state_offset) + model->slow_count; /* those that may be missing */
     const double *output = instance_array(self, model->output_offset);
     double *state = pool_alloc(pool, sizeof *state * (size_t)(engine->standard_count + 1));
     double *rate = pool_alloc(pool, sizeof *rate * (size_t)(engine->standard_count + 1));
@@ -170,10 +189,12 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
         }
         int status = model->setup_with(self, parameter);
         self->road = scene ? scene->road : NULL;
-        memset(state, 0, sizeof *state * (size_t)columns.states); /* what may be missing is 0 */
+        memcpy(state + columns.states - model->fast_count, fast, sizeof *fast * (size_t)model->fast_count);
         for (int i = 0; i < columns.states + columns.inputs; ++i)
             if (columns.column[i] >= 0)
                 *(i < columns.states ? &state[i] : &input[i - columns.states]) = value[columns.column[i]];
+        if (status == GIC_OK)
+            status = set_gears(model, &columns, value, self);
         if (status == GIC_OK)
             status = engine_enter(engine, self, state);
         if (status == GIC_OK)

@@ -80,6 +80,7 @@ typedef struct Scene {
     double *value, *rate; /* [coordinates] at time 0; not used where driven */
     bool placed, *given;  /* does the scene give the position, [coordinates] the values? Else they are the model's */
     double *fast;         /* [fast states] at time 0, NAN: as wheels roll */
+    int32_t gear;         /* at time 0, of a powertrain */
     const gic_road *road; /* NULL: flat at z = 0 */
     double *parameter;    /* [tunables] */
     int profiles, columns, curves, panels;

@@ -264,6 +264,18 @@ static void read_states(Reader *reader, const Item *map, double *out)
     }
 }
 
+static void read_gear(Reader *reader, const Item *item)
+{
+    const Powertrain *powertrain = reader->model->powertrain;
+    const double gear = doc_number(item, "gear");
+    if (!powertrain)
+        diag_fail(item->at, "remove it", "gear is given, but '%s' has no powertrain", reader->model->name);
+    if (gear != floor(gear) || gear < -powertrain->reverse || gear > powertrain->forward)
+        diag_fail(item->at, "0 is neutral, 1 the first gear", "gear must be a whole number from %d to %d",
+                  -powertrain->reverse, powertrain->forward);
+    reader->scene->gear = (int32_t)gear;
+}
+
 void scene_warn_range(const Coordinate *coordinate, Place at, double low, double high)
 {
     if (low < coordinate->range[0] || high > coordinate->range[1])
@@ -277,7 +289,7 @@ static void read_initial(Reader *reader, const Item *initial)
     const Model *model = reader->model;
     Scene *scene = reader->scene;
     CHECK_KEYS(initial, "the initial state", "position", "orientation", "velocity", "speed", "angular_velocity",
-               "coordinates", "rates", "states", "equilibrium");
+               "coordinates", "rates", "states", "gear", "equilibrium");
     read_base(reader, initial);
     const Item *equilibrium = doc_find(initial, "equilibrium");
     scene->equilibrium = equilibrium && doc_bool(equilibrium, "equilibrium");
@@ -289,6 +301,8 @@ static void read_initial(Reader *reader, const Item *initial)
         read_coordinates(reader, rates, "rate", scene->rate);
     if (states)
         read_states(reader, states, scene->fast);
+    if (doc_find(initial, "gear"))
+        read_gear(reader, doc_find(initial, "gear"));
     for (int i = 0; coordinates && i < model->coordinates; ++i) {
         const Item *item = doc_find(coordinates, model->coordinate[i].name);
         scene->given[i] = item;
@@ -500,6 +514,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     scene->fast = pool_alloc(pool, sizeof(double) * (size_t)(model->fast_states + 1));
     for (int i = 0; i < model->fast_states; ++i)
         scene->fast[i] = NAN;
+    scene->gear = model->powertrain ? model->powertrain->start_gear : 0;
     const Item *initial = doc_find(root, "initial"), *road = doc_find(root, "road"), *inputs = doc_find(root, "inputs");
     if (initial)
         read_initial(&reader, initial);

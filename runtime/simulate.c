@@ -64,7 +64,7 @@ static int set_state(const Engine *engine, const Scene *scene, gic_head *self)
     return engine_enter(engine, self, state);
 }
 
-/* Wheels roll, but for what the scene says. */
+/* Wheels roll, but for what the scene says; gears. */
 static int set_fast_states(const gic_model *model, const Scene *scene, gic_head *self)
 {
     const int status = model->roll ? model->roll(self) : GIC_OK;
@@ -72,6 +72,9 @@ static int set_fast_states(const gic_model *model, const Scene *scene, gic_head 
     for (int i = 0; i < model->fast_count; ++i)
         if (!isnan(scene->fast[i]))
             fast[i] = scene->fast[i];
+    int32_t *discrete = (int32_t *)(void *)((char *)self + model->discrete_offset);
+    for (int i = model->free_base; i < model->discrete_count; ++i)
+        discrete[i] = scene->gear;
     return status;
 }
 
