@@ -111,6 +111,8 @@ static void find_wheels(Groups *groups, const Model *model, const Table *referen
                 snprintf(name, sizeof name, "%s%s", model->wheel[w].name, wheel_column[i].name);
                 add_number(groups, reference, eval, name, !wheel_column[i].is_rate);
             }
+    for (int i = 0; i < LINE_RESULTS && model->powertrain; ++i)
+        add_number(groups, reference, eval, line_column[i], i >= ENGINE_SPEED);
     for (int i = 0; i < 3; ++i) {
         snprintf(name, sizeof name, "energies.%s", energy_name[i]);
         add_number(groups, reference, eval, name, true);
@@ -121,9 +123,10 @@ static Groups groups_find(const Model *model, const Table *reference, const Tabl
 {
     static const char *const xyz[] = {".x", ".y", ".z"}, *const e[] = {".e0", ".e1", ".e2", ".e3"};
     static const char *const base[] = {"a", "alpha"};
-    Groups groups = {.group = grab((size_t)(5 + 2 * (model->coordinates + model->bodies + model->joints) +
-                                            WHEEL_COLUMNS * model->wheels),
-                                   sizeof *groups.group)};
+    Groups groups = {.group =
+                         grab((size_t)(5 + LINE_RESULTS + 2 * (model->coordinates + model->bodies + model->joints) +
+                                       WHEEL_COLUMNS * model->wheels),
+                              sizeof *groups.group)};
     for (int i = 0; i < 2 && model->free_base; ++i) {
         Group *group = add_group(&groups, base[i], "");
         for (int j = 0; j < 3; ++j)

@@ -96,22 +96,64 @@ static double skewed(uint64_t *random, double most)
     return most * x * x * x * x * x;
 }
 
-static void write_wheel(FILE *out, const Wheel *wheel, uint64_t *random, int motion)
+/* Returns the spin. */
+static double write_wheel(FILE *out, const Wheel *wheel, uint64_t *random, int motion)
 {
     double state[FAST_STATES] = {uniform(random, -80, 80), skewed(random, 6), skewed(random, 60),
                                  uniform(random, -1.3, 1.3)};
+    for (int k = 0; k < FAST_STATES && motion == STILL_ROW; ++k)
+        state[k] = 0;
+    if (motion == SLOW_ROW)
+        state[0] /= 60;
     for (int k = 0; k < FAST_STATES; ++k)
         if (wheel_has(wheel, k))
-            fprintf(out, ",%.17g", motion == STILL_ROW ? 0 : motion == SLOW_ROW && k == 0 ? state[k] / 60 : state[k]);
+            fprintf(out, ",%.17g", state[k]);
+    return state[0];
+}
+
+/* Turbine speed in the middle of a shift from one of the gears to the other, or behind it. */
+static double turbine_speed(const Powertrain *p, const double *spin, const int gear[2], double share)
+{
+    double speed[p->differentials], ratio = 0;
+    for (int k = 0; k < p->differentials; ++k) {
+        const Differential *d = &p->differential[k];
+        speed[k] = 0;
+        for (int j = 0; j < d->outputs; ++j) {
+            double part = d->outputs == 1 ? 1 : j == 0 ? d->split : 1 - d->split;
+            speed[k] += d->ratio * part * (d->wheel[j] < 0 ? speed[d->differential[j]] : spin[d->wheel[j]]);
+        }
+    }
+    for (int i = 0; i < 2; ++i)
+        ratio += (i == 0 ? share : 1 - share) * p->gear[p->reverse + gear[i]];
+    return ratio * speed[p->differentials - 1];
+}
+
+/* Gears, and a shift between them that has just begun, is under way, or is long over; the engine near the turbine's
+ * speed, near idling, where it stalls, or anywhere up to beyond its limit. */
+static void write_powertrain(FILE *out, const Powertrain *p, const double *spin, uint64_t *random, int row)
+{
+    double top = p->limit > 0 ? 1.1 * p->limit : 300, slow = p->idle > 0 ? 1.1 * p->idle : 30, speed;
+    double age = uniform(random, 0, 1.3), share = fmin(age, 1);
+    int gear[2];
+    for (int i = 0; i < 2; ++i)
+        gear[i] = (int)floor(uniform(random, 0, p->gears)) - p->reverse;
+    if (row % 3 == 0)
+        speed = uniform(random, 0.9, 1.1) * turbine_speed(p, spin, gear, share * share * (3 - 2 * share));
+    else
+        speed = row % 3 == 1 ? uniform(random, -0.1 * slow, slow) : uniform(random, 0, top);
+    fprintf(out, ",%.17g,%.17g,%d,%d", speed, age * p->duration, gear[0], gear[1]);
 }
 
 /* Fast states, and inputs that are not those of driven coordinates. */
 static void write_wheels(FILE *out, const Model *model, uint64_t *random, int row)
 {
+    double spin[model->wheels + 1];
     for (int i = 0; i < model->wheels; ++i)
-        write_wheel(out, &model->wheel[i], random, motion_of(model, row));
+        spin[i] = write_wheel(out, &model->wheel[i], random, motion_of(model, row));
     for (int i = model->driven_inputs; i < model->inputs && model->tires; ++i)
         fprintf(out, ",%.17g", model->input[i] + uniform(random, 0, 1));
+    if (model->powertrain)
+        write_powertrain(out, model->powertrain, spin, random, row);
 }
 
 static void write_wheel_names(FILE *out, const Model *model)
@@ -122,6 +164,8 @@ static void write_wheel_names(FILE *out, const Model *model)
                 fprintf(out, ",%s.%s", model->wheel[i].name, fast_name[k]);
     for (int i = model->driven_inputs; i < model->inputs && model->tires; ++i)
         fprintf(out, ",%s", model->input_name[i]);
+    if (model->powertrain)
+        fputs(",engine.speed,transmission.age,transmission.gear,transmission.before", out);
 }
 
 static void write_states(FILE *out, const Model *model, int count, uint64_t *random)

@@ -357,10 +357,12 @@ bool solve_accelerations(Solver *solver, const State *state, const Road *road)
     }
     for (int i = 0; i < model->forces; ++i)
         add_force_element(model, at, solver->row, i, solver->force);
-    for (int i = 0; i < model->wheels; ++i) {
+    for (int i = 0; i < model->wheels; ++i)
         wheel_evaluate(model, at, road, i, state->fast[i], &solver->wheel[i]);
+    if (model->powertrain)
+        line_evaluate(model, at, &state->line, solver->wheel, &solver->line);
+    for (int i = 0; i < model->wheels; ++i)
         add_wheel(model, at, i, solver->wheel[i].value, solver->force);
-    }
     memcpy(solver->unknown, solver->force[solver->first], (size_t)solver->moving * sizeof *solver->force);
     second_sides(solver, state, solver->first, unknown_row(solver, 0));
     quad_solve(solver->augmented, solver->unknown);

@@ -172,6 +172,11 @@ double tire_number(const Tire *tire, const char *name)
     fail("a tire has no '%s'", name);
 }
 
+static Formula *optional_formula(const Json *json, const char *key)
+{
+    return json_get(json, key)->kind == JSON_NULL ? NULL : formula_read(json_get(json, key));
+}
+
 static void read_wheel(Wheel *wheel, const Json *json, const Model *model)
 {
     wheel->name = strcpy(grab(strlen(json_text(json, "name")) + 1, 1), json_text(json, "name"));
@@ -187,14 +192,69 @@ static void read_wheel(Wheel *wheel, const Json *json, const Model *model)
     json_numbers(json, "axis", wheel->axis, 3);
     wheel->spin_inertia = json_number(json, "spin_inertia");
     wheel->mirrored = json_number(json, "mirrored") != 0;
-    if (json_get(json, "drive")->kind != JSON_NULL) {
-        wheel->drive = formula_read(json_get(json, "drive"));
-        wheel->drive_body = index_of(json, "drive_body", GROUND, model->bodies);
-    }
-    if (json_get(json, "brake")->kind != JSON_NULL) {
-        wheel->brake = formula_read(json_get(json, "brake"));
+    wheel->drive_body = index_of(json, "drive_body", GROUND, model->bodies);
+    wheel->drive = optional_formula(json, "drive");
+    wheel->brake = optional_formula(json, "brake");
+    if (wheel->brake) {
         wheel->windup = json_number(json, "windup");
     }
+}
+
+static void read_differential(Differential *differential, const Json *json, int wheels, int before)
+{
+    const Json *wheel = list_of(json, "wheels", &differential->outputs);
+    const Json *other = list_of(json, "differentials", &differential->outputs);
+    if (wheel->count != other->count || wheel->count < 1 || wheel->count > 2)
+        fail("a differential has one or two outputs");
+    for (int i = 0; i < wheel->count; ++i) {
+        int w = (int)wheel->item[i]->number, d = (int)other->item[i]->number;
+        if (w >= wheels || d >= before || (w < 0) == (d < 0))
+            fail("a differential has a wrong output");
+        differential->wheel[i] = w;
+        differential->differential[i] = d;
+    }
+    differential->ratio = json_number(json, "ratio");
+    differential->split = json_number(json, "split");
+    differential->inertia = json_number(json, "inertia");
+    differential->lock = optional_formula(json, "lock");
+}
+
+static Powertrain *read_powertrain(const Json *json, const Model *model)
+{
+    Powertrain *p = grab(1, sizeof *p);
+    p->inertia = json_number(json, "inertia");
+    p->idle = json_number(json, "idle");
+    p->limit = json_number(json, "limit");
+    p->throttle = formula_read(json_get(json, "throttle"));
+    p->torque = formula_read(json_get(json, "torque"));
+    p->capacity = index_of(json, "capacity", 0, model->tables);
+    p->multiplication = index_of(json, "multiplication", 0, model->tables);
+    list_of(json, "gears", &p->gears);
+    p->reverse = index_of(json, "reverse", 0, p->gears - 1);
+    p->gear = grab((size_t)p->gears, sizeof *p->gear);
+    json_numbers(json, "gears", p->gear, p->gears);
+    p->start_gear = (int)json_number(json, "start_gear");
+    p->latency = json_number(json, "latency");
+    p->duration = json_number(json, "duration");
+    p->turbine = json_number(json, "turbine");
+    const Json *differentials = list_of(json, "differentials", &p->differentials);
+    p->differential = grab((size_t)p->differentials, sizeof *p->differential);
+    for (int i = 0; i < p->differentials; ++i)
+        read_differential(&p->differential[i], differentials->item[i], model->wheels, i);
+    return p;
+}
+
+static void free_powertrain(Powertrain *p)
+{
+    if (!p)
+        return;
+    for (int i = 0; i < p->differentials; ++i)
+        formula_free(p->differential[i].lock);
+    formula_free(p->throttle);
+    formula_free(p->torque);
+    free(p->gear);
+    free(p->differential);
+    free(p);
 }
 
 static int *read_indices(const Json *json, const char *key, int limit, int *count)
@@ -346,6 +406,9 @@ Model *model_parse(const char *text, const char *name)
         read_tire(&model->tire[i], tires->item[i]);
     for (int i = 0; i < model->wheels; ++i)
         read_wheel(&model->wheel[i], wheels->item[i], model);
+    for (int i = 0; i < json->count; ++i)
+        if (!strcmp(json->key[i], "powertrain") && json->item[i]->kind != JSON_NULL)
+            model->powertrain = read_powertrain(json->item[i], model);
     for (int i = 0; i < model->subsets; ++i) {
         Subset *subset = &model->subset[i];
         subset->body = read_indices(subsets->item[i], "bodies", model->bodies, &subset->bodies);
@@ -402,6 +465,7 @@ void model_free(Model *model)
     free(model->coordinate);
     free(model->force);
     free(model->tire);
+    free_powertrain(model->powertrain);
     free(model->wheel);
     free(model->subset);
     free(model);

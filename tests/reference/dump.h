@@ -81,6 +81,23 @@ typedef struct Wheel {
     int drive_body;
 } Wheel;
 
+typedef struct Differential {
+    int outputs, wheel[2], differential[2]; /* one of the two, the other -1 */
+    double ratio, split, inertia;
+    Formula *lock; /* NULL: none */
+} Differential;
+
+typedef struct Powertrain {
+    double inertia, idle, limit; /* idle, limit: 0 where there is none */
+    Formula *throttle, *torque;
+    int capacity, multiplication; /* tables */
+    int reverse, gears, start_gear;
+    double *gear; /* [gears] from the last reverse one to the last forward one */
+    double latency, duration, turbine;
+    int differentials;
+    Differential *differential; /* the last is the root */
+} Powertrain;
+
 typedef struct Subset {
     int bodies, *body, joints, *joint, coordinates, *coordinate;
 } Subset;
@@ -95,6 +112,7 @@ typedef struct Model {
     Force *force;
     Tire *tire;
     Wheel *wheel;
+    Powertrain *powertrain; /* NULL: none */
     Subset *subset;
     int inputs, tables;
     int driven_inputs; /* how many belong to driven coordinates: the first ones */

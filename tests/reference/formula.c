@@ -110,11 +110,13 @@ quad formula_value(const Formula *formula, const Surroundings *around)
     if (!strcmp(op, "time"))
         return around->time;
     if (!strcmp(op, "length") || !strcmp(op, "angle"))
-        return around->length;
+        return around->local.length;
     if (!strcmp(op, "speed"))
-        return around->speed;
+        return around->local.speed;
     if (!strcmp(op, "spin"))
-        return around->spin;
+        return around->local.spin;
+    if (!strcmp(op, "throttle"))
+        return around->local.throttle;
     if (!strcmp(op, "if"))
         return x[0] > 0 ? x[1] : x[2];
     for (size_t i = 0; i < sizeof operation / sizeof *operation; ++i)

@@ -20,12 +20,19 @@ typedef struct Lookup {
     bool cubic, onward;
 } Lookup;
 
+/* What the place of a formula adds to what formulas know: length (or angle) of a force element and its rate, spin of a
+ * wheel, speed and throttle of an engine. */
+typedef struct Locals {
+    quad length, speed, spin, throttle;
+} Locals;
+
 /* What a formula's names stand for. */
 typedef struct Surroundings {
     const quad *w, *w_rate; /* of the coordinates */
     const quad *input;
     const Lookup *table;
-    quad time, length, speed, spin; /* length: or angle */
+    quad time;
+    Locals local;
 } Surroundings;
 
 Formula *formula_read(const Json *json);

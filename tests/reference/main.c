@@ -2,10 +2,11 @@
  * reference DUMP STATES [-o ACCEL] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]
  *     [--friction X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE]
  *
- * Accelerations, poses, drive forces, reactions of joints, what wheels do, energies, subset condition and scales of a
- * dumped model (`gicgen --dump-model`) at the states of a CSV file with the columns of `gicrun --eval`; columns of fast
- * states and of inputs that are no coordinates may be missing. The road's friction is 1 but on one patch. A row's status
- * is 0, or 1 where the state can't be reached from design or is singular; its other cells are empty then. */
+ * Accelerations, poses, drive forces, reactions of joints, what wheels and powertrain do, energies, subset condition
+ * and scales of a dumped model (`gicgen --dump-model`) at the states of a CSV file with the columns of `gicrun --eval`;
+ * columns of fast states and of inputs that are no coordinates may be missing. The road's friction is 1 but on one
+ * patch. A row's status is 0, or 1 where the state can't be reached from design or is singular; its other cells are
+ * empty then. */
 #include "row.h"
 
 #include "support.h"
@@ -47,6 +48,8 @@ static void write_head(FILE *out, const Model *model)
                 const char *wheel = model->wheel[w].name, *name = wheel_column[i].name;
                 fprintf(out, "%s%s,scale.%s%s,", wheel, name, wheel, name);
             }
+    for (int i = 0; i < LINE_RESULTS && model->powertrain; ++i)
+        fprintf(out, "%s,scale.%s,", line_column[i], line_column[i]);
     for (int i = 0; i < 3; ++i)
         fprintf(out, "energies.%s,scale.energies.%s,", energy_name[i], energy_name[i]);
     fputs("condition,status\n", out);
@@ -99,6 +102,10 @@ static void write_row(FILE *out, Solver *solver)
                 write_numbers(out, &solver->wheel[w].value[wheel_column[i].result], 1);
                 write_numbers(out, &solver->wheel[w].scale[wheel_column[i].result], 1);
             }
+    for (int i = 0; i < LINE_RESULTS && model->powertrain; ++i) {
+        write_numbers(out, &solver->line.value[i], 1);
+        write_numbers(out, &solver->line.scale[i], 1);
+    }
     for (int i = 0; i < 3; ++i) {
         write_numbers(out, &solver->energy[i], 1);
         write_numbers(out, &solver->energy_scale[i], 1);
@@ -109,7 +116,7 @@ static void write_row(FILE *out, Solver *solver)
 static void write_unreached(FILE *out, const Model *model)
 {
     int cells = (model->free_base ? 8 : 0) + 7 * (model->bodies - (model->free_base ? 0 : 1)) + 1;
-    cells += 2 * model->coordinates + 8 * model->joints + 6;
+    cells += 2 * model->coordinates + 8 * model->joints + (model->powertrain ? 2 * LINE_RESULTS : 0) + 6;
     for (int w = 0; w < model->wheels; ++w)
         for (int i = 0; i < WHEEL_COLUMNS; ++i)
             cells += 2 * wheel_shows(&model->wheel[w], i);

@@ -354,8 +354,7 @@ static void point_motion(const Model *model, const Configuration *configuration,
 }
 
 /* The first inputs are those of driven coordinates (FORMAT.md section 5). */
-quad law_value(const Model *model, const Configuration *configuration, const Formula *law, quad length, quad speed,
-               quad spin)
+quad law_value(const Model *model, const Configuration *configuration, const Formula *law, Locals local)
 {
     if (!law)
         return 0;
@@ -369,13 +368,8 @@ quad law_value(const Model *model, const Configuration *configuration, const For
             input[next + 1] = configuration->w_rate[c];
             next += 3;
         }
-    Surroundings around = {.w = configuration->w,
-                           .w_rate = configuration->w_rate,
-                           .input = input,
-                           .table = model->table,
-                           .length = length,
-                           .speed = speed,
-                           .spin = spin};
+    Surroundings around = {
+        .w = configuration->w, .w_rate = configuration->w_rate, .input = input, .table = model->table, .local = local};
     return formula_value(law, &around);
 }
 
@@ -418,7 +412,8 @@ static void add_between(const Model *model, const Configuration *configuration, 
 {
     quad d[3], length, rate;
     span(model, configuration, force, d, &length, &rate);
-    quad tension = resistance(force, length, rate) + law_value(model, configuration, force->law[0], length, rate, 0);
+    quad tension = resistance(force, length, rate) +
+                   law_value(model, configuration, force->law[0], (Locals){.length = length, .speed = rate});
     for (int k = 0; k < 2; ++k) {
         if (force->body[k] == GROUND)
             continue;
@@ -464,8 +459,8 @@ static void add_about(const Model *model, const Configuration *configuration, co
 {
     quad value;
     Row angle = turned(configuration, force, &value);
-    quad torque =
-        resistance(force, value, angle.rate) + law_value(model, configuration, force->law[0], value, angle.rate, 0);
+    quad torque = resistance(force, value, angle.rate) +
+                  law_value(model, configuration, force->law[0], (Locals){.length = value, .speed = angle.rate});
     for (int side = 0; side < 2; ++side)
         for (int j = 0; j < BODY_COORDINATES && force->body[side] != GROUND; ++j)
             Q[force->body[side]][j] -= torque * angle.slope[side][j];
@@ -488,7 +483,7 @@ static void add_load(const Model *model, const Configuration *configuration, con
     quad given[6], world[6], s[3];
     int body = force->body[0], in = force->body[1];
     for (int i = 0; i < 6; ++i)
-        world[i] = given[i] = law_value(model, configuration, force->law[i], 0, 0, 0);
+        world[i] = given[i] = law_value(model, configuration, force->law[i], (Locals){0});
     for (int part = 0; in != GROUND && part < 2; ++part)
         rotate(configuration->q[in] + 3, given + 3 * part, world + 3 * part);
     from_com(model, body, force->point[0], s);
@@ -505,7 +500,7 @@ void add_force_element(const Model *model, const Configuration *configuration, c
         return;
     }
     int c = element->coordinate;
-    quad along = law_value(model, configuration, element->law[0], 0, 0, 0) -
+    quad along = law_value(model, configuration, element->law[0], (Locals){0}) -
                  resistance(element, configuration->w[c], configuration->w_rate[c]);
     /* virtual work: along * dw, with dw = -(dc/dq dq) / (dc/dw) */
     const Row *row = &rows[joint_row(model, model->joints) + c];

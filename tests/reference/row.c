@@ -20,7 +20,8 @@ void friction_parse(const char *text, Road *road)
 {
     char end;
     if (sscanf(text, "%lf,%lf,%lf,%lf,%lf,%lf%c", &road->x[0], &road->x[1], &road->y[0], &road->y[1], &road->friction,
-               &road->fade, &end) != 6 || !(road->fade > 0))
+               &road->fade, &end) != 6 ||
+        !(road->fade > 0))
         fail("--friction '%s': X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE is wanted", text);
 }
 
@@ -55,6 +56,19 @@ static void wheels_read(const Model *model, const Table *table, int row, State *
             }
 }
 
+/* What is missing is as at set-up. */
+static void line_read(const Model *model, const Table *table, int row, Line *line)
+{
+    line->speed = optional_cell(table, row, "engine.speed", model->powertrain->idle);
+    line->age = optional_cell(table, row, "transmission.age", 100);
+    line->gear[0] = (int)optional_cell(table, row, "transmission.gear", model->powertrain->start_gear);
+    line->gear[1] = (int)optional_cell(table, row, "transmission.before", model->powertrain->start_gear);
+    for (int i = 0; i < 2; ++i)
+        if (line->gear[i] < -model->powertrain->reverse ||
+            line->gear[i] + model->powertrain->reverse >= model->powertrain->gears)
+            fail("%s:%d: there is no gear %d", table->path, row + 2, line->gear[i]);
+}
+
 void state_read(Model *model, const Table *table, int row, State *state)
 {
     static const char *const r[] = {"r.x", "r.y", "r.z"}, *const e[] = {"e0", "e1", "e2", "e3"},
@@ -75,4 +89,6 @@ void state_read(Model *model, const Table *table, int row, State *state)
     for (int i = model->driven_inputs; i < model->inputs; ++i)
         model->input[i] = (double)optional_cell(table, row, model->input_name[i], model->input[i]);
     wheels_read(model, table, row, state);
+    if (model->powertrain)
+        line_read(model, table, row, &state->line);
 }

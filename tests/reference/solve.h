@@ -5,7 +5,7 @@
 #define REFERENCE_SOLVE_H
 
 #include "mechanism.h"
-#include "wheel.h"
+#include "powertrain.h"
 
 /* A state as FORMAT.md section 10 has it, with driven coordinates among the others. */
 typedef struct State {
@@ -13,6 +13,7 @@ typedef struct State {
                                         angular velocity in the base frame */
     quad *w, *w_rate, *w_second;     /* [coordinates]; w_second is read where they are driven */
     quad (*fast)[FAST_STATES];       /* [wheels] */
+    Line line;
 } State;
 
 /* What a joint exerts on its second body at its point of that, world frame; scales: sums of magnitudes of the
@@ -43,6 +44,7 @@ typedef struct Solver {
     quad *drive_scale;               /* result: the same for drive_force */
     Reaction *reaction;              /* result: [joints] */
     WheelState *wheel;               /* result: [wheels] */
+    LineState line;                  /* result, of a powertrain */
     quad energy[3], energy_scale[3]; /* result: kinetic, potential; rate of their sum but for its own, W */
     quad sum_error;                  /* result: largest deviation of the contributions' sum from the whole,
                                         relative to the scale */

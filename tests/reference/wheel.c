@@ -189,7 +189,7 @@ static void brake_of(const Rolling *of, const quad *in, quad *out)
     quad zeta = in[FAST + 3], z = wheel->windup, u = in[FAST] - quad_dot(in + AXIS, in + OMEGA, 3);
     quad eased = u / hypotq(1, u / (100 * z)), a = zeta * u > 0 ? smooth((fabsq(zeta) - 0.7) / 0.3) : 0;
     out[WINDUP_RATE] = (eased - a * zeta * fabsq(eased)) / z;
-    quad most = fmaxq(0, law_value(of->model, of->configuration, wheel->brake, 0, 0, in[FAST]));
+    quad most = fmaxq(0, law_value(of->model, of->configuration, wheel->brake, (Locals){.spin = in[FAST]}));
     out[BRAKE] = most * fminq(1, fmaxq(-1, zeta + 0.01 * out[WINDUP_RATE]));
 }
 
@@ -202,7 +202,7 @@ static void roll(const Rolling *of, const quad *in, quad *out)
     slip_and_forces(of, in, &at, out);
     brake_of(of, in, out);
     out[SPIN] = in[FAST];
-    out[DRIVE] = law_value(of->model, of->configuration, wheel->drive, 0, 0, in[FAST]);
+    out[DRIVE] = law_value(of->model, of->configuration, wheel->drive, (Locals){.spin = in[FAST]});
     for (int i = 0; i < 3; ++i)
         out[FORCE + i] = out[FX] * at.e_x[i] + out[FY] * at.e_y[i] + out[FZ] * at.n[i];
     quad_cross(at.arm, out + FORCE, moment);
@@ -296,6 +296,21 @@ void wheel_evaluate(const Model *model, const Configuration *configuration, cons
     }
 }
 
+void wheel_drive(const Model *model, const Configuration *configuration, int index, quad torque, quad scale,
+                 WheelState *out)
+{
+    const Wheel *wheel = &model->wheel[index];
+    quad axis[3], s[3];
+    widen(wheel->axis, axis);
+    rotate(configuration->q[wheel->body] + 3, axis, s);
+    out->value[DRIVE] = torque;
+    out->scale[DRIVE] = scale;
+    for (int i = 0; i < 3; ++i) {
+        out->value[REACTION + i] = -torque * s[i];
+        out->scale[REACTION + i] = scale;
+    }
+}
+
 void add_wheel(const Model *model, const Configuration *configuration, int index, const quad x[WHEEL_RESULTS],
                quad (*Q)[BODY_COORDINATES])
 {
@@ -304,6 +319,6 @@ void add_wheel(const Model *model, const Configuration *configuration, int index
     from_com(model, wheel->body, wheel->center, s);
     add_force(configuration, wheel->body, s, x + FORCE, Q);
     add_torque(configuration, wheel->body, x + TORQUE, Q);
-    if (wheel->drive && wheel->drive_body != GROUND)
+    if (wheel->tire && wheel->drive_body != GROUND)
         add_torque(configuration, wheel->drive_body, x + REACTION, Q);
 }

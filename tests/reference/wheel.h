@@ -61,6 +61,9 @@ bool wheel_shows(const Wheel *wheel, int column);
 
 void wheel_evaluate(const Model *model, const Configuration *configuration, const Road *road, int wheel,
                     const quad fast[FAST_STATES], WheelState *out);
+/* Another torque of the drive than that of the wheel's formula. */
+void wheel_drive(const Model *model, const Configuration *configuration, int wheel, quad torque, quad scale,
+                 WheelState *out);
 /* Add the generalized forces of a wheel: of what x holds as FORCE, TORQUE and REACTION. */
 void add_wheel(const Model *model, const Configuration *configuration, int wheel, const quad x[WHEEL_RESULTS],
                quad (*Q)[BODY_COORDINATES]);
