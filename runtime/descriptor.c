@@ -15,8 +15,6 @@ const gic_signal *descriptor_fast_states(Pool *pool, const Model *model)
                                                [FAST_SLIP_X] = {"slip_x", "1"},
                                                [FAST_SLIP_Y] = {"slip_y", "1"},
                                                [FAST_BRAKE] = {"brake", "1"}};
-    static const gic_signal powertrain[POWERTRAIN_FAST] = {
-        [POWERTRAIN_SPEED] = {"engine.speed", "rad/s"}, [POWERTRAIN_AGE] = {"transmission.age", "s"}};
     gic_signal *signal = signals(pool, model->fast_states), *next = signal;
     for (int i = 0; i < model->wheels; ++i)
         for (int k = 0; k < wheel_fast_states(&model->wheel[i]); ++k)
