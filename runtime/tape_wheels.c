@@ -121,6 +121,28 @@ static int grip(Instance *self, double time, const double *link, const double *f
     return turn(&all);
 }
 
+/* The same of an instance: rate[] of the fast states. */
+static int grip(Instance *self, double time, const double *link, const double *fast, double *rate)
+{
+    const TapeEngine *engine = tape_of(self);
+    const Turning all = {
+        .engine = engine,
+        .world = {engine->table, self->head.road, self->head.lane, time, NULL},
+        .array = {{
+            [WHOLE_time] = &time,
+            [WHOLE_link] = (double *)link, /* blocks only read these two */
+            [WHOLE_fast] = (double *)fast,
+            [WHOLE_u] = tape_array(self, engine->code.input_offset),
+            [WHOLE_p] = tape_array(self, engine->code.parameter_offset),
+            [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
+            [WHOLE_torque] = engine->torques,
+            [WHOLE_rate] = rate,
+            [WHOLE_grip] = tape_array(self, engine->grip_offset),
+        }},
+    };
+    return turn(&all);
+}
+
 int tape_turn_wheels(Instance *self, double time, const double *y, const double *e, double *rate)
 {
     const TapeEngine *engine = tape_of(self);
