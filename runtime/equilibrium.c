@@ -17,6 +17,7 @@ const double equilibrium_limit = 1e-9;
 enum { MOST_STEPS = 500 };
 
 static const double longest = 1e4, shortest = 1e-7, first = 0.02; /* h, s */
+static const double settled = 1;                                  /* h, s, from which tires are loaded */
 static const double near = 1e-3;       /* of the reach: steps so small need not be asked where they go */
 static const double rank_limit = 1e-9; /* of singular values, relative to the largest: below, nothing changes */
 
@@ -46,10 +47,11 @@ static double square_sum(const Search *s, const double *f)
     return sum;
 }
 
-static int largest(const Linear *linear, const double *f)
+static int largest(const Search *s, const double *f)
 {
-    int worst = linear->places;
-    for (int i = worst; i < linear->count; ++i)
+    const int places = s->found->linear->places;
+    int worst = places;
+    for (int i = places; i < places + s->unknowns; ++i)
         if (!(fabs(f[i]) <= fabs(f[worst])))
             worst = i;
     return worst;
@@ -116,20 +118,32 @@ static const char *name_flat(const Search *s, const gsl_matrix *V, const gsl_vec
     return names.s;
 }
 
-/* Implicit Euler from rest over h. */
+/* Number i of the fast states' rates changes with place j, which moves at the rate dx / h, by this. */
+static double followed(const Search *s, int i, int j)
+{
+    const Linear *linear = s->found->linear;
+    const double *row = s->found->A + (linear->places + i) * linear->count;
+    return row[j] + row[linear->places + j] / s->h;
+}
+
+/* Implicit Euler from rest over h. Tires hold on to the road for so long, and are let go of: what they are stretched by
+ * on the way down is nothing that belongs to the equilibrium. */
 static void relaxation_step(Search *s)
 {
     const Linear *linear = s->found->linear;
-    const int n = s->unknowns;
+    const int n = s->unknowns, places = linear->places;
     double M[n * n + 1];
     for (int i = 0; i < n; ++i) {
-        s->step[i] = s->found->f[linear->places + i];
+        const double *row = s->found->A + (places + i) * linear->count;
+        s->step[i] = s->found->f[places + i];
         for (int j = 0; j < n; ++j)
-            M[n * i + j] = -s->found->A[(linear->places + i) * linear->count + column_of(linear, j)];
-        M[n * i + i] += i < linear->places ? 1 / (s->h * s->h) : 1 / s->h;
+            M[n * i + j] = i >= places && j < places ? -followed(s, i, j) : -row[column_of(linear, j)];
+        M[n * i + i] += i < places ? 1 / (s->h * s->h) : 1 / s->h;
     }
     if (!linear_solve_numeric(n, M, s->step))
         s->step[0] = NAN;
+    for (int i = 0; i < linear->of_wheels; ++i)
+        s->step[places + i] = 0;
 }
 
 /* Acceleration number i of the present place, with fast states as the step has them. */
@@ -193,6 +207,13 @@ static void accept(Search *s)
     s->limit = NULL;
 }
 
+/* Has the vehicle sunk to where only its tires move it on? Before that Newton's method would tie it down as it falls,
+ * one tire pulling against the other. */
+static bool is_settled(const Search *s)
+{
+    return s->h >= settled || !s->found->linear->of_wheels;
+}
+
 /* May a step be taken? */
 static bool is_fair(Search *s)
 {
@@ -212,7 +233,7 @@ static bool newton(Search *s)
     gsl_vector *S = gsl_vector_alloc(n);
     decompose(s, U, V, S);
     solve_decomposed(s, U, V, S, found->f, s->step);
-    bool good = found->residual > 0 && is_fair(s) && try_step(s);
+    bool good = found->residual > 0 && is_settled(s) && is_fair(s) && try_step(s);
     if (good && square_sum(s, s->f) > square_sum(s, found->f) / 4) {
         solve_decomposed(s, U, V, S, s->f, s->move);
         good = found->residual >= equilibrium_limit && found->steps < MOST_STEPS &&
@@ -303,7 +324,7 @@ static int start(const Equilibrium *found, const Scene *scene)
     for (int c = 0; c < code->coordinate_count; ++c)
         if (code->coordinate_input[c] >= 0)
             input[code->coordinate_input[c] + 1] = input[code->coordinate_input[c] + 2] = 0;
-    return status;
+    return status == GIC_OK ? scene_set_fast(code, scene, self) : status;
 }
 
 static bool is_carried(const Equilibrium *found)
@@ -321,14 +342,16 @@ static _Noreturn void fail(const Search *s, Place at)
 {
     const Equilibrium *found = s->found;
     const Linear *linear = found->linear;
-    const int worst = largest(linear, found->f);
-    const bool of_base = worst - linear->places < 6 && found->model->free_base;
+    const int worst = largest(s, found->f);
+    const bool may_roll = linear->of_wheels > 0, of_base = worst - linear->places < 6 && found->model->free_base;
     const char *remedy = "what pushes there at time 0? see force elements, loads, inputs and the road, or start nearer "
                          "to where it can rest";
     if (of_base && !found->model->wheels)
         remedy = "nothing carries the base: give the model wheels, or forces that hold it";
     else if (of_base && !is_carried(found))
         remedy = "no wheel touches the road: start the vehicle upright and just above it (`initial: position`)";
+    else if (may_roll && (of_base || worst >= 2 * linear->places))
+        remedy = "the vehicle rolls or slides away: let brakes hold it, or start where the road is level";
     else if (of_base)
         remedy = "nothing holds the vehicle against that: check loads, the direction of gravity and the road";
     if (s->limit)
@@ -369,7 +392,7 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
                   instance_status(pool, found->engine->code, &found->self->head, status));
     gsl_set_error_handler_off();
     for (;;) {
-        found->residual = fabs(found->f[largest(found->linear, found->f)]);
+        found->residual = fabs(found->f[largest(&s, found->f)]);
         if (newton(&s))
             continue;
         if (found->residual < equilibrium_limit)
@@ -378,6 +401,17 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
             fail(&s, at);
     }
     return found;
+}
+
+/* Does a scene begin at rest? */
+static bool stands(const Scene *scene, const gic_model *code)
+{
+    bool moves = scene->along && scene->speed != 0;
+    for (int i = 0; i < 3 && code->free_base; ++i)
+        moves = moves || scene->angular_velocity[i] != 0 || (!scene->along && scene->velocity[i] != 0);
+    for (int c = 0; c < code->coordinate_count; ++c)
+        moves = moves || (code->coordinate_state[c] >= 0 && scene->rate[c] != 0);
+    return !moves;
 }
 
 const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium *found)
@@ -394,6 +428,10 @@ const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium
             out->value[c] = state[code->coordinate_state[c]];
             out->given[c] = true;
         }
+    if (stands(scene, code)) { /* else wheels roll, unless the scene says how they turn */
+        out->fast = pool_alloc(pool, ((size_t)code->fast_count + 1) * sizeof *out->fast);
+        memcpy(out->fast, state + code->slow_count, (size_t)code->fast_count * sizeof *out->fast);
+    }
     if (!code->free_base)
         return out;
     memcpy(out->position, state, sizeof out->position);

@@ -113,6 +113,21 @@ static void print_wheels(const Equilibrium *found, const double *output)
     printf("\n");
 }
 
+/* What tires hold by: all that is not 0. */
+static void print_fast_states(const Equilibrium *found, const double *state)
+{
+    const gic_model *code = found->engine->code;
+    bool begun = false;
+    for (int i = code->slow_count; i < code->slow_count + code->fast_count; ++i) {
+        if (shown(state[i]) == 0)
+            continue;
+        if (!begun)
+            printf("\n%-24s  %16s\n", "fast state", "value");
+        begun = true;
+        printf("%-24s  %16.9g %s\n", code->state[i].name, shown(state[i]), code->state[i].unit);
+    }
+}
+
 /* What a scene may contain to start there. */
 static void print_initial(const Equilibrium *found, const double *state)
 {
@@ -130,6 +145,9 @@ static void print_initial(const Equilibrium *found, const double *state)
                state[code->coordinate_state[c]]);
         begun = true;
     }
+    for (int i = 0; i < code->fast_count; ++i)
+        printf("%s    %s: %.17g\n", i ? "" : "  states:\n", code->state[code->slow_count + i].name,
+               state[code->slow_count + i]);
 }
 
 /* ---- for programs --------------------------------------------------------------------------------------- */
@@ -143,7 +161,7 @@ static void write_state(Pool *pool, const Equilibrium *found, const char *path)
         const gic_signal *signal;
         int count;
         size_t offset;
-    } part[] = {{code->state, code->slow_count, code->state_offset},
+    } part[] = {{code->state, code->slow_count + code->fast_count, code->state_offset},
                 {code->input, code->input_count, code->input_offset},
                 {code->parameter, code->parameter_count, code->parameter_offset}};
     Csv csv = csv_open(pool, path);
@@ -168,12 +186,13 @@ static void warn_ranges(const Equilibrium *found, Place at)
                              state[code->coordinate_state[c]]);
 }
 
-/* Does a small disturbance grow? */
+/* Does a small disturbance grow? Free wheels and slips that hold nothing leave eigenvalues of 1e-5 1/s about 0. */
 static void warn_unstable(Pool *pool, const Equilibrium *found, Place at)
 {
+    const double slowest = 1e-4; /* 1/s */
     const Modes *modes = modes_find(pool, found->linear, found->A);
     for (int k = 0; k < modes->count; ++k)
-        if (modes->mode[k].real > 1e-6 * hypot(modes->mode[k].real, modes->mode[k].imaginary)) {
+        if (modes->mode[k].real > fmax(slowest, 1e-6 * hypot(modes->mode[k].real, modes->mode[k].imaginary))) {
             diag_warn(at, "--modes shows what moves; start elsewhere to find another one",
                       "the equilibrium is unstable: eigenvalue %.4g %+.4gi 1/s", modes->mode[k].real,
                       modes->mode[k].imaginary);
@@ -213,5 +232,6 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
     print_coordinates(found, state, input);
     print_forces(found, output);
     print_wheels(found, output);
+    print_fast_states(found, state);
     print_initial(found, state);
 }

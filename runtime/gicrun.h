@@ -204,6 +204,8 @@ void animation_write(Animation *animation, const char *path);
 
 /* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
 int scene_start(const Engine *engine, const Scene *scene, gic_head *self);
+/* Part of that: wheels roll, but for fast states that the scene (NULL: none) gives. Returns a status. */
+int scene_set_fast(const gic_model *model, const Scene *scene, gic_head *self);
 /* One step of a scene, by the engine's code or faster one: a constant one, or where `variable` is given one towards
  * `end` that stops at kinks of inputs. Before it the driver looks, where it is time for that. */
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,

@@ -297,10 +297,15 @@ static void add_number(Pool *pool, Linear *linear, const char *name, double reac
     *POOL_PUSH(pool, linear->reach, linear->count) = reach;
 }
 
-/* The same of a fast state: of what turns 1 rad/s, of slips and windups, which are places of springs, 0.1. */
-static double fast_reach(const gic_signal *state)
+/* Of wheels' fast states, which come first: 1 rad/s, slips of 0.1, the windup of a brake that gives way. */
+static void reach_of_wheels(Linear *linear)
 {
-    return strcmp(state->unit, "rad/s") ? 0.1 : 1;
+    static const double reach[FAST_MOST] = {
+        [FAST_SPIN] = 1, [FAST_SLIP_X] = 0.1, [FAST_SLIP_Y] = 0.1, [FAST_BRAKE] = 1};
+    const Model *model = linear->engine->formulation->model;
+    for (int i = 0; i < model->wheels; ++i)
+        for (int k = 0; model->wheel[i].tire >= 0 && k < wheel_fast_states(&model->wheel[i]); ++k)
+            linear->reach[2 * linear->places + linear->of_wheels++] = reach[k];
 }
 
 /* Places; their rates under the same names; fast states under their own. */
@@ -318,8 +323,8 @@ static void name_numbers(Pool *pool, Linear *linear)
         linear->places = half ? linear->places : linear->count;
     }
     for (int i = 0; i < code->fast_count; ++i)
-        add_number(pool, linear, code->state[code->slow_count + i].name,
-                   fast_reach(&code->state[code->slow_count + i]));
+        add_number(pool, linear, code->state[code->slow_count + i].name, 1);
+    reach_of_wheels(linear);
 }
 
 Linear *linear_open(Pool *pool, const Engine *engine)

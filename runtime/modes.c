@@ -338,7 +338,9 @@ static bool set_in_motion(Pool *pool, const Scene *scene, const Equilibrium *fou
             state[code->coordinate_state[c] + code->slow_count / 2] = moving->rate[c];
     for (int i = 0; i < linear->places; ++i)
         moves = moves || state[linear->places + code->free_base + i] != 0;
-    const int status = moves ? linearize(linear, found->self, f, A) : GIC_OK;
+    int status = moves ? scene_set_fast(code, moving, &found->self->head) : GIC_OK;
+    if (status == GIC_OK && moves)
+        status = linearize(linear, found->self, f, A);
     if (status != GIC_OK)
         diag_fail((Place){scene->source, 0, 0}, "check the velocities of `initial`",
                   "no small motions about the state in motion: %s",
@@ -346,14 +348,32 @@ static bool set_in_motion(Pool *pool, const Scene *scene, const Equilibrium *fou
     return moves;
 }
 
+/* What the vehicle does by itself where it moves: the three largest accelerations. */
+static void print_motion(const Equilibrium *found)
+{
+    const Linear *linear = found->linear;
+    double before = INFINITY;
+    printf("%s: small motions about the places of the static equilibrium, in motion as the scene's initial state\n"
+           "no steady state has to be there: the largest acceleration is",
+           found->model->name);
+    for (int n = 0; n < 3 && n < linear->count - linear->places; ++n) {
+        int most = -1;
+        for (int i = linear->places; i < linear->count; ++i)
+            if (fabs(found->f[i]) < before && (most < 0 || fabs(found->f[i]) > fabs(found->f[most])))
+                most = i;
+        if (most < 0)
+            break;
+        before = fabs(found->f[most]);
+        printf("%s %.3g%s of %s", n ? ", then" : "", found->f[most], n ? "" : " m/s^2 or rad/s^2", linear->name[most]);
+    }
+    printf("\n");
+}
+
 void modes_report(Pool *pool, const Scene *scene, const Request *request, const Equilibrium *found)
 {
     const Linear *linear = found->linear;
     const bool moves = scene && set_in_motion(pool, scene, found, found->f, found->A);
     const Modes *modes = modes_find(pool, linear, found->A);
-    double most = 0;
-    for (int i = linear->places; i < linear->count; ++i)
-        most = fmax(most, fabs(found->f[i]));
     if (request->results && strcmp(request->results, "-")) {
         write_csv(pool, linear, modes, request->results);
     } else if (request->results) {
@@ -361,9 +381,7 @@ void modes_report(Pool *pool, const Scene *scene, const Request *request, const 
         return;
     }
     if (moves)
-        printf("%s: small motions about the places of the static equilibrium, in motion as the scene's initial state\n"
-               "no steady state has to be there: the largest acceleration is %.3g m/s^2 or rad/s^2\n",
-               found->model->name, most);
+        print_motion(found);
     else
         printf("%s: small motions about the static equilibrium\n", found->model->name);
     print_table(linear, modes);

@@ -64,16 +64,15 @@ static int set_state(const Engine *engine, const Scene *scene, gic_head *self)
     return engine_enter(engine, self, state);
 }
 
-/* Wheels roll, but for what the scene says; gears. */
-static int set_fast_states(const gic_model *model, const Scene *scene, gic_head *self)
+int scene_set_fast(const gic_model *model, const Scene *scene, gic_head *self)
 {
     const int status = model->roll ? model->roll(self) : GIC_OK;
     double *fast = instance_array(self, model->state_offset) + model->slow_count;
-    for (int i = 0; i < model->fast_count; ++i)
+    for (int i = 0; i < model->fast_count && scene; ++i)
         if (!isnan(scene->fast[i]))
             fast[i] = scene->fast[i];
     int32_t *discrete = (int32_t *)(void *)((char *)self + model->discrete_offset);
-    for (int i = model->free_base; i < model->discrete_count; ++i)
+    for (int i = model->free_base; i < model->discrete_count && scene; ++i)
         discrete[i] = scene->gear;
     return status;
 }
@@ -226,7 +225,7 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
         driver_start(scene->driver);
     scene_inputs(self->user, 0, 0, instance_array(self, model->input_offset));
     status = set_state(engine, scene, self);
-    return status == GIC_OK ? set_fast_states(model, scene, self) : status;
+    return status == GIC_OK ? scene_set_fast(model, scene, self) : status;
 }
 
 static void change_code(Run *run)
