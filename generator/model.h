@@ -186,6 +186,7 @@ typedef struct Tire {
     TireSide side; /* its own */
     int mode;      /* PAC2002: 0 to 4 */
     double radius; /* R, unloaded */
+    double width;  /* for pictures only; 0: not known */
     double stiffness, damping, bottom_stiffness, bottom /* k, c, k_b, rho_b */;
     double low_speed;     /* v_low */
     double relaxation[2]; /* sigma_x, sigma_y where they are given or constant; 0: they follow from number[] */

@@ -11,8 +11,8 @@
 /* Keys that a tire computes with: numbers, first those of PAC_LIST, then words, of which units stand last. */
 #define NUMBER_LIST(X) \
     X(UNLOADED_RADIUS) \
-    X(RIM_RADIUS) \
-    X(VERTICAL_STIFFNESS) X(VERTICAL_DAMPING) X(BOTTOM_STIFF) X(BOTTOM_OFFST) X(LCZ) X(VXLOW) X(USE_MODE) X(FITTYP)
+    X(WIDTH) X(RIM_RADIUS) X(VERTICAL_STIFFNESS) X(VERTICAL_DAMPING) X(BOTTOM_STIFF) X(BOTTOM_OFFST) X(LCZ) X(VXLOW) \
+        X(USE_MODE) X(FITTYP)
 #define WORD_LIST(X) X(PROPERTY_FILE_FORMAT) X(TYRESIDE)
 #define UNIT_LIST(X) X(LENGTH) X(FORCE) X(ANGLE) X(TIME) X(MASS) X(PRESSURE)
 
@@ -37,7 +37,6 @@ static const char *const other_name[] = {"FILE_TYPE",
                                          "MFSAFE2",
                                          "MFSAFE3",
                                          "TYPE",
-                                         "WIDTH",
                                          "ASPECT_RATIO",
                                          "RIM_WIDTH",
                                          "IP",
@@ -129,13 +128,21 @@ enum { UNKNOWN_MOST = 10 /* warnings about unknown keys; more say nothing new */
 static const struct {
     int key, exponent[4];
 } dimension[] = {
-    {TIR_UNLOADED_RADIUS, {1, 0, 0, 0}}, {TIR_RIM_RADIUS, {1, 0, 0, 0}},
-    {TIR_BOTTOM_OFFST, {1, 0, 0, 0}},    {TIR_VERTICAL_STIFFNESS, {-1, 1, 0, 0}},
-    {TIR_BOTTOM_STIFF, {-1, 1, 0, 0}},   {TIR_VERTICAL_DAMPING, {-1, 1, 0, 1}},
-    {TIR_VXLOW, {1, 0, 0, -1}},          {PAC_LONGVL, {1, 0, 0, -1}},
-    {PAC_FNOMIN, {0, 1, 0, 0}},          {PAC_FZMAX, {0, 1, 0, 0}},
-    {PAC_ALPMIN, {0, 0, 1, 0}},          {PAC_ALPMAX, {0, 0, 1, 0}},
-    {PAC_CAMMIN, {0, 0, 1, 0}},          {PAC_CAMMAX, {0, 0, 1, 0}},
+    {TIR_UNLOADED_RADIUS, {1, 0, 0, 0}},
+    {TIR_RIM_RADIUS, {1, 0, 0, 0}},
+    {TIR_WIDTH, {1, 0, 0, 0}},
+    {TIR_BOTTOM_OFFST, {1, 0, 0, 0}},
+    {TIR_VERTICAL_STIFFNESS, {-1, 1, 0, 0}},
+    {TIR_BOTTOM_STIFF, {-1, 1, 0, 0}},
+    {TIR_VERTICAL_DAMPING, {-1, 1, 0, 1}},
+    {TIR_VXLOW, {1, 0, 0, -1}},
+    {PAC_LONGVL, {1, 0, 0, -1}},
+    {PAC_FNOMIN, {0, 1, 0, 0}},
+    {PAC_FZMAX, {0, 1, 0, 0}},
+    {PAC_ALPMIN, {0, 0, 1, 0}},
+    {PAC_ALPMAX, {0, 0, 1, 0}},
+    {PAC_CAMMIN, {0, 0, 1, 0}},
+    {PAC_CAMMAX, {0, 0, 1, 0}},
 };
 
 static const struct {
@@ -591,8 +598,10 @@ static void tire_fill(const Tir *tir, Tire *tire)
     for (int i = 0; i < PAC_COUNT; ++i)
         number[i] = given(tir, i) ? tir->found[i].number : fallback(i);
     positive_check(tir, TIR_VXLOW);
+    positive_check(tir, TIR_WIDTH);
     tire->number = number;
     tire->radius = tir->found[TIR_UNLOADED_RADIUS].number;
+    tire->width = tir->found[TIR_WIDTH].number;
     tire->stiffness =
         tir->found[TIR_VERTICAL_STIFFNESS].number * (given(tir, TIR_LCZ) ? tir->found[TIR_LCZ].number : 1);
     tire->damping = tir->found[TIR_VERTICAL_DAMPING].number;

@@ -14,6 +14,11 @@ static const double frame_rate = 50;
 
 enum { POSE = 7, WHEEL_CHANNELS = 7 }; /* angle, force, contact */
 
+/* Where in output[] a wheel's outputs begin, -1: the model has none. */
+typedef struct WheelOutputs {
+    int wheel, tire, contact; /* fz, deflection, its rate, height; fx, fy, ...; x, y, z */
+} WheelOutputs;
+
 struct Animation {
     Pool *pool;
     const Model *model;
@@ -23,16 +28,17 @@ struct Animation {
     int64_t times, every; /* output times so far; one in `every` is a frame */
     int frames, channels;
     int wheels, curves; /* where their channels begin, behind those of the bodies */
-    int *contact;       /* [wheels] index in output[] of fz, deflection, its rate, height; -1: no output tells */
+    WheelOutputs *told; /* [wheels] */
+    double *spin;       /* [wheels] of those with tires at the frame before, rad/s */
     double *value;      /* [frames][channels] */
 };
 
-/* The first component of an output about a wheel, -1: there is none. */
-static int wheel_output(const Model *model, int wheel)
+/* The first component of an output of some type about a wheel, -1: there is none. */
+static int wheel_output(const Model *model, OutputType type, int wheel)
 {
     int at = 0;
     for (int i = 0; i < model->outputs; at += model->output[i++].count)
-        if (model->output[i].type == OUTPUT_WHEEL && model->output[i].index == wheel)
+        if (model->output[i].type == type && model->output[i].index == wheel)
             return at;
     return -1;
 }
@@ -47,9 +53,11 @@ Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, con
     a->wheels = POSE * model->bodies;
     a->curves = a->wheels + WHEEL_CHANNELS * model->wheels;
     a->channels = a->curves + scene->curves;
-    a->contact = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *a->contact);
+    a->told = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *a->told);
     for (int w = 0; w < model->wheels; ++w)
-        a->contact[w] = wheel_output(model, w);
+        a->told[w] = (WheelOutputs){wheel_output(model, OUTPUT_WHEEL, w), wheel_output(model, OUTPUT_TIRE, w),
+                                    wheel_output(model, OUTPUT_CONTACT, w)};
+    a->spin = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *a->spin);
     a->value = pool_alloc(pool, (size_t)(scene->outputs / a->every + 1) * (size_t)a->channels * sizeof *a->value);
     return a;
 }
@@ -96,15 +104,69 @@ static double rolled(const Animation *a, int w, const double *frame, const doubl
     return vec_dot(now, ahead) / fmax(vec_norm(ahead), 1e-9) / wheel->radius;
 }
 
-static void set_wheel(const Animation *a, int w, const double *output, double *frame, const double *before)
+/* The angle that the body of a wheel has turned about the wheel's axis since the frame before. */
+static double carried(const Animation *a, int w, const double *frame, const double *before)
 {
+    const int body = a->model->wheel[w].body;
+    const double *p = pose_of(before, body) + 3, *q = pose_of(frame, body) + 3;
+    double turn[3]; /* vector part of the quaternion from p to q, frame of the body */
+    vec_cross(q + 1, p + 1, turn);
+    for (int i = 0; i < 3; ++i)
+        turn[i] += p[0] * q[1 + i] - q[0] * p[1 + i];
+    return 2 * asin(fmin(fmax(vec_dot(turn, a->shapes.axis[w]), -1), 1));
+}
+
+/* The angle of a wheel that spins, against the body that carries it, since the frame before. */
+static double spun(const Animation *a, int w, const double *frame, const double *before, double spin)
+{
+    const double step = (double)a->every * a->scene->output_step;
+    return (a->spin[w] + spin) / 2 * step - carried(a, w, frame, before);
+}
+
+/* Force on the tire in the world, as far as outputs tell: along the axes of the contact (models/TIRES.md section 3). */
+static void tire_force(const Animation *a, int w, const double *output, const double *frame, const double contact[3],
+                       double force[3])
+{
+    const WheelOutputs *told = &a->told[w];
+    const gic_road *road = a->scene->road;
+    double h[3] = {0}, A[9], s[3], ahead[3], left[3];
+    if (road)
+        road->height(road, 0, 0, contact[0], contact[1], h);
+    const double norm = sqrt(1 + h[1] * h[1] + h[2] * h[2]);
+    const double normal[3] = {-h[1] / norm, -h[2] / norm, 1 / norm};
+    mat_from_euler(pose_of(frame, a->model->wheel[w].body) + 3, A);
+    mat_apply(A, a->shapes.axis[w], s);
+    vec_cross(s, normal, ahead);
+    const double length = fmax(vec_norm(ahead), 1e-6);
+    for (int i = 0; i < 3; ++i)
+        ahead[i] /= length;
+    vec_cross(normal, ahead, left);
+    for (int i = 0; i < 3; ++i) {
+        force[i] = told->wheel >= 0 ? output[told->wheel] * normal[i] : 0;
+        if (told->tire >= 0)
+            force[i] += output[told->tire] * ahead[i] + output[told->tire + 1] * left[i];
+    }
+}
+
+/* spin: of a wheel with a tire, rad/s; else 0. */
+static void set_wheel(const Animation *a, int w, const double *output, double spin, double *frame, const double *before)
+{
+    const Wheel *wheel = &a->model->wheel[w];
+    const WheelOutputs *told = &a->told[w];
     double *channel = frame + a->wheels + WHEEL_CHANNELS * w, *force = channel + 1, *contact = channel + 4;
-    channel[0] = before ? before[a->wheels + WHEEL_CHANNELS * w] + rolled(a, w, frame, before) : 0;
-    pose_point(pose_of(frame, a->model->wheel[w].body), a->shapes.center[w], contact);
-    if (a->contact[w] < 0)
-        return;
-    force[2] = output[a->contact[w]];
-    contact[2] = output[a->contact[w] + 3];
+    channel[0] = before ? before[a->wheels + WHEEL_CHANNELS * w] : 0;
+    if (before)
+        channel[0] += wheel->tire >= 0 ? spun(a, w, frame, before, spin) : rolled(a, w, frame, before);
+    a->spin[w] = spin;
+    pose_point(pose_of(frame, wheel->body), a->shapes.center[w], contact);
+    if (told->wheel >= 0)
+        contact[2] = output[told->wheel + 3];
+    if (told->contact >= 0)
+        memcpy(contact, output + told->contact, 3 * sizeof *contact);
+    if (wheel->tire >= 0)
+        tire_force(a, w, output, frame, contact, force);
+    else if (told->wheel >= 0)
+        force[2] = output[told->wheel];
 }
 
 int animation_frame(Animation *a, const gic_model *code, gic_head *self)
@@ -112,6 +174,7 @@ int animation_frame(Animation *a, const gic_model *code, gic_head *self)
     if (a->times++ % a->every)
         return GIC_OK;
     const double *output = instance_array(self, code->output_offset);
+    const double *fast = (const double *)instance_array(self, code->state_offset) + code->slow_count;
     double *frame = a->value + (size_t)a->frames * (size_t)a->channels;
     const double *before = a->frames ? frame - a->channels : NULL;
     const int status = code->poses(self, frame);
@@ -120,7 +183,7 @@ int animation_frame(Animation *a, const gic_model *code, gic_head *self)
     for (int b = 0; before && b < a->model->bodies; ++b)
         keep_sign(frame + POSE * b, before + POSE * b);
     for (int w = 0; w < a->model->wheels; ++w)
-        set_wheel(a, w, output, frame, before);
+        set_wheel(a, w, output, a->model->wheel[w].tire >= 0 ? fast[a->model->wheel[w].fast] : 0, frame, before);
     for (int i = 0; i < a->scene->curves; ++i)
         frame[a->curves + i] = scene_value(code, self, a->scene->curve[i]);
     ++a->frames;
@@ -243,7 +306,7 @@ static void json_wheels(const Animation *a, Text *out)
         json_vector(out, "center", a->shapes.center[w]);
         text_print(out, ",");
         json_vector(out, "axis", a->shapes.axis[w]);
-        if (a->contact[w] >= 0)
+        if (a->told[w].wheel >= 0 || a->told[w].tire >= 0)
             text_print(out, ",\"force\":[%d,%d,%d],\"contact\":[%d,%d,%d]", angle + 1, angle + 2, angle + 3, angle + 4,
                        angle + 5, angle + 6);
         text_print(out, "}");

@@ -182,8 +182,11 @@ static void add_wheels(const Shaper *shaper)
         double A[9];
         mat_from_euler(model->body[wheel->body].euler, A);
         mat_apply_transposed(A, (const double[]){0, 1, 0}, shapes->axis[w]);
+        if (wheel->tire >= 0)
+            vector(model, wheel->axis, shapes->axis[w]);
         vector(model, wheel->center, shapes->center[w]);
-        shapes->width[w] = 0.6 * wheel->radius; /* as wide as tires of cars are */
+        const double width = wheel->tire >= 0 ? model->tire[wheel->tire].width : 0;
+        shapes->width[w] = width > 0 ? width : 0.6 * wheel->radius; /* as wide as tires of cars are */
         add_point(shaper, wheel->body, shapes->center[w]);
     }
 }

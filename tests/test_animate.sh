@@ -54,6 +54,25 @@ for engine in cc tape gic gcp1 gcp2; do
     check "engine $engine gives the same motion" page same "$work/run.html" "$work/$engine.html" $units
 done
 
+# wheels that spin, on a plane that rises to the left and ahead: steered, braked until they lock
+tires=$root/models/hmmwv_tires.veh
+cat >"$work/tires.scene" <<'END'
+gicscene: 1
+duration: 3
+step: 0.005
+ratio: 5
+initial: {position: [0, 0, 0.4826], orientation: {yaw: 0.3}, speed: 12}
+road: {type: slope, x: 0.05, y: 0.03}
+inputs:
+  rack: {knots: {times: [0.2, 1], values: [0, 0.03]}}
+  brake: {knots: {times: [1.5, 1.7], values: [0, 0.9]}}
+END
+run "$tires" "$work/tires.scene" -o "$work/tires.csv" --animate "$work/tires.html"
+check 'wheels with tires turn by their spin, arrows have all three components' \
+    page tires "$work/tires.html" "$work/tires.csv" 0.05 0.03 0.3175
+run -q --engine gcp1 "$tires" "$work/tires.scene" -o "$work/gcp1.csv" --animate "$work/gcp1.html"
+check 'they do with another engine' page tires "$work/gcp1.html" "$work/gcp1.csv" 0.05 0.03 0.3175
+
 # names that HTML means something by; a long run of something small on a fixed base, made larger by a parameter
 cat >"$work/odd.veh" <<'END'
 gicgen: 1

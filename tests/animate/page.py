@@ -76,6 +76,60 @@ def check_motion(page, results):
                   0.51 * run['channels'][curve['values']]['unit'])
 
 
+def axes(run, body, i):
+    """Columns of a body's A at frame i."""
+    o = point(run, body, (0, 0, 0), i)
+    return [[a - b for a, b in zip(point(run, body, e, i), o)] for e in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def unit(a):
+    return [x / math.sqrt(dot(a, a)) for x in a]
+
+
+def check_tires(page, results, slope_x, slope_y, width):
+    """Wheels with tires on a plane, a frame a row: they turn by their spin less what their carriers turn (trapezoids
+    both, and poses rounded to 1e-5: 5e-3 rad in all), and arrows are the forces of outputs along the axes of the contact
+    (axes to 2e-5 of at most 30 kN)."""
+    run, rows = read_run(page), read_csv(results)
+    if run['frames'] != len(rows['time']):
+        sys.exit('%d frames' % run['frames'])
+    normal = unit((-slope_x, -slope_y, 1))
+    for wheel in run['wheels']:
+        name = wheel['name'].replace('tire_', '')
+        close('width', wheel['width'], width, 1e-6)
+        angle = 0
+        for i in range(run['frames']):
+            A = axes(run, wheel['body'], i)
+            s = [dot(wheel['axis'], row) for row in zip(*A)]
+            if i:
+                step = rows['time'][i] - rows['time'][i - 1]
+                spin = rows['slip_%s.spin' % name]
+                # half of the antisymmetric part of what turns the axes of the frame before into these
+                turned = [x / 2 for x in map(sum, zip(*(cross(a, b) for a, b in zip(before, A))))]
+                angle += step * (spin[i] + spin[i - 1]) / 2 - dot(turned, s)
+            before = A
+            close('angle of ' + name, run['channel'][wheel['angle']][i], angle, 5e-3)
+            e_x = unit(cross(s, normal))
+            e_y = cross(normal, e_x)
+            told = [rows[key % name][i] for key in ('slip_%s.fx', 'slip_%s.fy', 'tire_%s.fz')]
+            for k, axis in enumerate('xyz'):
+                c = wheel['force'][k]
+                close('force of ' + name, run['channel'][c][i], dot(told, (e_x[k], e_y[k], normal[k])),
+                      0.51 * run['channels'][c]['unit'] + 0.6)
+                close('contact of ' + name, run['channel'][wheel['contact'][k]][i],
+                      rows['contact_%s.%s' % (name, axis)][i], 0.51e-4)
+        if not angle > 20:
+            sys.exit('%s has turned by %g only' % (name, angle))
+
+
 def check_road(page, scene):
     """Heights at all corners of tiles against the bumps' formula; half of 1e-4 m, where a tile is plain 1e-4 more."""
     road = read_run(page)['road']
@@ -122,6 +176,8 @@ def main():
     check, *words = sys.argv[1:]
     if check == 'motion':
         check_motion(*words)
+    elif check == 'tires':
+        check_tires(words[0], words[1], *map(float, words[2:]))
     elif check == 'road':
         check_road(*words)
     elif check == 'same':
