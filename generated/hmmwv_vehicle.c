@@ -2338,9 +2338,9 @@ static const gic_real hmmwv_vehicle_k_wheel_tire_f_l[4][1] = {
  * torque: of drive and brake. rate: of spin, slips, brake. grip: force 0 and torque 3 on the carrier,
  * drive and brake 6 7, load, deflection, its rate, road height 8 to 11, Fx Fy Mx My Mz 12, slips and camber 17
  * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26. */
-static int hmmwv_vehicle_wheel_tire_f_l(const hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k, gic_real time, const gic_real *GIC_RESTRICT link,
-    const gic_real *GIC_RESTRICT fast, const gic_real *GIC_RESTRICT torque, gic_real *GIC_RESTRICT rate,
-    gic_real *GIC_RESTRICT grip)
+static int hmmwv_vehicle_wheel_tire_f_l(const hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k, gic_real time,
+    const gic_real *GIC_RESTRICT link, const gic_real *GIC_RESTRICT fast, const gic_real *GIC_RESTRICT torque,
+    gic_real *GIC_RESTRICT rate, gic_real *GIC_RESTRICT grip)
 {
     gic_real hub[20]; /* Fz, kappa, tan alpha, camber, friction, V_x, deflection, loaded radius,
                         * axes of the contact 8 11 14, centre to contact point 17 */
@@ -2615,8 +2615,8 @@ static int hmmwv_vehicle_wheel_tire_f_l(const hmmwv_vehicle *self, const gic_rea
     return GIC_OK;
 }
 
-/* How the multibody system moves the wheels: 12 numbers each, centre, its velocity, spin axis, angular velocity (world); then
- * coordinates that formulas of wheels read. */
+/* How the multibody system moves the wheels: 12 numbers each, centre, its velocity, spin axis, angular velocity (world);
+ * then coordinates that formulas of wheels read. */
 static void hmmwv_vehicle_link_wheels(const hmmwv_vehicle *self, const gic_real *y, const gic_real *e, gic_real *link)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const m = self->motion;
@@ -6206,7 +6206,7 @@ int hmmwv_vehicle_self_test(hmmwv_vehicle *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
-/* ---- dual rate --------------------------------------------------------------------------------------------------------- */
+/* ---- dual rate -------------------------------------------------------------------------------------------------- */
 
 static int hmmwv_vehicle_any_link(void *instance, gic_real time, const gic_real *slow, gic_real *link)
 {

@@ -128,7 +128,7 @@ static int rate_along(const Linear *linear, const Instance *self, const double *
     tape_arrays(linear->value, &time, y, e, linear->rate, NULL, NULL, array);
     tape_arrays(linear->slope, &dtime, dy, de, drate, NULL, NULL, slope);
     if (engine->wheel)
-        status = tape_turn_wheels_dual(engine, &world, array, slope, linear->frame);
+        status = tape_turn_wheels_dual(linear->value, &world, array, slope, linear->frame);
     if (status == GIC_OK)
         status = tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
     return status;

@@ -136,7 +136,7 @@ int tape_turn_wheels(Instance *self, double time, const double *y, const double 
 /* The same in dual numbers. array, slope: what tape_arrays() gives, of an instance at the state and of its derivatives;
  * rate (and the grip) are written there, as far as they are those of the fast states. slope_frame: as many numbers as
  * the engine's frame. */
-int tape_turn_wheels_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
+int tape_turn_wheels_dual(Instance *self, const TapeWorld *world, double *const *array, double *const *slope,
                           double *slope_frame);
 /* Recovery, unless the last one was for the very same coordinates and velocities. */
 int tape_recover_once(Instance *self, const double turn[3]);
@@ -145,8 +145,8 @@ int tape_link_wheels(void *self, double time, const double *slow, double *link);
 int tape_fast(void *self, double time, const double *link, const double *fast, double *rate);
 int tape_roll(void *self);
 
-/* tape_powertrain.c: as in powertrain.c.in and shift.c.in; gears at set-up. */
-int tape_drive(Instance *self, double time, const double *link, const double *fast, double *rate);
+/* tape_powertrain.c: the gears as numbers; as in shift.c.in; gears at set-up. */
+int tape_engage(Instance *self, double *gear);
 int tape_shift(void *self);
 void tape_start_gears(Instance *self);
 

@@ -10,8 +10,7 @@ static int32_t *gears_of(Instance *self)
     return (int32_t *)(void *)tape_array(self, code->discrete_offset) + code->free_base;
 }
 
-/* The gears as numbers. */
-static int engage(Instance *self, double gear[GEAR_NUMBERS])
+int tape_engage(Instance *self, double *gear)
 {
     const Powertrain *powertrain = tape_of(self)->formulation->model->powertrain;
     const int32_t *gears = gears_of(self);
@@ -23,26 +22,6 @@ static int engage(Instance *self, double gear[GEAR_NUMBERS])
     }
     gear[GEAR_NUMBER] = gears[0];
     return GIC_OK;
-}
-
-int tape_drive(Instance *self, double time, const double *link, const double *fast, double *rate)
-{
-    const TapeEngine *engine = tape_of(self);
-    const TapeWorld world = {.table = engine->table};
-    double gear[GEAR_NUMBERS];
-    double *const array[WHOLE_COUNT] = {
-        [WHOLE_time] = &time,
-        [WHOLE_link] = (double *)link, /* blocks only read these two */
-        [WHOLE_fast] = (double *)fast,
-        [WHOLE_u] = tape_array(self, engine->code.input_offset),
-        [WHOLE_p] = tape_array(self, engine->code.parameter_offset),
-        [WHOLE_gear] = gear,
-        [WHOLE_rate] = rate,
-        [WHOLE_grip] = tape_array(self, engine->grip_offset),
-        [WHOLE_watch] = tape_array(self, engine->watch_offset),
-    };
-    const int status = engage(self, gear);
-    return status == GIC_OK ? tape_play(engine->drive, 0, array, &world, engine->frame) : status;
 }
 
 int tape_shift(void *instance)
@@ -66,7 +45,7 @@ int tape_shift(void *instance)
         [WHOLE_gear] = gear,
         [WHOLE_choice] = choice,
     };
-    if (!(*age > powertrain->duration) || engage(self, gear) != GIC_OK)
+    if (!(*age > powertrain->duration) || tape_engage(self, gear) != GIC_OK)
         return 0;
     tape_gather(self, state);
     tape_play(engine->shift, 0, array, &world, engine->frame);
