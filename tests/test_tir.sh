@@ -3,7 +3,7 @@
 # test_tir.sh GICGEN: `.tir` files. The numbers of the HMMWV's tire are those that a reader of its own (tir.py) finds in
 # the file; other units, line ends and spacing change nothing; every broken file is refused at its place with a remedy,
 # and no bytes whatever crash the reader.
-gicgen=$1
+case $1 in /*) gicgen=$1 ;; *) gicgen=$PWD/$1 ;; esac
 root=$(cd "$(dirname "$0")/.." && pwd)
 good=$root/models/tires/hmmwv_pac2002.tir
 work=$(mktemp -d) || exit 1
