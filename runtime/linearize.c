@@ -128,7 +128,7 @@ static int rate_along(const Linear *linear, const Instance *self, const double *
     tape_arrays(linear->value, &time, y, e, linear->rate, NULL, NULL, array);
     tape_arrays(linear->slope, &dtime, dy, de, drate, NULL, NULL, slope);
     if (engine->wheel)
-        status = tape_turn_wheels_dual(linear->value, &world, array, slope, linear->frame);
+        status = tape_turn_wheels_dual(engine, &world, array, slope, linear->frame);
     if (status == GIC_OK)
         status = tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
     return status;
@@ -308,12 +308,14 @@ static void reach_of_wheels(Linear *linear)
             linear->reach[2 * linear->places + linear->of_wheels++] = reach[k];
 }
 
-/* Places; their rates under the same names; fast states under their own. */
+/* Places; their rates under the same names; fast states under their own, but for the last one of a powertrain, which is
+ * a clock: nothing rests with it. */
 static void name_numbers(Pool *pool, Linear *linear)
 {
     static const char *const base[BASE_PLACES] = {"x", "y", "z", "roll", "pitch", "yaw"};
     const TapeEngine *engine = linear->engine;
     const gic_model *code = &engine->code;
+    const int clocks = engine->formulation->model->powertrain ? POWERTRAIN_FAST - POWERTRAIN_AGE : 0;
     for (int half = 0; half < 2; ++half) {
         for (int i = 0; code->free_base && i < BASE_PLACES; ++i)
             add_number(pool, linear, base[i], 0.1);
@@ -322,7 +324,7 @@ static void name_numbers(Pool *pool, Linear *linear)
                 add_number(pool, linear, code->coordinate[c].name, engine->piece[c]);
         linear->places = half ? linear->places : linear->count;
     }
-    for (int i = 0; i < code->fast_count; ++i)
+    for (int i = 0; i < code->fast_count - clocks; ++i)
         add_number(pool, linear, code->state[code->slow_count + i].name, 1);
     reach_of_wheels(linear);
 }

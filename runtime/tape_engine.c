@@ -68,6 +68,7 @@ void tape_arrays(Instance *self, const double *time, const double *y, const doub
         [WHOLE_energy] = out,
         [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
         [WHOLE_GRIP] = tape_array(self, engine->grip_offset),
+        [WHOLE_gear] = tape_array(self, engine->gear_offset),
         [WHOLE_WATCH] = tape_array(self, engine->watch_offset),
         [WHOLE_lambda] = tape_array(self, engine->multiplier_offset),
     };

@@ -46,7 +46,7 @@ typedef struct TapeEngine {
     size_t x_offset, xd_offset, start_offset[2], motion_offset, inertia_offset, multiplier_offset, derived_offset;
     size_t grip_offset,
         recovered_offset; /* the latter: x, xd and angular velocity of the last recovery, 1: it was good */
-    size_t watch_offset;
+    size_t gear_offset, watch_offset;
     double *link_row, *torques; /* a link; what drives and brakes [wheels with tires][2] */
     double *choice;             /* powertrain.h */
     double *frame, *q, *first, *result, *out;
@@ -136,7 +136,7 @@ int tape_turn_wheels(Instance *self, double time, const double *y, const double 
 /* The same in dual numbers. array, slope: what tape_arrays() gives, of an instance at the state and of its derivatives;
  * rate (and the grip) are written there, as far as they are those of the fast states. slope_frame: as many numbers as
  * the engine's frame. */
-int tape_turn_wheels_dual(Instance *self, const TapeWorld *world, double *const *array, double *const *slope,
+int tape_turn_wheels_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
                           double *slope_frame);
 /* Recovery, unless the last one was for the very same coordinates and velocities. */
 int tape_recover_once(Instance *self, const double turn[3]);
@@ -145,8 +145,8 @@ int tape_link_wheels(void *self, double time, const double *slow, double *link);
 int tape_fast(void *self, double time, const double *link, const double *fast, double *rate);
 int tape_roll(void *self);
 
-/* tape_powertrain.c: the gears as numbers; as in shift.c.in; gears at set-up. */
-int tape_engage(Instance *self, double *gear);
+/* tape_powertrain.c: the gears as numbers, into the instance; changes of gear as in shift.c.in; gears at set-up. */
+int tape_engage(Instance *self);
 int tape_shift(void *self);
 void tape_start_gears(Instance *self);
 

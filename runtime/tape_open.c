@@ -147,6 +147,7 @@ static void lay_out(TapeEngine *engine)
         code->link_offset = descriptor_place(code, 5 * (size_t)wheels->links);
         engine->grip_offset = descriptor_place(code, GRIP_NUMBERS * (size_t)wheels->count);
         engine->recovered_offset = descriptor_place(code, 2 * coordinates + 4);
+        engine->gear_offset = descriptor_place(code, engine->drive ? GEAR_NUMBERS : 0);
         engine->watch_offset = descriptor_place(code, engine->drive ? WATCH_NUMBERS : 0);
     }
 }

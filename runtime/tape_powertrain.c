@@ -10,10 +10,12 @@ static int32_t *gears_of(Instance *self)
     return (int32_t *)(void *)tape_array(self, code->discrete_offset) + code->free_base;
 }
 
-int tape_engage(Instance *self, double *gear)
+int tape_engage(Instance *self)
 {
-    const Powertrain *powertrain = tape_of(self)->formulation->model->powertrain;
+    const TapeEngine *engine = tape_of(self);
+    const Powertrain *powertrain = engine->formulation->model->powertrain;
     const int32_t *gears = gears_of(self);
+    double *gear = tape_array(self, engine->gear_offset);
     for (int i = 0; i < 2; ++i) {
         if (gears[i] < -powertrain->reverse || gears[i] > powertrain->forward)
             return GIC_ERROR_INPUT;
@@ -33,7 +35,7 @@ int tape_shift(void *instance)
     const TapeWorld world = {.table = engine->table};
     double *state = tape_array(self, code->state_offset), *fast = state + code->slow_count;
     double *age = fast + powertrain->fast + POWERTRAIN_AGE, time = gic_time(self);
-    double gear[GEAR_NUMBERS], *choice = engine->choice;
+    double *choice = engine->choice;
     int32_t *gears = gears_of(self), next = gears[0];
     double *const array[WHOLE_COUNT] = {
         [WHOLE_time] = &time,
@@ -42,10 +44,10 @@ int tape_shift(void *instance)
         [WHOLE_xd] = tape_array(self, engine->xd_offset),
         [WHOLE_u] = tape_array(self, code->input_offset),
         [WHOLE_p] = tape_array(self, code->parameter_offset),
-        [WHOLE_gear] = gear,
+        [WHOLE_gear] = tape_array(self, engine->gear_offset),
         [WHOLE_choice] = choice,
     };
-    if (!(*age > powertrain->duration) || tape_engage(self, gear) != GIC_OK)
+    if (!(*age > powertrain->duration) || tape_engage(self) != GIC_OK)
         return 0;
     tape_gather(self, state);
     tape_play(engine->shift, 0, array, &world, engine->frame);

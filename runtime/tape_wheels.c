@@ -2,7 +2,6 @@
  * Wheels with tires: the templates wheels.c.in, wheel.c.in and dual_rate.c.in, over tapes. */
 #include "tape_engine.h"
 
-#include "../generator/powertrain.h"
 #include "../generator/wheel.h"
 
 #include <math.h>
@@ -28,7 +27,6 @@ void tape_record_wheels(Pool *pool, TapeEngine *engine, const char *const *array
  * direction beside them. */
 typedef struct Turning {
     const TapeEngine *engine;
-    Instance *self; /* whose gears count */
     TapeWorld world;
     double *array[2][WHOLE_COUNT]; /* of numbers, of derivatives */
     double *slope_frame;
@@ -98,14 +96,7 @@ static int turn(const Turning *all)
             status = wheel_of(&one, &engine->wheel[c], i);
         }
     }
-    if (status != GIC_OK || !engine->drive)
-        return status;
-    double gear[2][GEAR_NUMBERS] = {{0}};
-    Turning drive = *all;
-    for (int side = 0; side < 2; ++side)
-        drive.array[side][WHOLE_gear] = gear[side];
-    status = tape_engage(all->self, gear[0]);
-    return status == GIC_OK ? play(&drive, engine->drive, 0) : status;
+    return status == GIC_OK && engine->drive ? play(all, engine->drive, 0) : status;
 }
 
 /* The same of an instance: rate[] of the fast states. */
@@ -114,7 +105,6 @@ static int grip(Instance *self, double time, const double *link, const double *f
     const TapeEngine *engine = tape_of(self);
     const Turning all = {
         .engine = engine,
-        .self = self,
         .world = {engine->table, self->head.road, self->head.lane, time, NULL},
         .array = {{
             [WHOLE_time] = &time,
@@ -126,10 +116,12 @@ static int grip(Instance *self, double time, const double *link, const double *f
             [WHOLE_torque] = engine->torques,
             [WHOLE_rate] = rate,
             [WHOLE_grip] = tape_array(self, engine->grip_offset),
+            [WHOLE_gear] = tape_array(self, engine->gear_offset),
             [WHOLE_watch] = tape_array(self, engine->watch_offset),
         }},
     };
-    return turn(&all);
+    const int status = engine->drive ? tape_engage(self) : GIC_OK;
+    return status == GIC_OK ? turn(&all) : status;
 }
 
 int tape_turn_wheels(Instance *self, double time, const double *y, const double *e, double *rate)
@@ -141,14 +133,13 @@ int tape_turn_wheels(Instance *self, double time, const double *y, const double 
     return grip(self, time, engine->link_row, y + engine->code.slow_count, rate);
 }
 
-int tape_turn_wheels_dual(Instance *self, const TapeWorld *world, double *const *array, double *const *slope,
+int tape_turn_wheels_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
                           double *slope_frame)
 {
-    const TapeEngine *engine = tape_of(self);
     const int slow = engine->code.slow_count, links = engine->formulation->wheels->links;
     const int torques = 2 * engine->formulation->wheels->count;
     double link[2][links + 1], torque[2][torques + 1];
-    Turning all = {.engine = engine, .self = self, .world = *world, .slope_frame = slope_frame};
+    Turning all = {.engine = engine, .world = *world, .slope_frame = slope_frame};
     for (int side = 0; side < 2; ++side) {
         double **own = all.array[side];
         memcpy(own, side ? slope : array, sizeof all.array[side]);
