@@ -292,11 +292,15 @@ static int any_shift(void *instance)
 {
     Instance *self = instance;
     const Interpreted *context = self->context;
-    const double *state = array_of(self, context->code.state_offset);
+    const Powertrain *powertrain = context->world->model->powertrain;
+    double *state = array_of(self, context->code.state_offset), *fast = state + context->code.slow_count;
     int status = interpreted_load(self, gic_time(self));
-    if (status == GIC_OK && powertrain_watches_coordinates(context->world->model->powertrain))
+    if (status == GIC_OK && powertrain_watches_coordinates(powertrain))
         status = context->place(context, self, state);
-    return status == GIC_OK && world_shift(context->world, state + context->code.slow_count, gear_of(self));
+    if (status != GIC_OK || !world_shift(context->world, fast, gear_of(self)))
+        return 0;
+    fast[powertrain->fast + POWERTRAIN_AGE] = 0;
+    return 1;
 }
 
 /* Everything stands still, but an engine that idles. */
