@@ -309,7 +309,7 @@ static void set_powertrain(const Instance *self, const Powertrain *powertrain)
     const gic_model *code = &context_of(self)->code;
     double *fast = array_of(self, code->state_offset) + code->slow_count + powertrain->fast;
     fast[POWERTRAIN_SPEED] = powertrain->idle;
-    fast[POWERTRAIN_AGE] = 100;
+    fast[POWERTRAIN_AGE] = POWERTRAIN_FIRST_AGE;
     for (int i = 0; i < POWERTRAIN_DISCRETE; ++i)
         gear_of(self)[i] = powertrain->start_gear;
 }
