@@ -17,7 +17,6 @@ const double equilibrium_limit = 1e-9;
 enum { MOST_STEPS = 500 };
 
 static const double longest = 1e4, shortest = 1e-7, first = 0.02; /* h, s */
-static const double settled = 1;                                  /* h, s, from which tires are loaded */
 static const double near = 1e-3;       /* of the reach: steps so small need not be asked where they go */
 static const double rank_limit = 1e-9; /* of singular values, relative to the largest: below, nothing changes */
 
@@ -31,6 +30,7 @@ typedef struct Search {
     double *step, *move; /* [unknowns], [count] as linear_move() wants it */
     double *f, *A;       /* at the trial */
     double h;
+    bool settled;      /* is it near enough for tires to be loaded? */
     const char *limit; /* why the last trials since a good step could not be evaluated; NULL: all could */
 } Search;
 
@@ -207,11 +207,13 @@ static void accept(Search *s)
     s->limit = NULL;
 }
 
-/* Has the vehicle sunk to where only its tires move it on? Before that Newton's method would tie it down as it falls,
- * one tire pulling against the other. */
-static bool is_settled(const Search *s)
+/* Has the vehicle sunk to where only its tires move it on, slowly or steadily? Before that Newton's method would tie it
+ * down as it falls, one tire pulling against the other. */
+static bool has_settled(const Search *s)
 {
-    return s->h >= settled || !s->found->linear->of_wheels;
+    const double slow = 16, change = 1e-3; /* h, s; of a step */
+    const double before = square_sum(s, s->found->f), now = square_sum(s, s->f);
+    return !s->found->linear->of_wheels || s->h >= slow || fabs(now - before) <= change * before;
 }
 
 /* May a step be taken? */
@@ -233,7 +235,7 @@ static bool newton(Search *s)
     gsl_vector *S = gsl_vector_alloc(n);
     decompose(s, U, V, S);
     solve_decomposed(s, U, V, S, found->f, s->step);
-    bool good = found->residual > 0 && is_settled(s) && is_fair(s) && try_step(s);
+    bool good = found->residual > 0 && s->settled && is_fair(s) && try_step(s);
     if (good && square_sum(s, s->f) > square_sum(s, found->f) / 4) {
         solve_decomposed(s, U, V, S, s->f, s->move);
         good = found->residual >= equilibrium_limit && found->steps < MOST_STEPS &&
@@ -256,6 +258,7 @@ static bool relax(Search *s)
         relaxation_step(s);
         if (!is_fair(s) || !try_step(s) || !(square_sum(s, s->f) <= 100 * square_sum(s, s->found->f)))
             continue;
+        s->settled = has_settled(s);
         accept(s);
         s->h = fmin(2 * s->h, longest);
         return true;
@@ -373,6 +376,7 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
     const size_t count = (size_t)found->linear->count, square = (count * count + 1) * sizeof(double);
     const Place at = {scene ? scene->source : model->source, 0, 0};
     Search s = {.pool = pool, .found = found, .unknowns = (int)count - found->linear->places, .h = first};
+    s.settled = !found->linear->of_wheels;
     s.trial = (Instance *)(void *)instance_new(pool, found->engine);
     found->f = pool_alloc(pool, (count + 1) * sizeof(double));
     found->A = pool_alloc(pool, square);
