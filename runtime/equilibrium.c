@@ -20,8 +20,8 @@ static const double longest = 1e4, shortest = 1e-7, first = 0.02; /* h, s */
 static const double near = 1e-3;       /* of the reach: steps so small need not be asked where they go */
 static const double rank_limit = 1e-9; /* of singular values, relative to the largest: below, nothing changes */
 
-/* Unknowns are the places, then the fast states; equations their accelerations, then rates: equation i is row
- * places + i of A. */
+/* Unknowns are the places, then the fast states but clocks; equations their accelerations, then rates: equation i is
+ * row places + i of A. */
 typedef struct Search {
     Pool *pool;
     Equilibrium *found;
@@ -375,7 +375,10 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
     found->self = (Instance *)(void *)instance_new(pool, found->engine);
     const size_t count = (size_t)found->linear->count, square = (count * count + 1) * sizeof(double);
     const Place at = {scene ? scene->source : model->source, 0, 0};
-    Search s = {.pool = pool, .found = found, .unknowns = (int)count - found->linear->places, .h = first};
+    Search s = {.pool = pool,
+                .found = found,
+                .unknowns = (int)count - found->linear->places - found->linear->clocks,
+                .h = first};
     s.settled = !found->linear->of_wheels;
     s.trial = (Instance *)(void *)instance_new(pool, found->engine);
     found->f = pool_alloc(pool, (count + 1) * sizeof(double));

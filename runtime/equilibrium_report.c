@@ -23,7 +23,7 @@ static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, 
         diag_fail((Place){found->model->source, 0, 0}, "try another --engine",
                   "engine %s can't evaluate the equilibrium: %s", engine->name,
                   instance_status(pool, code, self, status));
-    for (int i = found->linear->places + code->free_base; i < engine->standard_count; ++i)
+    for (int i = found->linear->places + code->free_base; i < engine->standard_count - found->linear->clocks; ++i)
         worst = fmax(worst, fabs(rate[i]));
     return worst;
 }

@@ -327,6 +327,7 @@ static void name_numbers(Pool *pool, Linear *linear)
     for (int i = 0; i < code->fast_count - clocks; ++i)
         add_number(pool, linear, code->state[code->slow_count + i].name, 1);
     reach_of_wheels(linear);
+    linear->clocks = engine->formulation->model->powertrain != NULL;
 }
 
 Linear *linear_open(Pool *pool, const Engine *engine)

@@ -358,7 +358,7 @@ static void print_motion(const Equilibrium *found)
            found->model->name);
     for (int n = 0; n < 3 && n < linear->count - linear->places; ++n) {
         int most = -1;
-        for (int i = linear->places; i < linear->count; ++i)
+        for (int i = linear->places; i < linear->count - linear->clocks; ++i)
             if (fabs(found->f[i]) < before && (most < 0 || fabs(found->f[i]) > fabs(found->f[most])))
                 most = i;
         if (most < 0)
