@@ -5,6 +5,11 @@
 #include <math.h>
 #include <string.h>
 
+static int32_t *discrete_states(gic_head *self, const gic_model *code)
+{
+    return (int32_t *)(void *)instance_array(self, code->discrete_offset);
+}
+
 /* Largest acceleration that an engine finds there. */
 static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, const Equilibrium *found)
 {
@@ -13,6 +18,8 @@ static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, 
     double rate[engine->standard_count + 1], worst = 0;
     int status = code->setup_with(self, instance_array(from, own->parameter_offset));
     self->road = scene ? scene->road : NULL;
+    for (int i = code->free_base; i < code->discrete_count; ++i) /* gears; Euler parameters are found anew */
+        discrete_states(self, code)[i] = discrete_states(from, own)[i];
     memcpy(instance_array(self, code->input_offset), instance_array(from, own->input_offset),
            (size_t)code->input_count * sizeof(double));
     if (status == GIC_OK)
@@ -145,6 +152,8 @@ static void print_initial(const Equilibrium *found, const double *state)
                state[code->coordinate_state[c]]);
         begun = true;
     }
+    if (code->discrete_count > code->free_base)
+        printf("  gear: %d\n", discrete_states(&found->self->head, code)[code->free_base]);
     for (int i = 0; i < code->fast_count; ++i)
         printf("%s    %s: %.17g\n", i ? "" : "  states:\n", code->state[code->slow_count + i].name,
                state[code->slow_count + i]);
@@ -168,10 +177,14 @@ static void write_state(Pool *pool, const Equilibrium *found, const char *path)
     for (size_t p = 0; p < sizeof part / sizeof *part; ++p)
         for (int i = 0; i < part[p].count; ++i)
             csv_name(&csv, part[p].signal[i].name, part[p].signal[i].unit);
+    for (int i = code->free_base; i < code->discrete_count; ++i)
+        csv_name(&csv, code->discrete[i].name, code->discrete[i].unit);
     csv_end_row(&csv);
     for (size_t p = 0; p < sizeof part / sizeof *part; ++p)
         for (int i = 0; i < part[p].count; ++i)
             csv_number(&csv, instance_array(self, part[p].offset)[i]);
+    for (int i = code->free_base; i < code->discrete_count; ++i)
+        csv_number(&csv, discrete_states(self, code)[i]);
     csv_end_row(&csv);
     csv_close(&csv);
 }
