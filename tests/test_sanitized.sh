@@ -196,11 +196,11 @@ check $? "gicbench"
 
 # ---- generated code in a program of its own -------------------------------------------------------------------------
 
-cp "$root/runtime/gic_runtime.c" "$root/runtime/gic_runtime.h" .
+cp "$root"/runtime/gic_runtime.[ch] "$root"/runtime/gic_road.[ch] .
 for real in '' -DGIC_FLOAT; do
     # shellcheck disable=SC2086  # lists of words
-    cc -std=c99 -O1 -g $sanitize $real -I. "$root/tests/embed/two_vehicles.c" hmmwv.c pendulum.c gic_runtime.c -lm \
-        -o ride 2>said && ./ride >ride.txt 2>>said && [ "$(wc -l <ride.txt)" -eq 3 ]
+    cc -std=c99 -O1 -g $sanitize $real -I. "$root/tests/embed/two_vehicles.c" hmmwv.c pendulum.c gic_runtime.c \
+        gic_road.c -lm -o ride 2>said && ./ride >ride.txt 2>>said && [ "$(wc -l <ride.txt)" -eq 3 ]
     check $? "two vehicles $real"
 done
 # shellcheck disable=SC2086  # lists of words
