@@ -32,7 +32,7 @@
     ", " PLAIN
 #define WHEEL(body, center, radius, stiffness, damping) \
     "{\"name\": \"t\", \"body\": " body ", \"center\": " center ", \"radius\": " radius ", \"stiffness\": " stiffness \
-    ", \"damping\": " damping ", \"fade\": 0.01}"
+    ", \"damping\": " damping ", \"fade\": 0.01, \"tire\": null}"
 #define JOINTS "], \"joints\": ["
 #define COORDINATES "], \"coordinates\": ["
 #define FORCES "], \"forces\": ["

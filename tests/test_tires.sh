@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_tires.sh GICRUN: forces and moments of tires on a rig against the published formulas (tests/tires), over loads,
-# slips and cambers up to and beyond the edges of their data, on both sides of a vehicle, on roads of other friction; and
-# what needs no formulas: signs, peaks, symmetry.
+# slips and cambers up to and beyond the edges of their data, on both sides of a vehicle, on roads of other friction;
+# and what needs no formulas: signs, peaks, symmetry, numbers where a wheel lies flat.
 gicrun=$(realpath "$1")
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d) || exit 1

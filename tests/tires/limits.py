@@ -3,6 +3,7 @@
 and slopes that its data name, combined slip that takes from either force, sides that mirror each other."""
 import csv
 import sys
+from math import isfinite, pi
 
 import yaml
 
@@ -23,6 +24,8 @@ def plan():
             for slip in SLIPS[::20]:
                 yield "mirror", tire, 0.03, slip, camber, 20.0, 40.0
         yield "back", tire, 0.0, 0.0, 0.0, -20.0, -40.0
+        for camber in (-pi / 2, -1.56, 1.5, pi / 2):
+            yield "flat", tire, 0.1, -0.1, camber, 20.0, 40.0
 
 
 def states():
@@ -61,6 +64,9 @@ def check():
         side = [abs(force(tire, "fy")) for _, _, _, _, force in table["both", tire]]
         middle = side[len(side) // 2]
         report(f"{tire}: and from fy", max(side[0], side[-1]) < 0.6 * middle, side[0], middle, side[-1])
+        report(f"{tire}: a wheel that lies flat has finite forces",
+               all(row["status"] == "0" and all(isfinite(float(row[f"{tire}.f{axis}"])) for axis in "xy")
+                   for _, _, _, row, _ in table["flat", tire]))
         report(f"{tire}: rolling resistance brakes in both directions",
                table["x", tire][0][4](tire, "my") < 0 < table["back", tire][0][4](tire, "my"))
     # friction that the data name: (PDX1 + PDX2 d) etc. of upright tires, here without the small shifts SV
