@@ -29,6 +29,7 @@ typedef struct Search {
     int unknowns;
     double *step, *move; /* [unknowns], [count] as linear_move() wants it */
     double *f, *A;       /* at the trial */
+    bool locked;         /* nothing turns wheels and engine */
     double h;
     bool settled;      /* is it near enough for tires to be loaded? */
     const char *limit; /* why the last trials since a good step could not be evaluated; NULL: all could */
@@ -182,6 +183,21 @@ static bool goes_with_forces(Search *s, double size)
     return work > 0;
 }
 
+/* linearize(); of wheels that are locked slips alone can change, and nothing asks what is about to turn them. */
+static int look(const Search *s, Instance *self, double *f, double *A)
+{
+    const Linear *linear = s->found->linear;
+    const int count = linear->count;
+    const int status = linearize(linear, self, f, A);
+    for (int i = 2 * linear->places; i < count && s->locked; ++i) {
+        f[i] = 0;
+        memset(A + i * count, 0, (size_t)count * sizeof *A);
+        for (int row = 0; row < count && !linear->slips[i]; ++row)
+            A[row * count + i] = 0;
+    }
+    return status;
+}
+
 /* Evaluate where the step leads. */
 static bool try_step(Search *s)
 {
@@ -191,7 +207,7 @@ static bool try_step(Search *s)
         s->move[column_of(linear, i)] = s->step[i];
     memcpy(s->trial, s->found->self, linear->engine->code.size);
     linear_move(linear, s->trial, s->move);
-    const int status = linearize(linear, s->trial, s->f, s->A);
+    const int status = look(s, s->trial, s->f, s->A);
     if (status != GIC_OK)
         s->limit = instance_status(s->pool, s->found->engine->code, &s->trial->head, status);
     return status == GIC_OK;
@@ -314,6 +330,16 @@ int equilibrium_force(const Equilibrium *found, int force)
     return at;
 }
 
+bool equilibrium_stands(const Model *model, const Scene *scene)
+{
+    bool moves = scene->along && scene->speed != 0;
+    for (int i = 0; i < 3 && model->free_base; ++i)
+        moves = moves || scene->angular_velocity[i] != 0 || (!scene->along && scene->velocity[i] != 0);
+    for (int c = 0; c < model->coordinates; ++c)
+        moves = moves || (!model->coordinate[c].driven && scene->rate[c] != 0);
+    return !moves;
+}
+
 /* At rest at time 0, inputs fixed. */
 static int start(const Equilibrium *found, const Scene *scene)
 {
@@ -366,7 +392,7 @@ static _Noreturn void fail(const Search *s, Place at)
               found->steps, found->f[worst], linear->name[worst]);
 }
 
-const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve)
+const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve, bool moves)
 {
     Equilibrium *found = pool_alloc(pool, sizeof *found);
     found->model = watched(pool, model);
@@ -378,6 +404,7 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
     Search s = {.pool = pool,
                 .found = found,
                 .unknowns = (int)count - found->linear->places - found->linear->clocks,
+                .locked = moves,
                 .h = first};
     s.settled = !found->linear->of_wheels;
     s.trial = (Instance *)(void *)instance_new(pool, found->engine);
@@ -392,7 +419,7 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
                   model->name);
     int status = start(found, scene);
     if (status == GIC_OK)
-        status = linearize(found->linear, found->self, found->f, found->A);
+        status = look(&s, found->self, found->f, found->A);
     if (status != GIC_OK)
         diag_fail(at, "is the initial state one that the mechanism can reach from its design?",
                   "the search for equilibrium can't start: %s",
@@ -410,17 +437,6 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
     return found;
 }
 
-/* Does a scene begin at rest? */
-static bool stands(const Scene *scene, const gic_model *code)
-{
-    bool moves = scene->along && scene->speed != 0;
-    for (int i = 0; i < 3 && code->free_base; ++i)
-        moves = moves || scene->angular_velocity[i] != 0 || (!scene->along && scene->velocity[i] != 0);
-    for (int c = 0; c < code->coordinate_count; ++c)
-        moves = moves || (code->coordinate_state[c] >= 0 && scene->rate[c] != 0);
-    return !moves;
-}
-
 const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium *found)
 {
     const gic_model *code = found->engine->code;
@@ -435,7 +451,7 @@ const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium
             out->value[c] = state[code->coordinate_state[c]];
             out->given[c] = true;
         }
-    if (stands(scene, code)) { /* else wheels roll, unless the scene says how they turn */
+    if (equilibrium_stands(found->model, scene)) { /* else wheels roll, unless the scene says how they turn */
         out->fast = pool_alloc(pool, ((size_t)code->fast_count + 1) * sizeof *out->fast);
         memcpy(out->fast, state + code->slow_count, (size_t)code->fast_count * sizeof *out->fast);
     }
@@ -450,5 +466,8 @@ const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium
 
 const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scene, Solve solve)
 {
-    return scene->equilibrium ? equilibrium_scene(pool, scene, equilibrium_find(pool, model, scene, solve)) : scene;
+    if (!scene->equilibrium)
+        return scene;
+    const bool moves = !equilibrium_stands(model, scene);
+    return equilibrium_scene(pool, scene, equilibrium_find(pool, model, scene, solve, moves));
 }

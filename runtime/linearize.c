@@ -298,14 +298,17 @@ static void add_number(Pool *pool, Linear *linear, const char *name, double reac
 }
 
 /* Of wheels' fast states, which come first: 1 rad/s, slips of 0.1, the windup of a brake that gives way. */
-static void reach_of_wheels(Linear *linear)
+static void describe_wheels(Linear *linear)
 {
     static const double reach[FAST_MOST] = {
         [FAST_SPIN] = 1, [FAST_SLIP_X] = 0.1, [FAST_SLIP_Y] = 0.1, [FAST_BRAKE] = 1};
     const Model *model = linear->engine->formulation->model;
     for (int i = 0; i < model->wheels; ++i)
-        for (int k = 0; model->wheel[i].tire >= 0 && k < wheel_fast_states(&model->wheel[i]); ++k)
-            linear->reach[2 * linear->places + linear->of_wheels++] = reach[k];
+        for (int k = 0; model->wheel[i].tire >= 0 && k < wheel_fast_states(&model->wheel[i]); ++k) {
+            const int number = 2 * linear->places + linear->of_wheels++;
+            linear->reach[number] = reach[k];
+            linear->slips[number] = k == FAST_SLIP_X || k == FAST_SLIP_Y;
+        }
 }
 
 /* Places; their rates under the same names; fast states under their own, but for the last one of a powertrain, which is
@@ -326,7 +329,8 @@ static void name_numbers(Pool *pool, Linear *linear)
     }
     for (int i = 0; i < code->fast_count - clocks; ++i)
         add_number(pool, linear, code->state[code->slow_count + i].name, 1);
-    reach_of_wheels(linear);
+    linear->slips = pool_alloc(pool, (size_t)linear->count + 1);
+    describe_wheels(linear);
     linear->clocks = engine->formulation->model->powertrain != NULL;
 }
 

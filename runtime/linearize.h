@@ -15,6 +15,7 @@
 typedef struct Linear {
     const TapeEngine *engine;
     int places, count;       /* count: 2 places and fast states */
+    bool *slips;             /* [count] is it the slip of a tire? */
     int of_wheels;           /* so many of the fast states, which are the first, belong to wheels */
     int clocks;              /* so many, which are the last, run on by themselves: the time since a gear was shifted */
     const char **name;       /* [count] */
@@ -51,8 +52,11 @@ typedef struct Equilibrium {
 } Equilibrium;
 
 /* The equilibrium that is reached from a scene's initial state, or without a scene from the model's, with inputs and
- * road of the scene at time 0. Ends in diag_fail where there is none. */
-const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve);
+ * road of the scene at time 0. moves: for a scene that starts in motion, so that wheels are locked, for what holds them
+ * at rest does not matter. Ends in diag_fail where there is none. */
+const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve, bool moves);
+/* Does a scene start at rest? */
+bool equilibrium_stands(const Model *model, const Scene *scene);
 /* Output components of force elements (loads: -1) and of wheels (fz first) of Equilibrium.model. */
 int equilibrium_force(const Equilibrium *found, int force);
 int equilibrium_wheel(const Equilibrium *found, int wheel);

@@ -348,6 +348,13 @@ static bool set_in_motion(Pool *pool, const Scene *scene, const Equilibrium *fou
     return moves;
 }
 
+/* Is rate number i one of a velocity? */
+static bool is_acceleration(const Linear *linear, int i)
+{
+    const gic_model *code = &linear->engine->code;
+    return i < 2 * linear->places || !strcmp(code->state[code->slow_count + i - 2 * linear->places].unit, "rad/s");
+}
+
 /* What the vehicle does by itself where it moves: the three largest accelerations. */
 static void print_motion(const Equilibrium *found)
 {
@@ -358,8 +365,9 @@ static void print_motion(const Equilibrium *found)
            found->model->name);
     for (int n = 0; n < 3 && n < linear->count - linear->places; ++n) {
         int most = -1;
-        for (int i = linear->places; i < linear->count - linear->clocks; ++i)
-            if (fabs(found->f[i]) < before && (most < 0 || fabs(found->f[i]) > fabs(found->f[most])))
+        for (int i = linear->places; i < linear->count; ++i)
+            if (is_acceleration(linear, i) && fabs(found->f[i]) < before &&
+                (most < 0 || fabs(found->f[i]) > fabs(found->f[most])))
                 most = i;
         if (most < 0)
             break;
