@@ -194,6 +194,8 @@ static void operations(const Report *r, Text *out)
         count_row(out, "all together", "drives and brakes", 1, f->torque);
         for (int c = 0; c < wheels->classes; ++c)
             count_row(out, wheels->class[c].name, "wheel with its tire", wheels->class[c].members, f->wheel[c]);
+        if (r->model->powertrain)
+            count_row(out, "all together", "powertrain", 1, f->drive);
     }
     if (formulation_reacts(r->formulation))
         count_row(out, "all together", "wrenches", 1, f->wrenches);
@@ -322,6 +324,17 @@ static bool law_uses(const Law *law, int parameter)
     return uses;
 }
 
+static bool powertrain_uses(const Powertrain *powertrain, int parameter)
+{
+    bool uses = law_uses(powertrain->throttle, parameter) || law_uses(powertrain->torque, parameter) ||
+                law_uses(powertrain->selector, parameter);
+    for (int i = 0; i < powertrain->forward - 1; ++i)
+        uses = uses || law_uses(powertrain->up[i], parameter) || law_uses(powertrain->down[i], parameter);
+    for (int i = 0; i < powertrain->differentials; ++i)
+        uses = uses || law_uses(powertrain->differential[i].lock, parameter);
+    return uses;
+}
+
 static bool force_uses(const Force *force, int parameter)
 {
     const Law *const number[] = {force->stiffness, force->damping, force->free, force->low, force->high, force->fade};
@@ -370,6 +383,8 @@ static void users_list(const Report *r, int parameter, Text *users)
     for (int k = 0; k < m->wheels; ++k)
         if (law_uses(m->wheel[k].drive, parameter) || law_uses(m->wheel[k].brake, parameter))
             listed(users, "wheel %s", m->wheel[k].name);
+    if (m->powertrain && powertrain_uses(m->powertrain, parameter))
+        listed(users, "the %s", "powertrain");
     const char *input = pool_print(r->pool, "p[%d]", m->parameter[parameter].index), **seen = NULL;
     int owners = 0;
     for (int i = 0; m->tuning && i < m->tuning->numbers; ++i) {

@@ -129,6 +129,10 @@ def check_wheels(told, body):
         wheel = total(*[operations(block) for block in blocks(text) + [tire]])
         same(f"operations of {name}", told[name, "wheel with its tire"], wheel + [sum(wheel)])
         fast = total(fast, scaled(wheel, len(re.findall(rf"= {NAME}_wheel_{name}\(", calls))))
+    if f"{NAME}_drive" in body:
+        drive = operations(blocks(body[f"{NAME}_drive"])[0])
+        same("operations of the powertrain", told["all together", "powertrain"], drive + [sum(drive)])
+        fast = total(fast, drive)
     return fast
 
 
