@@ -200,7 +200,7 @@ through() {
         shifts interpreted.csv "$3" "$4" "$5" "$6" "$7" "$8" "$9" >said && near generated.csv interpreted.csv 1e-4 >said
     check $? "$2 with gcp1"
 }
-through rig.veh shift.scene 4 0 0.4 0.2 '1 - 2 * c["input.grip"]' \
+through rig.veh shift.scene 4 0 0.4002 0.2 '1 - 2 * c["input.grip"]' \
     'g == 1 ? 300 : g == 2 ? 280 + 100 * c["input.accelerator"] : 300 + 50 * c["pitch.value"]' \
     'g == 1 ? 90 : g == 2 ? 100 + 50 * c["input.accelerator"] : 110'
 through car.veh drive.scene 3 1 0.3 1 'c["input.selector"]' 261.79938779914943 125.66370614359172
