@@ -18,6 +18,17 @@ static void take(const CsvTable *table, int row, const gic_signal *signal, int c
                 out[i] = table->value[row * table->columns + k];
 }
 
+/* A powertrain's gears. */
+static void take_gears(const CsvTable *table, int row, const gic_model *code, gic_head *self)
+{
+    int32_t *gear = (int32_t *)(void *)instance_array(self, code->discrete_offset);
+    for (int i = code->free_base; i < code->discrete_count; ++i) {
+        double value = gear[i];
+        take(table, row, &code->discrete[i], 1, &value);
+        gear[i] = (int32_t)value;
+    }
+}
+
 int main(int argc, char **argv)
 {
     if (argc < 3 || argc > 4) {
@@ -36,13 +47,14 @@ int main(int argc, char **argv)
     double f[count + 1], A[count * count + 1];
     printf("row");
     for (int i = 0; i < count; ++i)
-        printf(",%s%s", linear->name[i], i < linear->places ? "" : ".rate");
+        printf(",%s%s", linear->name[i], i < linear->places || i >= 2 * linear->places ? "" : ".rate");
     printf("\n");
     for (int row = 0; row < table->rows; ++row) {
         code->setup(self);
         self->road = scene ? scene->road : NULL;
-        take(table, row, code->state, code->slow_count, instance_array(self, code->state_offset));
+        take(table, row, code->state, code->slow_count + code->fast_count, instance_array(self, code->state_offset));
         take(table, row, code->input, code->input_count, instance_array(self, code->input_offset));
+        take_gears(table, row, code, self);
         if (linearize(linear, (Instance *)(void *)self, f, A) != GIC_OK)
             continue;
         for (int i = 0; i < count; ++i) {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * quad_linear DUMP STATES [--matrices FILE] [--modes FILE] [--road ...] [--tolerance 1e-9]
+ * quad_linear DUMP STATES [--matrices FILE] [--modes FILE] [--road ...] [--friction ...] [--tolerance 1e-9]
  *
  * Small motions about the states of a file, by central differences in quadruple precision of the independent solution:
- * a difference of 1e-10 in quad is exact to some 1e-16, so that what is compared is exact to double precision.
+ * a difference of 1e-13 in quad is exact to some 1e-14 also where a tire's slip of 1e-6 matters, so that what is
+ * compared is exact to double precision.
  * --matrices: what `linearized` printed for the same states. --modes: what `gicrun --modes -o` wrote, about the first
  * state, eigenvalue by eigenvalue; a zero there is one of less than 1e-4 1/s here, where multiple zeros scatter.
  * Entries of a matrix are compared relative to the largest of their row, eigenvalues relative to their own size. Exit
@@ -17,19 +18,20 @@
 #include <gsl/gsl_complex_math.h>
 #include <gsl/gsl_eigen.h>
 
-static const char usage[] =
-    "usage: quad_linear DUMP STATES [--matrices FILE] [--modes FILE] [--road ...] [--tolerance 1e-9]\n";
+static const char usage[] = "usage: quad_linear DUMP STATES [--matrices FILE] [--modes FILE] [--road ...] [--friction "
+                            "...] [--tolerance 1e-9]\n";
 
 /* Numbers of small motions: x y z, rotations about the base's axes, free coordinates; then their rates, those of a free
- * base in its own axes. */
+ * base in its own axes; then fast states, of the wheels one after the other and of a powertrain. */
 typedef struct Motions {
     const Model *model;
     Solver *solver;
     const State *state; /* the one that they are about */
     State *moved;
     const Road *road;
-    int base, places; /* 6 or 0; half of all */
-    quad *rate[2];    /* of the motions, on either side */
+    int base, places, fast; /* 6 or 0; half of all but the last; fast states */
+    int *wheel, *kind;      /* [fast]: a wheel and its state, or -1 and 0 or 1: speed or age */
+    quad *rate[2];          /* of the motions, on either side */
     quad *A;
 } Motions;
 
@@ -40,6 +42,28 @@ static int coordinate_at(const Motions *m, int i)
         if (!m->model->coordinate[c].driven && i-- == 0)
             return c;
     return -1;
+}
+
+static int count_of(const Motions *m)
+{
+    return 2 * m->places + m->fast;
+}
+
+/* Fast state number i in a state. */
+static quad *fast_at(const Motions *m, State *state, int i)
+{
+    if (m->wheel[i] >= 0)
+        return &state->fast[m->wheel[i]][m->kind[i]];
+    return m->kind[i] ? &state->line.age : &state->line.speed;
+}
+
+/* And its rate, as the solver has it. */
+static quad fast_rate(const Motions *m, int i)
+{
+    static const int rate[FAST_STATES] = {SPIN_RATE, SLIP_X_RATE, SLIP_Y_RATE, WINDUP_RATE};
+    if (m->wheel[i] >= 0)
+        return m->solver->wheel[m->wheel[i]].value[rate[m->kind[i]]];
+    return m->solver->line.value[m->kind[i] ? AGE_RATE : SPEED_RATE];
 }
 
 /* m->moved: the state with number j displaced by h. */
@@ -55,8 +79,12 @@ static void displace(const Motions *m, int j, quad h)
     memcpy(to->fast, from->fast, (size_t)m->model->wheels * sizeof *to->fast);
     memcpy(to->r, from->r, sizeof to->r);
     memcpy(to->omega, from->omega, sizeof to->omega);
+    memcpy(to->fast, from->fast, (size_t)m->model->wheels * sizeof *to->fast);
+    to->line = from->line;
     const int place = j % m->places;
-    if (place >= m->base) {
+    if (j >= 2 * m->places) {
+        *fast_at(m, to, j - 2 * m->places) += h;
+    } else if (place >= m->base) {
         (j < m->places ? to->w : to->w_rate)[coordinate_at(m, place - m->base)] += h;
     } else {
         z[j < m->places ? place : 6 + place] = h;
@@ -94,6 +122,8 @@ static bool evaluate(Motions *m, quad *rate)
         rate[i] = y->w_rate[coordinate_at(m, i - m->base)];
         rate[m->places + i] = solver->w_second[coordinate_at(m, i - m->base)];
     }
+    for (int i = 0; i < m->fast; ++i)
+        rate[2 * m->places + i] = fast_rate(m, i);
     if (!m->base)
         return true;
     quad away[3], rho[3], dv[3], c[3], u[3], a[3], world[3], omega[3];
@@ -123,8 +153,8 @@ static bool evaluate(Motions *m, quad *rate)
 
 static bool differentiate(Motions *m)
 {
-    const quad h = 1e-10;
-    const int count = 2 * m->places;
+    const quad h = 1e-13;
+    const int count = count_of(m);
     for (int j = 0; j < count; ++j) {
         for (int side = 0; side < 2; ++side) {
             displace(m, j, side ? -h : h);
@@ -140,7 +170,7 @@ static bool differentiate(Motions *m)
 /* Largest deviation of the lines of a matrix from `line` on, relative to the rows' largest entries. */
 static double matrix_deviation(const Motions *m, const Table *table, int line)
 {
-    const int count = 2 * m->places;
+    const int count = count_of(m);
     double worst = 0;
     for (int i = 0; i < count; ++i) {
         double scale = 0, error = 0;
@@ -165,7 +195,7 @@ static int line_of(const Table *table, int row)
 /* Every eigenvalue takes the nearest one of the table; the largest deviation. */
 static double modes_deviation(const Motions *m, const Table *table)
 {
-    const size_t count = 2 * (size_t)m->places;
+    const size_t count = (size_t)count_of(m);
     gsl_matrix *A = gsl_matrix_alloc(count, count);
     gsl_vector_complex *value = gsl_vector_complex_alloc(count);
     gsl_eigen_nonsymm_workspace *work = gsl_eigen_nonsymm_alloc(count);
@@ -198,13 +228,31 @@ static double modes_deviation(const Motions *m, const Table *table)
     return expected == count ? worst : INFINITY;
 }
 
+static void name_fast(Motions *m)
+{
+    const Model *model = m->model;
+    m->wheel = grab((size_t)(FAST_STATES * model->wheels + 2), sizeof(int));
+    m->kind = grab((size_t)(FAST_STATES * model->wheels + 2), sizeof(int));
+    for (int w = 0; w < model->wheels; ++w)
+        for (int k = 0; k < FAST_STATES; ++k)
+            if (wheel_has(&model->wheel[w], k)) {
+                m->wheel[m->fast] = w;
+                m->kind[m->fast++] = k;
+            }
+    for (int k = 0; k < 2 && model->powertrain; ++k) {
+        m->wheel[m->fast] = -1;
+        m->kind[m->fast++] = k;
+    }
+}
+
 static Motions motions_new(const Model *model, const Road *road)
 {
     Motions m = {.model = model, .solver = solver_new(model), .moved = state_new(model), .road = road};
     m.places = m.base = model->free_base ? 6 : 0;
     for (int c = 0; c < model->coordinates; ++c)
         m.places += !model->coordinate[c].driven;
-    const size_t count = 2 * (size_t)m.places;
+    name_fast(&m);
+    const size_t count = (size_t)count_of(&m);
     for (int side = 0; side < 2; ++side)
         m.rate[side] = grab(count, sizeof(quad));
     m.A = grab(count * count, sizeof(quad));
@@ -224,6 +272,8 @@ int main(int argc, char **argv)
             modes = argv[++i];
         else if (!strcmp(argv[i], "--road") && i + 1 < argc)
             road_parse(argv[++i], &road);
+        else if (!strcmp(argv[i], "--friction") && i + 1 < argc)
+            friction_parse(argv[++i], &road);
         else if (!strcmp(argv[i], "--tolerance") && i + 1 < argc)
             tolerance = number_of(argv[++i], "--tolerance");
         else if (argv[i][0] != '-' && paths < 2)

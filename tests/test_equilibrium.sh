@@ -94,6 +94,45 @@ check 'x stays' near "$(column "$work/rest" r.x)" 7 1e-4
 check 'y stays' near "$(column "$work/rest" r.y)" -3 1e-4
 check 'yaw stays' near "$(column "$work/rest" e3)" 0.8414709848 1e-6
 
+# on tires: where wheels are free, parked on a slope, with an engine that idles, steered
+for name in hmmwv_tires hmmwv_tmeasy; do
+    check "$name rests" rests "$root/models/$name.veh"
+    check "$name: the wheels carry its weight" carried
+done
+tires=$root/models/hmmwv_tires.veh
+scene 'road: {type: slope, x: 0.15, y: 0.05}' 'inputs: {brake: 1}' >"$work/a.scene"
+run --equilibrium "$tires" "$work/a.scene" -o "$work/rest"
+check 'brakes hold it on a slope' exits 0
+check 'by slips that are printed' prints '^tire_f_l.slip_x  *0.00'
+check 'it stays where it was' near "$(column "$work/rest" r.x)" 0 0.2
+for engine in gic gcp1; do
+    "$gicrun" --engine $engine --eval "$work/rest" "$tires" "$work/a.scene" -o "$work/eval"
+    check "engine $engine agrees" still "$work/eval"
+done
+{ scene 'road: {type: slope, x: 0.15, y: 0.05}' 'inputs: {brake: 1}'; sed -n '/^initial:/,$p' "$work/out"; } >"$work/b.scene"
+run --equilibrium "$tires" "$work/b.scene"
+check 'what is printed for scenes rests' prints 'found in 0 steps$'
+scene 'road: {type: slope, x: 0.15, y: 0.05}' 'inputs: {brake: 1}' 'initial: {equilibrium: true}' 'outputs: [chassis]' |
+    sed 's/step: 0.005/step: 0.001/' >"$work/b.scene"
+run "$tires" "$work/b.scene"
+check 'a run stays parked there' awk -F, 'NR == 2 {split($0, first)}
+    NR > 2 {for (i = 2; i <= NF; ++i) {d = $i - first[i]; if (!(d * d < 1e-18)) bad = 1}}
+    END {exit bad || NR != 12}' "$work/out"
+sed 's/brake: 1/brake: 0/' "$work/a.scene" >"$work/b.scene"
+run --equilibrium "$tires" "$work/b.scene"
+check 'without brakes it rolls away' exits 1
+check 'and the message says so' says 'remedy: the vehicle rolls or slides away'
+scene 'inputs: {rack: 0.03}' >"$work/a.scene"
+check 'steered it rests' rests "$tires" "$work/a.scene"
+scene 'inputs: {selector: 0}' 'initial: {gear: 0}' >"$work/a.scene"
+check 'the engine idles' rests "$root/models/hmmwv_vehicle.veh" "$work/a.scene"
+check 'near its idle speed' near "$(column "$work/rest" engine.speed)" 83.8 4
+scene 'initial: {equilibrium: true, speed: 20}' 'outputs: [chassis, slip_f_l]' | sed 's/step: 0.005/step: 0.001/' \
+    >"$work/a.scene"
+run "$tires" "$work/a.scene"
+check 'wheels roll at the start' awk -F, 'NR == 2 {exit !($9 * $9 < 1e-12)}' "$work/out"
+check 'as fast as it goes' near "$(tail -n 1 "$work/out" | cut -d, -f2)" 20 0.2
+
 # driven coordinates stand at their value of time 0, whatever they do then
 sed "s|parts/|$root/models/parts/|g; s/^  rack: *{type: translation,/& driven: true,/; /coordinate: rack, stiffness/d
     /element: rack/d" "$hmmwv" >"$work/steered.veh"

@@ -40,9 +40,11 @@ says() { grep -q -- "$1" "$work/err"; }
 # scene LINE...: a scene with them
 scene() { printf 'gicscene: 1\nduration: 1\nstep: 0.01\n'; printf '%s\n' "$@"; }
 
-# matrices MODEL COUNT [SCENE ROAD]: at random states, moving and turning
+# matrices MODEL ROWS [SCENE ROAD]: at random states, moving and turning; ROWS: how many, or `N,N...`: which of them
 matrices() {
-    "$gicgen" --dump-model "$1" >"$work/dump" && "$states" "$work/dump" --count "$2" --seed 3 >"$work/states" &&
+    "$gicgen" --dump-model "$1" >"$work/dump" && "$states" "$work/dump" --count 16 --seed 3 |
+        awk -v rows=",$2," 'NR == 1 || index(rows, "," NR - 1 ",") || (rows + 0 == rows && NR - 1 <= rows)' \
+            >"$work/states" &&
         "$linearized" "$1" "$work/states" ${3:+"$3"} >"$work/matrices" &&
         "$quad_linear" "$work/dump" "$work/states" --matrices "$work/matrices" --tolerance 1e-12 ${4:+--road "$4"} \
             >"$work/out" 2>"$work/err"
@@ -53,6 +55,10 @@ for name in pendulum quarter_car andrews hmmwv_full trailing_arm solid_axle five
 done
 scene 'road: {type: sine, amplitude: 0.05, wavelength: 5, start: 1, phase_per_y: 0.3}' >"$work/sine.scene"
 check 'derivatives of hmmwv on waves' matrices "$root/models/hmmwv.veh" 2 "$work/sine.scene" sine:0.05,5,1,0.3
+# wheels with tires: one that moves near the road, one that stands still, where slips turn abs() around
+for name in hmmwv_tires hmmwv_tmeasy hmmwv_vehicle; do
+    check "derivatives of $name" matrices "$root/models/$name.veh" 2,16
+done
 check 'derivatives of every function of formulas' matrices "$root/tests/laws/cart.veh" 3
 for seed in 3 21; do
     "$random_vehicle" --seed $seed >"$work/random.veh"
@@ -129,6 +135,28 @@ run --modes "$root/models/hmmwv.veh" "$work/moving.scene"
 check 'at a speed it says that this is no equilibrium' prints 'the largest acceleration is'
 run --modes "$root/models/hmmwv.veh" -o -
 check 'CSV on standard output, and nothing else' [ "$(awk -F, 'NF != 16' "$work/out" | wc -l)" -eq 0 ]
+
+# with tires: yaw and sideslip of a bicycle with the same axles; what moves is named
+scene 'initial: {speed: 20}' >"$work/moving.scene"
+bicycle() {
+    "$gicgen" --dump-model "$1" >"$work/dump" && "$gicrun" --equilibrium "$1" -o "$work/rest" >"$work/out" &&
+        awk -F, -v OFS=, 'NR == 1 {print; for (i = 1; i <= NF; ++i) {sub(/ .*/, "", $i); at[$i] = i}}
+            NR == 2 {for (k = -1; k <= 1; k += 2) {$at["v.x"] = 20
+                for (name in at) if (name ~ /slip_y$/) $at[name] = k * 0.001; else if (name ~ /slip_x$/) $at[name] = 0
+                else if (name ~ /spin$/) $at[name] = 20 / 0.455
+                print}}' "$work/rest" >"$work/states" &&
+        "$gicrun" --engine gic --eval "$work/states" "$1" -o "$work/eval" &&
+        "$gicrun" --modes "$1" "$work/moving.scene" -o "$work/modes" &&
+        /usr/bin/python3 -B "$root/tests/modes/bicycle.py" "$work/dump" "$work/eval" "$work/modes" 20 >>"$work/out" 2>&1
+}
+for name in hmmwv_tires hmmwv_tmeasy; do
+    check "yaw and sideslip of $name" bicycle "$root/models/$name.veh"
+done
+run --modes "$root/models/hmmwv_tires.veh" "$work/moving.scene"
+check 'tires and spins are named' prints 'tire_f_l.slip_y 4'
+check 'spins oscillate with slips' prints 'i .*slip_x 2.*spin 2'
+check 'the accelerations that remain are named' prints 'largest acceleration is -0.0[0-9]* m/s^2 or rad/s^2 of x, then'
+check 'windups of free brakes are neutral' prints 'neutral in x, y, yaw, tire_f_l.brake'
 
 run --modes --eval "$work/states" "$root/models/hmmwv.veh"
 check '--modes and --eval are one too many' exits 2
