@@ -254,7 +254,7 @@ static bool newton(Search *s)
     bool good = found->residual > 0 && s->settled && is_fair(s) && try_step(s);
     if (good && square_sum(s, s->f) > square_sum(s, found->f) / 4) {
         solve_decomposed(s, U, V, S, s->f, s->move);
-        good = found->residual >= equilibrium_limit && found->steps < MOST_STEPS &&
+        good = found->linear->of_wheels && found->residual >= equilibrium_limit && found->steps < MOST_STEPS &&
                step_size(s, s->move, s->unknowns) <= step_size(s, s->step, s->unknowns) / 2;
     }
     if (good)

@@ -66,8 +66,8 @@ bool tape_road(const TapeWorld *world, double x, double y, double out[3]);
 double tape_friction(const TapeWorld *world, double x, double y);
 
 /* tape_dual.c: the same with derivatives along one direction: `slope` has an array of derivatives for each array of
- * values, `rate` as many numbers as `frame`. Values are those of tape_play() to the bit. abs, min, max and conditions
- * have the derivative of the branch that is taken; constants and what no array holds have none. */
+ * values, `rate` as many numbers as `frame`. Values are those of tape_play() to the bit. min, max and conditions
+ * have the derivative of the branch that is taken, abs at 0 has none; constants and what no array holds have none. */
 int tape_play_dual(const Tape *tape, int member, double *const *array, double *const *slope, const TapeWorld *world,
                    double *frame, double *rate);
 
