@@ -401,11 +401,8 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
     found->self = (Instance *)(void *)instance_new(pool, found->engine);
     const size_t count = (size_t)found->linear->count, square = (count * count + 1) * sizeof(double);
     const Place at = {scene ? scene->source : model->source, 0, 0};
-    Search s = {.pool = pool,
-                .found = found,
-                .unknowns = (int)count - found->linear->places - found->linear->clocks,
-                .locked = moves,
-                .h = first};
+    Search s = {
+        .pool = pool, .found = found, .unknowns = (int)count - found->linear->places, .locked = moves, .h = first};
     s.settled = !found->linear->of_wheels;
     s.trial = (Instance *)(void *)instance_new(pool, found->engine);
     found->f = pool_alloc(pool, (count + 1) * sizeof(double));

@@ -318,7 +318,7 @@ static void name_numbers(Pool *pool, Linear *linear)
     static const char *const base[BASE_PLACES] = {"x", "y", "z", "roll", "pitch", "yaw"};
     const TapeEngine *engine = linear->engine;
     const gic_model *code = &engine->code;
-    const int clocks = engine->formulation->model->powertrain ? POWERTRAIN_FAST - POWERTRAIN_AGE : 0;
+    linear->clocks = engine->formulation->model->powertrain ? POWERTRAIN_FAST - POWERTRAIN_AGE : 0;
     for (int half = 0; half < 2; ++half) {
         for (int i = 0; code->free_base && i < BASE_PLACES; ++i)
             add_number(pool, linear, base[i], 0.1);
@@ -327,11 +327,10 @@ static void name_numbers(Pool *pool, Linear *linear)
                 add_number(pool, linear, code->coordinate[c].name, engine->piece[c]);
         linear->places = half ? linear->places : linear->count;
     }
-    for (int i = 0; i < code->fast_count - clocks; ++i)
+    for (int i = 0; i < code->fast_count - linear->clocks; ++i)
         add_number(pool, linear, code->state[code->slow_count + i].name, 1);
     linear->slips = pool_alloc(pool, (size_t)linear->count + 1);
     describe_wheels(linear);
-    linear->clocks = engine->formulation->model->powertrain != NULL;
 }
 
 Linear *linear_open(Pool *pool, const Engine *engine)

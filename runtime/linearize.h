@@ -17,7 +17,7 @@ typedef struct Linear {
     int places, count;       /* count: 2 places and fast states */
     bool *slips;             /* [count] is it the slip of a tire? */
     int of_wheels;           /* so many of the fast states, which are the first, belong to wheels */
-    int clocks;              /* so many, which are the last, run on by themselves: the time since a gear was shifted */
+    int clocks;              /* fast states behind them that run on by themselves: the time since a gear was shifted */
     const char **name;       /* [count] */
     double *reach;           /* [count] change of a place in which little happens: 0.1 m, 0.1 rad, the piece of a
                                 coordinate in which no body turns by more than that; of what spins 1 rad/s, of slips 0.1 */

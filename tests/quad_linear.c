@@ -22,7 +22,7 @@ static const char usage[] = "usage: quad_linear DUMP STATES [--matrices FILE] [-
                             "...] [--tolerance 1e-9]\n";
 
 /* Numbers of small motions: x y z, rotations about the base's axes, free coordinates; then their rates, those of a free
- * base in its own axes; then fast states, of the wheels one after the other and of a powertrain. */
+ * base in its own axes; then fast states, of the wheels one after the other, and the speed of an engine. */
 typedef struct Motions {
     const Model *model;
     Solver *solver;
@@ -30,7 +30,7 @@ typedef struct Motions {
     State *moved;
     const Road *road;
     int base, places, fast; /* 6 or 0; half of all but the last; fast states */
-    int *wheel, *kind;      /* [fast]: a wheel and its state, or -1 and 0 or 1: speed or age */
+    int *wheel, *kind;      /* [fast]: a wheel and its state; -1: the engine's speed */
     quad *rate[2];          /* of the motions, on either side */
     quad *A;
 } Motions;
@@ -54,7 +54,7 @@ static quad *fast_at(const Motions *m, State *state, int i)
 {
     if (m->wheel[i] >= 0)
         return &state->fast[m->wheel[i]][m->kind[i]];
-    return m->kind[i] ? &state->line.age : &state->line.speed;
+    return &state->line.speed;
 }
 
 /* And its rate, as the solver has it. */
@@ -63,7 +63,7 @@ static quad fast_rate(const Motions *m, int i)
     static const int rate[FAST_STATES] = {SPIN_RATE, SLIP_X_RATE, SLIP_Y_RATE, WINDUP_RATE};
     if (m->wheel[i] >= 0)
         return m->solver->wheel[m->wheel[i]].value[rate[m->kind[i]]];
-    return m->solver->line.value[m->kind[i] ? AGE_RATE : SPEED_RATE];
+    return m->solver->line.value[SPEED_RATE];
 }
 
 /* m->moved: the state with number j displaced by h. */
@@ -239,10 +239,8 @@ static void name_fast(Motions *m)
                 m->wheel[m->fast] = w;
                 m->kind[m->fast++] = k;
             }
-    for (int k = 0; k < 2 && model->powertrain; ++k) {
-        m->wheel[m->fast] = -1;
-        m->kind[m->fast++] = k;
-    }
+    if (model->powertrain)
+        m->wheel[m->fast++] = -1;
 }
 
 static Motions motions_new(const Model *model, const Road *road)

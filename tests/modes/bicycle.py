@@ -4,8 +4,8 @@
 #
 # EVAL has two rows of `gicrun --eval` that differ in the slip of tires alone, whose outputs are slip_f_l and slip_r_l:
 # cornering stiffnesses of axles are twice the differences, and rates of slips tell how fast tires follow. DUMP has
-# masses and yaw inertia, EVAL where axles are. Compared are real part and size of the pair of eigenvalues in which y and
-# yaw have the largest share: within 5 % and 10 %, for a bicycle knows nothing of roll and of what suspensions steer.
+# masses and yaw inertia, EVAL where axles are. Compared are real part and size of the pair of eigenvalues in which y
+# and yaw have the largest share: within 5 % and 10 %, for a bicycle knows nothing of roll and of what suspensions steer.
 import csv
 import json
 import math
