@@ -87,7 +87,9 @@ static void panel_over(Text *script, const Plot *plot, int panel)
     const int x = plot->curves + 2 * panel, y = x + 1;
     axis_label(script, 'x', &plot->signal[x]);
     axis_label(script, 'y', &plot->signal[y]);
-    text_print(script, "set size %s\n", equal_scales(plot, x, y) ? "ratio -1" : "noratio");
+    /* numbers below a narrow panel stand upright */
+    text_print(script, equal_scales(plot, x, y) ? "set size ratio -1\nset xtics rotate\n"
+                                                : "set size noratio\nset xtics norotate\n");
     text_print(script, "plot $data using %d:%d with lines linewidth 1.5 notitle\n", x + 2, y + 2);
 }
 
