@@ -111,8 +111,8 @@ def check_acceleration_braking():
     # it rocks on its tires
     check('it stands in the end', max(abs(v[i]) for i in end) < 0.3, [v[i] for i in end][::10])
     near('and stays', d['chassis.x'][-1], d['chassis.x'][end[0]], 0.05)
-    # Braked by 4 * 0.35 * 4000 N m in third gear, with what the turbine gives: all mass, and all inertia that turns with
-    # the wheels (7.78782 each), 5 times as fast (three shafts of 0.5) and 6.25 times (0.3)
+    # Braked by 4 * 0.35 * 4000 N m in third gear, with what the turbine gives: all mass, and all that turns with the
+    # wheels (7.78782 each), 5 times as fast (three shafts of 0.5) and 6.25 times (0.3)
     mass = 2086.52 + 9.072 + 4 * (23.965 + 90.555)
     radius, turned = 0.4553, 4 * 7.78782 + 3 * 0.5 * 25 + 0.3 * 6.25 ** 2
     for time in (13.6, 14, 14.4):
