@@ -52,6 +52,9 @@ $(BUILD)/gicbench: $(BUILD)/runtime/gicbench.o $(benchmark:%.c=$(BUILD)/%.o) $(r
 # the page says how the interpreted engines were compiled
 $(BUILD)/runtime/bench_machine.o: COMPILE += -DGICBENCH_FLAGS='"$(CFLAGS) -ffp-contract=off"'
 
+# it shows what the processor can do: fused, and in lanes only where it says so
+$(BUILD)/runtime/bench_limit.o: COMPILE += -O2 -ffp-contract=fast -fno-tree-vectorize -fno-tree-slp-vectorize
+
 $(BUILD)/embed: $(BUILD)/generator/embed.o
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
 

@@ -39,6 +39,7 @@ typedef struct Tie {
 typedef struct System {
     Whole *whole;
     Dag *dag;
+    const Loads *loads;
     Motion *motion;   /* [bodies] of the centres of mass, in the inertial frame that moves with the base's origin */
     Ex (*inverse)[7]; /* [bodies] of m and J, but for the base */
     Ex base_inertia[6];
@@ -86,7 +87,7 @@ static void solve_body(System *s, int body, Ex x[6])
     ex_scale3(s->dag, s->inverse[body][0], x + 3, x + 3);
 }
 
-static void open_body(System *s, int b, const Loads *loads)
+static void open_body(System *s, int b)
 {
     Whole *whole = s->whole;
     Dag *dag = s->dag;
@@ -109,7 +110,7 @@ static void open_body(System *s, int b, const Loads *loads)
     }
     symmetric_apply(dag, J, m->omega, t);
     ex_cross(dag, m->omega, t, gyroscopic);
-    memcpy(s->wrench[b], loads->wrench[b], sizeof s->wrench[b]);
+    memcpy(s->wrench[b], s->loads->wrench[b], sizeof s->wrench[b]);
     ex_cross(dag, com.arm, s->wrench[b] + 3, t);
     ex_sub3(dag, s->wrench[b], t, s->wrench[b]);
     ex_sub3(dag, s->wrench[b], gyroscopic, s->wrench[b]);
@@ -164,14 +165,14 @@ static void push_along(System *s, const Row *row, const int body[2], Ex Q)
         }
 }
 
-static void open_coordinate(System *s, int index, const double (*origin)[3], int multiplier, const Loads *loads)
+static void open_coordinate(System *s, int index, const double (*origin)[3], int multiplier)
 {
     Whole *whole = s->whole;
     const Coordinate *coordinate = &whole->model->coordinate[index];
     const Motion *const end[2] = {&s->motion[coordinate->body[0]], &s->motion[coordinate->body[1]]};
     Fixture fixture = whole_coordinate_fixture(whole, coordinate, origin);
     Row row = coordinate_row(s->dag, coordinate->type, &fixture, end, whole->x[index], whole->xd[index]);
-    push_along(s, &row, coordinate->body, loads->own[index]);
+    push_along(s, &row, coordinate->body, s->loads->own[index]);
     Equation *equation =
         coordinate->driven ? &s->equation[open_tie(s, coordinate->body, 1)->first] : &s->free[s->frees++];
     open_equation(s, equation, &row, coordinate->body, index, multiplier, drive_wanted(whole->model, index));
@@ -186,6 +187,7 @@ static System open_system(Whole *whole)
     int most = ROWS_MAX * model->joints + model->coordinates + 1;
     System s = {.whole = whole,
                 .dag = whole->dag,
+                .loads = loads_make(whole),
                 .motion = pool_alloc(pool, bodies * sizeof *s.motion),
                 .inverse = pool_alloc(pool, bodies * sizeof *s.inverse),
                 .wrench = pool_alloc(pool, bodies * sizeof *s.wrench),
@@ -194,11 +196,10 @@ static System open_system(Whole *whole)
                 .free = pool_alloc(pool, (size_t)(model->coordinates + 1) * sizeof *s.free),
                 .tie = pool_alloc(pool, (size_t)most * sizeof *s.tie)};
     double(*origin)[3] = pool_alloc(pool, bodies * sizeof *origin);
-    const Loads *loads = loads_make(whole);
     for (int b = 0; b < model->bodies; ++b) {
         memcpy(origin[b], model->body[b].com, sizeof origin[b]);
         tuning_copy(model, origin[b], model->body[b].com, 3);
-        open_body(&s, b, loads);
+        open_body(&s, b);
     }
     for (int k = 0; k < plan->sequence->subsets; ++k) {
         const Subset *subset = &plan->sequence->subset[k];
@@ -206,7 +207,7 @@ static System open_system(Whole *whole)
         for (int i = 0; i < subset->joints; ++i)
             place += open_joint(&s, subset->joint[i], (const double(*)[3])origin, place);
         for (int i = 0; i < subset->coordinates; ++i)
-            open_coordinate(&s, subset->coordinate[i], (const double(*)[3])origin, place++, loads);
+            open_coordinate(&s, subset->coordinate[i], (const double(*)[3])origin, place++);
     }
     if (!model->free_base) /* it accelerates against gravity */
         ex_sub3(s.dag, s.acceleration[BODY_BASE] + 3, whole->gravity, s.acceleration[BODY_BASE] + 3);
@@ -387,6 +388,9 @@ Block *augmented_block(Whole *whole)
     Block *block = pool_alloc(dag->pool, sizeof *block);
     block->dag = dag;
     System s = open_system(whole);
+    for (int b = 0; b < whole->model->bodies; ++b)
+        block_loads(block, s.loads->wrench[b], 6);
+    block_loads(block, s.loads->own, whole->model->coordinates);
     const Ex *driven = whole_driven_accelerations(whole), *H = reduced_matrix(&s);
     Ex *x = pool_alloc(dag->pool, (size_t)(s.unknowns + 1) * sizeof *x);
     const Factors *factors = linear_factor_symmetric(dag, s.unknowns, H, topology_order(&s));

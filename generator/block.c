@@ -23,6 +23,12 @@ void block_check(Block *block, Ex value, bool magnitude, double least, const cha
     *POOL_PUSH(block->dag->pool, block->check, block->checks) = (Check){value, least, magnitude, status};
 }
 
+void block_loads(Block *block, const Ex *load, int count)
+{
+    for (int i = 0; i < count; ++i)
+        *POOL_PUSH(block->dag->pool, block->load, block->loads) = load[i];
+}
+
 static Ex *block_roots(const Block *block, int *count)
 {
     *count = block->stores + block->checks;
@@ -39,6 +45,13 @@ Count block_count(const Block *block)
     int roots;
     const Ex *root = block_roots(block, &roots);
     return dag_count(block->dag, root, roots);
+}
+
+Count block_count_above_loads(const Block *block)
+{
+    int roots;
+    const Ex *root = block_roots(block, &roots);
+    return dag_count_above(block->dag, root, roots, block->load, block->loads);
 }
 
 bool block_reads(const Block *block, const char *array)

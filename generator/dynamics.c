@@ -212,7 +212,11 @@ Block *dynamics_block(Whole *whole)
     Ex *z = pool_alloc(dag->pool, (size_t)(n + 1) * sizeof *z);
     Composite c = compose(whole);
     mass_matrix(whole, &c, M, n);
-    right_hand_side(whole, &c, loads_make(whole), whole_driven_accelerations(whole), z);
+    const Loads *loads = loads_make(whole);
+    block_loads(block, loads->moment, 3);
+    block_loads(block, loads->force, 3);
+    block_loads(block, loads->along, whole->model->coordinates);
+    right_hand_side(whole, &c, loads, whole_driven_accelerations(whole), z);
     Factors *factors = linear_factor_symmetric(dag, n, M, NULL);
     for (int k = 0; k < n; ++k) {
         Ex diagonal = M[n * factors->row[k] + factors->row[k]];

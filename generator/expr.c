@@ -420,7 +420,8 @@ void dag_evaluate(Dag *dag, int first, int count)
     }
 }
 
-const bool *dag_needed(const Dag *dag, const Ex *root, int roots)
+/* given: [nodes] what is there already, or NULL */
+static bool *mark_needed(const Dag *dag, const Ex *root, int roots, const bool *given)
 {
     /* arguments have smaller numbers than the nodes that use them: one backward sweep marks what is needed */
     bool *needed = pool_alloc(dag->pool, (size_t)dag->nodes * sizeof *needed);
@@ -428,13 +429,19 @@ const bool *dag_needed(const Dag *dag, const Ex *root, int roots)
         needed[root[i]] = true;
     for (int e = dag->nodes - 1; e >= 0; --e) {
         const Node *node = &dag->node[e];
+        needed[e] = needed[e] && !(given && given[e]);
         for (int i = 0; needed[e] && node->level == LEVEL_VARIABLE && i < op_arity[node->op]; ++i)
             needed[node->arg[i]] = true;
     }
     return needed;
 }
 
-Count dag_count(const Dag *dag, const Ex *root, int roots)
+const bool *dag_needed(const Dag *dag, const Ex *root, int roots)
+{
+    return mark_needed(dag, root, roots, NULL);
+}
+
+static Count count_marked(const Dag *dag, const bool *needed)
 {
     static const char kind[OP_COUNT] = {
 #define OP_KIND(name, arity, text, counted) counted[0],
@@ -442,7 +449,6 @@ Count dag_count(const Dag *dag, const Ex *root, int roots)
 #undef OP_KIND
     };
     Count count = {0};
-    const bool *needed = dag_needed(dag, root, roots);
     for (int e = 0; e < dag->nodes; ++e) {
         const Node *node = &dag->node[e];
         if (!needed[e] || node->level < LEVEL_VARIABLE)
@@ -457,4 +463,21 @@ Count dag_count(const Dag *dag, const Ex *root, int roots)
         }
     }
     return count;
+}
+
+Count dag_count(const Dag *dag, const Ex *root, int roots)
+{
+    return count_marked(dag, dag_needed(dag, root, roots));
+}
+
+Count dag_count_above(const Dag *dag, const Ex *root, int roots, const Ex *given, int givens)
+{
+    bool *there = pool_alloc(dag->pool, (size_t)dag->nodes * sizeof *there);
+    for (int i = 0; i < givens; ++i) {
+        const Node *node = &dag->node[given[i]];
+        there[given[i]] = true;
+        if (node->op == OP_NEG) /* a sum takes what is under the sign */
+            there[node->arg[0]] = true;
+    }
+    return count_marked(dag, mark_needed(dag, root, roots, there));
 }

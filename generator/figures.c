@@ -39,7 +39,9 @@ const Figures *figures_new(Pool *pool, const Formulation *f)
                          .react = pool_alloc(pool, (size_t)(classes + 1) * sizeof(Count)),
                          .reacting = pool_alloc(pool, (size_t)(classes + 1) * sizeof(int)),
                          .dynamics = block_count(f->dynamics),
+                         .loads = block_count(f->dynamics),
                          .outputs = block_count(f->outputs)};
+    count_add(&figures->loads, block_count_above_loads(f->dynamics), -1);
     for (int c = 0; c < classes; ++c) {
         const Formula *formula = f->plan->formula[c];
         figures->class[c] =

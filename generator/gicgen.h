@@ -172,6 +172,8 @@ typedef struct Count {
 } Count;
 
 Count dag_count(const Dag *dag, const Ex *root, int roots);
+/* The same where some nodes are given. */
+Count dag_count_above(const Dag *dag, const Ex *root, int roots, const Ex *given, int givens);
 /* [nodes] which nodes are needed for some roots. */
 const bool *dag_needed(const Dag *dag, const Ex *root, int roots);
 
@@ -355,14 +357,18 @@ typedef struct Check {
 
 typedef struct Block {
     Dag *dag;
-    int stores, checks;
+    int stores, checks, loads;
     Store *store;
     Check *check;
+    Ex *load; /* applied forces among its values, for those who count */
 } Block;
 
 void block_store(Block *block, Ex value, const char *format, ...) __attribute__((format(printf, 3, 4)));
 void block_check(Block *block, Ex value, bool magnitude, double least, const char *status);
+void block_loads(Block *block, const Ex *load, int count);
 Count block_count(const Block *block);
+/* Of these operations those that are left where its loads are given. */
+Count block_count_above_loads(const Block *block);
 /* Does it read an input `array[...]`? */
 bool block_reads(const Block *block, const char *array);
 
@@ -720,6 +726,7 @@ typedef struct Figures {
     const Sequence *sequence;
     ClassFigures *class; /* [classes] */
     Count dynamics;
+    Count loads;        /* of these, for applied forces alone */
     Count link, torque; /* of wheels with tires: their motion; what drives and brakes them */
     Count drive;        /* of the powertrain */
     Count *wheel;       /* [classes of wheels] one wheel on the road */

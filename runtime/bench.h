@@ -12,10 +12,12 @@
 
 typedef struct Bench {
     Pool *pool;
-    const char *model_path, *scene_path, *spin_path, *folder;
+    const char *model_path, *scene_path, *spin_path;
+    const char *folder; /* NULL with rhs: none */
     EngineOptions options;
+    bool rhs; /* right-hand sides alone, told on standard output */
     const Model *model;
-    const Scene *scene, *spin; /* spin: makes coordinate partitions change; NULL: none */
+    const Scene *scene, *spin; /* scene: NULL with rhs: none; spin: makes coordinate partitions change; NULL: none */
     int engines, repetitions;
     const Engine **engine;       /* the first is what the others are compared with */
     const char *const *starting; /* names of the engines whose start is measured, ended by NULL */
@@ -128,6 +130,8 @@ Chart *report_chart(Report *report, const char *name, const char *title, const c
 void chart_point(Pool *pool, Chart *chart, const char *series, int group, double x, double y);
 /* Picture as SVG by gnuplot. */
 void chart_write(Pool *pool, const Chart *chart, const char *path);
+/* All but pictures as text. */
+void report_tell(const Report *report, FILE *file);
 /* index.html, bench.txt, a CSV file a table, a picture a chart. */
 void report_write(const Report *report, const char *folder);
 
@@ -145,5 +149,15 @@ void bench_spin(const Bench *bench);
 void bench_worst(const Bench *bench);
 /* bench_start.c: compilation and the first step; from how many steps on it is worth it. */
 void bench_start(const Bench *bench);
+
+/* bench_limit.c: multiply-adds in a second, each one a multiplication and an addition of double numbers. */
+typedef struct Limit {
+    double scalar, vector; /* one number at a time; as many as fit in a register */
+    int lanes;             /* how many that are */
+} Limit;
+
+Limit limit_measure(void);
+/* bench_rhs.c: one right-hand side of every variant of the code, against the limit. scene: NULL for none. */
+void bench_rhs(const Bench *bench);
 
 #endif

@@ -44,14 +44,15 @@ void bench_machine(const Bench *bench)
     strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", gmtime(&now));
     Text engines = {.pool = pool};
     for (int e = 0; e < bench->engines; ++e)
-        text_print(&engines, "%s%s", e ? ", " : "", bench->engine[e]->name);
+        text_print(&engines, "%s%s", e ? ", " : "\nEngines: ", bench->engine[e]->name);
+    text_add(&engines, "", 0);
     report_heading(bench->report, "gicbench");
     report_text(bench->report,
-                "Model %s, scene %s%s\nEngines: %s\nProcessor: %s, %ld online\nSystem: %s %s %s\n"
+                "Model %s, scene %s%s%s\nProcessor: %s, %ld online\nSystem: %s %s %s\n"
                 "Compiler of generated code: %s\nIts flags: %s %s\nHost program and interpreted engines: %s, flags %s\n"
                 "gicgen %s, %s",
-                bench->model_path, bench->scene_path, bench->quick ? " (quick: few repetitions, few settings)" : "",
-                engines.s, processor(pool, system.machine), sysconf(_SC_NPROCESSORS_ONLN), system.sysname,
+                bench->model_path, bench->scene_path ? bench->scene_path : "none",
+                bench->quick ? " (quick: few repetitions, few settings)" : "", engines.s, processor(pool, system.machine), sysconf(_SC_NPROCESSORS_ONLN), system.sysname,
                 system.release, system.machine, compiler_version(pool, bench->options.compiler), build_flags,
                 bench->options.flags,
                 __VERSION__, GICBENCH_FLAGS, GICGEN_VERSION, date);

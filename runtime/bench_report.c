@@ -196,6 +196,13 @@ static void write_file(Pool *pool, const char *folder, const char *name, const T
     diag_fail(gicrun_place, "choose another folder with -o", "can't write %s: %s", path, strerror(error));
 }
 
+void report_tell(const Report *report, FILE *file)
+{
+    Text text = {.pool = report->pool};
+    page_text(&text, report);
+    fwrite(text.s, 1, text.size, file);
+}
+
 void report_write(const Report *report, const char *folder)
 {
     Pool *pool = report->pool;

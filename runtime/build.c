@@ -58,6 +58,7 @@ typedef struct Build {
     int count;               /* of words */
     const char *shelf, *key; /* where objects are kept, NULL: nowhere; and as what */
     const char *unkept;      /* why the object isn't kept, or NULL */
+    size_t real;             /* bytes of its numbers */
     const char *copy;        /* where a copy of the object goes, NULL: nowhere */
     double compiling;        /* s of CPU time that the compiler took, 0: it had nothing to do */
     Failure failure;
@@ -97,7 +98,7 @@ static const gic_model *load(Build *b, const char *path)
         return NULL;
     }
     const gic_model *code = dlsym(library, pool_print(b->pool, "%s_model", b->model));
-    if (code && code->abi_version == GIC_ABI_VERSION && code->real_size == sizeof(gic_real)) {
+    if (code && code->abi_version == GIC_ABI_VERSION && code->real_size == b->real) {
         if (b->copy)
             object_copy(b->pool, path, b->copy);
         return code;
@@ -215,6 +216,7 @@ const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *opt
     if (!options->compiler[strspn(options->compiler, " \t")])
         diag_fail(gicrun_place, "name it: --cc gcc, or set CC", "the compiler command is empty");
     Build b = {.pool = pool, .model = model->name, .c.pool = pool, .h.pool = pool, .copy = options->object};
+    b.real = options->single ? sizeof(float) : sizeof(gic_real);
     const Sequence *sequence = sequence_find(pool, model);
     const Formulation *formulation = formulate(pool, model_assemble(pool, model, sequence), sequence, options->solve);
     generate(pool, formulation, &style_readable, NULL, "model.h", &b.c, &b.h);

@@ -66,6 +66,7 @@ typedef struct EngineOptions {
     const char *compiler; /* command, perhaps with options */
     const char *flags;    /* more options, behind ours */
     const char *object;   /* path where a compiled object is left too; NULL: nowhere */
+    bool single;          /* the flags make the code single precision; its numbers are the caller's business */
     bool quiet;           /* no notes */
 } EngineOptions;
 

@@ -10,10 +10,14 @@
 
 static const char help[] =
     "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCENE [TURNING_SCENE]\n"
+    "       gicbench --rhs [--quick] [-o FOLDER] MODEL.veh [SCENE]\n"
     "\n"
     "Runs a scene with all engines and integrators and writes a folder: index.html with\n"
     "tables and pictures, the same as text, a CSV file a table.\n"
     "\n"
+    "      --rhs            one right-hand side alone, of every variant of the code:\n"
+    "                       operations, time, distance from the processor's limit, as\n"
+    "                       text; with -o also as a folder\n"
     "  -o, --output FOLDER  default: gicbench\n"
     "      --engines NAMES  some engines, separated by commas; the others are compared\n"
     "                       with the first; default: all\n"
@@ -45,14 +49,15 @@ static const char *const *engine_list(Pool *pool, char *names)
 /* What the command line asks for, and the names of the engines, ended by NULL. */
 static Bench read_command_line(Pool *pool, int count, char **word, const char *const **names)
 {
-    enum { ENGINES = 256, QUICK, COMPILER, FLAGS, VERSION };
+    enum { ENGINES = 256, QUICK, RHS, COMPILER, FLAGS, VERSION };
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},   {"engines", required_argument, NULL, ENGINES},
-        {"quick", no_argument, NULL, QUICK},        {"cc", required_argument, NULL, COMPILER},
-        {"cflags", required_argument, NULL, FLAGS}, {"help", no_argument, NULL, 'h'},
-        {"version", no_argument, NULL, VERSION},    {NULL, 0, NULL, 0},
+        {"quick", no_argument, NULL, QUICK},        {"rhs", no_argument, NULL, RHS},
+        {"cc", required_argument, NULL, COMPILER},  {"cflags", required_argument, NULL, FLAGS},
+        {"help", no_argument, NULL, 'h'},           {"version", no_argument, NULL, VERSION},
+        {NULL, 0, NULL, 0},
     };
-    Bench bench = {.pool = pool, .folder = "gicbench", .repetitions = 9};
+    Bench bench = {.pool = pool, .repetitions = 9};
     bench.options.compiler = compiler_default();
     bench.options.flags = "";
     *names = engine_name + 2;         /* auto and tcc do what cc does, if more slowly: */
@@ -65,17 +70,23 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
             bench.quick = true;
             bench.repetitions = 3;
             break;
+        case RHS: bench.rhs = true; break;
         case COMPILER: bench.options.compiler = optarg; break;
         case FLAGS: bench.options.flags = optarg; break;
         case 'h': fputs(help, stdout); exit(0);
         case VERSION: puts("gicbench " GICGEN_VERSION); exit(0);
         default: fputs("  remedy: `gicbench -h` shows how\n", stderr); exit(2);
         }
-    if (count - optind < 2 || count - optind > 3)
+    const int files = count - optind;
+    if (bench.rhs && (files < 1 || files > 2))
+        usage_fail("gicbench", "a model, please, and perhaps a scene", NULL);
+    if (!bench.rhs && (files < 2 || files > 3))
         usage_fail("gicbench", "a model and a scene, please, and perhaps one in which the vehicle turns", NULL);
     bench.model_path = word[optind];
-    bench.scene_path = word[optind + 1];
-    bench.spin_path = word[optind + 2]; /* or the NULL at the end */
+    bench.scene_path = word[optind + 1]; /* or the NULL at the end */
+    bench.spin_path = bench.scene_path ? word[optind + 2] : NULL;
+    if (!bench.rhs && !bench.folder)
+        bench.folder = "gicbench";
     return bench;
 }
 
@@ -94,6 +105,43 @@ static const Scene *read_scene(const Bench *bench, const char *path)
     return equilibrium_start(bench->pool, bench->model, scene, bench->options.solve);
 }
 
+/* All engines and integrators on the scene. */
+static void compare(Bench *bench, const char *const *name)
+{
+    if (bench_samples(bench->scene) < 2)
+        diag_fail((Place){bench->scene->source, 0, 0}, "a longer duration", "a benchmark takes at least %g s",
+                  bench_sample);
+    make_folder(bench->folder);
+    for (int e = 0; name[e]; ++e) {
+        bench_progress("engine %s", name[e]);
+        *POOL_PUSH(bench->pool, bench->engine, bench->engines) =
+            engine_open(bench->pool, name[e], bench->model, &bench->options);
+    }
+    bench->instance = pool_alloc(bench->pool, sizeof(gic_head *) * (size_t)bench->engines);
+    for (int e = 0; e < bench->engines; ++e)
+        bench->instance[e] = instance_new(bench->pool, bench->engine[e]);
+
+    bench_machine(bench);
+    bench_sweep(bench);
+    bench_profile(bench);
+    bench_rhs(bench);
+    bench_spin(bench);
+    bench_worst(bench);
+    bench_start(bench);
+    for (int e = 0; e < bench->engines; ++e)
+        engine_close(bench->engine[e]);
+}
+
+/* Right-hand sides alone. */
+static void evaluate_alone(const Bench *bench)
+{
+    if (bench->folder)
+        make_folder(bench->folder);
+    bench_machine(bench);
+    bench_rhs(bench);
+    report_tell(bench->report, stdout);
+}
+
 int main(int count, char **word)
 {
     Pool *pool = pool_new();
@@ -102,32 +150,18 @@ int main(int count, char **word)
     Report report = {.pool = pool};
     bench.report = &report;
     bench.model = model_read(pool, bench.model_path);
-    bench.scene = read_scene(&bench, bench.scene_path);
+    bench.scene = bench.scene_path ? read_scene(&bench, bench.scene_path) : NULL;
     bench.spin = bench.spin_path ? read_scene(&bench, bench.spin_path) : NULL;
-    if (bench_samples(bench.scene) < 2)
-        diag_fail((Place){bench.scene->source, 0, 0}, "a longer duration", "a benchmark takes at least %g s",
-                  bench_sample);
-    make_folder(bench.folder);
-    for (int e = 0; name[e]; ++e) {
-        bench_progress("engine %s", name[e]);
-        *POOL_PUSH(pool, bench.engine, bench.engines) = engine_open(pool, name[e], bench.model, &bench.options);
+    if (bench.rhs)
+        evaluate_alone(&bench);
+    else
+        compare(&bench, name);
+    if (bench.folder) {
+        bench_progress("writing %s", bench.folder);
+        report_write(&report, bench.folder);
+        bench_progress("see %s/index.html", bench.folder);
     }
-    bench.instance = pool_alloc(pool, sizeof(gic_head *) * (size_t)bench.engines);
-    for (int e = 0; e < bench.engines; ++e)
-        bench.instance[e] = instance_new(pool, bench.engine[e]);
-
-    bench_machine(&bench);
-    bench_sweep(&bench);
-    bench_profile(&bench);
-    bench_spin(&bench);
-    bench_worst(&bench);
-    bench_start(&bench);
-    bench_progress("writing %s", bench.folder);
-    report_write(&report, bench.folder);
-    bench_progress("see %s/index.html", bench.folder);
     fputc('\n', stderr);
-    for (int e = 0; e < bench.engines; ++e)
-        engine_close(bench.engine[e]);
     pool_free(pool);
     return 0;
 }

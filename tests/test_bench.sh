@@ -54,7 +54,7 @@ XXX
 "$gicbench" --quick -o "$work/page" "$work/stiff.veh" "$work/cart.scene" "$work/cart.scene" >"$work/out" 2>"$work/err"
 check 'a short benchmark ends well' [ $? -eq 0 ]
 for file in index.html bench.txt table1.csv table2.csv table3.csv work_precision.csv spin.csv worst.csv \
-    operations.csv start.csv start_steps.csv break_even.csv fig6.svg fig8.svg work_precision.svg break_even.svg; do
+    operations.csv rhs_operations.csv rhs.csv limit.csv start.csv start_steps.csv break_even.csv fig6.svg fig8.svg work_precision.svg break_even.svg; do
     check "$file is there" [ -s "$work/page/$file" ]
 done
 check 'no temporary file is left' [ -z "$(find "$work/page" -name '*.tmp')" ]
@@ -82,6 +82,39 @@ check 'Adams is stable, its error follows the tolerance' awk -F, '
     END {exit bad || n < 3}' "$work/page/table1.csv"
 check 'faster than real time is yes or no' awk -F, 'NR > 1 && $10 !~ /^(yes|no|unstable)$/ {bad = 1} END {exit bad}' \
     "$work/page/table1.csv"
+
+# ---- right-hand sides: numbers that must hang together
+
+check 'right-hand sides of every engine, compiled in several ways' awk -F, '
+    NR > 1 {++n; if (!($3 <= $2 && $2 <= $4 && $3 > 0)) bad = 1; kind = $1; sub(/ .*/, "", kind); names[kind] = 1
+        if ($1 ~ / -O2$/) plain = 1; if ($1 ~ /march=native.*contract=fast$/) fast = 1
+        if ($1 ~ /augmented/) augmented = 1; if ($1 ~ /FLOAT/) single = 1}
+    END {exit bad || !(plain && fast && augmented && single && names["tcc"] && names["tape"] && names["gic"] &&
+        names["gcp1"] && names["gcp2"])}' "$work/page/rhs.csv"
+# ratios are medians of three of the same run, times too: what disturbs one repetition is a factor of two at most
+check 'ratios to interpreted engines are those of the times' awk -F, '
+    NR == 1 {for (i = 5; i <= NF; ++i) if ($i ~ / over it$/) {name = $i; sub(/ .*/, "", name); column[name] = i}}
+    NR > 1 {time[$1] = $2; row[$1] = $0}
+    END {for (name in column) for (r in row) {
+            split(row[r], cell, ","); ratio = cell[column[name]] * time[r] / time[name]; ++n
+            if (!(ratio > 0.5 && ratio < 2) || (r == name && cell[column[name]] != 1)) bad = 1}
+        exit bad || n < 4 * 13}' "$work/page/rhs.csv"
+# two multiply-adds a cycle and register at most, and 0.1 to 10 GHz
+check 'the multiply-adds of the processor are plausible' awk -F, '
+    NR > 1 {lanes[NR] = $1; rate[NR] = $2; if (!($3 <= $2 && $2 <= $4)) bad = 1}
+    END {exit bad || NR != 3 || lanes[2] != 1 || !(rate[2] > 0.1 && rate[2] < 20) ||
+        !(rate[3] > 0.7 * rate[2] && rate[3] < 1.3 * lanes[3] * rate[2])}' "$work/page/limit.csv"
+# tens of operations take longer than their share of the limit, or it is none: half as long would be noise no more
+check 'limits follow from operations and rates, and no code is beyond them' awk -F, '
+    FILENAME ~ /operations/ {if ($1 ~ /^recovery/) least = $3; if ($1 ~ /^all/) {work = $2 + $3}; next}
+    FILENAME ~ /limit/ {if ($1 == 1) rate = $2; next}
+    FNR == 1 {for (i = 5; i <= NF; ++i) if ($i == "limit [ns]") l = i; next}
+    $1 !~ /^(tape|gic|gcp)/ {++n; part = $(l + 1); if (!(part > 0 && part < 1.5 && $(l + 3) <= part * 1.01)) bad = 1
+        if (!(part * $2 > $l / 2 && part * $2 < 2 * $l)) bad = 1
+        if ($1 ~ / -O2$/) {expected = work / (2 * rate); if (!($l > 0.6 * expected && $l < 1.6 * expected)) bad = 1}}
+    END {exit bad || n < 6}' "$work/page/rhs_operations.csv" "$work/page/limit.csv" "$work/page/rhs.csv"
+# stiffness times extension, damping times rate, their sum; what else there is belongs to other parts
+check 'force laws are counted apart' grep -qx 'force laws,1,2,0,0,0' "$work/page/rhs_operations.csv"
 
 # ---- generated against interpreted: numbers that must hang together, whatever the machine
 
@@ -128,6 +161,48 @@ check 'the order of AB3 shows' awk -F, '$1 == "4 ms" {coarse = $3} $1 == "0.5 ms
 check 'without a second scene there is no table of it' \
     [ "$(grep -c 'A vehicle that turns' "$work/page/bench.txt")" -eq 0 ]
 
+# ---- right-hand sides alone
+
+# rhs MODEL...: the text in $work/out
+rhs() {
+    "$gicbench" --rhs --quick --engines cc,tape "$@" >"$work/out" 2>"$work/err"
+}
+
+# operations PART: of a row of the table
+operations() {
+    sed -n "s/^$1  *\([0-9]\)/\1/p" "$work/out" | tr -s ' '
+}
+
+# three more products and a sum, of the law alone: the rest of the cart stays as it is
+{ vehicle 1200 | sed '/^outputs/,$d'; echo '  cubic: {type: force, coordinate: x, value: "0.25 * x^3"}'; } >"$work/cubic.veh"
+plain=$(sed -n 's/^equations of motion (reduced),//p' "$work/page/rhs_operations.csv" | tr , ' ')
+rhs -o "$work/cubic" "$work/cubic.veh" "$work/cart.scene"
+check 'right-hand sides alone' [ $? -eq 0 ]
+check 'a cubic law costs three products and a sum' [ "$(operations 'force laws')" = '2 5 0 0 0' ]
+check 'equations of motion do not depend on laws' [ "$(operations 'equations of motion (reduced)')" = "$plain" ]
+check 'the folder has what is printed' cmp "$work/out" "$work/cubic/bench.txt"
+
+# a box on four tires, without a scene
+cat >"$work/box.veh" <<XXX
+gicgen: 1
+model: box
+base: box
+bodies:
+  box: {mass: 4000, com: [0, 0, 1], inertia: [3000, 3000, 3000]}
+tires:
+  all: {file: $(cd "$(dirname "$0")/../models/tires" && pwd)/hmmwv_pac2002.tir}
+wheels:
+  fl: {body: box, center: [1, 1, 0.45], tire: all, spin_inertia: 7}
+  fr: {body: box, center: [1, -1, 0.45], tire: all, spin_inertia: 7}
+  rl: {body: box, center: [-1, 1, 0.45], tire: all, spin_inertia: 7}
+  rr: {body: box, center: [-1, -1, 0.45], tire: all, spin_inertia: 7}
+XXX
+rhs -o "$work/box" "$work/box.veh"
+check 'a box on tires' [ $? -eq 0 ]
+check 'a fast step takes time, but less than a right-hand side' awk -F, '
+    FNR == 1 {next} FILENAME ~ /fast/ {++n; if (!($2 > 0 && $2 < time[$1])) bad = 1; next} {time[$1] = $2}
+    END {exit bad || n < 8}' "$work/box/rhs.csv" "$work/box/rhs_fast.csv"
+
 # fails STATUS TEXT ARGUMENT...
 fails() {
     status=$1
@@ -139,6 +214,7 @@ fails() {
     check "remedy: $text" grep -q 'remedy: ' "$work/err"
 }
 fails 2 'a model and a scene' "$work/soft.veh"
+fails 2 'a model, please' --rhs
 fails 2 "no engine 'fast'" --engines fast "$work/soft.veh" "$work/cart.scene"
 fails 2 'at least one name' --engines '' "$work/soft.veh" "$work/cart.scene"
 fails 1 "can't make the folder" -o "$work/no/page" "$work/soft.veh" "$work/cart.scene"

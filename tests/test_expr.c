@@ -123,8 +123,8 @@ static Term leaf(Dag *dag, Random *random, int index)
 /* TERMS random expressions, each of earlier ones; the same for the same seed. Returns how many operations took part. */
 static int grow(Dag *dag, uint64_t seed, Term term[TERMS])
 {
-    static const Op choice[] = {OP_NEG, OP_NEG, OP_ADD, OP_ADD, OP_SUB, OP_SUB, OP_MUL, OP_MUL, OP_MUL, OP_DIV,
-                                OP_SQRT, OP_ABS, OP_SIN, OP_COS, OP_ATAN2, OP_MIN, OP_MAX, OP_POSITIVE};
+    static const Op choice[] = {OP_NEG, OP_NEG,  OP_ADD, OP_ADD, OP_SUB, OP_SUB,   OP_MUL, OP_MUL, OP_MUL,
+                                OP_DIV, OP_SQRT, OP_ABS, OP_SIN, OP_COS, OP_ATAN2, OP_MIN, OP_MAX, OP_POSITIVE};
     Random random = {seed};
     int count = 0, operations = 0;
     while (count < INPUTS + 8) {
@@ -437,6 +437,30 @@ static void test_count(void **state)
 
 /* ---- trigonometry ---------------------------------------------------------------------------------------- */
 
+/* (x y + x z) / sqrt(x y), where x y, or the negative of x z, is there already */
+static void test_count_above(void **state)
+{
+    (void)state;
+    Pool *pool = pool_new();
+    Dag *dag = dag_new(pool, 1, 1);
+    const double sample[] = {2, 3, 5};
+    const Ex x = ex_input(dag, "x", sample), y = ex_input(dag, "y", sample + 1), z = ex_input(dag, "z", sample + 2);
+    const Ex xy = ex_mul(dag, x, y), xz = ex_mul(dag, x, z), minus = ex_neg(dag, xz);
+    const Ex root = ex_div(dag, ex_add(dag, xy, xz), ex_op(dag, OP_SQRT, xy, 0, 0));
+    assert_count(dag, &root, 1, 1, 2, 1, 1, 0);
+    const Count one = dag_count_above(dag, &root, 1, &xy, 1), other = dag_count_above(dag, &root, 1, &minus, 1);
+    const Count both = dag_count_above(dag, &root, 1, (const Ex[]){xy, xz}, 2);
+    const Count all = dag_count_above(dag, &root, 1, &root, 1);
+    assert_int_equal(one.multiply, 1);
+    assert_int_equal(other.multiply, 1);
+    assert_int_equal(both.multiply, 0);
+    assert_int_equal(both.add, 1);
+    assert_int_equal(both.divide, 1);
+    assert_int_equal(both.root, 1);
+    assert_int_equal(all.divide, 0);
+    pool_free(pool);
+}
+
 static void test_sincos(void **state)
 {
     (void)state;
@@ -556,9 +580,11 @@ static void test_million_nested(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_values), cmocka_unit_test(test_sharing),      cmocka_unit_test(test_evaluate),
-        cmocka_unit_test(test_identities),    cmocka_unit_test(test_constants),    cmocka_unit_test(test_branches),
-        cmocka_unit_test(test_vectors),       cmocka_unit_test(test_count),        cmocka_unit_test(test_sincos),
+        cmocka_unit_test(test_random_values), cmocka_unit_test(test_sharing),
+        cmocka_unit_test(test_evaluate),      cmocka_unit_test(test_identities),
+        cmocka_unit_test(test_constants),     cmocka_unit_test(test_branches),
+        cmocka_unit_test(test_vectors),       cmocka_unit_test(test_count),
+        cmocka_unit_test(test_sincos),        cmocka_unit_test(test_count_above),
         cmocka_unit_test(test_million_sums),  cmocka_unit_test(test_million_nested),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

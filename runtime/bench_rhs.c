@@ -1,0 +1,450 @@
+/* SPDX-License-Identifier: MIT
+ * One right-hand side of every variant of the code, side by side: its operations, its time, its ratio to the
+ * interpreted engines, and how near it comes to what the processor can do. */
+#include "bench.h"
+#include "bench_calls.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A way to make code for right-hand sides, and to call it. */
+typedef struct Variant {
+    const char *engine, *compiler; /* compiler: NULL: that of the command line, or none at all */
+    const char *flags;
+    Solve solve;
+    bool single;
+} Variant;
+
+#define FASTEST "-O3 -march=native -ffp-contract=fast"
+
+/* The first is what the others are compared with, in double precision and the reduced form. */
+static const Variant every_variant[] = {
+    {"cc", NULL, "-O2", SOLVE_REDUCED, false},
+    {"cc", NULL, "-O3", SOLVE_REDUCED, false},
+    {"cc", NULL, FASTEST, SOLVE_REDUCED, false},
+    {"cc", "clang", "-O2", SOLVE_REDUCED, false},
+    {"cc", "clang", FASTEST, SOLVE_REDUCED, false},
+    {"cc", NULL, "-O2", SOLVE_AUGMENTED, false},
+    {"cc", NULL, FASTEST, SOLVE_AUGMENTED, false},
+    {"cc", NULL, "-O2 -DGIC_FLOAT", SOLVE_REDUCED, true},
+    {"cc", NULL, FASTEST " -DGIC_FLOAT", SOLVE_REDUCED, true},
+    {"tcc", NULL, "", SOLVE_REDUCED, false},
+    {"tape", NULL, "", SOLVE_REDUCED, false},
+    {"gic", NULL, "", SOLVE_REDUCED, false},
+    {"gcp1", NULL, "", SOLVE_REDUCED, false},
+    {"gcp2", NULL, "", SOLVE_REDUCED, false},
+};
+
+enum {
+    VARIANTS = sizeof every_variant / sizeof *every_variant,
+    STRETCHES = 48, /* of the scene, or fewer */
+    CALLS = 16,     /* on each, timed together */
+    WARM = 4        /* before them */
+};
+
+/* A variant at work. */
+typedef struct Subject {
+    const char *name;
+    const Variant *variant;
+    const Engine *engine;
+    const CallsType *calls;
+    gic_head *self;
+    double *state[2]; /* the engine's own, at both ends of a stretch */
+    void *room;
+    double *rhs, *fast; /* [repetitions] s a call: median over the stretches */
+    double corrections; /* of one subset's solution, 0: not counted */
+    int status;         /* that ended it */
+} Subject;
+
+/* A step of a run: both its ends, states in the order of FORMAT.md section 10. */
+typedef struct Stretch {
+    CallsMoment end[2];
+} Stretch;
+
+typedef struct Course {
+    const Bench *bench;
+    int subjects, stretches;
+    Subject subject[VARIANTS];
+    Stretch *stretch;
+    CallsRoad road;
+    Limit *limit; /* [repetitions] */
+} Course;
+
+/* ---- where: stretches of the scene -------------------------------------------------------------------------- */
+
+static double *copy_numbers(Pool *pool, const double *number, int count)
+{
+    double *copy = pool_alloc(pool, sizeof *copy * (size_t)(count + 1));
+    memcpy(copy, number, sizeof *copy * (size_t)count);
+    return copy;
+}
+
+/* The present state of generated code, with copies of all that it depends on. */
+static CallsMoment moment_of(Pool *pool, const Engine *engine, gic_head *self)
+{
+    const gic_model *code = engine->code;
+    return (CallsMoment){
+        gic_time(self),
+        copy_numbers(pool, instance_array(self, code->state_offset), code->slow_count + code->fast_count),
+        copy_numbers(pool, instance_array(self, code->input_offset), code->input_count),
+        copy_numbers(pool, instance_array(self, code->discrete_offset), code->discrete_count)};
+}
+
+/* Up to a time, of the scene, or where there is none of a model left to itself. */
+static int run_until(const Engine *engine, const Scene *scene, Variable *variable, gic_head *self, double end)
+{
+    int status = GIC_OK;
+    while (status == GIC_OK && gic_time(self) < end)
+        status =
+            scene ? scene_step(engine, engine->code, scene, variable, self, end) : variable_step(variable, self, end);
+    return status;
+}
+
+/* Run the scene with generated code, its constant step's stability apart, and keep stretches of it. */
+static void find_stretches(Course *course)
+{
+    static const Setting fine = {METHOD_RKCK, 1e-6};
+    const double usual_step = 0.005, alone = 1; /* s: where scenes vary their steps; without a scene */
+    const Bench *bench = course->bench;
+    Pool *pool = bench->pool;
+    const Scene *scene = NULL;
+    double step = usual_step, duration = alone;
+    if (bench->scene) {
+        const Scene changed = bench_scene(bench->scene, fine);
+        scene = memcpy(pool_alloc(pool, sizeof changed), &changed, sizeof changed);
+        step = scene->step > 0 ? scene->step : usual_step;
+        duration = scene->duration;
+    }
+    const Engine *engine = course->subject->engine;
+    gic_head *self = course->subject->self;
+    Variable *variable = variable_open(engine->code, fine.method, fine.value);
+    const int wanted = (int)fmin(bench->quick ? STRETCHES / 4 : STRETCHES, fmax(1, duration / step / 2));
+    int status = scene ? scene_start(engine, scene, self) : engine->code->setup(self);
+    course->stretch = pool_alloc(pool, sizeof *course->stretch * (size_t)wanted);
+    while (course->stretches < wanted && status == GIC_OK) {
+        const double begin = (course->stretches + 0.5) / wanted * (duration - step);
+        Stretch *stretch = &course->stretch[course->stretches++];
+        for (int i = 0; i < 2 && status == GIC_OK; ++i) {
+            status = run_until(engine, scene, variable, self, begin + i * step);
+            stretch->end[i] = moment_of(pool, engine, self);
+        }
+    }
+    variable_close(variable);
+    if (status != GIC_OK)
+        diag_fail(scene ? (Place){scene->source, 0, 0} : gicrun_place,
+                  "right-hand sides are timed on a run that goes well", "the run ends at t = %.6g s: %s",
+                  gic_time(self), instance_status(pool, engine->code, self, status));
+}
+
+static void road_height(const void *road, int32_t lane, double time, double x, double y, double out[3])
+{
+    ((const gic_road *)road)->height(road, lane, time, x, y, out);
+}
+
+static double road_friction(const void *road, int32_t lane, double time, double x, double y)
+{
+    return ((const gic_road *)road)->friction(road, lane, time, x, y);
+}
+
+/* ---- who: variants at work ---------------------------------------------------------------------------------- */
+
+static bool installed(Pool *pool, const char *compiler)
+{
+    const char *said;
+    char *argv[] = {pool_print(pool, "%s", compiler), "--version", NULL};
+    interrupt_hold();
+    const int status = process_run(pool, argv, "", &said);
+    interrupt_release();
+    return status == 0;
+}
+
+/* Is it asked for, can it be had, and is it another one than the command line's compiler? */
+static bool available(const Bench *bench, const Variant *variant)
+{
+    bool wanted = variant == every_variant;
+    for (int i = 0; bench->starting[i]; ++i)
+        wanted |= !strcmp(bench->starting[i], variant->engine);
+    if (!wanted || !variant->compiler)
+        return wanted;
+    const size_t length = strcspn(bench->options.compiler, " ");
+    return (strlen(variant->compiler) != length || strncmp(variant->compiler, bench->options.compiler, length)) &&
+           installed(bench->pool, variant->compiler);
+}
+
+static void open_subject(Course *course, const Variant *variant)
+{
+    const Bench *bench = course->bench;
+    Pool *pool = bench->pool;
+    EngineOptions options = bench->options;
+    Subject *subject = &course->subject[course->subjects];
+    *subject = (Subject){.variant = variant, .calls = variant->single ? &calls_float : &calls_double};
+    subject->name = strcmp(variant->engine, "cc")
+                        ? variant->engine
+                        : pool_print(pool, "%s %s%s", variant->compiler ? variant->compiler : options.compiler,
+                                     variant->flags, variant->solve == SOLVE_AUGMENTED ? " --solve augmented" : "");
+    bench_progress("engine %s", subject->name);
+    options.solve = variant->solve;
+    options.single = variant->single;
+    options.quiet = true;
+    options.flags = pool_print(pool, "%s %s", variant->flags, options.flags);
+    if (variant->compiler)
+        options.compiler = variant->compiler;
+    subject->engine = engine_open(pool, variant->engine, bench->model, &options);
+    if (!strcmp(variant->engine, "tcc") && subject->engine->context)
+        return; /* interpreted, where memory can't be made executable */
+    const gic_model *code = subject->engine->code;
+    const size_t states = (size_t)(code->slow_count + code->fast_count);
+    subject->self = instance_new(pool, subject->engine);
+    subject->room = pool_alloc(pool, CALLS_ROOM(code) * sizeof(double));
+    for (int i = 0; i < 2; ++i)
+        subject->state[i] = pool_alloc(pool, (states + 1) * sizeof(double));
+    subject->rhs = pool_alloc(pool, (size_t)bench->repetitions * sizeof(double));
+    subject->fast = pool_alloc(pool, (size_t)bench->repetitions * sizeof(double));
+    ++course->subjects;
+}
+
+/* All on the same road with the same parameters. */
+static void begin(Course *course)
+{
+    const Bench *bench = course->bench;
+    Subject *first = course->subject;
+    const gic_road *road = bench->scene ? bench->scene->road : NULL;
+    const double *parameter =
+        copy_numbers(bench->pool, instance_array(first->self, first->engine->code->parameter_offset),
+                     first->engine->code->parameter_count);
+    if (road)
+        course->road = (CallsRoad){road_height, road->friction ? road_friction : NULL, road};
+    for (int s = 0; s < course->subjects; ++s) {
+        Subject *subject = &course->subject[s];
+        void *adapter = pool_alloc(bench->pool, subject->calls->adapter);
+        subject->status = subject->calls->begin(subject->engine->code, subject->self, parameter,
+                                                road ? &course->road : NULL, adapter, subject->room);
+    }
+}
+
+/* ---- time ----------------------------------------------------------------------------------------------------- */
+
+/* Enter a stretch: both its ends in the engine's own states. */
+static void enter(Subject *subject, const Stretch *stretch, CallsMoment end[2])
+{
+    const Engine *engine = subject->engine;
+    const gic_model *code = engine->code;
+    for (int i = 0; i < 2; ++i) {
+        end[i] = stretch->end[i];
+        subject->calls->put(code, subject->self, &end[i]);
+        if (!engine->enter || subject->status != GIC_OK)
+            continue;
+        subject->status = engine_enter(engine, subject->self, end[i].state);
+        memcpy(subject->state[i], instance_array(subject->self, code->state_offset),
+               sizeof(double) * (size_t)(code->slow_count + code->fast_count));
+        end[i].state = subject->state[i];
+    }
+}
+
+/* All stretches once. */
+static void time_subject(const Course *course, Subject *subject, int repetition)
+{
+    const gic_model *code = subject->engine->code;
+    const CallsType *calls = subject->calls;
+    Pool *pool = pool_new();
+    double *rhs = pool_alloc(pool, sizeof *rhs * (size_t)course->stretches);
+    double *fast = pool_alloc(pool, sizeof *fast * (size_t)course->stretches);
+    int64_t before[2], after[2], solved = 0, corrected = 0;
+    for (int i = 0; i < course->stretches && subject->status == GIC_OK; ++i) {
+        CallsMoment end[2];
+        double seconds;
+        enter(subject, &course->stretch[i], end);
+        if (subject->status == GIC_OK)
+            subject->status = calls->rhs(code, subject->self, end, subject->room, WARM, &seconds);
+        calls->counts(subject->self, before);
+        if (subject->status == GIC_OK)
+            subject->status = calls->rhs(code, subject->self, end, subject->room, CALLS, &seconds);
+        calls->counts(subject->self, after);
+        solved += after[0] - before[0];
+        corrected += after[1] - before[1];
+        rhs[i] = seconds / CALLS;
+        if (subject->status == GIC_OK && code->link_count)
+            subject->status = calls->fast(code, subject->self, end, subject->room, CALLS, &seconds);
+        fast[i] = seconds / CALLS;
+    }
+    subject->rhs[repetition] = spread_of(pool, rhs, course->stretches).median;
+    subject->fast[repetition] = spread_of(pool, fast, course->stretches).median;
+    subject->corrections = solved ? (double)corrected / (double)solved : 0;
+    pool_free(pool);
+}
+
+/* ---- tables ----------------------------------------------------------------------------------------------------- */
+
+static const Figures *figures_of(const Bench *bench, Solve solve)
+{
+    const Sequence *sequence = sequence_find(bench->pool, bench->model);
+    return figures_new(bench->pool,
+                       formulate(bench->pool, model_assemble(bench->pool, bench->model, sequence), sequence, solve));
+}
+
+/* Corrections with old factors that a subset usually takes; the last one is with new ones. */
+static int usual_chords(const Subject *subject)
+{
+    return (int)fmax(0, round(subject->corrections) - 1);
+}
+
+static void operations_row(Pool *pool, Sheet *table, const char *what, Count count)
+{
+    table_cell(pool, table, "%s", what);
+    for (int i = 0; i < 5; ++i)
+        table_cell(pool, table, "%d",
+                   (const int[]){count.add, count.multiply, count.divide, count.root, count.function}[i]);
+}
+
+static void operations_table(const Course *course, const Figures *const figures[SOLVES], int chords)
+{
+    Pool *pool = course->bench->pool;
+    Sheet *table = report_table(course->bench->report, "rhs_operations", "Operations of generated code",
+                                "part|add|multiply|divide|root|other functions");
+    operations_row(pool, table, "recovery", figures_recovery(figures[SOLVE_REDUCED], chords, 1));
+    for (int solve = 0; solve < SOLVES; ++solve) {
+        Count equations = figures[solve]->dynamics;
+        count_add(&equations, figures[solve]->loads, -1);
+        operations_row(pool, table, pool_print(pool, "equations of motion (%s)", solve_name[solve]), equations);
+    }
+    const Figures *reduced = figures[SOLVE_REDUCED];
+    Count laws = reduced->loads;
+    count_add(&laws, reduced->link, 1);
+    count_add(&laws, reduced->fast, 1);
+    operations_row(pool, table, "force laws", laws);
+    if (course->subject->engine->code->link_count)
+        operations_row(pool, table, "of these in a fast step", reduced->fast);
+    operations_row(pool, table, "all (reduced)", figures_rhs(reduced, chords, 1));
+    table->note = pool_print(pool,
+                             "Recovery with %d correction%s by the last call's factors and one by new ones, which is "
+                             "what these states take. Force laws give the applied forces and what they do along the "
+                             "coordinates, from the motion of the bodies.",
+                             chords, chords == 1 ? "" : "s");
+}
+
+/* Additions and multiplications. */
+static double work_of(Count count)
+{
+    return count.add + count.multiply;
+}
+
+/* Of one right-hand side with as many corrections as a subject's subsets take on average. */
+static double rhs_work(const Subject *subject, const Figures *figures)
+{
+    const double one = work_of(figures_rhs(figures, 0, 1)), two = work_of(figures_rhs(figures, 1, 1));
+    return one + fmax(0, subject->corrections - 1) * (two - one);
+}
+
+/* What the work would take at the rates of the limit, s: one number at a time; in lanes. */
+static void limit_cells(const Course *course, Sheet *table, const double *seconds, double work, bool single)
+{
+    const Bench *bench = course->bench;
+    Pool *pool = bench->pool;
+    double *limit = pool_alloc(pool, sizeof *limit * (size_t)bench->repetitions);
+    for (int lanes = 0; lanes < 2; ++lanes) {
+        for (int r = 0; r < bench->repetitions; ++r) {
+            const Limit *rate = &course->limit[r];
+            /* twice as many of half the size fit in a register */
+            limit[r] = work / (2 * (lanes ? rate->vector * (single ? 2 : 1) : rate->scalar));
+        }
+        table_cell(pool, table, "%.4g", 1e9 * spread_of(pool, limit, bench->repetitions).median);
+        table_cell(pool, table, "%.3g", spread_of_ratio(pool, limit, seconds, bench->repetitions).median);
+    }
+}
+
+/* Rows of one of the numbers of all subjects; ratios to those that interpret. */
+static void time_table(const Course *course, const char *name, const char *title, const Figures *const figures[SOLVES],
+                       bool fast)
+{
+    const Bench *bench = course->bench;
+    Pool *pool = bench->pool;
+    Text columns = {.pool = pool};
+    text_print(&columns, "variant|time [ns]|low|high");
+    for (int s = 0; s < course->subjects; ++s)
+        if (course->subject[s].engine->context)
+            text_print(&columns, "|%s over it", course->subject[s].name);
+    text_print(&columns, "|%slimit [ns]|part of it|limit in lanes [ns]|part of it", fast ? "" : "corrections|");
+    Sheet *table = report_table(bench->report, name, title, columns.s);
+    for (int i = 0; i < course->subjects; ++i) {
+        const Subject *subject = &course->subject[i];
+        const double *seconds = fast ? subject->fast : subject->rhs;
+        table_cell(pool, table, "%s", subject->name);
+        if (subject->status != GIC_OK) {
+            while (table->cells % table->columns)
+                table_cell(pool, table, "failed");
+            continue;
+        }
+        spread_cells(pool, table, spread_of(pool, seconds, bench->repetitions), 1e9);
+        for (int s = 0; s < course->subjects; ++s) {
+            const Subject *other = &course->subject[s];
+            if (other->engine->context && other->status != GIC_OK)
+                table_cell(pool, table, "failed");
+            else if (other->engine->context)
+                table_cell(pool, table, "%.3g",
+                           spread_of_ratio(pool, fast ? other->fast : other->rhs, seconds, bench->repetitions).median);
+        }
+        if (!fast)
+            table_cell(pool, table, subject->corrections > 0 ? "%.3g" : "-", subject->corrections);
+        if (strcmp(subject->variant->engine, "cc") && strcmp(subject->variant->engine, "tcc")) {
+            while (table->cells % table->columns)
+                table_cell(pool, table, "-");
+            continue;
+        }
+        const Figures *own = figures[subject->variant->solve];
+        limit_cells(course, table, seconds, fast ? work_of(own->fast) : rhs_work(subject, own),
+                    subject->variant->single);
+    }
+}
+
+static void limit_table(const Course *course)
+{
+    const Bench *bench = course->bench;
+    Pool *pool = bench->pool;
+    double *rate = pool_alloc(pool, sizeof *rate * (size_t)bench->repetitions);
+    Sheet *table =
+        report_table(bench->report, "limit", "Multiply-adds of the processor", "numbers at a time|1e9 / s|low|high");
+    for (int vector = 0; vector < 2; ++vector) {
+        for (int r = 0; r < bench->repetitions; ++r)
+            rate[r] = vector ? course->limit[r].vector : course->limit[r].scalar;
+        table_cell(pool, table, "%d", vector ? course->limit->lanes : 1);
+        spread_cells(pool, table, spread_of(pool, rate, bench->repetitions), 1e-9);
+    }
+}
+
+void bench_rhs(const Bench *bench)
+{
+    Course course = {.bench = bench};
+    course.limit = pool_alloc(bench->pool, sizeof *course.limit * (size_t)bench->repetitions);
+    for (int v = 0; v < VARIANTS; ++v)
+        if (available(bench, &every_variant[v]))
+            open_subject(&course, &every_variant[v]);
+    find_stretches(&course);
+    begin(&course);
+    for (int r = 0; r < bench->repetitions; ++r) {
+        bench_progress("right-hand sides: repetition %d of %d", r + 1, bench->repetitions);
+        course.limit[r] = limit_measure();
+        for (int s = 0; s < course.subjects; ++s)
+            time_subject(&course, &course.subject[s], r);
+    }
+    const bool tires = course.subject->engine->code->link_count > 0;
+    const Figures *const figures[SOLVES] = {figures_of(bench, SOLVE_REDUCED), figures_of(bench, SOLVE_AUGMENTED)};
+    report_heading(bench->report, "One right-hand side");
+    report_text(bench->report,
+                "Recovery of the dependent coordinates, forces, equations of motion: on %d stretches of the %s, each "
+                "one step long, %d right-hand sides back and forth between its two ends, so that Newton's method "
+                "starts as far away as in a run. Times are medians over the stretches, of which the median, lowest "
+                "and highest of %d repetitions, variants alternating; ratios are formed within a repetition. Double "
+                "precision but with -DGIC_FLOAT, reduced form but where it says augmented, no contraction but where "
+                "flags say so; flags stand behind %s. The limit is what the additions and multiplications would take, "
+                "two in each multiply-add, if the processor did nothing else; the rate of these is measured by a small "
+                "loop in each repetition, with one number at a time and with as many as it takes.",
+                course.stretches, bench->scene ? "scene" : "run that follows setting up", CALLS, bench->repetitions,
+                build_flags);
+    operations_table(&course, figures, usual_chords(course.subject));
+    time_table(&course, "rhs", "Time of a right-hand side", figures, false);
+    if (tires)
+        time_table(&course, "rhs_fast", "Time of a fast step's rates", figures, true);
+    limit_table(&course);
+    for (int s = 0; s < course.subjects; ++s)
+        engine_close(course.subject[s].engine);
+}
