@@ -223,14 +223,7 @@ step: 0.001
 road: {type: sine, amplitude: 0.03, wavelength: 5, phase_per_y: 0.6}
 END
 rolling() {
-    "$gicgen" --dump-model "$1" >dump && "$states" dump --count "${ROWS:-5}" --seed "$2" -o states.csv &&
-        awk -v seed="$2" 'BEGIN { srand(seed); wheels = split("f_l f_r r_l r_r", wheel); parts = split("spin slip_x slip_y brake", part) }
-            {
-                for (w = 1; w <= wheels; ++w)
-                    for (p = 1; p <= parts; ++p)
-                        $0 = $0 "," (NR == 1 ? "tire_" wheel[w] "." part[p] : (p == 1 ? 60 : 2.4) * (rand() - 0.5))
-                print $0 "," (NR == 1 ? "brake,drive_torque" : rand() "," 4000 * (rand() - 0.5))
-            }' states.csv >rolling.csv &&
+    "$gicgen" --dump-model "$1" >dump && "$states" dump --count "${ROWS:-5}" --seed "$2" -o rolling.csv &&
         "$gicrun" --engine cc --cc "$cc" --eval rolling.csv "$1" wavy.scene -o generated.csv >said 2>&1
     check $? "states of $1 with generated code"
     for engine in $engines; do
@@ -292,7 +285,7 @@ inputs: {drive_torque: 1000, rack: {knots: {times: [0, 0.5], values: [0, 0.02]}}
 END
 # dual rate: gic as generated code; gcp1, whose slow states are others, to the truncation error of 4 ms. Formulas of the
 # second one read a free and a driven coordinate, which come to fast steps in different ways.
-sed "s|file: |file: $root/models/|; s|drive_torque / 4|& - 2 * spin + 500 * rate(spring_f_r) + 9000 * rack, drive_body: lca_r_r|
+sed "s|parts/|$root/models/parts/|; s|drive_torque / 4|& - 2 * spin + 500 * rate(spring_f_r) + 9000 * rack, drive_body: lca_r_r|
     s|4000 \* brake|& * (1 + rate(rack) + spring_r_l)|" "$tires" >formulas.veh
 cat >dual.scene <<'END'
 gicscene: 1
