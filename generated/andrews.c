@@ -60,6 +60,13 @@
 #define GIC_RESTRICT restrict
 #endif
 
+/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+#ifdef __GNUC__
+#define GIC_COLD __attribute__((cold))
+#else
+#define GIC_COLD
+#endif
+
 #ifdef GIC_FLOAT
 #define GIC_SQRT(x) sqrtf(x)
 #define GIC_FABS(x) fabsf(x)
@@ -443,7 +450,7 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real andrews_residual_K1(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
+static GIC_COLD gic_real andrews_residual_K1(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -1211,7 +1218,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real andrews_residual_K2_K3(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
+static GIC_COLD gic_real andrews_residual_K2_K3(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* K1 */
@@ -2059,7 +2066,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real andrews_residual_K5_K4(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
+static GIC_COLD gic_real andrews_residual_K5_K4(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* K3 */
@@ -2958,8 +2965,8 @@ void andrews_restore(andrews *self, const andrews *copy)
 /* ---- self-test ------------------------------------------------------------------------------------------------------ */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than andrews_dynamics. */
-static int andrews_inverse(const andrews *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *acc,
-    gic_real *tau)
+static GIC_COLD int andrews_inverse(const andrews *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *acc, gic_real *tau)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -3259,7 +3266,7 @@ static int andrews_inverse(const andrews *self, gic_real time, const gic_real *y
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static int andrews_energy(const andrews *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
+static GIC_COLD int andrews_energy(const andrews *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
     gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
@@ -3519,7 +3526,7 @@ static int andrews_energy(const andrews *self, gic_real time, const gic_real *y,
 }
 
 /* Largest constraint residual of all subsets, relative to their sizes. */
-static gic_real andrews_residual(const andrews *self)
+static GIC_COLD gic_real andrews_residual(const andrews *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     andrews_links links;
@@ -3545,7 +3552,7 @@ static gic_real andrews_residual(const andrews *self)
     return largest;
 }
 
-int andrews_self_test(andrews *self, gic_self_test *result)
+GIC_COLD int andrews_self_test(andrews *self, gic_self_test *result)
 {
     gic_real e[4], acc[ANDREWS_UNKNOWN_ROOM], unit[ANDREWS_UNKNOWN_ROOM], tau0[ANDREWS_UNKNOWN_ROOM], tau[ANDREWS_UNKNOWN_ROOM];
     gic_real M[ANDREWS_UNKNOWN_ROOM][ANDREWS_UNKNOWN_ROOM], energy[3], scale;

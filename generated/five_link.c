@@ -81,6 +81,13 @@
 #define GIC_RESTRICT restrict
 #endif
 
+/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+#ifdef __GNUC__
+#define GIC_COLD __attribute__((cold))
+#else
+#define GIC_COLD
+#endif
+
 #ifdef GIC_FLOAT
 #define GIC_SQRT(x) sqrtf(x)
 #define GIC_FABS(x) fabsf(x)
@@ -436,7 +443,7 @@ static int five_link_solve_rack(five_link *self, const gic_real *GIC_RESTRICT k,
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real five_link_residual_rack(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
+static GIC_COLD gic_real five_link_residual_rack(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -852,7 +859,7 @@ static int five_link_solve_lca_f_l(five_link *self, const gic_real *GIC_RESTRICT
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real five_link_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
+static GIC_COLD gic_real five_link_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -1508,7 +1515,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real five_link_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
+static GIC_COLD gic_real five_link_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -2133,7 +2140,7 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real five_link_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
+static GIC_COLD gic_real five_link_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
@@ -3927,8 +3934,8 @@ void five_link_restore(five_link *self, const five_link *copy)
 /* ---- self-test ------------------------------------------------------------------------------------------------------ */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than five_link_dynamics. */
-static int five_link_inverse(const five_link *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *acc,
-    gic_real *tau)
+static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *acc, gic_real *tau)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -4531,7 +4538,7 @@ static int five_link_inverse(const five_link *self, gic_real time, const gic_rea
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static int five_link_energy(const five_link *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
+static GIC_COLD int five_link_energy(const five_link *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
     gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
@@ -5056,7 +5063,7 @@ static int five_link_energy(const five_link *self, gic_real time, const gic_real
 }
 
 /* Largest constraint residual of all subsets, relative to their sizes. */
-static gic_real five_link_residual(const five_link *self)
+static GIC_COLD gic_real five_link_residual(const five_link *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     five_link_links links;
@@ -5094,7 +5101,7 @@ static gic_real five_link_residual(const five_link *self)
     return largest;
 }
 
-int five_link_self_test(five_link *self, gic_self_test *result)
+GIC_COLD int five_link_self_test(five_link *self, gic_self_test *result)
 {
     gic_real e[4], acc[FIVE_LINK_UNKNOWN_ROOM], unit[FIVE_LINK_UNKNOWN_ROOM], tau0[FIVE_LINK_UNKNOWN_ROOM], tau[FIVE_LINK_UNKNOWN_ROOM];
     gic_real M[FIVE_LINK_UNKNOWN_ROOM][FIVE_LINK_UNKNOWN_ROOM], energy[3], scale;

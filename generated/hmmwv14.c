@@ -89,6 +89,13 @@
 #define GIC_RESTRICT restrict
 #endif
 
+/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+#ifdef __GNUC__
+#define GIC_COLD __attribute__((cold))
+#else
+#define GIC_COLD
+#endif
+
 #ifdef GIC_FLOAT
 #define GIC_SQRT(x) sqrtf(x)
 #define GIC_FABS(x) fabsf(x)
@@ -444,7 +451,7 @@ static int hmmwv14_solve_rack(hmmwv14 *self, const gic_real *GIC_RESTRICT k, con
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv14_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv14_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -874,7 +881,7 @@ static int hmmwv14_solve_lca_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, 
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv14_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv14_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -1822,7 +1829,7 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv14_residual_uca_f_l_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv14_residual_uca_f_l_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
@@ -2709,7 +2716,7 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv14_residual_uca_r_l_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv14_residual_uca_r_l_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
@@ -5054,8 +5061,8 @@ void hmmwv14_restore(hmmwv14 *self, const hmmwv14 *copy)
 /* ---- self-test ------------------------------------------------------------------------------------------------------ */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than hmmwv14_dynamics. */
-static int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *acc,
-    gic_real *tau)
+static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *acc, gic_real *tau)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -6098,7 +6105,7 @@ static int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gic_real *y
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
+static GIC_COLD int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
     gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
@@ -6962,7 +6969,7 @@ static int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic_real *y,
 }
 
 /* Largest constraint residual of all subsets, relative to their sizes. */
-static gic_real hmmwv14_residual(const hmmwv14 *self)
+static GIC_COLD gic_real hmmwv14_residual(const hmmwv14 *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     hmmwv14_links links;
@@ -7008,7 +7015,7 @@ static gic_real hmmwv14_residual(const hmmwv14 *self)
     return largest;
 }
 
-int hmmwv14_self_test(hmmwv14 *self, gic_self_test *result)
+GIC_COLD int hmmwv14_self_test(hmmwv14 *self, gic_self_test *result)
 {
     gic_real e[4], acc[HMMWV14_UNKNOWN_ROOM], unit[HMMWV14_UNKNOWN_ROOM], tau0[HMMWV14_UNKNOWN_ROOM], tau[HMMWV14_UNKNOWN_ROOM];
     gic_real M[HMMWV14_UNKNOWN_ROOM][HMMWV14_UNKNOWN_ROOM], energy[3], scale;

@@ -87,6 +87,13 @@
 #define GIC_RESTRICT restrict
 #endif
 
+/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+#ifdef __GNUC__
+#define GIC_COLD __attribute__((cold))
+#else
+#define GIC_COLD
+#endif
+
 #ifdef GIC_FLOAT
 #define GIC_SQRT(x) sqrtf(x)
 #define GIC_FABS(x) fabsf(x)
@@ -442,7 +449,7 @@ static int hmmwv_full_solve_rack(hmmwv_full *self, const gic_real *GIC_RESTRICT 
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_full_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_full_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -872,7 +879,7 @@ static int hmmwv_full_solve_lca_f_l(hmmwv_full *self, const gic_real *GIC_RESTRI
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_full_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_full_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -1459,7 +1466,7 @@ static int hmmwv_full_solve_wheel_f_l(hmmwv_full *self, const gic_real *GIC_REST
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_full_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_full_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
@@ -2003,7 +2010,7 @@ static int hmmwv_full_solve_wheel_r_l(hmmwv_full *self, const gic_real *GIC_REST
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_full_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_full_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
@@ -4179,8 +4186,8 @@ void hmmwv_full_restore(hmmwv_full *self, const hmmwv_full *copy)
 /* ---- self-test ------------------------------------------------------------------------------------------------------ */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than hmmwv_full_dynamics. */
-static int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *acc,
-    gic_real *tau)
+static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *acc, gic_real *tau)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -4992,7 +4999,7 @@ static int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, const gic_r
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static int hmmwv_full_energy(const hmmwv_full *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
+static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
     gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
@@ -5669,7 +5676,7 @@ static int hmmwv_full_energy(const hmmwv_full *self, gic_real time, const gic_re
 }
 
 /* Largest constraint residual of all subsets, relative to their sizes. */
-static gic_real hmmwv_full_residual(const hmmwv_full *self)
+static GIC_COLD gic_real hmmwv_full_residual(const hmmwv_full *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     hmmwv_full_links links;
@@ -5715,7 +5722,7 @@ static gic_real hmmwv_full_residual(const hmmwv_full *self)
     return largest;
 }
 
-int hmmwv_full_self_test(hmmwv_full *self, gic_self_test *result)
+GIC_COLD int hmmwv_full_self_test(hmmwv_full *self, gic_self_test *result)
 {
     gic_real e[4], acc[HMMWV_FULL_UNKNOWN_ROOM], unit[HMMWV_FULL_UNKNOWN_ROOM], tau0[HMMWV_FULL_UNKNOWN_ROOM], tau[HMMWV_FULL_UNKNOWN_ROOM];
     gic_real M[HMMWV_FULL_UNKNOWN_ROOM][HMMWV_FULL_UNKNOWN_ROOM], energy[3], scale;

@@ -91,6 +91,13 @@
 #define GIC_RESTRICT restrict
 #endif
 
+/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+#ifdef __GNUC__
+#define GIC_COLD __attribute__((cold))
+#else
+#define GIC_COLD
+#endif
+
 #ifdef GIC_FLOAT
 #define GIC_SQRT(x) sqrtf(x)
 #define GIC_FABS(x) fabsf(x)
@@ -446,7 +453,7 @@ static int hmmwv_tires_solve_rack(hmmwv_tires *self, const gic_real *GIC_RESTRIC
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_tires_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_tires_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -876,7 +883,7 @@ static int hmmwv_tires_solve_lca_f_l(hmmwv_tires *self, const gic_real *GIC_REST
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_tires_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_tires_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -1463,7 +1470,7 @@ static int hmmwv_tires_solve_wheel_f_l(hmmwv_tires *self, const gic_real *GIC_RE
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_tires_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_tires_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
@@ -2007,7 +2014,7 @@ static int hmmwv_tires_solve_wheel_r_l(hmmwv_tires *self, const gic_real *GIC_RE
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_tires_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_tires_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
@@ -4658,8 +4665,8 @@ void hmmwv_tires_restore(hmmwv_tires *self, const hmmwv_tires *copy)
 /* ---- self-test ------------------------------------------------------------------------------------------------------ */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than hmmwv_tires_dynamics. */
-static int hmmwv_tires_inverse(const hmmwv_tires *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *acc,
-    gic_real *tau)
+static GIC_COLD int hmmwv_tires_inverse(const hmmwv_tires *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *acc, gic_real *tau)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -5285,7 +5292,7 @@ static int hmmwv_tires_inverse(const hmmwv_tires *self, gic_real time, const gic
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static int hmmwv_tires_energy(const hmmwv_tires *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
+static GIC_COLD int hmmwv_tires_energy(const hmmwv_tires *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
     gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
@@ -5932,7 +5939,7 @@ static int hmmwv_tires_energy(const hmmwv_tires *self, gic_real time, const gic_
 }
 
 /* Largest constraint residual of all subsets, relative to their sizes. */
-static gic_real hmmwv_tires_residual(const hmmwv_tires *self)
+static GIC_COLD gic_real hmmwv_tires_residual(const hmmwv_tires *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     hmmwv_tires_links links;
@@ -5978,7 +5985,7 @@ static gic_real hmmwv_tires_residual(const hmmwv_tires *self)
     return largest;
 }
 
-int hmmwv_tires_self_test(hmmwv_tires *self, gic_self_test *result)
+GIC_COLD int hmmwv_tires_self_test(hmmwv_tires *self, gic_self_test *result)
 {
     gic_real e[4], acc[HMMWV_TIRES_UNKNOWN_ROOM], unit[HMMWV_TIRES_UNKNOWN_ROOM], tau0[HMMWV_TIRES_UNKNOWN_ROOM], tau[HMMWV_TIRES_UNKNOWN_ROOM];
     gic_real M[HMMWV_TIRES_UNKNOWN_ROOM][HMMWV_TIRES_UNKNOWN_ROOM], energy[3], scale;

@@ -92,6 +92,13 @@
 #define GIC_RESTRICT restrict
 #endif
 
+/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+#ifdef __GNUC__
+#define GIC_COLD __attribute__((cold))
+#else
+#define GIC_COLD
+#endif
+
 #ifdef GIC_FLOAT
 #define GIC_SQRT(x) sqrtf(x)
 #define GIC_FABS(x) fabsf(x)
@@ -447,7 +454,7 @@ static int hmmwv_vehicle_solve_rack(hmmwv_vehicle *self, const gic_real *GIC_RES
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_vehicle_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_vehicle_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -877,7 +884,7 @@ static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_vehicle_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_vehicle_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -1464,7 +1471,7 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
@@ -2008,7 +2015,7 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real hmmwv_vehicle_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
+static GIC_COLD gic_real hmmwv_vehicle_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
@@ -4921,8 +4928,8 @@ void hmmwv_vehicle_restore(hmmwv_vehicle *self, const hmmwv_vehicle *copy)
 /* ---- self-test ------------------------------------------------------------------------------------------------------ */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than hmmwv_vehicle_dynamics. */
-static int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *acc,
-    gic_real *tau)
+static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *acc, gic_real *tau)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -5568,7 +5575,7 @@ static int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real time, const
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
+static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
     gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
@@ -6242,7 +6249,7 @@ static int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real time, const 
 }
 
 /* Largest constraint residual of all subsets, relative to their sizes. */
-static gic_real hmmwv_vehicle_residual(const hmmwv_vehicle *self)
+static GIC_COLD gic_real hmmwv_vehicle_residual(const hmmwv_vehicle *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     hmmwv_vehicle_links links;
@@ -6288,7 +6295,7 @@ static gic_real hmmwv_vehicle_residual(const hmmwv_vehicle *self)
     return largest;
 }
 
-int hmmwv_vehicle_self_test(hmmwv_vehicle *self, gic_self_test *result)
+GIC_COLD int hmmwv_vehicle_self_test(hmmwv_vehicle *self, gic_self_test *result)
 {
     gic_real e[4], acc[HMMWV_VEHICLE_UNKNOWN_ROOM], unit[HMMWV_VEHICLE_UNKNOWN_ROOM], tau0[HMMWV_VEHICLE_UNKNOWN_ROOM], tau[HMMWV_VEHICLE_UNKNOWN_ROOM];
     gic_real M[HMMWV_VEHICLE_UNKNOWN_ROOM][HMMWV_VEHICLE_UNKNOWN_ROOM], energy[3], scale;

@@ -38,6 +38,13 @@
 #define GIC_RESTRICT restrict
 #endif
 
+/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+#ifdef __GNUC__
+#define GIC_COLD __attribute__((cold))
+#else
+#define GIC_COLD
+#endif
+
 #ifdef GIC_FLOAT
 #define GIC_SQRT(x) sqrtf(x)
 #define GIC_FABS(x) fabsf(x)
@@ -405,7 +412,7 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real pendulum_residual_rod(const gic_real *GIC_RESTRICT k, const pendulum_links *GIC_RESTRICT links,
+static GIC_COLD gic_real pendulum_residual_rod(const gic_real *GIC_RESTRICT k, const pendulum_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -879,8 +886,8 @@ void pendulum_restore(pendulum *self, const pendulum *copy)
 /* ---- self-test ------------------------------------------------------------------------------------------------------ */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than pendulum_dynamics. */
-static int pendulum_inverse(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *acc,
-    gic_real *tau)
+static GIC_COLD int pendulum_inverse(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *acc, gic_real *tau)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -928,7 +935,7 @@ static int pendulum_inverse(const pendulum *self, gic_real time, const gic_real 
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static int pendulum_energy(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
+static GIC_COLD int pendulum_energy(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
     gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
@@ -979,7 +986,7 @@ static int pendulum_energy(const pendulum *self, gic_real time, const gic_real *
 }
 
 /* Largest constraint residual of all subsets, relative to their sizes. */
-static gic_real pendulum_residual(const pendulum *self)
+static GIC_COLD gic_real pendulum_residual(const pendulum *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     pendulum_links links;
@@ -993,7 +1000,7 @@ static gic_real pendulum_residual(const pendulum *self)
     return largest;
 }
 
-int pendulum_self_test(pendulum *self, gic_self_test *result)
+GIC_COLD int pendulum_self_test(pendulum *self, gic_self_test *result)
 {
     gic_real e[4], acc[PENDULUM_UNKNOWN_ROOM], unit[PENDULUM_UNKNOWN_ROOM], tau0[PENDULUM_UNKNOWN_ROOM], tau[PENDULUM_UNKNOWN_ROOM];
     gic_real M[PENDULUM_UNKNOWN_ROOM][PENDULUM_UNKNOWN_ROOM], energy[3], scale;

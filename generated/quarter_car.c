@@ -57,6 +57,13 @@
 #define GIC_RESTRICT restrict
 #endif
 
+/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+#ifdef __GNUC__
+#define GIC_COLD __attribute__((cold))
+#else
+#define GIC_COLD
+#endif
+
 #ifdef GIC_FLOAT
 #define GIC_SQRT(x) sqrtf(x)
 #define GIC_FABS(x) fabsf(x)
@@ -368,7 +375,7 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real quarter_car_residual_carriage(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
+static GIC_COLD gic_real quarter_car_residual_carriage(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -884,7 +891,7 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real quarter_car_residual_arm(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
+static GIC_COLD gic_real quarter_car_residual_arm(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
@@ -1486,7 +1493,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real quarter_car_residual_wheel(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
+static GIC_COLD gic_real quarter_car_residual_wheel(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
@@ -2210,8 +2217,8 @@ void quarter_car_restore(quarter_car *self, const quarter_car *copy)
 /* ---- self-test ------------------------------------------------------------------------------------------------------ */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than quarter_car_dynamics. */
-static int quarter_car_inverse(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *acc,
-    gic_real *tau)
+static GIC_COLD int quarter_car_inverse(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *acc, gic_real *tau)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -2360,7 +2367,7 @@ static int quarter_car_inverse(const quarter_car *self, gic_real time, const gic
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static int quarter_car_energy(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
+static GIC_COLD int quarter_car_energy(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
     gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
@@ -2493,7 +2500,7 @@ static int quarter_car_energy(const quarter_car *self, gic_real time, const gic_
 }
 
 /* Largest constraint residual of all subsets, relative to their sizes. */
-static gic_real quarter_car_residual(const quarter_car *self)
+static GIC_COLD gic_real quarter_car_residual(const quarter_car *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     quarter_car_links links;
@@ -2518,7 +2525,7 @@ static gic_real quarter_car_residual(const quarter_car *self)
     return largest;
 }
 
-int quarter_car_self_test(quarter_car *self, gic_self_test *result)
+GIC_COLD int quarter_car_self_test(quarter_car *self, gic_self_test *result)
 {
     gic_real e[4], acc[QUARTER_CAR_UNKNOWN_ROOM], unit[QUARTER_CAR_UNKNOWN_ROOM], tau0[QUARTER_CAR_UNKNOWN_ROOM], tau[QUARTER_CAR_UNKNOWN_ROOM];
     gic_real M[QUARTER_CAR_UNKNOWN_ROOM][QUARTER_CAR_UNKNOWN_ROOM], energy[3], scale;

@@ -76,6 +76,13 @@
 #define GIC_RESTRICT restrict
 #endif
 
+/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+#ifdef __GNUC__
+#define GIC_COLD __attribute__((cold))
+#else
+#define GIC_COLD
+#endif
+
 #ifdef GIC_FLOAT
 #define GIC_SQRT(x) sqrtf(x)
 #define GIC_FABS(x) fabsf(x)
@@ -431,7 +438,7 @@ static int solid_axle_solve_rack(solid_axle *self, const gic_real *GIC_RESTRICT 
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real solid_axle_residual_rack(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
+static GIC_COLD gic_real solid_axle_residual_rack(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -847,7 +854,7 @@ static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRI
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real solid_axle_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
+static GIC_COLD gic_real solid_axle_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -1556,7 +1563,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real solid_axle_residual_axle(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
+static GIC_COLD gic_real solid_axle_residual_axle(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -2185,7 +2192,7 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real solid_axle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
+static GIC_COLD gic_real solid_axle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
@@ -3897,8 +3904,8 @@ void solid_axle_restore(solid_axle *self, const solid_axle *copy)
 /* ---- self-test ------------------------------------------------------------------------------------------------------ */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than solid_axle_dynamics. */
-static int solid_axle_inverse(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *acc,
-    gic_real *tau)
+static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *acc, gic_real *tau)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -4447,7 +4454,7 @@ static int solid_axle_inverse(const solid_axle *self, gic_real time, const gic_r
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static int solid_axle_energy(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
+static GIC_COLD int solid_axle_energy(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
     gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
@@ -4923,7 +4930,7 @@ static int solid_axle_energy(const solid_axle *self, gic_real time, const gic_re
 }
 
 /* Largest constraint residual of all subsets, relative to their sizes. */
-static gic_real solid_axle_residual(const solid_axle *self)
+static GIC_COLD gic_real solid_axle_residual(const solid_axle *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     solid_axle_links links;
@@ -4959,7 +4966,7 @@ static gic_real solid_axle_residual(const solid_axle *self)
     return largest;
 }
 
-int solid_axle_self_test(solid_axle *self, gic_self_test *result)
+GIC_COLD int solid_axle_self_test(solid_axle *self, gic_self_test *result)
 {
     gic_real e[4], acc[SOLID_AXLE_UNKNOWN_ROOM], unit[SOLID_AXLE_UNKNOWN_ROOM], tau0[SOLID_AXLE_UNKNOWN_ROOM], tau[SOLID_AXLE_UNKNOWN_ROOM];
     gic_real M[SOLID_AXLE_UNKNOWN_ROOM][SOLID_AXLE_UNKNOWN_ROOM], energy[3], scale;

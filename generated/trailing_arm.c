@@ -79,6 +79,13 @@
 #define GIC_RESTRICT restrict
 #endif
 
+/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+#ifdef __GNUC__
+#define GIC_COLD __attribute__((cold))
+#else
+#define GIC_COLD
+#endif
+
 #ifdef GIC_FLOAT
 #define GIC_SQRT(x) sqrtf(x)
 #define GIC_FABS(x) fabsf(x)
@@ -434,7 +441,7 @@ static int trailing_arm_solve_rack(trailing_arm *self, const gic_real *GIC_RESTR
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real trailing_arm_residual_rack(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
+static GIC_COLD gic_real trailing_arm_residual_rack(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -831,7 +838,7 @@ static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RE
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real trailing_arm_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
+static GIC_COLD gic_real trailing_arm_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -1406,7 +1413,7 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real trailing_arm_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
+static GIC_COLD gic_real trailing_arm_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
@@ -1855,7 +1862,7 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
 }
 
 /* Largest constraint residual of such a subset at the pose q, relative to its size. */
-static gic_real trailing_arm_residual_lca_f_l_2(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
+static GIC_COLD gic_real trailing_arm_residual_lca_f_l_2(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT q)
 {
     const gic_real *const x = links->x;
@@ -3739,8 +3746,8 @@ void trailing_arm_restore(trailing_arm *self, const trailing_arm *copy)
 /* ---- self-test ------------------------------------------------------------------------------------------------------ */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than trailing_arm_dynamics. */
-static int trailing_arm_inverse(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *acc,
-    gic_real *tau)
+static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *acc, gic_real *tau)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -4422,7 +4429,7 @@ static int trailing_arm_inverse(const trailing_arm *self, gic_real time, const g
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static int trailing_arm_energy(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
+static GIC_COLD int trailing_arm_energy(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
     gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
@@ -4979,7 +4986,7 @@ static int trailing_arm_energy(const trailing_arm *self, gic_real time, const gi
 }
 
 /* Largest constraint residual of all subsets, relative to their sizes. */
-static gic_real trailing_arm_residual(const trailing_arm *self)
+static GIC_COLD gic_real trailing_arm_residual(const trailing_arm *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     trailing_arm_links links;
@@ -5017,7 +5024,7 @@ static gic_real trailing_arm_residual(const trailing_arm *self)
     return largest;
 }
 
-int trailing_arm_self_test(trailing_arm *self, gic_self_test *result)
+GIC_COLD int trailing_arm_self_test(trailing_arm *self, gic_self_test *result)
 {
     gic_real e[4], acc[TRAILING_ARM_UNKNOWN_ROOM], unit[TRAILING_ARM_UNKNOWN_ROOM], tau0[TRAILING_ARM_UNKNOWN_ROOM], tau[TRAILING_ARM_UNKNOWN_ROOM];
     gic_real M[TRAILING_ARM_UNKNOWN_ROOM][TRAILING_ARM_UNKNOWN_ROOM], energy[3], scale;
