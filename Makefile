@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 #
 #   make                build/gicgen, build/gicrun and build/gicbench
-#   make demo           the HMMWV over the paper's road: build/demo/
-#   make bench          engines and integrators, time against error: build/bench/ (QUICK=1: the short way)
+#   make demo           the complete HMMWV for 30 s, and one over the paper's road: build/demo/
+#   make bench          engines and integrators, time against error, and the 30 s: build/bench/ (QUICK=1: the short way)
 #   make test           every test
 #   make generated      generated/*.c and *.h from models/*.veh, and models/veh.schema.json
 #   make debug          the same programs with the sanitizers, in build/debug/
@@ -182,14 +182,18 @@ demo: all
 	@mkdir -p $(BUILD)/demo
 	$(BUILD)/gicrun models/hmmwv.veh models/scenes/paper_run.scene -o $(BUILD)/demo/hmmwv.csv \
 	    --plot $(BUILD)/demo/hmmwv.svg --animate $(BUILD)/demo/hmmwv.html
-	@echo "picture: $(BUILD)/demo/hmmwv.svg"
-	@echo "page:    $(BUILD)/demo/hmmwv.html"
-	@echo "numbers: $(BUILD)/demo/hmmwv.csv"
+	$(BUILD)/gicrun models/hmmwv_vehicle.veh models/scenes/full_run.scene -o $(BUILD)/demo/full_run.csv \
+	    --plot $(BUILD)/demo/full_run.svg --animate $(BUILD)/demo/full_run.html
+	@echo "pictures: $(BUILD)/demo/hmmwv.svg, $(BUILD)/demo/full_run.svg"
+	@echo "pages:    $(BUILD)/demo/hmmwv.html, $(BUILD)/demo/full_run.html"
+	@echo "numbers:  $(BUILD)/demo/hmmwv.csv, $(BUILD)/demo/full_run.csv"
 
 # QUICK=1: fewer repetitions and settings
 bench: all
 	$(BUILD)/gicbench $(if $(QUICK),--quick) -o $(BUILD)/bench models/hmmwv.veh models/scenes/paper_run.scene \
 	    models/scenes/spin.scene
+	$(BUILD)/gicbench --drive $(if $(QUICK),--quick) -o $(BUILD)/bench/full_run models/hmmwv_vehicle.veh \
+	    models/scenes/full_run.scene
 
 generated: $(BUILD)/gicgen
 	@mkdir -p generated

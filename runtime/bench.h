@@ -13,9 +13,10 @@
 typedef struct Bench {
     Pool *pool;
     const char *model_path, *scene_path, *spin_path;
-    const char *folder; /* NULL with rhs: none */
+    const char *folder; /* NULL with rhs and drive: none */
     EngineOptions options;
-    bool rhs; /* right-hand sides alone, told on standard output */
+    bool rhs;   /* right-hand sides alone, told on standard output */
+    bool drive; /* the scene as it stands, told on standard output */
     const Model *model;
     const Scene *scene, *spin; /* scene: NULL with rhs: none; spin: makes coordinate partitions change; NULL: none */
     int engines, repetitions;
@@ -157,6 +158,8 @@ typedef struct Limit {
 } Limit;
 
 Limit limit_measure(void);
+/* bench_drive.c: the scene with its own step and ratio; shares of multibody system, tires and powertrain. */
+void bench_drive(const Bench *bench);
 /* bench_rhs.c: one right-hand side of every variant of the code, against the limit. scene: NULL for none. */
 void bench_rhs(const Bench *bench);
 

@@ -8,26 +8,29 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static const char help[] =
-    "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCENE [TURNING_SCENE]\n"
-    "       gicbench --rhs [--quick] [-o FOLDER] MODEL.veh [SCENE]\n"
-    "\n"
-    "Runs a scene with all engines and integrators and writes a folder: index.html with\n"
-    "tables and pictures, the same as text, a CSV file a table.\n"
-    "\n"
-    "      --rhs            one right-hand side alone, of every variant of the code:\n"
-    "                       operations, time, distance from the processor's limit, as\n"
-    "                       text; with -o also as a folder\n"
-    "  -o, --output FOLDER  default: gicbench\n"
-    "      --engines NAMES  some engines, separated by commas; the others are compared\n"
-    "                       with the first; default: all\n"
-    "      --quick          few repetitions, few settings\n"
-    "      --cc COMMAND     C compiler of generated code; default: $CC or cc\n"
-    "      --cflags FLAGS   more options for it, behind ours, all in one word\n"
-    "  -h, --help           this text\n"
-    "      --version        version\n"
-    "\n"
-    "Exit status: 0 good, 1 error in a file or during a run, 2 wrong usage.\n";
+static const char help[] = "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCENE [TURNING_SCENE]\n"
+                           "       gicbench --rhs [--quick] [-o FOLDER] MODEL.veh [SCENE]\n"
+                           "       gicbench --drive [--quick] [-o FOLDER] MODEL.veh SCENE\n"
+                           "\n"
+                           "Runs a scene with all engines and integrators and writes a folder: index.html with\n"
+                           "tables and pictures, the same as text, a CSV file a table.\n"
+                           "\n"
+                           "      --rhs            one right-hand side alone, of every variant of the code:\n"
+                           "                       operations, time, distance from the processor's limit, as\n"
+                           "                       text; with -o also as a folder\n"
+                           "      --drive          the scene as it stands, with its step and ratio: CPU time, and\n"
+                           "                       what of it goes into multibody system, tires and powertrain;\n"
+                           "                       as text, with -o also as a folder\n"
+                           "  -o, --output FOLDER  default: gicbench\n"
+                           "      --engines NAMES  some engines, separated by commas; the others are compared\n"
+                           "                       with the first; default: all\n"
+                           "      --quick          few repetitions, few settings\n"
+                           "      --cc COMMAND     C compiler of generated code; default: $CC or cc\n"
+                           "      --cflags FLAGS   more options for it, behind ours, all in one word\n"
+                           "  -h, --help           this text\n"
+                           "      --version        version\n"
+                           "\n"
+                           "Exit status: 0 good, 1 error in a file or during a run, 2 wrong usage.\n";
 
 /* Names separated by commas. */
 static const char *const *engine_list(Pool *pool, char *names)
@@ -49,13 +52,13 @@ static const char *const *engine_list(Pool *pool, char *names)
 /* What the command line asks for, and the names of the engines, ended by NULL. */
 static Bench read_command_line(Pool *pool, int count, char **word, const char *const **names)
 {
-    enum { ENGINES = 256, QUICK, RHS, COMPILER, FLAGS, VERSION };
+    enum { ENGINES = 256, QUICK, RHS, DRIVE, COMPILER, FLAGS, VERSION };
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},   {"engines", required_argument, NULL, ENGINES},
         {"quick", no_argument, NULL, QUICK},        {"rhs", no_argument, NULL, RHS},
-        {"cc", required_argument, NULL, COMPILER},  {"cflags", required_argument, NULL, FLAGS},
-        {"help", no_argument, NULL, 'h'},           {"version", no_argument, NULL, VERSION},
-        {NULL, 0, NULL, 0},
+        {"drive", no_argument, NULL, DRIVE},        {"cc", required_argument, NULL, COMPILER},
+        {"cflags", required_argument, NULL, FLAGS}, {"help", no_argument, NULL, 'h'},
+        {"version", no_argument, NULL, VERSION},    {NULL, 0, NULL, 0},
     };
     Bench bench = {.pool = pool, .repetitions = 9};
     bench.options.compiler = compiler_default();
@@ -71,6 +74,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
             bench.repetitions = 3;
             break;
         case RHS: bench.rhs = true; break;
+        case DRIVE: bench.drive = true; break;
         case COMPILER: bench.options.compiler = optarg; break;
         case FLAGS: bench.options.flags = optarg; break;
         case 'h': fputs(help, stdout); exit(0);
@@ -78,6 +82,10 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
         default: fputs("  remedy: `gicbench -h` shows how\n", stderr); exit(2);
         }
     const int files = count - optind;
+    if (bench.rhs && bench.drive)
+        usage_fail("gicbench", "one of --rhs and --drive, please", NULL);
+    if (bench.drive && files != 2)
+        usage_fail("gicbench", "a model and a scene, please", NULL);
     if (bench.rhs && (files < 1 || files > 2))
         usage_fail("gicbench", "a model, please, and perhaps a scene", NULL);
     if (!bench.rhs && (files < 2 || files > 3))
@@ -85,7 +93,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
     bench.model_path = word[optind];
     bench.scene_path = word[optind + 1]; /* or the NULL at the end */
     bench.spin_path = bench.scene_path ? word[optind + 2] : NULL;
-    if (!bench.rhs && !bench.folder)
+    if (!bench.rhs && !bench.drive && !bench.folder)
         bench.folder = "gicbench";
     return bench;
 }
@@ -105,13 +113,8 @@ static const Scene *read_scene(const Bench *bench, const char *path)
     return equilibrium_start(bench->pool, bench->model, scene, bench->options.solve);
 }
 
-/* All engines and integrators on the scene. */
-static void compare(Bench *bench, const char *const *name)
+static void open_engines(Bench *bench, const char *const *name)
 {
-    if (bench_samples(bench->scene) < 2)
-        diag_fail((Place){bench->scene->source, 0, 0}, "a longer duration", "a benchmark takes at least %g s",
-                  bench_sample);
-    make_folder(bench->folder);
     for (int e = 0; name[e]; ++e) {
         bench_progress("engine %s", name[e]);
         *POOL_PUSH(bench->pool, bench->engine, bench->engines) =
@@ -120,7 +123,22 @@ static void compare(Bench *bench, const char *const *name)
     bench->instance = pool_alloc(bench->pool, sizeof(gic_head *) * (size_t)bench->engines);
     for (int e = 0; e < bench->engines; ++e)
         bench->instance[e] = instance_new(bench->pool, bench->engine[e]);
+}
 
+static void close_engines(const Bench *bench)
+{
+    for (int e = 0; e < bench->engines; ++e)
+        engine_close(bench->engine[e]);
+}
+
+/* All engines and integrators on the scene. */
+static void compare(Bench *bench, const char *const *name)
+{
+    if (bench_samples(bench->scene) < 2)
+        diag_fail((Place){bench->scene->source, 0, 0}, "a longer duration", "a benchmark takes at least %g s",
+                  bench_sample);
+    make_folder(bench->folder);
+    open_engines(bench, name);
     bench_machine(bench);
     bench_sweep(bench);
     bench_profile(bench);
@@ -128,8 +146,19 @@ static void compare(Bench *bench, const char *const *name)
     bench_spin(bench);
     bench_worst(bench);
     bench_start(bench);
-    for (int e = 0; e < bench->engines; ++e)
-        engine_close(bench->engine[e]);
+    close_engines(bench);
+}
+
+/* The scene as it stands. */
+static void drive_alone(Bench *bench, const char *const *name)
+{
+    if (bench->folder)
+        make_folder(bench->folder);
+    open_engines(bench, name);
+    bench_machine(bench);
+    bench_drive(bench);
+    close_engines(bench);
+    report_tell(bench->report, stdout);
 }
 
 /* Right-hand sides alone. */
@@ -154,6 +183,8 @@ int main(int count, char **word)
     bench.spin = bench.spin_path ? read_scene(&bench, bench.spin_path) : NULL;
     if (bench.rhs)
         evaluate_alone(&bench);
+    else if (bench.drive)
+        drive_alone(&bench, name);
     else
         compare(&bench, name);
     if (bench.folder) {

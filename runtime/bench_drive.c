@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: MIT
+ * A scene as it stands, with its step and ratio: the third experiment of Serban and Haug 2000, section 5, the complete
+ * vehicle for 30 s. CPU time, and what of a step goes into multibody system, tires and powertrain. */
+#include "bench.h"
+
+#include <string.h>
+
+/* AB3 begins with steps of RK4, which are no part of steady operation. */
+enum { START = 2 };
+
+/* What of a step is told apart, and all of it. */
+enum { MULTIBODY, TIRES, POWERTRAIN, STEP, PARTS };
+
+/* An engine, the same for the model without its powertrain (NULL: it has none, or its rates can't be compared), and
+ * seconds by part: [repetitions] each; of STEP CPU time, of the others elapsed time. */
+typedef struct Driven {
+    const Engine *engine, *plain;
+    double *second[PARTS];
+} Driven;
+
+/* The model without its powertrain. */
+static const Model *without_powertrain(Pool *pool, const Model *model)
+{
+    Model *plain = pool_alloc(pool, sizeof *plain);
+    *plain = *model;
+    plain->powertrain = NULL;
+    plain->fast_states -= POWERTRAIN_FAST;
+    plain->output = pool_alloc(pool, sizeof *plain->output * (size_t)(model->outputs + 1));
+    plain->outputs = plain->output_components = 0;
+    for (int i = 0; i < model->outputs; ++i)
+        if (model->output[i].type != OUTPUT_POWERTRAIN) {
+            plain->output[plain->outputs++] = model->output[i];
+            plain->output_components += model->output[i].count;
+        }
+    return plain;
+}
+
+static int64_t steps_of(const Scene *scene)
+{
+    return scene->outputs * scene->per_output;
+}
+
+/* CPU seconds of the run; *status: how it ended. */
+static double run(const Engine *engine, gic_head *self, const Scene *scene, int *status)
+{
+    *status = scene_start(engine, scene, self);
+    const double before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    for (int64_t i = 0; i < steps_of(scene) && *status == GIC_OK; ++i)
+        *status = scene_step(engine, engine->code, scene, NULL, self, 0);
+    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
+}
+
+/* Calls that are timed, in the order of a step's end and the next one's beginning; the first that comes to a new state
+ * recovers dependent coordinates, the others find them known. PLAIN: fast rates without the powertrain. */
+enum { SETTLE, LINK, RHS, FAST, PLAIN, CALLS };
+
+/* Instances beside that of a run. */
+typedef struct Aside {
+    gic_head *before, *other; /* as it was before the step; of the model without its powertrain */
+    double look;              /* s that a look at the clock takes */
+} Aside;
+
+static double since(const Aside *aside, double before)
+{
+    return clock_seconds(CLOCK_MONOTONIC) - before - aside->look;
+}
+
+/* Elapsed seconds of the calls at an instance's state. dual: are there links at the end of a step? */
+static void time_calls(const Driven *driven, gic_head *self, const Aside *aside, bool dual, double second[CALLS])
+{
+    const gic_model *code = driven->engine->code;
+    gic_head *copy = aside->before;
+    double state[code->slow_count + code->fast_count], rate[code->slow_count + code->fast_count];
+    double link[code->link_count + 1], *fast = state + code->slow_count;
+    const double time = gic_time(self);
+    memcpy(state, instance_array(self, code->state_offset), sizeof state);
+    memcpy(instance_array(copy, code->input_offset), instance_array(self, code->input_offset),
+           sizeof(double) * (size_t)code->input_count);
+    double before = clock_seconds(CLOCK_MONOTONIC);
+    code->settle(copy, state);
+    second[SETTLE] = since(aside, before);
+    before = clock_seconds(CLOCK_MONOTONIC);
+    if (dual)
+        code->link(copy, time, state, link);
+    second[LINK] = dual ? since(aside, before) : 0;
+    before = clock_seconds(CLOCK_MONOTONIC);
+    code->rhs(copy, time, state, rate);
+    second[RHS] = since(aside, before);
+    if (!code->fast)
+        return;
+    if (!dual)
+        code->link(copy, time, state, link);
+    before = clock_seconds(CLOCK_MONOTONIC);
+    code->fast(copy, time, link, fast, rate);
+    second[FAST] = since(aside, before);
+    if (!driven->plain)
+        return;
+    const gic_model *plain = driven->plain->code;
+    aside->other->road = copy->road;
+    memcpy(instance_array(aside->other, plain->input_offset), instance_array(copy, code->input_offset),
+           sizeof(double) * (size_t)code->input_count);
+    before = clock_seconds(CLOCK_MONOTONIC);
+    plain->fast(aside->other, time, link, fast, rate);
+    second[PLAIN] = since(aside, before);
+}
+
+/* Medians over the steps of a run, s. */
+static void time_parts(const Driven *driven, gic_head *self, const Scene *scene, double part[STEP])
+{
+    Pool *pool = pool_new();
+    const Engine *engine = driven->engine;
+    const int steps = (int)steps_of(scene) - START;
+    const double ratio = engine->code->fast ? scene->ratio : 0;
+    Aside aside = {.before = instance_new(pool, engine), .look = bench_look(pool)};
+    double *second[CALLS], call[CALLS] = {0}, median[CALLS];
+    for (int k = 0; k < CALLS; ++k)
+        second[k] = pool_alloc(pool, sizeof *second[k] * (size_t)(steps + 1));
+    if (driven->plain) {
+        aside.other = instance_new(pool, driven->plain);
+        driven->plain->code->setup_with(aside.other, scene->parameter);
+    }
+    int status = scene_start(engine, scene, self);
+    for (int i = -START; i < steps && status == GIC_OK; ++i) {
+        memcpy(aside.before, self, engine->code->size);
+        status = scene_step(engine, engine->code, scene, NULL, self, 0);
+        time_calls(driven, self, &aside, ratio > 1, call);
+        for (int k = 0; k < CALLS && i >= 0; ++k)
+            second[k][i] = call[k];
+    }
+    for (int k = 0; k < CALLS; ++k)
+        median[k] = spread_of(pool, second[k], steps).median;
+    part[MULTIBODY] = median[SETTLE] + median[LINK] + median[RHS] - median[FAST];
+    part[TIRES] = ratio * (driven->plain ? median[PLAIN] : median[FAST]);
+    part[POWERTRAIN] = driven->plain ? ratio * (median[FAST] - median[PLAIN]) : 0;
+    pool_free(pool);
+}
+
+static Driven driven_by(const Bench *bench, const Engine *engine)
+{
+    Pool *pool = bench->pool;
+    Driven driven = {.engine = engine};
+    for (int k = 0; k < PARTS; ++k)
+        driven.second[k] = pool_alloc(pool, sizeof(double) * (size_t)bench->repetitions);
+    if (!bench->model->powertrain)
+        return driven;
+    driven.plain = engine_open(pool, engine->name, without_powertrain(pool, bench->model), &bench->options);
+    if (driven.plain->code->link_count != engine->code->link_count) {
+        engine_close(driven.plain);
+        driven.plain = NULL;
+    }
+    return driven;
+}
+
+static void drive_row(const Bench *bench, Sheet *table, const Driven *driven)
+{
+    Pool *pool = bench->pool;
+    const double steps = (double)steps_of(bench->scene);
+    const Spread all = spread_of(pool, driven->second[STEP], bench->repetitions);
+    double part[STEP], rest = all.median / steps;
+    for (int k = 0; k < STEP; ++k) {
+        part[k] = spread_of(pool, driven->second[k], bench->repetitions).median;
+        rest -= part[k];
+    }
+    table_cell(pool, table, "%s", driven->engine->name);
+    spread_cells(pool, table, all, 1);
+    table_cell(pool, table, "%.4g", steps * bench->scene->step / all.median);
+    table_cell(pool, table, "%.3g", 1e6 * all.median / steps);
+    table_cell(pool, table, "%.3g", 1e6 * part[MULTIBODY]);
+    table_cell(pool, table, "%.3g", 1e6 * part[TIRES]);
+    table_cell(pool, table, driven->plain || !bench->model->powertrain ? "%.2g" : "with tires", 1e6 * part[POWERTRAIN]);
+    table_cell(pool, table, "%.2g", 1e6 * rest);
+    table_cell(pool, table, "%.0f", 100 * steps * (part[TIRES] + part[POWERTRAIN]) / all.median);
+}
+
+void bench_drive(const Bench *bench)
+{
+    Pool *pool = bench->pool;
+    const Scene *scene = bench->scene;
+    const Place at = {scene->source, 0, 0};
+    if (!scene->per_output || steps_of(scene) <= START)
+        diag_fail(at, "write `integrator: ab3` and a step",
+                  "a scene is timed with constant steps, and more than %d of them", START);
+    Driven *driven = pool_alloc(pool, sizeof *driven * (size_t)bench->engines);
+    for (int e = 0; e < bench->engines; ++e)
+        driven[e] = driven_by(bench, bench->engine[e]);
+    for (int r = 0; r < bench->repetitions; ++r)
+        for (int e = 0; e < bench->engines; ++e) {
+            const Engine *engine = bench->engine[e];
+            gic_head *self = bench->instance[e];
+            int status;
+            bench_progress("repetition %d of %d, %s", r + 1, bench->repetitions, engine->name);
+            driven[e].second[STEP][r] = run(engine, self, scene, &status);
+            if (status != GIC_OK)
+                diag_fail(at, "a benchmark needs a scene that runs to its end",
+                          "with %s the run ends at t = %.6g s: %s", engine->name, gic_time(self),
+                          instance_status(pool, engine->code, self, status));
+            double part[STEP];
+            time_parts(&driven[e], self, scene, part);
+            for (int k = 0; k < STEP; ++k)
+                driven[e].second[k][r] = part[k];
+        }
+    report_heading(bench->report, "The scene as it stands");
+    report_text(bench->report,
+                "%.6g s with %s at steps of %g ms, %d fast ones in each: CPU time without outputs, median of %d runs "
+                "and extremes, engines alternating. The paper's third experiment, 30 s of the complete vehicle, took "
+                "26.23 s at 200 MHz.",
+                (double)steps_of(scene) * scene->step, integrator_name(scene->method), 1e3 * scene->step, scene->ratio,
+                bench->repetitions);
+    report_text(
+        bench->report,
+        "Parts of a step are medians of single calls at the states of the run, timed from outside: multibody "
+        "is the recovery of dependent coordinates, a right-hand side without the rates of the fast states, and "
+        "the motion of wheels at the step's end; tires and powertrain are those rates, once for each fast step, "
+        "the powertrain being what they take beyond those of the same model without it. The rest of the step "
+        "is the integrator's, the inputs' and the driver's.");
+    Sheet *table =
+        report_table(bench->report, "drive", "Where the time of a step goes [us]",
+                     "engine|CPU time [s]|lowest|highest|times real time|step [us]|multibody [us]|tires [us]|"
+                     "powertrain [us]|rest [us]|tires and powertrain [%]");
+    for (int e = 0; e < bench->engines; ++e) {
+        drive_row(bench, table, &driven[e]);
+        if (driven[e].plain)
+            engine_close(driven[e].plain);
+    }
+}
