@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# demo.sh: installs what is missing, builds, drives the HMMWV over the road of models/scenes/paper_run.scene and says
-# where picture, page and numbers are.
+# demo.sh: installs what is missing, builds, drives the complete HMMWV for 30 s, another one over the road of
+# models/scenes/paper_run.scene, and says where pictures, pages and numbers are.
 set -e
 cd "$(dirname "$0")/.."
 sh tests/install.sh
