@@ -67,8 +67,10 @@ def gears(d):
 def check_full_run():
     d = run('full_run')
     check('30 s', d['time'][-1] == 30 and len(d['time']) == 1001, d['time'][-1])
-    check('it starts where the paper does', (d['chassis.x'][0], d['chassis.y'][0]) == (200, 50))
-    near('its yaw then', d['chassis_attitude.yaw'][0], 0.5, 1e-12)
+    # the search for rest moves it by a millimetre at most
+    near('it starts where the paper does', math.hypot(d['chassis.x'][0] - 200, d['chassis.y'][0] - 50), 0, 0.001)
+    near('its yaw then', d['chassis_attitude.yaw'][0], 0.5, 1e-6)
+    check('at rest', max(abs(d['chassis_acceleration.' + c][0]) for c in 'xyz') < 1e-9)
     check('it shifts up, back and up again', gears(d) == [1, 2, 3, 2, 3], gears(d))
     check('no wheel leaves the ground', min(min(d['tire_%s.fz' % w]) for w in WHEELS) > 1000)
     # in third gear the engine's limit of 2700 rpm ends near 280 rad/s / (1.25 * 5) * 0.47 m = 21 m/s
