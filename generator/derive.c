@@ -70,7 +70,7 @@ const Block *draw_block(Pool *pool, const Plan *plan)
     }
     for (int s = 0; s < plan->sequence->subsets; ++s) {
         const Subset *subset = &plan->sequence->subset[s];
-        for (int b = 0; subset->class >= 0 && b < subset->bodies; ++b) {
+        for (int b = 0; plan_follows(plan, s) && b < subset->bodies; ++b) {
             Ex c[3];
             double p[4];
             body_drawn(plan, subset->body[b], c, p);

@@ -24,12 +24,23 @@ Solve solve_of(const char *name)
     return (Solve)i;
 }
 
-const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve)
+const char *const recovery_name[RECOVERIES] = {
+    [RECOVERY_AUTO] = "auto", [RECOVERY_NEWTON] = "newton", [RECOVERY_CLOSED] = "closed"};
+
+Recovery recovery_of(const char *name)
+{
+    int i = 0;
+    while (i < RECOVERIES && strcmp(recovery_name[i], name))
+        ++i;
+    return (Recovery)i;
+}
+
+const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery)
 {
     double(*origin)[3] = reference_points(pool, model, sequence);
     const double(*fixed)[3] = (const double(*)[3])origin;
     Sampling *sampling = sampling_new(pool, model, sequence, fixed);
-    Formula **formula = subsets_formulate(pool, model, &sequence, fixed, sampling, solve);
+    Formula **formula = subsets_formulate(pool, model, &sequence, fixed, sampling, solve, recovery);
     Plan *plan = plan_new(pool, model, sequence, solve, formula, fixed);
     Formulation *f = pool_alloc(pool, sizeof *f);
     *f = (Formulation){.model = model,

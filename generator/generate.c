@@ -100,6 +100,15 @@ static int states(const Generation *g)
     return g->plan->states + g->model->fast_states;
 }
 
+/* Bodies whose poses a Newton start has. */
+static int followed_bodies(const Plan *plan)
+{
+    int bodies = 0;
+    for (int s = 0; s < plan->sequence->subsets; ++s)
+        bodies += plan_follows(plan, s) ? plan->sequence->subset[s].bodies : 0;
+    return bodies;
+}
+
 static void write_sizes(Generation *g, Text *out, int indent)
 {
     const Model *model = g->model;
@@ -120,6 +129,7 @@ static void write_sizes(Generation *g, Text *out, int indent)
                 {"UNKNOWNS", plan->unknowns},
                 {"SUBSETS", g->sequence->subsets},
                 {"BODIES", model->bodies},
+                {"FOLLOWED", followed_bodies(plan)},
                 {"WHEELS", model->wheels},
                 {"TWIST", model->free_base ? 7 + plan->free_coordinates : 0},
                 {"STATE_ROOM", room(states(g))},
@@ -225,12 +235,14 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
             for (int b = 0; b < subset->bodies; ++b)
                 text_print(out, "%s%s", b ? " + " : i ? ", " : "", g->model->body[subset->body[b]].name);
         }
-        text_print(out,
-                   ".\n * start: pose 7 numbers a body, S from %d, factors from %d. motion: c 0, A 3, omega 12, "
-                   "velocity 15, alpha 18,"
-                   "\n * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, "
-                   "coordinates from 15. */\n",
-                   f->layout.start_S, f->layout.start_factors);
+        text_print(out, ".\n * start: ");
+        if (f->closed)
+            text_print(out, "%s", f->layout.factors ? "factors" : "nothing");
+        else
+            text_print(out, "pose 7 numbers a body, S from %d, factors from %d", f->layout.start_S,
+                       f->layout.start_factors);
+        text_print(out, ". motion: c 0, A 3, omega 12, velocity 15, alpha 18,\n * acceleration 21, S 24. inertia: "
+                        "first and second moments 0 3, force and moment 9 12, coordinates from 15. */\n");
     } else if (!strcmp(name, "solve arguments")) {
         const Block *const block[] = {&f->predict, &f->chord, &f->solve};
         write_arguments(g, out, indent, block, 3);
@@ -240,15 +252,14 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
         if (any_reads(block, 3, "f"))
             line(out, indent, "const gic_real *const f = old + %d; /* factors at the start */",
                  f->layout.start_factors);
-        line(out, indent, "gic_real q[%d];", numbers);
+        if (!f->closed)
+            line(out, indent, "gic_real q[%d];", numbers);
     } else if (!strcmp(name, "react arguments")) {
         const Block *const block = &f->react;
         write_arguments(g, out, indent, &block, 1);
         for (int i = 0; i < first->knowns; ++i)
             if (block_reads(block, pool_print(g->pool, "w%d", i)))
                 line(out, indent, "gic_real *const w%d = onto[%d];", i, i);
-        if (block_reads(block, "q"))
-            line(out, indent, "const gic_real *const q = start;");
         if (block_reads(block, "f"))
             line(out, indent, "const gic_real *const f = start + %d;", f->layout.start_factors);
     } else if (!strcmp(name, "residual arguments")) {
@@ -303,8 +314,11 @@ static void write_classes(Generation *g, Text *out)
 {
     for (g->class = 0; g->class < g->sequence->classes; ++g->class) {
         Text body = {.pool = g->pool};
-        template_expand(g->pool, &body, g->templates, "subset.c.in", g->model->name, g->sequence->class[g->class].name,
+        const char *way = g->plan->formula[g->class]->closed ? "closed.c.in" : "subset.c.in";
+        template_expand(g->pool, &body, g->templates, way, g->model->name, g->sequence->class[g->class].name,
                         insert_class, g);
+        template_expand(g->pool, &body, g->templates, "residual.c.in", g->model->name,
+                        g->sequence->class[g->class].name, insert_class, g);
         if (g->plan->formula[g->class]->react.stores)
             template_expand(g->pool, &body, g->templates, "react.c.in", g->model->name,
                             g->sequence->class[g->class].name, insert_class, g);
@@ -340,6 +354,7 @@ static void write_calls(Generation *g, Text *out, int indent)
         if (subset->class < 0)
             continue;
         const Class *class = &sequence->class[subset->class];
+        const bool closed = g->plan->formula[subset->class]->closed;
         text_print(out, "%*s/* stage %d:", indent, "", subset->stage);
         for (int b = 0; b < subset->bodies; ++b)
             text_print(out, " %s", g->model->body[subset->body[b]].name);
@@ -351,14 +366,15 @@ static void write_calls(Generation *g, Text *out, int indent)
             line(out, indent, "links->x[%d] = start[%d]; /* %s */", j, subset->dep[j],
                  g->model->coordinate[subset->dep[j]].name);
             line(out, indent, "links->rate[%d] = xd[%d];", j, subset->dep[j]);
-            line(out, indent, "links->change[%d] = start[%d] - old[%d];", j, subset->dep[j], subset->dep[j]);
+            if (!closed)
+                line(out, indent, "links->change[%d] = start[%d] - old[%d];", j, subset->dep[j], subset->dep[j]);
         }
         if (g->plan->formula[subset->class]->derived)
             line(out, indent, "links->derived = self->derived + %d;", g->plan->derived_offset[s]);
+        const char *old = closed ? "" : pool_print(g->pool, "old + %d, ", g->plan->start_offset[s]);
         line(out, indent,
-             "status = %s_solve_%s(self, %s_k_%s[%d], links, old + %d, start + %d, self->motion + %d, self->inertia + "
-             "%d);",
-             g->model->name, class->name, g->model->name, class->name, member_of(class, s), g->plan->start_offset[s],
+             "status = %s_solve_%s(self, %s_k_%s[%d], links, %sstart + %d, self->motion + %d, self->inertia + %d);",
+             g->model->name, class->name, g->model->name, class->name, member_of(class, s), old,
              g->plan->start_offset[s], g->plan->motion_offset[subset->body[0]], g->plan->inertia_offset[s]);
         line(out, indent, "if (status != GIC_OK) {");
         line(out, indent + 4, "self->head.subset = %d;", s);
@@ -380,8 +396,8 @@ static void write_residuals(Generation *g, Text *out, int indent)
             line(out, indent, "links.x[%d] = start[%d];", j, subset->dep[j]);
         if (g->plan->formula[subset->class]->derived)
             line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
-        line(out, indent, "one = %s_residual_%s(%s_k_%s[%d], &links, start + %d);", g->model->name, class->name,
-             g->model->name, class->name, member_of(class, s), g->plan->start_offset[s]);
+        line(out, indent, "one = %s_residual_%s(%s_k_%s[%d], &links, self->motion + %d);", g->model->name, class->name,
+             g->model->name, class->name, member_of(class, s), g->plan->motion_offset[subset->body[0]]);
         line(out, indent, "largest = GIC_MAX(largest, one);");
     }
 }
@@ -408,9 +424,9 @@ static void write_react_calls(Generation *g, Text *out, int indent)
             line(out, indent, "links.x[%d] = start[%d];", j, subset->dep[j]);
         if (plan->formula[subset->class]->derived)
             line(out, indent, "links.derived = self->derived + %d;", plan->derived_offset[s]);
-        line(out, indent, "%s_react_%s(%s_k_%s[%d], &links, start + %d, lambda + %d, onto);", g->model->name,
-             class->name, g->model->name, class->name, member_of(class, s), plan->start_offset[s],
-             plan->multiplier_offset[subset->body[0]]);
+        line(out, indent, "%s_react_%s(%s_k_%s[%d], &links, start + %d, self->motion + %d, lambda + %d, onto);",
+             g->model->name, class->name, g->model->name, class->name, member_of(class, s), plan->start_offset[s],
+             plan->motion_offset[subset->body[0]], plan->multiplier_offset[subset->body[0]]);
     }
 }
 
@@ -438,7 +454,7 @@ static void write_design(Generation *g, Text *out, int indent)
 {
     for (int s = 0; s < g->sequence->subsets; ++s) {
         const Subset *subset = &g->sequence->subset[s];
-        for (int b = 0; subset->class >= 0 && b < subset->bodies; ++b) {
+        for (int b = 0; plan_follows(g->plan, s) && b < subset->bodies; ++b) {
             double q[7];
             body_design(g->formulation, subset->body[b], q);
             text_print(out, "%*s{%d, {", indent, "", g->plan->start_offset[s] + 7 * b);
@@ -447,7 +463,7 @@ static void write_design(Generation *g, Text *out, int indent)
             text_print(out, "}}, /* %s */\n", g->model->body[subset->body[b]].name);
         }
     }
-    if (g->model->bodies < 2)
+    if (!followed_bodies(g->plan))
         line(out, indent, "{0, {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}}");
 }
 

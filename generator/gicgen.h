@@ -262,6 +262,10 @@ typedef struct Motion {
     Ex c[3], A[9], omega[3], velocity[3], alpha[3], acceleration[3];
     Ex *S;
     int deps;
+    int images;
+    struct Image {
+        Ex s[3], v[3];
+    } * image; /* body-fixed vectors whose components in the base frame need no A: v = A s */
 } Motion;
 
 /* Place of a Motion in memory, as generated code keeps it: numbers per body before S, and offsets. */
@@ -279,6 +283,10 @@ enum {
 void motion_base(Dag *dag, Motion *motion);
 /* A motion read from memory at the C expression `array` ("m0"), numbers from `offset` on. */
 void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int deps);
+/* The same at rest: position and rotation alone. */
+void motion_input_pose(Dag *dag, Motion *motion, const char *array, int offset);
+
+void motion_image(Dag *dag, Motion *motion, const Ex s[3], const Ex v[3]);
 
 /* A body-fixed vector: a point's position (`point`, arm from the reference point) or an axis (arm is the vector
  * itself). */
@@ -382,6 +390,14 @@ extern const char *const solve_name[SOLVES]; /* as on the command line: "reduced
 /* By that name; SOLVES: there is none of that name. */
 Solve solve_of(const char *name);
 
+/* How a subset's poses are found: in the way that takes fewer operations; by Newton's iteration everywhere; in closed
+ * form wherever there is one. */
+typedef enum Recovery { RECOVERY_AUTO, RECOVERY_NEWTON, RECOVERY_CLOSED, RECOVERIES } Recovery;
+
+extern const char *const recovery_name[RECOVERIES]; /* as on the command line: "auto" */
+/* By that name; RECOVERIES: there is none of that name. */
+Recovery recovery_of(const char *name);
+
 /* Where a subset keeps its numbers. start: what the next call begins from (pose 7 a body, S, factors); motion: one
  * Motion a body; inertia: what it adds to the equations of motion, see INERTIA_*. */
 typedef struct Layout {
@@ -401,17 +417,18 @@ int inertia_mass(int deps, int j, int k); /* place of M_jk, j <= k */
 /* The formulas of a class. C names: k constants of the member, d those of them that tunable parameters change, m0, m1,
  * ... motions of the knowns, x, rate, change:
  * value, rate and change since the start of the deps, turn: angular velocity of the base, q: pose, s and f: S and
- * factors of the start. */
+ * factors of the start, motion: the poses that were found. */
 typedef struct Formula {
     Dag *dag;
     Layout layout;
     double size;     /* largest distance between points of a subset, m */
     double distance; /* largest of its reference points from the base's origin at the design, relative to size */
+    bool closed;     /* poses in closed form, by `solve` alone: predict and chord are empty, nothing is remembered */
     Block predict;   /* q from the start and `change`; reach: squared relative size of that move */
     Block chord;     /* one correction of q with the start's factors; step: its squared relative size */
     Block solve;     /* factors, S, last correction, motion and inertia */
-    Block residual;  /* worst: largest constraint residual at q, relative to size */
-    Block react;     /* multipliers w from the wrenches w that the bodies need, f and q being those at their place; what
+    Block residual;  /* worst: largest constraint residual of the motion, relative to size */
+    Block react;     /* multipliers w from the wrenches w that the bodies need, f being those at their place; what
                         the joints put on the knowns is taken from theirs, w0, w1, ...; only what outputs need */
     int derived;     /* numbers d[] that follow tunable parameters */
     Ex *derived_of;  /* [derived][members] their formulas */
@@ -420,7 +437,7 @@ typedef struct Formula {
 /* All classes [classes]. Fills the sampling on the way. Members that need other pivots than their class's first one get
  * a class of their own: *sequence is replaced by one that says so. Singular subsets end in diag_fail. */
 Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **sequence, const double (*origin)[3],
-                            Sampling *sampling, Solve solve);
+                            Sampling *sampling, Solve solve, Recovery recovery);
 /* Reference points of all bodies [bodies][3], body frames: where a joint to something known sits. */
 double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3];
 
@@ -464,6 +481,9 @@ typedef struct Plan {
 
 Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Formula **formula,
                const double (*origin)[3]);
+
+/* Does the Newton start have poses of this subset's bodies? Not of the base, nor where poses have a closed form. */
+bool plan_follows(const Plan *plan, int subset);
 
 /* Inputs of every global block, as C names: y state, e recovered Euler parameters of the base, x and xd values and
  * rates of all coordinates, u inputs, m motions, n inertias, lambda multipliers (Plan.multiplier_offset). Fixed base:
@@ -652,7 +672,7 @@ typedef struct Formulation {
 } Formulation;
 
 /* From an assembled model. Models that can't be formulated end in diag_fail. */
-const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve);
+const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery);
 
 /* Are there reactions to find after the accelerations? The augmented form has them already. */
 bool formulation_reacts(const Formulation *f);

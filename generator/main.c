@@ -19,6 +19,7 @@ static const char usage[] =
     "options:\n"
     "  -o FILE          where to write; FILE.c gets a FILE.h beside it; `-` is standard output\n"
     "  --solve FORM     of the equations of motion: reduced (default) or augmented, with all multipliers\n"
+    "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
     "  --templates DIR  take templates from DIR instead of the built-in ones\n"
     "  -h, --help       this text\n"
     "  --version        the version\n"
@@ -30,6 +31,7 @@ typedef enum Task { TASK_GENERATE, TASK_MAIN, TASK_SEQUENCE, TASK_GRAPH, TASK_RE
 typedef struct Options {
     Task task;
     Solve solve;
+    Recovery recovery;
     const char *model, *output, *page, *templates; /* page: of --graph or --report */
 } Options;
 
@@ -84,6 +86,11 @@ static Options read_options(int count, char **word)
             options.solve = solve_of(form);
             if (options.solve == SOLVES)
                 usage_error("--solve takes reduced or augmented, not", form);
+        } else if (!strcmp(w, "--recovery")) {
+            const char *way = argument(count, word, &i);
+            options.recovery = recovery_of(way);
+            if (options.recovery == RECOVERIES)
+                usage_error("--recovery takes auto, newton or closed, not", way);
         } else if (!strcmp(w, "--templates")) {
             options.templates = argument(count, word, &i);
         } else if (!strcmp(w, "--main")) {
@@ -117,7 +124,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         usage_error("the generated file must end in .c", path);
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
-    const Formulation *formulation = formulate(pool, model, sequence, options->solve);
+    const Formulation *formulation = formulate(pool, model, sequence, options->solve, options->recovery);
     generate(pool, formulation, &style_readable, options->templates, strcmp(path, "-") ? name : NULL, &c, &h);
     if (!strcmp(path, "-")) {
         text_add(&h, c.s, c.size);
@@ -145,7 +152,7 @@ static void write_report(Pool *pool, const Model *model, const Sequence *sequenc
     Text c = {.pool = pool}, h = {.pool = pool}, page = {.pool = pool};
     if (strcmp(options->page, "-") && !path_ends(options->page, ".html"))
         usage_error("the report's name must end in .html", options->page);
-    const Formulation *formulation = formulate(pool, model, sequence, options->solve);
+    const Formulation *formulation = formulate(pool, model, sequence, options->solve, options->recovery);
     generate(pool, formulation, &style_readable, options->templates, NULL, &c, &h);
     report_print(&page, options->page, options->templates, formulation, &c, &h);
     file_write(options->page, page.s, page.size);

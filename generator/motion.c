@@ -2,6 +2,8 @@
  * Rigid-body kinematics relative to the base, in expressions. */
 #include "gicgen.h"
 
+#include <string.h>
+
 void motion_base(Dag *dag, Motion *motion)
 {
     *motion = (Motion){.S = NULL};
@@ -15,10 +17,15 @@ static void read_numbers(Dag *dag, const char *array, int offset, int count, Ex 
         out[i] = ex_input(dag, pool_print(dag->pool, "%s[%d]", array, offset + i), NULL);
 }
 
-void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int deps)
+void motion_input_pose(Dag *dag, Motion *motion, const char *array, int offset)
 {
     read_numbers(dag, array, offset + MOTION_C, 3, motion->c);
     read_numbers(dag, array, offset + MOTION_A, 9, motion->A);
+}
+
+void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int deps)
+{
+    motion_input_pose(dag, motion, array, offset);
     read_numbers(dag, array, offset + MOTION_OMEGA, 3, motion->omega);
     read_numbers(dag, array, offset + MOTION_VELOCITY, 3, motion->velocity);
     read_numbers(dag, array, offset + MOTION_ALPHA, 3, motion->alpha);
@@ -38,10 +45,36 @@ static void turn(Dag *dag, const Motion *motion, Vector *vector)
     ex_add3(dag, vector->bias, angular, vector->bias);
 }
 
+void motion_image(Dag *dag, Motion *motion, const Ex s[3], const Ex v[3])
+{
+    struct Image *image = POOL_PUSH(dag->pool, motion->image, motion->images);
+    memcpy(image->s, s, sizeof image->s);
+    memcpy(image->v, v, sizeof image->v);
+}
+
+/* A u, or what is known instead. */
+static void rotate(Dag *dag, const Motion *motion, const Ex u[3], Ex out[3])
+{
+    Ex opposite[3], minus = ex_literal(dag, -1);
+    ex_scale3(dag, minus, u, opposite);
+    for (int i = 0; i < motion->images; ++i) {
+        const struct Image *image = &motion->image[i];
+        if (!memcmp(image->s, u, sizeof image->s)) {
+            memcpy(out, image->v, sizeof image->v);
+            return;
+        }
+        if (!memcmp(image->s, opposite, sizeof image->s)) {
+            ex_scale3(dag, minus, image->v, out);
+            return;
+        }
+    }
+    ex_apply(dag, motion->A, u, out);
+}
+
 Vector vector_axis(Dag *dag, const Motion *motion, const Ex u[3])
 {
     Vector vector = {.point = false};
-    ex_apply(dag, motion->A, u, vector.arm);
+    rotate(dag, motion, u, vector.arm);
     for (int i = 0; i < 3; ++i)
         vector.v[i] = vector.arm[i];
     turn(dag, motion, &vector);

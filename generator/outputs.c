@@ -34,8 +34,33 @@ static void express(Whole *whole, int in, const Ex base[3], Ex out[3])
         ex_apply_transposed(whole->dag, whole->motion[in].A, base, out);
 }
 
-/* World Euler parameters of a body: base times relative, from the start's q. */
-static void body_euler(Whole *whole, int body, const char *start, Ex p[4])
+/* Euler parameters of a rotation from the largest of the four squares, which is at least 1/4. Row i of the symmetric
+ * matrix 4 p p^T is 4 p_i p. */
+static void euler_of_rotation(Dag *dag, const Ex A[9], Ex p[4])
+{
+    Ex K[4][4], one = ex_literal(dag, 1), largest, row[4];
+    K[0][0] = ex_add(dag, one, ex_add(dag, A[0], ex_add(dag, A[4], A[8])));
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        K[1 + i][1 + i] = ex_add(dag, one, ex_sub(dag, A[4 * i], ex_add(dag, A[4 * j], A[4 * k])));
+        K[0][1 + i] = K[1 + i][0] = ex_sub(dag, A[3 * k + j], A[3 * j + k]);
+        K[1 + j][1 + k] = K[1 + k][1 + j] = ex_add(dag, A[3 * k + j], A[3 * j + k]);
+    }
+    largest = K[0][0];
+    memcpy(row, K[0], sizeof row);
+    for (int i = 1; i < 4; ++i) {
+        Ex more = ex_sub(dag, K[i][i], largest);
+        for (int j = 0; j < 4; ++j)
+            row[j] = ex_op(dag, OP_POSITIVE, more, K[i][j], row[j]);
+        largest = ex_op(dag, OP_MAX, K[i][i], largest, 0);
+    }
+    Ex scale = ex_div(dag, ex_literal(dag, 0.5), ex_sqrt(dag, largest));
+    for (int i = 0; i < 4; ++i)
+        p[i] = ex_mul(dag, row[i], scale);
+}
+
+/* World Euler parameters of a body: base times relative. */
+static void body_euler(Whole *whole, int body, Ex p[4])
 {
     Dag *dag = whole->dag;
     if (body == BODY_BASE || body == BODY_GROUND) {
@@ -43,13 +68,8 @@ static void body_euler(Whole *whole, int body, const char *start, Ex p[4])
             p[i] = body == BODY_BASE ? whole->e[i] : ex_literal(dag, i == 0);
         return;
     }
-    int subset = whole->plan->sequence->body_subset[body], local = 0;
-    while (whole->plan->sequence->subset[subset].body[local] != body)
-        ++local;
     Ex own[4], cross[3], product[4];
-    for (int i = 0; i < 4; ++i)
-        own[i] = ex_input(
-            dag, pool_print(dag->pool, "%s[%d]", start, whole->plan->start_offset[subset] + 7 * local + 3 + i), NULL);
+    euler_of_rotation(dag, whole->motion[body].A, own);
     const Ex *e = whole->e;
     product[0] = ex_sub(dag, ex_mul(dag, e[0], own[0]), ex_dot(dag, e + 1, own + 1));
     ex_cross(dag, e + 1, own + 1, cross);
@@ -96,7 +116,7 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         ex_add3(dag, t, whole->gravity, t);
         express(whole, output->in, t, out);
         break;
-    case OUTPUT_ORIENTATION: body_euler(whole, output->body, "s", out); break;
+    case OUTPUT_ORIENTATION: body_euler(whole, output->body, out); break;
     case OUTPUT_ROLL_PITCH_YAW: {
         body_rotation(whole, output->body, A);
         Ex one = ex_literal(dag, 1),
@@ -200,7 +220,7 @@ Block *poses_block(Whole *whole)
         Ex at[3], p[4];
         Vector origin = whole_point(whole, b, (const double[3]){0, 0, 0});
         whole_position(whole, &origin, at);
-        body_euler(whole, b, "s", p);
+        body_euler(whole, b, p);
         for (int i = 0; i < 3; ++i)
             block_store(block, at[i], "pose[%d]", 7 * b + i);
         for (int i = 0; i < 4; ++i)

@@ -32,7 +32,7 @@ static bool is_needed(const Work *w, const bool *needed)
     return any;
 }
 
-void subset_react(Work *w, const Factors *factors, Block *block)
+void subset_react(Work *w, const Factors *factors, const Row *row, Block *block)
 {
     Dag *dag = w->dag;
     const bool *needed = reactions_needed(w->pool, w->model, w->sequence);
@@ -52,7 +52,7 @@ void subset_react(Work *w, const Factors *factors, Block *block)
             for (int r = 0; r < w->n; ++r)
                 for (int end = 0; end < 2; ++end)
                     if (w->connection[w->row_of[r]].end[end].known == known)
-                        rest = ex_sub(dag, rest, ex_mul(dag, w->row[r].J[end][i], lambda[r]));
+                        rest = ex_sub(dag, rest, ex_mul(dag, row[r].J[end][i], lambda[r]));
             block_store(block, rest, "%s", place);
         }
 }

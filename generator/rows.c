@@ -2,7 +2,7 @@
  * Constraint equations of joints and dual coordinates (FORMAT.md sections 4 and 5): value, Jacobian with respect to the
  * twists of both ends, and the quadratic-velocity term. Every equation is a sum of scalar products of body-fixed points
  * and axes. */
-#include "gicgen.h"
+#include "rows.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,18 +17,7 @@ enum {
 };
 _Static_assert(FIXTURE_NUMBERS == 26, "Fixture and its numbers go together");
 
-/* What a joint is made of. */
-enum {
-    PART_POINT = 1,    /* x_a = x_b: 3 equations */
-    PART_PARALLEL = 2, /* u_a parallel to u_b: 2 */
-    PART_LOCK = 4,     /* no turn about the common axis: 1 */
-    PART_LINE = 8,     /* x_b - x_a parallel to u_a: 2 */
-    PART_LENGTH = 16,  /* norm(x_b - x_a): 1 */
-    PART_ALONG = 32,   /* u_a . (x_b - x_a): 1 */
-    PART_CROSS = 64    /* u_a perpendicular to u_b: 1 */
-};
-
-static const int joint_parts[JOINT_TYPES] = {
+const int joint_parts[JOINT_TYPES] = {
     [JOINT_REVOLUTE] = PART_POINT | PART_PARALLEL,
     [JOINT_SPHERICAL] = PART_POINT,
     [JOINT_PRISMATIC] = PART_PARALLEL | PART_LOCK | PART_LINE,

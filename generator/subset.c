@@ -234,7 +234,7 @@ static void make_motions(Work *w)
 
 /* ---- equations ------------------------------------------------------------------------------------------------ */
 
-static const Motion *motion_of(const Work *w, const Motion *unknown, End end)
+const Motion *subset_motion(const Work *w, const Motion *unknown, End end)
 {
     return end.unknown >= 0 ? &unknown[end.unknown] : end.known >= 0 ? &w->known[end.known] : &w->base;
 }
@@ -245,7 +245,7 @@ static void make_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
     int rows = 0;
     for (int i = 0; i < w->connections; ++i) {
         const Connection *tie = &w->connection[i];
-        const Motion *end[2] = {motion_of(w, unknown, tie->end[0]), motion_of(w, unknown, tie->end[1])};
+        const Motion *end[2] = {subset_motion(w, unknown, tie->end[0]), subset_motion(w, unknown, tie->end[1])};
         int made = 1;
         if (tie->is_coordinate)
             row[rows] = coordinate_row(w->dag, w->model->coordinate[tie->index].type, &tie->fixture, end,
@@ -448,7 +448,8 @@ static void store_motion(Block *block, const Motion *m, int offset)
  * epsilon times the ratio, is still far below 1e-8. */
 static const double pivot_loss = 1e-7;
 
-static void check_pivots(Work *w, Formula *formula, const Factors *factors)
+/* guarded: poses may be on a wrong branch. */
+static void check_pivots(Work *w, Formula *formula, const Factors *factors, bool guarded)
 {
     for (int k = 0; k < w->n; ++k) {
         Ex pivot = factors->pivot[k];
@@ -459,13 +460,13 @@ static void check_pivots(Work *w, Formula *formula, const Factors *factors)
             usual = fmax(usual, fabs(ex_value(w->dag, pivot, s)));
         block_check(&formula->solve, pivot, true, pivot_loss * usual, "GIC_ERROR_SINGULAR");
     }
-    for (int r = 0; r < w->n; ++r)
+    for (int r = 0; guarded && r < w->n; ++r)
         if (w->row[r].guard)
             block_check(&formula->solve, w->row[r].guard, false, 0, "GIC_ERROR_SINGULAR");
 }
 
 /* Rows are scaled to what a unit move of the subset's size changes in them at the design. */
-static void make_residual(Work *w, Formula *formula)
+static void make_residual(Work *w, Formula *formula, const Row *row)
 {
     Dag *dag = w->dag;
     Ex worst = 0;
@@ -478,7 +479,7 @@ static void make_residual(Work *w, Formula *formula)
                                             (j % 6 < 3 ? w->size : 1));
             scale[i] = 1 / (largest * w->size);
         }
-        Ex value = ex_op(dag, OP_ABS, ex_mul(dag, ex_constant(dag, scale), w->row[r].value), 0, 0);
+        Ex value = ex_op(dag, OP_ABS, ex_mul(dag, ex_constant(dag, scale), row[r].value), 0, 0);
         worst = r ? ex_op(dag, OP_MAX, worst, value, 0) : value;
     }
     block_store(&formula->residual, worst, "worst");
@@ -516,61 +517,134 @@ int subset_index(const Work *w, int subset)
     return place_of(w->class->member, w->class->members, subset);
 }
 
-static Layout make_layout(const Work *w, int factors, Solve solve)
+/* closed: nothing is remembered but what reactions need. */
+static Layout make_layout(const Work *w, int factors, Solve solve, bool closed)
 {
     int bodies = w->first->bodies, deps = w->first->deps;
+    int start_S = closed ? 0 : 7 * bodies, start_factors = closed ? 0 : start_S + w->n * deps;
     return (Layout){.bodies = bodies,
                     .deps = deps,
                     .factors = factors,
-                    .start_S = 7 * bodies,
-                    .start_factors = 7 * bodies + w->n * deps,
-                    .start_size = 7 * bodies + w->n * deps + factors,
+                    .start_S = start_S,
+                    .start_factors = start_factors,
+                    .start_size = start_factors + factors,
                     .motion_size = MOTION_S + 6 * deps,
                     .inertia_size = solve == SOLVE_REDUCED ? inertia_mass(deps, deps, deps) : 0};
 }
 
-static Formula *formulate_class(Work *w, Solve solve)
+static Formula *formula_new(Work *w, bool closed)
 {
-    Pool *pool = w->pool;
-    Dag *dag = w->dag;
-    int bodies = w->first->bodies, deps = w->first->deps;
-    Formula *formula = pool_alloc(pool, sizeof *formula);
+    Formula *formula = pool_alloc(w->pool, sizeof *formula);
     formula->dag = formula->predict.dag = formula->chord.dag = formula->solve.dag = formula->residual.dag =
-        formula->react.dag = dag;
+        formula->react.dag = w->dag;
+    formula->closed = closed;
     formula->size = w->size;
     formula->distance = subset_distance(w) / w->size;
-    Factors *factors = factor(w);
-    Ex *stored = pool_alloc(pool, (size_t)(w->n * w->n) * sizeof *stored),
-       *q = pool_alloc(pool, (size_t)(7 * bodies) * sizeof *q);
+    return formula;
+}
+
+/* The equations with the poses that were found, as residual and multipliers need them: [n]. */
+static Row *rows_from_memory(Work *w, const Layout *layout)
+{
+    Row *row = pool_alloc(w->pool, (size_t)w->n * sizeof *row);
+    Motion *found = pool_alloc(w->pool, (size_t)w->first->bodies * sizeof *found);
+    for (int b = 0; b < w->first->bodies; ++b)
+        motion_input_pose(w->dag, &found[b], "motion", b * layout->motion_size);
+    make_rows(w, found, row, w->row_of);
+    return row;
+}
+
+/* What both ways of recovery end with: motions, inertia, factors that are remembered, residual, multipliers. */
+static void finish(Work *w, Formula *formula, Solve solve, const Factors *factors, const Motion *motion)
+{
+    Ex *stored = pool_alloc(w->pool, (size_t)(w->n * w->n) * sizeof *stored);
     int count;
     Factors *remembered = factors_from_memory(w, factors, stored, &count);
-    formula->layout = make_layout(w, count, solve);
-    const Layout *layout = &formula->layout;
+    Layout *layout = &formula->layout;
+    *layout = make_layout(w, count, solve, formula->closed);
+    const Row *row = rows_from_memory(w, layout);
+    make_residual(w, formula, row);
+    if (solve == SOLVE_REDUCED)
+        subset_react(w, remembered, row, &formula->react);
+    if (formula->closed && !formula->react.stores)
+        *layout = make_layout(w, count = 0, solve, true);
+    for (int b = 0; b < layout->bodies; ++b) {
+        store_motion(&formula->solve, &motion[b], b * layout->motion_size);
+        for (int i = 0; !formula->closed && i < 6 * layout->deps; ++i)
+            block_store(&formula->solve, motion[b].S[i], "start[%d]", layout->start_S + 6 * layout->deps * b + i);
+    }
+    for (int i = 0; i < count; ++i)
+        block_store(&formula->solve, stored[i], "start[%d]", layout->start_factors + i);
+    if (solve == SOLVE_REDUCED)
+        subset_inertia(w, layout, motion, &formula->solve);
+    if (!formula->closed)
+        make_step(w, remembered, &formula->chord, pool_alloc(w->pool, (size_t)(7 * layout->bodies) * sizeof(Ex)));
+    formula->derived = w->derived;
+    formula->derived_of = w->derived_of;
+}
 
+static Formula *formulate_newton(Work *w, Solve solve)
+{
+    int bodies = w->first->bodies;
+    Formula *formula = formula_new(w, false);
+    Factors *factors = factor(w);
+    Ex *q = pool_alloc(w->pool, (size_t)(7 * bodies) * sizeof *q);
     make_predict(w, formula);
-    make_step(w, remembered, &formula->chord, q);
-    make_residual(w, formula);
-    check_pivots(w, formula, factors);
+    check_pivots(w, formula, factors, true);
     make_step(w, factors, &formula->solve, q);
-    Motion *motion = pool_alloc(pool, (size_t)bodies * sizeof *motion);
+    Motion *motion = pool_alloc(w->pool, (size_t)bodies * sizeof *motion);
     make_motion(w, factors, motion);
     for (int b = 0; b < bodies; ++b) {
         /* S and the rates belong to q, which the last correction moves by less than they can show */
         memcpy(motion[b].c, q + 7 * b, sizeof motion[b].c);
-        ex_rotation(dag, q + 7 * b + 3, motion[b].A);
-        store_motion(&formula->solve, &motion[b], b * layout->motion_size);
-        for (int i = 0; i < 6 * deps; ++i)
-            block_store(&formula->solve, motion[b].S[i], "start[%d]", layout->start_S + 6 * deps * b + i);
+        ex_rotation(w->dag, q + 7 * b + 3, motion[b].A);
     }
-    for (int i = 0; i < count; ++i)
-        block_store(&formula->solve, stored[i], "start[%d]", layout->start_factors + i);
-    if (solve == SOLVE_REDUCED) {
-        subset_inertia(w, layout, motion, &formula->solve);
-        subset_react(w, remembered, &formula->react);
-    }
-    formula->derived = w->derived;
-    formula->derived_of = w->derived_of;
+    finish(w, formula, solve, factors, motion);
     return formula;
+}
+
+/* NULL where the geometry has no closed form. */
+static Formula *formulate_closed(Work *w, Solve solve)
+{
+    Formula *formula = formula_new(w, true);
+    Work found = *w; /* the same with the unknowns at other expressions */
+    size_t n = (size_t)w->n, bodies = (size_t)w->first->bodies;
+    found.pose = pool_alloc(w->pool, bodies * sizeof *found.pose);
+    found.row = pool_alloc(w->pool, n * sizeof *found.row);
+    found.J = pool_alloc(w->pool, n * n * sizeof *found.J);
+    if (!subset_closed(w, found.pose, &formula->solve))
+        return NULL;
+    make_rows(&found, found.pose, found.row, found.row_of);
+    make_jacobian(&found, found.row, found.row_of, found.J);
+    Factors *factors = factor(&found);
+    check_pivots(&found, formula, factors, false);
+    Motion *motion = pool_alloc(w->pool, bodies * sizeof *motion);
+    make_motion(&found, factors, motion);
+    finish(&found, formula, solve, factors, motion);
+    w->derived = found.derived;
+    w->derived_of = found.derived_of;
+    return formula;
+}
+
+/* Operations of a subset's recovery as time: a division or a root takes that of several products. */
+static int recovery_cost(const Formula *formula)
+{
+    const Block *const block[] = {&formula->predict, &formula->chord, &formula->solve};
+    int cost = 0;
+    for (int i = 0; i < 3; ++i) {
+        Count count = block_count(block[i]);
+        cost += count.add + count.multiply + 8 * (count.divide + count.root) + 20 * count.function;
+    }
+    return cost;
+}
+
+static Formula *formulate_class(Work *w, Solve solve, Recovery recovery)
+{
+    Formula *closed = recovery == RECOVERY_NEWTON ? NULL : formulate_closed(w, solve);
+    if (closed && recovery == RECOVERY_CLOSED)
+        return closed;
+    Formula *newton = formulate_newton(w, solve);
+    return closed && recovery_cost(closed) < recovery_cost(newton) ? closed : newton;
 }
 
 /* ---- classes whose members need different pivots
@@ -657,7 +731,7 @@ static void follow_all(const Sequence *sequence, Work **work, Sampling *sampling
 }
 
 Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **sequence, const double (*origin)[3],
-                            Sampling *sampling, Solve solve)
+                            Sampling *sampling, Solve solve, Recovery recovery)
 {
     Sequence *split = copy_sequence(pool, *sequence);
     Formula **formula = pool_alloc(pool, (size_t)(split->subsets + 1) * sizeof *formula);
@@ -679,7 +753,7 @@ Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **seq
         follow_all(split, work, sampling);
     subsets_scan(pool, model, split, work, sampling);
     for (int c = 0; c < split->classes; ++c)
-        formula[c] = formulate_class(work[c], solve);
+        formula[c] = formulate_class(work[c], solve, recovery);
     *sequence = split;
     return formula;
 }

@@ -85,10 +85,17 @@ Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, cons
 /* Which member of the class a subset is. */
 int subset_index(const Work *w, int subset);
 
+/* How an end of a connection moves, the unknowns moving as given. */
+const Motion *subset_motion(const Work *w, const Motion *unknown, End end);
+
+/* closed.c: where geometry gives the poses (c and A) of the unknowns step by step: fill them, with images of the
+ * vectors found on the way and checks that they are within reach, and return true. */
+bool subset_closed(Work *w, Motion *pose, Block *block);
+
 /* inertia.c: store what the bodies, moving as given, add to the equations of motion. */
 void subset_inertia(Work *w, const Layout *layout, const Motion *motion, Block *block);
 
-/* react.c: the class's block `react`. factors: those that the last solution left in memory. */
-void subset_react(Work *w, const Factors *factors, Block *block);
+/* react.c: the class's block `react`. factors, row [n]: those that the last solution left in memory. */
+void subset_react(Work *w, const Factors *factors, const Row *row, Block *block);
 
 #endif

@@ -107,6 +107,12 @@ Ex whole_watch(Whole *whole, int number)
     return indexed(whole, "self->watch", number);
 }
 
+bool plan_follows(const Plan *plan, int subset)
+{
+    int class = plan->sequence->subset[subset].class;
+    return class >= 0 && !plan->formula[class]->closed;
+}
+
 Whole *whole_new(Pool *pool, const Plan *plan)
 {
     const Model *model = plan->model;

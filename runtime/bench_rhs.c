@@ -279,7 +279,7 @@ static const Figures *figures_of(const Bench *bench, Solve solve)
 {
     const Sequence *sequence = sequence_find(bench->pool, bench->model);
     return figures_new(bench->pool,
-                       formulate(bench->pool, model_assemble(bench->pool, bench->model, sequence), sequence, solve));
+                       formulate(bench->pool, model_assemble(bench->pool, bench->model, sequence), sequence, solve, RECOVERY_AUTO));
 }
 
 /* Corrections with old factors that a subset usually takes; the last one is with new ones. */

@@ -218,7 +218,8 @@ const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *opt
     Build b = {.pool = pool, .model = model->name, .c.pool = pool, .h.pool = pool, .copy = options->object};
     b.real = options->single ? sizeof(float) : sizeof(gic_real);
     const Sequence *sequence = sequence_find(pool, model);
-    const Formulation *formulation = formulate(pool, model_assemble(pool, model, sequence), sequence, options->solve);
+    const Formulation *formulation =
+        formulate(pool, model_assemble(pool, model, sequence), sequence, options->solve, options->recovery);
     generate(pool, formulation, &style_readable, NULL, "model.h", &b.c, &b.h);
     b.words = compiler_words(pool, options->compiler, options->flags, &b.count);
 

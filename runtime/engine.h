@@ -63,6 +63,7 @@ bool engine_known(const char *name);
 /* For those engines that generate or compile. */
 typedef struct EngineOptions {
     Solve solve;
+    Recovery recovery;
     const char *compiler; /* command, perhaps with options */
     const char *flags;    /* more options, behind ours */
     const char *object;   /* path where a compiled object is left too; NULL: nowhere */

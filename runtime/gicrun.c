@@ -39,6 +39,8 @@ static const char help[] = "usage: gicrun MODEL.veh SCENE [-o results.csv] [--pl
                            "                     the same digits, and only cc needs a compiler. gic, gcp1, gcp2: the\n"
                            "                     paper's methods interpreted\n"
                            "      --solve FORM   of the equations of motion: reduced (default) or augmented\n"
+                           "      --recovery WAY of dependent coordinates: newton; closed, in closed form wherever there\n"
+                           "                     is one; auto (default), whichever takes fewer operations\n"
                            "      --cc COMMAND   C compiler of cc and auto, perhaps with options; default: $CC or cc\n"
                            "      --cflags FLAGS more options for it, behind ours, all in one word\n"
                            "  -q, --quiet        neither progress nor summary\n"
@@ -82,6 +84,7 @@ static Request read_command_line(int count, char **word)
         MODES,
         ENGINE,
         SOLVE,
+        RECOVERY,
         COMPILER,
         FLAGS,
         INTEGRATOR,
@@ -99,6 +102,7 @@ static Request read_command_line(int count, char **word)
         {"tolerance", required_argument, NULL, TOLERANCE},
         {"engine", required_argument, NULL, ENGINE},
         {"solve", required_argument, NULL, SOLVE},
+        {"recovery", required_argument, NULL, RECOVERY},
         {"cc", required_argument, NULL, COMPILER},
         {"cflags", required_argument, NULL, FLAGS},
         {"quiet", no_argument, NULL, 'q'},
@@ -122,6 +126,11 @@ static Request read_command_line(int count, char **word)
             request.solve = solve_of(optarg);
             if (request.solve == SOLVES)
                 usage_fail("gicrun", "--solve takes reduced or augmented, not", optarg);
+            break;
+        case RECOVERY:
+            request.recovery = recovery_of(optarg);
+            if (request.recovery == RECOVERIES)
+                usage_fail("gicrun", "--recovery takes auto, newton or closed, not", optarg);
             break;
         case COMPILER: request.compiler = optarg; break;
         case FLAGS: request.flags = optarg; break;
@@ -179,8 +188,11 @@ int main(int count, char **word)
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
     const Engine *engine = engine_open(
         pool, request.engine, model,
-        &(EngineOptions){
-            .solve = request.solve, .compiler = request.compiler, .flags = request.flags, .quiet = request.quiet});
+        &(EngineOptions){.solve = request.solve,
+                         .recovery = request.recovery,
+                         .compiler = request.compiler,
+                         .flags = request.flags,
+                         .quiet = request.quiet});
     if (request.states)
         evaluate(pool, engine, scene, &request);
     else if (request.rests || request.modes)

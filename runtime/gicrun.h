@@ -21,6 +21,7 @@ typedef struct Request {
     const char *page;          /* --animate, or NULL */
     const char *engine;        /* one of engine_name */
     Solve solve;
+    Recovery recovery;
     const char *compiler;   /* command, perhaps with options */
     const char *flags;      /* more options of the compiler */
     const char *integrator; /* instead of the scene's, or NULL */

@@ -5,7 +5,7 @@
  * one correction in dual numbers has the exact derivative, whatever derivative q0 came with, for
  * dq1 = dq0 - J^-1 (J dq0 + Phi_x dx) = -J^-1 Phi_x dx (implicit function theorem). A second one then finds that of the
  * velocity Jacobian S, which depends on q. So a recovered configuration takes two corrections, and nothing is
- * iterated. */
+ * iterated. Where q has a closed form, that is all it takes. */
 #include "linearize.h"
 
 #include <math.h>
@@ -53,7 +53,8 @@ static void link_subset(Instance *self, TapeLinks *links, int s, double *q, doub
     links->array[CLASS_inertia] = tape_array(self, engine->inertia_offset) + plan->inertia_offset[s];
     links->array[CLASS_step] = step;
     links->array[CLASS_reach] = step + 1;
-    memcpy(q, start, 7 * (size_t)subset->bodies * sizeof *q);
+    if (!engine->class[subset->class].closed)
+        memcpy(q, start, 7 * (size_t)subset->bodies * sizeof *q);
     for (int j = 0; j < subset->deps; ++j) {
         links->x[j] = all[subset->dep[j]];
         links->rate[j] = xd[subset->dep[j]];
@@ -64,7 +65,6 @@ static void link_subset(Instance *self, TapeLinks *links, int s, double *q, doub
 /* All subsets, where the configuration in `value` is good already. y, dy: the state, and its change. */
 static int recover(const Linear *linear, const double *y, const double *dy)
 {
-    enum { CORRECTIONS = 2 };
     const TapeEngine *engine = linear->engine;
     const Sequence *sequence = engine->formulation->sequence;
     const TapeWorld none = {.table = NULL};
@@ -80,7 +80,8 @@ static int recover(const Linear *linear, const double *y, const double *dy)
             continue;
         link_subset(linear->value, &value, s, engine->q, step);
         link_subset(linear->slope, &slope, s, linear->q, dstep);
-        for (int i = 0; i < CORRECTIONS; ++i) {
+        const int corrections = engine->class[subset->class].closed ? 1 : 2;
+        for (int i = 0; i < corrections; ++i) {
             const int status = tape_play_dual(engine->class[subset->class].solve, engine->member[s], value.array,
                                               slope.array, &none, engine->frame, linear->frame);
             if (status != GIC_OK)

@@ -59,7 +59,6 @@ void tape_arrays(Instance *self, const double *time, const double *y, const doub
         [WHOLE_n] = tape_array(self, engine->inertia_offset),
         [WHOLE_p] = tape_array(self, code->parameter_offset),
         [WHOLE_port] = tape_array(self, code->port_offset),
-        [WHOLE_s] = tape_start(self),
         [WHOLE_rate] = rate,
         [WHOLE_acc] = acc,
         [WHOLE_out] = out,
@@ -221,7 +220,7 @@ static int setup_with(void *instance, const double *wanted)
         start[i] = x[i] = model->coordinate[i].design;
     for (int s = 0; s < plan->sequence->subsets; ++s) {
         const Subset *subset = &plan->sequence->subset[s];
-        for (int b = 0; subset->class >= 0 && b < subset->bodies; ++b)
+        for (int b = 0; plan_follows(plan, s) && b < subset->bodies; ++b)
             body_design(engine->formulation, subset->body[b], start + plan->start_offset[s] + 7 * b);
     }
     int status = orient(self, state, e, turn);
@@ -241,7 +240,7 @@ static int setup(void *instance)
 
 const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *options)
 {
-    TapeEngine *tape = tape_open(pool, model, options->solve);
+    TapeEngine *tape = tape_open(pool, model, options->solve, options->recovery);
     tape->code.setup = setup;
     tape->code.setup_with = setup_with;
     tape->code.rhs = rhs;

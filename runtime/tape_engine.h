@@ -12,6 +12,7 @@
 typedef struct TapeClass {
     const Tape *predict, *chord, *solve, *residual, *react;
     const Layout *layout;
+    bool closed; /* `solve` needs no start */
     double enough; /* square of a correction that is rounding, relative to the subset's size */
 } TapeClass;
 
@@ -81,7 +82,7 @@ static inline double *tape_start(Instance *self)
     X(y) \
     X(e) \
     X(x) \
-    X(xd) X(u) X(m) X(n) X(p) X(port) X(s) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) \
+    X(xd) X(u) X(m) X(n) X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) \
         X(torque) X(hub) X(force) X(grip) X(gear) X(watch) X(choice)
 #define CLASS_ENUM(name) CLASS_##name,
 #define WHOLE_ENUM(name) WHOLE_##name,
@@ -93,7 +94,7 @@ enum { WHOLE_ARRAYS(WHOLE_ENUM) WHOLE_DERIVED, WHOLE_GRIP, WHOLE_WATCH, WHOLE_CO
 /* tape_open.c: room for the arrays of the largest class. */
 TapeLinks tape_links_new(Pool *pool, const Formulation *f);
 /* The same file: all but the functions of the descriptor. */
-TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve);
+TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve, Recovery recovery);
 
 /* tape_recover.c: all bodies at the coordinates of the instance, followed from the last good configuration; and the
  * largest constraint residual of all subsets there, relative to their sizes. */

@@ -35,6 +35,7 @@ static void record_classes(Pool *pool, TapeEngine *engine)
                                        .residual = tape_record(pool, &formula->residual, array, arrays),
                                        .react = tape_record(pool, &formula->react, array, arrays),
                                        .layout = &formula->layout,
+                                       .closed = formula->closed,
                                        .enough = GIC_ENOUGH(far)};
         for (int i = 0; i < f->sequence->class[c].members; ++i)
             engine->member[f->sequence->class[c].member[i]] = i;
@@ -152,10 +153,10 @@ static void lay_out(TapeEngine *engine)
     }
 }
 
-TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve)
+TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve, Recovery recovery)
 {
     const Sequence *sequence = sequence_find(pool, model);
-    const Formulation *f = formulate(pool, model_assemble(pool, model, sequence), sequence, solve);
+    const Formulation *f = formulate(pool, model_assemble(pool, model, sequence), sequence, solve, recovery);
     TapeEngine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (TapeEngine){.formulation = f,
                            .code = descriptor_new(pool, f->model, f->sequence),

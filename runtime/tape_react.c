@@ -19,7 +19,7 @@ static void react_subset(Instance *self, TapeLinks *links, int s, double *spare)
     }
     for (int j = 0; j < subset->deps; ++j)
         links->x[j] = start[subset->dep[j]];
-    links->array[CLASS_q] = start + plan->start_offset[s];
+    links->array[CLASS_motion] = tape_array(self, engine->motion_offset) + plan->motion_offset[subset->body[0]];
     links->array[CLASS_f] = start + plan->start_offset[s] + class->layout->start_factors;
     links->array[CLASS_w] = lambda + plan->multiplier_offset[subset->body[0]];
     tape_play(class->react, engine->member[s], links->array, &none, engine->frame);

@@ -43,6 +43,12 @@ static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, do
     array[CLASS_inertia] = tape_array(self, engine->inertia_offset) + plan->inertia_offset[s];
     array[CLASS_step] = &step;
     array[CLASS_reach] = &reach;
+    if (class->closed) {
+        const int status = tape_play(class->solve, member, array, &none, frame);
+        ++engine->profile->factorizations;
+        self->head.newton_count += status == GIC_OK;
+        return status;
+    }
     memcpy(q, old, pose);
     if (!links->cold) {
         tape_play(class->predict, member, array, &none, frame);
@@ -146,7 +152,7 @@ double tape_residual(Instance *self)
         for (int j = 0; j < subset->deps; ++j)
             links.x[j] = start[subset->dep[j]];
         tape_link(self, &links, subset);
-        links.array[CLASS_q] = start + plan->start_offset[s];
+        links.array[CLASS_motion] = tape_array(self, engine->motion_offset) + plan->motion_offset[subset->body[0]];
         links.array[CLASS_worst] = &worst;
         tape_play(engine->class[subset->class].residual, engine->member[s], links.array, &none, engine->frame);
         largest = GIC_MAX(largest, worst);
