@@ -40,14 +40,14 @@
  *         subsets        3, 4
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'K1' (1 times)                        187       268       3      0         4
- *   subset 'K2_K3' (1 times)                     686       863       6      0         0
- *   subset 'K5_K4' (2 times)                     736       921       6      0         0
- *   forces and equations of motion                28        28       2      1         0
- *   all together                                2373      3001      23      1         4
- *   outputs, when asked for                      241       405       0      1        18
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'K1' (1 times, closed form)                        20        56       2      1         2
+ *   subset 'K2_K3' (1 times)                                 686       863       6      0         0
+ *   subset 'K5_K4' (2 times)                                 736       921       6      0         0
+ *   forces and equations of motion                            28        28       2      1         0
+ *   all together                                            2206      2789      22      2         2
+ *   outputs, when asked for                                  241       405       0      1        18
  */
 #include "andrews.h"
 
@@ -135,341 +135,112 @@ static const gic_real andrews_k_K1[1][1] = {
 };
 
 /* Class 'K1': 6 unknowns of K1.
- * start: pose 7 numbers a body, S from 7, factors from 13. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
+ * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
 static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
-    gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    const gic_real *const change = links->change;
-    const gic_real *const s = old + 7; /* unit velocities at the start */
-    const gic_real *const f = old + 13; /* factors at the start */
-    gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
-    const gic_real enough = GIC_ENOUGH(R(1.1800861256301873e-38));
-    int i;
-    (void)k, (void)inertia;
-    for (i = 0; i < 7; ++i)
-        q[i] = old[i];
-    if (!links->cold) {
-        /* predict: the old pose moved by its unit velocities times the change of the coordinates */
-        {
-            const gic_real t1 = change[0] * s[3];
-            const gic_real t2 = change[0] * s[4];
-            const gic_real t3 = change[0] * s[5];
-            const gic_real t4 = change[0] * s[2];
-            const gic_real t5 = t4 * R(0.5);
-            const gic_real t6 = change[0] * s[1];
-            const gic_real t7 = t6 * R(0.5);
-            const gic_real t8 = change[0] * s[0];
-            const gic_real t9 = t8 * R(0.5);
-            const gic_real t10 = q[3] - (q[6] * t5 + (q[5] * t7 + q[4] * t9));
-            const gic_real t11 = q[6] + (q[5] * t9 - q[4] * t7 + q[3] * t5);
-            const gic_real t12 = q[5] + (q[4] * t5 - q[6] * t9 + q[3] * t7);
-            const gic_real t13 = q[4] + (q[6] * t7 - q[5] * t5 + q[3] * t9);
-            const gic_real t14 = t11 * t11 + (t12 * t12 + t13 * t13) + t10 * t10;
-            const gic_real t15 = R(1.5) - R(0.5) * t14;
-            const gic_real t16 = t4 * t4 + (t6 * t6 + t8 * t8) + (t3 * t3 + (t2 * t2 + t1 * t1));
-            const gic_real t17 = q[0] + t1;
-            const gic_real t18 = q[1] + t2;
-            const gic_real t19 = q[2] + t3;
-            const gic_real t20 = t10 * t15;
-            const gic_real t21 = t13 * t15;
-            const gic_real t22 = t12 * t15;
-            const gic_real t23 = t11 * t15;
-            q[0] = t17;
-            q[1] = t18;
-            q[2] = t19;
-            q[3] = t20;
-            q[4] = t21;
-            q[5] = t22;
-            q[6] = t23;
-            reach = t16;
-        }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding */
-        for (i = 0; i < GIC_CHORDS; ++i) {
-            {
-                const gic_real t1 = q[4] + q[4];
-                const gic_real t2 = q[5] * t1;
-                const gic_real t3 = q[6] + q[6];
-                const gic_real t4 = q[3] * t3;
-                const gic_real t5 = q[5] + q[5];
-                const gic_real t6 = q[6] * t3;
-                const gic_real t7 = R(0.061674723509842204) * (t2 - t4) + R(0.9980963022073495) * (R(1.0) - (q[5] * t5 + t6));
-                const gic_real t8 = x[0] - R(-0.06171389001427645);
-                const gic_real t9 = R(0.061674723509842204) * (R(1.0) - (q[4] * t1 + t6)) + R(0.9980963022073495) * (t2 + t4);
-                const gic_real t10 = q[4] * t3 + q[3] * t5;
-                const gic_real t11 = t7 * GIC_SIN(t8) - t9 * GIC_COS(t8) - t10 * f[4];
-                const gic_real t12 = q[3] * t1 - q[6] * t5;
-                const gic_real t13 = f[6] * (t11 + t12 * f[5]);
-                const gic_real t14 = R(0.5) * t13;
-                const gic_real t15 = f[2] * (t12 - f[3] * t13);
-                const gic_real t16 = R(0.5) * t15;
-                const gic_real t17 = f[0] * (t10 + f[1] * t13);
-                const gic_real t18 = R(0.5) * t17;
-                const gic_real t19 = q[3] - (q[6] * t14 + (q[4] * t16 - q[5] * t18));
-                const gic_real t20 = q[6] + (q[4] * t18 + q[5] * t16 + q[3] * t14);
-                const gic_real t21 = q[5] + (q[4] * t14 - q[6] * t16 - q[3] * t18);
-                const gic_real t22 = q[4] + (q[3] * t16 - (q[5] * t14 + q[6] * t18));
-                const gic_real t23 = t20 * t20 + (t21 * t21 + t22 * t22) + t19 * t19;
-                const gic_real t24 = R(1.5) - R(0.5) * t23;
-                const gic_real t25 = t13 * t13 + (t17 * t17 + t15 * t15) + (q[2] * q[2] + (q[1] * q[1] + q[0] * q[0]));
-                const gic_real t26 = t19 * t24;
-                const gic_real t27 = t22 * t24;
-                const gic_real t28 = t21 * t24;
-                const gic_real t29 = t20 * t24;
-                q[0] = R(0.0);
-                q[1] = R(0.0);
-                q[2] = R(0.0);
-                q[3] = t26;
-                q[4] = t27;
-                q[5] = t28;
-                q[6] = t29;
-                step = t25;
-            }
-            ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
-                return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
-                break;
-        }
-    }
-    for (i = 0; i < GIC_PASSES; ++i) {
-        /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
-        {
-            const gic_real t1 = q[4] + q[4];
-            const gic_real t2 = q[4] * t1;
-            const gic_real t3 = q[5] + q[5];
-            const gic_real t4 = q[5] * t3;
-            const gic_real t5 = t2 + t4;
-            const gic_real t6 = R(1.0) - t5;
-            if (!(GIC_FABS(t6) > R(1e-07)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t7 = t5 - R(1.0);
-            if (!(GIC_FABS(t7) > R(1e-07)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t8 = q[6] + q[6];
-            const gic_real t9 = q[6] * t8;
-            const gic_real t10 = q[5] * t1;
-            const gic_real t11 = q[3] * t8;
-            const gic_real t12 = R(0.061674723509842204) * (R(1.0) - (t2 + t9)) + R(0.9980963022073495) * (t10 + t11);
-            const gic_real t13 = x[0] - R(-0.06171389001427645);
-            const gic_real t14 = GIC_SIN(t13);
-            const gic_real t15 = R(0.061674723509842204) * (t10 - t11) + R(0.9980963022073495) * (R(1.0) - (t4 + t9));
-            const gic_real t16 = GIC_COS(t13);
-            const gic_real t17 = t12 * t14 + t15 * t16;
-            const gic_real t18 = q[3] * t1;
-            const gic_real t19 = q[6] * t3;
-            const gic_real t20 = t18 - t19;
-            const gic_real t21 = q[4] * t8;
-            const gic_real t22 = q[3] * t3;
-            const gic_real t23 = R(0.061674723509842204) * (t19 + t18) + R(0.9980963022073495) * (t21 - t22);
-            const gic_real t24 = R(1.0) / t6;
-            const gic_real t25 = t23 * t14 * t24;
-            const gic_real t26 = t21 + t22;
-            const gic_real t27 = R(1.0) / t7;
-            const gic_real t28 = t23 * t16 * t27;
-            const gic_real t29 = t17 + t20 * t25 + t26 * t28;
-            if (!(GIC_FABS(t29) > R(1e-07)))
-                return GIC_ERROR_SINGULAR;
-            if (!(t6 > R(0.0)))
-                return GIC_ERROR_SINGULAR;
-            if (!(t17 > R(0.0)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t30 = R(1.0) / t29;
-            const gic_real t31 = t15 * t14 - t12 * t16 - t26 * t25 + t20 * t28;
-            const gic_real t32 = t30 * t31;
-            const gic_real t33 = R(0.5) * t32;
-            const gic_real t34 = t27 * (t20 - t26 * t32);
-            const gic_real t35 = R(0.5) * t34;
-            const gic_real t36 = t24 * (t26 + t20 * t32);
-            const gic_real t37 = R(0.5) * t36;
-            const gic_real t38 = q[3] - (q[6] * t33 + (q[4] * t35 - q[5] * t37));
-            const gic_real t39 = q[6] + (q[4] * t37 + q[5] * t35 + q[3] * t33);
-            const gic_real t40 = q[5] + (q[4] * t33 - q[6] * t35 - q[3] * t37);
-            const gic_real t41 = q[4] + (q[3] * t35 - (q[5] * t33 + q[6] * t37));
-            const gic_real t42 = t39 * t39 + (t40 * t40 + t41 * t41) + t38 * t38;
-            const gic_real t43 = R(1.5) - R(0.5) * t42;
-            const gic_real t44 = t38 * t43;
-            const gic_real t45 = t41 * t43;
-            const gic_real t46 = t40 * t43;
-            const gic_real t47 = t39 * t43;
-            const gic_real t48 = q[2] * q[2] + (q[1] * q[1] + q[0] * q[0]) + (t32 * t32 + (t36 * t36 + t34 * t34));
-            const gic_real t49 = t46 + t46;
-            const gic_real t50 = t46 * t49;
-            const gic_real t51 = t47 + t47;
-            const gic_real t52 = t47 * t51;
-            const gic_real t53 = R(1.0) - (t50 + t52);
-            const gic_real t54 = t45 + t45;
-            const gic_real t55 = t46 * t54;
-            const gic_real t56 = t44 * t51;
-            const gic_real t57 = t55 - t56;
-            const gic_real t58 = t45 * t51;
-            const gic_real t59 = t44 * t49;
-            const gic_real t60 = t55 + t56;
-            const gic_real t61 = t45 * t54;
-            const gic_real t62 = R(1.0) - (t61 + t52);
-            const gic_real t63 = t47 * t49;
-            const gic_real t64 = t44 * t54;
-            const gic_real t65 = t58 - t59;
-            const gic_real t66 = t63 + t64;
-            const gic_real t67 = t17 * t30;
-            const gic_real t68 = t27 * (t26 * t67);
-            const gic_real t69 = rate[0] * t68;
-            const gic_real t70 = t24 * (t20 * t67);
-            const gic_real t71 = rate[0] * t70;
-            const gic_real t72 = rate[0] * t67;
-            const gic_real t73 = t19 - t18;
-            const gic_real t74 = t26 * t71 - t73 * t69;
-            const gic_real t75 = t72 * (t73 * t72 + t6 * t71) - t69 * t74;
-            const gic_real t76 = t23 * t69 + t15 * t72;
-            const gic_real t77 = t12 * t72 + t23 * t71;
-            const gic_real t78 = rate[0] * (t14 * t76 - t16 * t77);
-            const gic_real t79 = t15 * t71 - t12 * t69;
-            const gic_real t80 = t14 * (t72 * t76 + t71 * t79) + t16 * (t69 * t79 - t72 * t77);
-            const gic_real t81 = t72 * (t6 * t69 + t26 * t72) + t71 * t74;
-            const gic_real t82 = t78 + t78 - t80 + t25 * t81 + t28 * t75;
-            const gic_real t83 = t30 * t82;
-            const gic_real t84 = t27 * (t75 - t26 * t83);
-            const gic_real t85 = t24 * (t81 - t20 * t83);
-            const gic_real t86 = -t68;
-            const gic_real t87 = -t70;
-            const gic_real t88 = t62 * R(-6.776263578034403e-21) + t60 * R(0.00092);
-            const gic_real t89 = t66 * R(-6.776263578034403e-21) + t65 * R(0.00092);
-            const gic_real t90 = t67 * t88 + t70 * t89;
-            const gic_real t91 = R(0.04325) * t90;
-            const gic_real t92 = t57 * R(-6.776263578034403e-21) + t53 * R(0.00092);
-            const gic_real t93 = t68 * t89 + t67 * t92;
-            const gic_real t94 = R(0.04325) * t93;
-            const gic_real t95 = t70 * t92 - t68 * t88;
-            const gic_real t96 = R(0.04325) * t95;
-            const gic_real t97 = t68 * R(2.194e-06);
-            const gic_real t98 = t70 * R(2.194e-06);
-            const gic_real t99 = t67 * R(2.194e-06);
-            const gic_real t100 = t71 * R(2.194e-06);
-            const gic_real t101 = t69 * R(2.194e-06);
-            const gic_real t102 = t67 * (t83 * R(2.194e-06) + (t69 * t100 - t71 * t101));
-            const gic_real t103 = t72 * R(2.194e-06);
-            const gic_real t104 = t70 * (t85 * R(2.194e-06) + (t69 * t103 - t72 * t101));
-            const gic_real t105 = t68 * (t84 * R(2.194e-06) + (t72 * t100 - t71 * t103));
-            const gic_real t106 = t72 * t88 + t71 * t89;
-            const gic_real t107 = t69 * t89 + t72 * t92;
-            const gic_real t108 = t84 * t88 - t85 * t92 - (t71 * t106 + t69 * t107);
-            const gic_real t109 = t71 * t92 - t69 * t88;
-            const gic_real t110 = t69 * t109 - t72 * t106 + (t83 * t92 - t84 * t89);
-            const gic_real t111 = t85 * t89 - t83 * t88 - (t72 * t107 + t71 * t109);
-            const gic_real t112 = R(0.04325) * t108 * t95 + (R(0.04325) * t110 * t93 - R(0.04325) * t111 * t90);
-            const gic_real t113 = t67 * t99 + (t70 * t98 + t68 * t97) + (t95 * t96 + (t93 * t94 + t90 * t91));
-            const gic_real t114 = t58 + t59;
-            const gic_real t115 = t63 - t64;
-            const gic_real t116 = R(1.0) - (t61 + t50);
-            const gic_real t117 = -t69;
-            const gic_real t118 = -t71;
-            const gic_real t119 = -t91;
-            const gic_real t120 = t88 * t96 - t89 * t94 - t97;
-            const gic_real t121 = -(t98 + (t92 * t96 + t89 * t91));
-            const gic_real t122 = t99 + (t88 * t91 + t92 * t94);
-            const gic_real t123 = t102 - (t104 + t105) + t112;
-            q[0] = R(0.0);
-            q[1] = R(0.0);
-            q[2] = R(0.0);
-            q[3] = t44;
-            q[4] = t45;
-            q[5] = t46;
-            q[6] = t47;
-            step = t48;
-            motion[0] = R(0.0);
-            motion[1] = R(0.0);
-            motion[2] = R(0.0);
-            motion[3] = t53;
-            motion[4] = t57;
-            motion[5] = t114;
-            motion[6] = t60;
-            motion[7] = t62;
-            motion[8] = t115;
-            motion[9] = t65;
-            motion[10] = t66;
-            motion[11] = t116;
-            motion[12] = t117;
-            motion[13] = t118;
-            motion[14] = t72;
-            motion[15] = R(0.0);
-            motion[16] = R(0.0);
-            motion[17] = R(0.0);
-            motion[18] = t84;
-            motion[19] = t85;
-            motion[20] = t83;
-            motion[21] = R(0.0);
-            motion[22] = R(0.0);
-            motion[23] = R(0.0);
-            motion[24] = t86;
-            motion[25] = t87;
-            motion[26] = t67;
-            motion[27] = R(0.0);
-            motion[28] = R(0.0);
-            motion[29] = R(0.0);
-            start[7] = t86;
-            start[8] = t87;
-            start[9] = t67;
-            start[10] = R(0.0);
-            start[11] = R(0.0);
-            start[12] = R(0.0);
-            start[13] = t24;
-            start[14] = t20;
-            start[15] = t27;
-            start[16] = t26;
-            start[17] = t25;
-            start[18] = t28;
-            start[19] = t30;
-            inertia[15] = t119;
-            inertia[16] = t94;
-            inertia[17] = t96;
-            inertia[18] = t120;
-            inertia[19] = t121;
-            inertia[20] = t122;
-            inertia[21] = t123;
-            inertia[22] = t113;
-        }
-        ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
+    (void)k, (void)start, (void)inertia;
+    {
+        const gic_real t1 = x[0] - R(-0.06171389001427645);
+        const gic_real t2 = GIC_COS(t1);
+        const gic_real t3 = t2 * R(1.0000000000000002);
+        const gic_real t4 = GIC_SIN(t1);
+        const gic_real t5 = t4 * R(1.0000000000000002);
+        const gic_real t6 = t3 * t3 + t5 * t5;
+        if (!(t6 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
-            if (step > self->head.largest_step)
-                self->head.largest_step = step;
-            ++self->head.newton_count;
-            for (i = 0; i < 7; ++i)
-                start[i] = q[i];
-            return GIC_OK;
-        }
-        before = step;
+        const gic_real t7 = R(1.0) / t6;
+        const gic_real t8 = GIC_SQRT(t6);
+        const gic_real t9 = t7 * (t5 * t8);
+        const gic_real t10 = R(1.0000000000000002) * t9;
+        const gic_real t11 = t7 * (t3 * t8);
+        const gic_real t12 = R(1.0000000000000002) * t11;
+        const gic_real t13 = t4 * t10 + t2 * t12;
+        if (!(GIC_FABS(t13) > R(1.0000000000000002e-07)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t14 = R(0.061674723509842204) * t9 + R(0.9980963022073495) * t11;
+        const gic_real t15 = R(-0.9980963022073495) * t9 + R(0.061674723509842204) * t11;
+        const gic_real t16 = R(0.9980963022073495) * t9 + R(-0.061674723509842204) * t11;
+        const gic_real t17 = R(1.0) / t13;
+        const gic_real t18 = t13 * t17;
+        const gic_real t19 = rate[0] * t18;
+        const gic_real t20 = t12 * t19;
+        const gic_real t21 = t10 * t19;
+        const gic_real t22 = rate[0] * (t4 * t20 - t2 * t21);
+        const gic_real t23 = t22 + t22 - (t4 * (t19 * t20) - t2 * (t19 * t21));
+        const gic_real t24 = t17 * t23;
+        const gic_real t25 = t14 * R(-6.776263578034403e-21) + t16 * R(0.00092);
+        const gic_real t26 = t18 * t25;
+        const gic_real t27 = R(0.04325) * t26;
+        const gic_real t28 = t15 * R(-6.776263578034403e-21) + t14 * R(0.00092);
+        const gic_real t29 = t18 * t28;
+        const gic_real t30 = R(0.04325) * t29;
+        const gic_real t31 = t18 * R(2.194e-06);
+        const gic_real t32 = R(0.04325) * (t24 * t28 - t19 * (t19 * t25)) * t29;
+        const gic_real t33 = R(0.04325) * (t19 * (t19 * t28) + t24 * t25) * t26;
+        const gic_real t34 = -t27;
+        const gic_real t35 = t31 + (t25 * t27 + t28 * t30);
+        const gic_real t36 = t18 * (t24 * R(2.194e-06)) + (t32 + t33);
+        const gic_real t37 = t18 * t31 + (t29 * t30 + t26 * t27);
+        motion[0] = R(0.0);
+        motion[1] = R(0.0);
+        motion[2] = R(0.0);
+        motion[3] = t14;
+        motion[4] = t15;
+        motion[5] = R(0.0);
+        motion[6] = t16;
+        motion[7] = t14;
+        motion[8] = R(0.0);
+        motion[9] = R(0.0);
+        motion[10] = R(0.0);
+        motion[11] = R(1.0);
+        motion[12] = R(0.0);
+        motion[13] = R(0.0);
+        motion[14] = t19;
+        motion[15] = R(0.0);
+        motion[16] = R(0.0);
+        motion[17] = R(0.0);
+        motion[18] = R(0.0);
+        motion[19] = R(0.0);
+        motion[20] = t24;
+        motion[21] = R(0.0);
+        motion[22] = R(0.0);
+        motion[23] = R(0.0);
+        motion[24] = R(0.0);
+        motion[25] = R(0.0);
+        motion[26] = t18;
+        motion[27] = R(0.0);
+        motion[28] = R(0.0);
+        motion[29] = R(0.0);
+        inertia[15] = t34;
+        inertia[16] = t30;
+        inertia[17] = R(0.0);
+        inertia[18] = R(0.0);
+        inertia[19] = R(0.0);
+        inertia[20] = t35;
+        inertia[21] = t36;
+        inertia[22] = t37;
     }
-    return GIC_ERROR_NEWTON;
+    ++self->head.newton_count;
+    return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset at the pose q, relative to its size. */
+/* Largest constraint residual of such a subset, relative to its size. */
 static GIC_COLD gic_real andrews_residual_K1(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT q)
+    const gic_real *GIC_RESTRICT motion)
 {
     const gic_real *const x = links->x;
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = q[6] + q[6];
-        const gic_real t2 = q[5] + q[5];
-        const gic_real t3 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(q[0]), GIC_FABS(q[1])), GIC_FABS(q[2])), GIC_FABS(q[4] * t1 + q[3] * t2));
-        const gic_real t4 = q[4] + q[4];
-        const gic_real t5 = q[6] * t1;
-        const gic_real t6 = q[5] * t4;
-        const gic_real t7 = q[3] * t1;
-        const gic_real t8 = R(0.061674723509842204) * (R(1.0) - (q[4] * t4 + t5)) + R(0.9980963022073495) * (t6 + t7);
-        const gic_real t9 = x[0] - R(-0.06171389001427645);
-        const gic_real t10 = R(0.061674723509842204) * (t6 - t7) + R(0.9980963022073495) * (R(1.0) - (q[5] * t2 + t5));
-        const gic_real t11 = GIC_FABS(t8 * GIC_COS(t9) - t10 * GIC_SIN(t9));
-        const gic_real t12 = GIC_MAX(GIC_MAX(t3, GIC_FABS(q[6] * t2 - q[3] * t4)), t11);
-        worst = t12;
+        const gic_real t1 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(motion[0]), GIC_FABS(motion[1])), GIC_FABS(motion[2])), GIC_FABS(motion[5]));
+        const gic_real t2 = x[0] - R(-0.06171389001427645);
+        const gic_real t3 = GIC_COS(t2) * (R(0.061674723509842204) * motion[7] + R(0.9980963022073495) * motion[6]) - GIC_SIN(t2) * (R(0.061674723509842204) * motion[4] + R(0.9980963022073495) * motion[3]);
+        const gic_real t4 = GIC_MAX(GIC_MAX(t1, GIC_FABS(motion[8])), GIC_FABS(t3 * R(0.9999999999999998)));
+        worst = t4;
     }
     return worst;
 }
@@ -607,16 +378,16 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t37 = R(2.168404344971009e-19) * (t30 - t31) + R(-0.027999999999999997) * (R(1.0) - (t36 + t29));
                 const gic_real t38 = q[0] + t37 - (q[7] + R(-0.03500000000000001) * t34);
                 const gic_real t39 = (R(0.8981380230369522) * t24 + R(0.43971364724701906) * t27) * t33 + (R(0.8981380230369522) * t34 + R(0.43971364724701906) * t35) * t38;
-                const gic_real t40 = f[19] * t4 - ((R(0.8981380230369522) * t9 + R(0.43971364724701906) * t13) * t22 + t39);
+                const gic_real t40 = t4 * f[19] - ((R(0.8981380230369522) * t9 + R(0.43971364724701906) * t13) * t22 + t39);
                 const gic_real t41 = R(0.03273) - q[8];
-                const gic_real t42 = t40 + f[20] * t41 - q[9] * f[21] - f[19] * t1;
+                const gic_real t42 = t40 + t41 * f[20] - q[9] * f[21] - t1 * f[19];
                 const gic_real t43 = R(1.0000000000000002) * (t11 + t12);
-                const gic_real t44 = t42 - f[20] * t2 - f[21] * t3 + t43 * f[22];
+                const gic_real t44 = t42 - t2 * f[20] - t3 * f[21] + t43 * f[22];
                 const gic_real t45 = R(1.0000000000000002) * (t6 - t8);
                 const gic_real t46 = t33 * (R(-0.43971364724701895) * t24 + R(0.898138023036952) * t27) + t38 * (R(-0.43971364724701895) * t34 + R(0.898138023036952) * t35);
-                const gic_real t47 = f[4] * t4 - (t22 * (R(-0.43971364724701895) * t9 + R(0.898138023036952) * t13) + t46);
-                const gic_real t48 = t47 + f[5] * t41 - q[9] * f[6] - f[4] * t1;
-                const gic_real t49 = t48 - f[5] * t2 - f[6] * t3 + t43 * f[7];
+                const gic_real t47 = t4 * f[4] - (t22 * (R(-0.43971364724701895) * t9 + R(0.898138023036952) * t13) + t46);
+                const gic_real t48 = t47 + t41 * f[5] - q[9] * f[6] - t1 * f[4];
+                const gic_real t49 = t48 - t2 * f[5] - t3 * f[6] + t43 * f[7];
                 const gic_real t50 = t49 + t45 * f[8];
                 const gic_real t51 = R(1.0) - (t28 + t36);
                 const gic_real t52 = t15 - t17;
@@ -651,8 +422,8 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t81 = q[11] + (q[13] * t75 - q[12] * t73 - q[10] * t77);
                 const gic_real t82 = t79 * t79 + (t80 * t80 + t81 * t81) + t78 * t78;
                 const gic_real t83 = R(1.5) - R(0.5) * t82;
-                const gic_real t84 = t59 * t59 + (t63 * t63 + t61 * t61) + (t72 * t72 + (t74 * t74 + t76 * t76));
-                const gic_real t85 = t3 * t3 + (t2 * t2 + t1 * t1) + (q[9] * q[9] + (t41 * t41 + t4 * t4));
+                const gic_real t84 = t3 * t3 + (t2 * t2 + t1 * t1) + (q[9] * q[9] + (t41 * t41 + t4 * t4));
+                const gic_real t85 = t59 * t59 + (t63 * t63 + t61 * t61) + (t72 * t72 + (t74 * t74 + t76 * t76));
                 const gic_real t86 = q[0] + t1;
                 const gic_real t87 = q[1] + t2;
                 const gic_real t88 = q[2] + t3;
@@ -666,7 +437,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t96 = t81 * t83;
                 const gic_real t97 = t80 * t83;
                 const gic_real t98 = t79 * t83;
-                const gic_real t99 = t84 + R(816.3265306122445) * t85;
+                const gic_real t99 = R(816.3265306122445) * t84 + t85;
                 q[0] = t86;
                 q[1] = t87;
                 q[2] = t88;
@@ -864,8 +635,8 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t155 = t151 * t153;
             const gic_real t156 = t150 * t153;
             const gic_real t157 = t149 * t153;
-            const gic_real t158 = t108 * t108 + (t105 * t105 + t102 * t102) + (q[9] * q[9] + (t113 * t113 + t111 * t111));
-            const gic_real t159 = t123 * t123 + (t127 * t127 + t125 * t125) + (t142 * t142 + (t144 * t144 + t146 * t146));
+            const gic_real t158 = t123 * t123 + (t127 * t127 + t125 * t125) + (t142 * t142 + (t144 * t144 + t146 * t146));
+            const gic_real t159 = t108 * t108 + (t105 * t105 + t102 * t102) + (q[9] * q[9] + (t113 * t113 + t111 * t111));
             const gic_real t160 = t137 + t137;
             const gic_real t161 = t137 * t160;
             const gic_real t162 = t138 + t138;
@@ -1058,7 +829,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t349 = R(0.02373) * t345 * t303 + R(0.02373) * t347 * t297 - R(0.02373) * t348 * t307;
             const gic_real t350 = t183 * t320 + (t186 * t316 + t184 * t309) + (t305 * t306 + (t300 * t301 + t293 * t294));
             const gic_real t351 = t218 * t321 + (t226 * t317 + t219 * t312) + (t307 * t308 + (t303 * t304 + t297 * t298));
-            const gic_real t352 = R(816.3265306122445) * t158 + t159;
+            const gic_real t352 = t158 + R(816.3265306122445) * t159;
             const gic_real t353 = t166 - t167;
             const gic_real t354 = t168 + t169;
             const gic_real t355 = R(1.0) - (t171 + t163);
@@ -1217,68 +988,33 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
     return GIC_ERROR_NEWTON;
 }
 
-/* Largest constraint residual of such a subset at the pose q, relative to its size. */
+/* Largest constraint residual of such a subset, relative to its size. */
 static GIC_COLD gic_real andrews_residual_K2_K3(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT q)
+    const gic_real *GIC_RESTRICT motion)
 {
     const gic_real *const m0 = links->known[0]; /* K1 */
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_FABS((q[7] - R(-0.03635)) * R(28.571428571428562)), GIC_FABS((q[8] - R(0.03273)) * R(28.571428571428562)));
-        const gic_real t2 = q[13] + q[13];
-        const gic_real t3 = q[11] * t2;
-        const gic_real t4 = q[12] + q[12];
-        const gic_real t5 = q[10] * t4;
-        const gic_real t6 = GIC_MAX(GIC_MAX(t1, GIC_FABS(q[9] * R(28.571428571428562))), GIC_FABS(t3 + t5));
-        const gic_real t7 = q[13] * t4;
-        const gic_real t8 = q[11] + q[11];
-        const gic_real t9 = q[10] * t8;
-        const gic_real t10 = (q[0] - (m0[0] + (R(-1.1519648082658485e-19) * m0[4] + R(0.006999999999999999) * m0[3]))) * R(28.571428571428562);
-        const gic_real t11 = (q[1] - (m0[1] + (R(-1.1519648082658485e-19) * m0[7] + R(0.006999999999999999) * m0[6]))) * R(28.571428571428562);
-        const gic_real t12 = GIC_MAX(GIC_MAX(GIC_MAX(t6, GIC_FABS(t7 - t9)), GIC_FABS(t10)), GIC_FABS(t11));
-        const gic_real t13 = (q[2] - (m0[2] + (R(-1.1519648082658485e-19) * m0[10] + R(0.006999999999999999) * m0[9]))) * R(28.571428571428562);
-        const gic_real t14 = q[4] + q[4];
-        const gic_real t15 = q[4] * t14;
-        const gic_real t16 = q[5] + q[5];
-        const gic_real t17 = q[5] * t16;
-        const gic_real t18 = R(1.0) - (t15 + t17);
-        const gic_real t19 = q[6] * t16;
-        const gic_real t20 = q[3] * t14;
-        const gic_real t21 = t19 - t20;
-        const gic_real t22 = q[6] + q[6];
-        const gic_real t23 = q[4] * t22;
-        const gic_real t24 = q[3] * t16;
-        const gic_real t25 = t23 + t24;
-        const gic_real t26 = t21 * (R(0.061674723509842204) * m0[7] + R(0.9980963022073495) * m0[6]) + t25 * (R(0.061674723509842204) * m0[4] + R(0.9980963022073495) * m0[3]);
-        const gic_real t27 = GIC_FABS(t18 * (R(0.061674723509842204) * m0[10] + R(0.9980963022073495) * m0[9]) + t26);
-        const gic_real t28 = t21 * (R(0.9980963022073495) * m0[7] + R(-0.061674723509842204) * m0[6]) + t25 * (R(0.9980963022073495) * m0[4] + R(-0.061674723509842204) * m0[3]);
-        const gic_real t29 = GIC_FABS(t18 * (R(0.9980963022073495) * m0[10] + R(-0.061674723509842204) * m0[9]) + t28);
-        const gic_real t30 = q[2] + (R(2.168404344971009e-19) * (t19 + t20) + R(-0.027999999999999997) * (t23 - t24));
-        const gic_real t31 = t7 + t9;
-        const gic_real t32 = t30 - (q[9] + R(-0.03500000000000001) * t31);
-        const gic_real t33 = t3 - t5;
-        const gic_real t34 = q[6] * t22;
-        const gic_real t35 = q[5] * t14;
-        const gic_real t36 = q[3] * t22;
-        const gic_real t37 = R(2.168404344971009e-19) * (R(1.0) - (t15 + t34)) + R(-0.027999999999999997) * (t35 + t36);
-        const gic_real t38 = q[13] * t2;
-        const gic_real t39 = R(1.0) - (q[11] * t8 + t38);
-        const gic_real t40 = q[1] + t37 - (q[8] + R(-0.03500000000000001) * t39);
-        const gic_real t41 = q[12] * t8;
-        const gic_real t42 = q[10] * t2;
-        const gic_real t43 = t41 + t42;
-        const gic_real t44 = R(2.168404344971009e-19) * (t35 - t36) + R(-0.027999999999999997) * (R(1.0) - (t17 + t34));
-        const gic_real t45 = t41 - t42;
-        const gic_real t46 = q[0] + t44 - (q[7] + R(-0.03500000000000001) * t45);
-        const gic_real t47 = R(1.0) - (q[12] * t4 + t38);
-        const gic_real t48 = t40 * (R(-0.43971364724701895) * t39 + R(0.898138023036952) * t43) + t46 * (R(-0.43971364724701895) * t45 + R(0.898138023036952) * t47);
-        const gic_real t49 = (t32 * (R(-0.43971364724701895) * t31 + R(0.898138023036952) * t33) + t48) * R(28.57142857142856);
-        const gic_real t50 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(t12, GIC_FABS(t13)), t27), t29), GIC_FABS(t49));
-        const gic_real t51 = (R(0.8981380230369522) * t39 + R(0.43971364724701906) * t43) * t40 + (R(0.8981380230369522) * t45 + R(0.43971364724701906) * t47) * t46;
-        const gic_real t52 = ((R(0.8981380230369522) * t31 + R(0.43971364724701906) * t33) * t32 + t51) * R(28.57142857142855);
-        const gic_real t53 = GIC_MAX(t50, GIC_FABS(t52));
-        worst = t53;
+        const gic_real t1 = GIC_MAX(GIC_FABS((motion[30] - R(-0.03635)) * R(28.571428571428562)), GIC_FABS((motion[31] - R(0.03273)) * R(28.571428571428562)));
+        const gic_real t2 = GIC_MAX(GIC_MAX(GIC_MAX(t1, GIC_FABS(motion[32] * R(28.571428571428562))), GIC_FABS(motion[35])), GIC_FABS(motion[38]));
+        const gic_real t3 = (motion[0] - (m0[0] + (R(-1.1519648082658485e-19) * m0[4] + R(0.006999999999999999) * m0[3]))) * R(28.571428571428562);
+        const gic_real t4 = (motion[1] - (m0[1] + (R(-1.1519648082658485e-19) * m0[7] + R(0.006999999999999999) * m0[6]))) * R(28.571428571428562);
+        const gic_real t5 = (motion[2] - (m0[2] + (R(-1.1519648082658485e-19) * m0[10] + R(0.006999999999999999) * m0[9]))) * R(28.571428571428562);
+        const gic_real t6 = GIC_MAX(GIC_MAX(GIC_MAX(t2, GIC_FABS(t3)), GIC_FABS(t4)), GIC_FABS(t5));
+        const gic_real t7 = (R(0.061674723509842204) * m0[7] + R(0.9980963022073495) * m0[6]) * motion[8] + (R(0.061674723509842204) * m0[4] + R(0.9980963022073495) * m0[3]) * motion[5];
+        const gic_real t8 = GIC_FABS((R(0.061674723509842204) * m0[10] + R(0.9980963022073495) * m0[9]) * motion[11] + t7);
+        const gic_real t9 = (R(0.9980963022073495) * m0[7] + R(-0.061674723509842204) * m0[6]) * motion[8] + (R(0.9980963022073495) * m0[4] + R(-0.061674723509842204) * m0[3]) * motion[5];
+        const gic_real t10 = GIC_FABS((R(0.9980963022073495) * m0[10] + R(-0.061674723509842204) * m0[9]) * motion[11] + t9);
+        const gic_real t11 = motion[2] + (R(2.168404344971009e-19) * motion[10] + R(-0.027999999999999997) * motion[9]) - (motion[32] + R(-0.03500000000000001) * motion[40]);
+        const gic_real t12 = motion[1] + (R(2.168404344971009e-19) * motion[7] + R(-0.027999999999999997) * motion[6]) - (motion[31] + R(-0.03500000000000001) * motion[37]);
+        const gic_real t13 = motion[0] + (R(2.168404344971009e-19) * motion[4] + R(-0.027999999999999997) * motion[3]) - (motion[30] + R(-0.03500000000000001) * motion[34]);
+        const gic_real t14 = t12 * (R(-0.43971364724701895) * motion[37] + R(0.898138023036952) * motion[36]) + t13 * (R(-0.43971364724701895) * motion[34] + R(0.898138023036952) * motion[33]);
+        const gic_real t15 = (t11 * (R(-0.43971364724701895) * motion[40] + R(0.898138023036952) * motion[39]) + t14) * R(28.57142857142856);
+        const gic_real t16 = (R(0.8981380230369522) * motion[37] + R(0.43971364724701906) * motion[36]) * t12 + (R(0.8981380230369522) * motion[34] + R(0.43971364724701906) * motion[33]) * t13;
+        const gic_real t17 = ((R(0.8981380230369522) * motion[40] + R(0.43971364724701906) * motion[39]) * t11 + t16) * R(28.57142857142855);
+        const gic_real t18 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(t6, t8), t10), GIC_FABS(t15)), GIC_FABS(t17));
+        worst = t18;
     }
     return worst;
 }
@@ -1421,7 +1157,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t31 = q[6] * t3;
                 const gic_real t32 = R(1.0) - (q[5] * t5 + t31);
                 const gic_real t33 = q[0] + (k[3] * t30 + k[4] * t32) - q[7] - (q[0] - R(-0.06934));
-                const gic_real t34 = t16 * (R(-0.43971364724701895) * m0[10] + R(0.898138023036952) * m0[9]) + t26 + f[19] * t33;
+                const gic_real t34 = t16 * (R(-0.43971364724701895) * m0[10] + R(0.898138023036952) * m0[9]) + t26 + t33 * f[19];
                 const gic_real t35 = R(1.0) - (q[4] * t27 + t31);
                 const gic_real t36 = t28 + t29;
                 const gic_real t37 = q[1] + (k[3] * t35 + k[4] * t36) - q[8] - (q[1] - R(-0.00227));
@@ -1430,7 +1166,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t40 = t38 + t39;
                 const gic_real t41 = t4 - t6;
                 const gic_real t42 = q[2] + (k[3] * t40 + k[4] * t41) - q[9] - q[2];
-                const gic_real t43 = t7 * f[22] - (t34 + f[20] * t37 + f[21] * t42);
+                const gic_real t43 = t7 * f[22] - (t34 + t37 * f[20] + t42 * f[21]);
                 const gic_real t44 = k[0] * (t38 - t39);
                 const gic_real t45 = k[5] * (R(1.0) - (t17 + t23));
                 const gic_real t46 = k[5] * (t9 - t11);
@@ -1443,8 +1179,8 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t53 = t52 + t44 * f[14] - f[15] * t50;
                 const gic_real t54 = t43 + t44 * f[23] - f[24] * t50 - f[25] * t53;
                 const gic_real t55 = t22 * (R(0.8981380230369522) * m0[7] + R(0.43971364724701906) * m0[6]) + t25 * (R(0.8981380230369522) * m0[4] + R(0.43971364724701906) * m0[3]);
-                const gic_real t56 = t16 * (R(0.8981380230369522) * m0[10] + R(0.43971364724701906) * m0[9]) + t55 + f[28] * t33;
-                const gic_real t57 = t7 * f[31] - (t56 + f[29] * t37 + f[30] * t42);
+                const gic_real t56 = t16 * (R(0.8981380230369522) * m0[10] + R(0.43971364724701906) * m0[9]) + t55 + t33 * f[28];
+                const gic_real t57 = t7 * f[31] - (t56 + t37 * f[29] + t42 * f[30]);
                 const gic_real t58 = t57 + t44 * f[32] - f[33] * t50 - f[34] * t53;
                 const gic_real t59 = f[36] * (t58 - f[35] * t54);
                 const gic_real t60 = f[26] * (t54 - f[27] * t59);
@@ -2065,68 +1801,37 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
     return GIC_ERROR_NEWTON;
 }
 
-/* Largest constraint residual of such a subset at the pose q, relative to its size. */
+/* Largest constraint residual of such a subset, relative to its size. */
 static GIC_COLD gic_real andrews_residual_K5_K4(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT q)
+    const gic_real *GIC_RESTRICT motion)
 {
     const gic_real *const m0 = links->known[0]; /* K3 */
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - R(-0.06934)) * R(24.999999999999996)), GIC_FABS((q[1] - R(-0.00227)) * R(24.999999999999996)));
-        const gic_real t2 = q[6] + q[6];
-        const gic_real t3 = q[4] * t2;
-        const gic_real t4 = q[5] + q[5];
-        const gic_real t5 = q[3] * t4;
-        const gic_real t6 = GIC_MAX(GIC_MAX(t1, GIC_FABS(q[2] * R(24.999999999999996))), GIC_FABS(t3 + t5));
-        const gic_real t7 = q[6] * t4;
-        const gic_real t8 = q[4] + q[4];
-        const gic_real t9 = q[3] * t8;
-        const gic_real t10 = q[5] * t8;
-        const gic_real t11 = q[3] * t2;
-        const gic_real t12 = t10 - t11;
-        const gic_real t13 = q[6] * t2;
-        const gic_real t14 = R(1.0) - (q[5] * t4 + t13);
-        const gic_real t15 = (q[7] - (q[0] + (k[3] * t12 + k[4] * t14))) * R(24.999999999999996);
-        const gic_real t16 = R(1.0) - (q[4] * t8 + t13);
-        const gic_real t17 = t10 + t11;
-        const gic_real t18 = (q[8] - (q[1] + (k[3] * t16 + k[4] * t17))) * R(24.999999999999996);
-        const gic_real t19 = GIC_MAX(GIC_MAX(GIC_MAX(t6, GIC_FABS(t7 - t9)), GIC_FABS(t15)), GIC_FABS(t18));
-        const gic_real t20 = t7 + t9;
-        const gic_real t21 = t3 - t5;
-        const gic_real t22 = (q[9] - (q[2] + (k[3] * t20 + k[4] * t21))) * R(24.999999999999996);
-        const gic_real t23 = q[11] + q[11];
-        const gic_real t24 = q[11] * t23;
-        const gic_real t25 = q[12] + q[12];
-        const gic_real t26 = q[12] * t25;
-        const gic_real t27 = k[5] * (R(1.0) - (t24 + t26));
-        const gic_real t28 = q[13] * t25;
-        const gic_real t29 = q[10] * t23;
-        const gic_real t30 = k[5] * (t28 - t29);
-        const gic_real t31 = q[13] + q[13];
-        const gic_real t32 = q[11] * t31;
-        const gic_real t33 = q[10] * t25;
-        const gic_real t34 = k[5] * (t32 + t33);
-        const gic_real t35 = (k[6] * t16 + k[7] * t17) * t30 + (k[6] * t12 + k[7] * t14) * t34;
-        const gic_real t36 = ((k[6] * t20 + k[7] * t21) * t27 + t35) * k[16];
-        const gic_real t37 = (k[8] * t16 + k[9] * t17) * t30 + (k[8] * t12 + k[9] * t14) * t34;
-        const gic_real t38 = ((k[8] * t20 + k[9] * t21) * t27 + t37) * k[17];
-        const gic_real t39 = GIC_MAX(GIC_MAX(GIC_MAX(t19, GIC_FABS(t22)), GIC_FABS(t36)), GIC_FABS(t38));
-        const gic_real t40 = q[9] + (k[1] * (t28 + t29) + k[2] * (t32 - t33));
-        const gic_real t41 = t40 - (m0[2] + R(-0.03500000000000001) * m0[10]);
-        const gic_real t42 = q[13] * t31;
-        const gic_real t43 = q[12] * t23;
-        const gic_real t44 = q[10] * t31;
-        const gic_real t45 = k[1] * (R(1.0) - (t24 + t42)) + k[2] * (t43 + t44);
-        const gic_real t46 = q[8] + t45 - (m0[1] + R(-0.03500000000000001) * m0[7]);
-        const gic_real t47 = k[1] * (t43 - t44) + k[2] * (R(1.0) - (t26 + t42));
-        const gic_real t48 = q[7] + t47 - (m0[0] + R(-0.03500000000000001) * m0[4]);
-        const gic_real t49 = t46 * (R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6]) + t48 * (R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3]);
-        const gic_real t50 = (t41 * (R(-0.43971364724701895) * m0[10] + R(0.898138023036952) * m0[9]) + t49) * R(24.99999999999999);
-        const gic_real t51 = t46 * (R(0.8981380230369522) * m0[7] + R(0.43971364724701906) * m0[6]) + t48 * (R(0.8981380230369522) * m0[4] + R(0.43971364724701906) * m0[3]);
-        const gic_real t52 = (t41 * (R(0.8981380230369522) * m0[10] + R(0.43971364724701906) * m0[9]) + t51) * R(24.999999999999982);
-        const gic_real t53 = GIC_MAX(GIC_MAX(t39, GIC_FABS(t50)), GIC_FABS(t52));
-        worst = t53;
+        const gic_real t1 = GIC_MAX(GIC_FABS((motion[0] - R(-0.06934)) * R(24.999999999999996)), GIC_FABS((motion[1] - R(-0.00227)) * R(24.999999999999996)));
+        const gic_real t2 = GIC_MAX(GIC_MAX(GIC_MAX(t1, GIC_FABS(motion[2] * R(24.999999999999996))), GIC_FABS(motion[5])), GIC_FABS(motion[8]));
+        const gic_real t3 = (motion[30] - (motion[0] + (k[3] * motion[4] + k[4] * motion[3]))) * R(24.999999999999996);
+        const gic_real t4 = (motion[31] - (motion[1] + (k[3] * motion[7] + k[4] * motion[6]))) * R(24.999999999999996);
+        const gic_real t5 = (motion[32] - (motion[2] + (k[3] * motion[10] + k[4] * motion[9]))) * R(24.999999999999996);
+        const gic_real t6 = GIC_MAX(GIC_MAX(GIC_MAX(t2, GIC_FABS(t3)), GIC_FABS(t4)), GIC_FABS(t5));
+        const gic_real t7 = k[5] * motion[41];
+        const gic_real t8 = k[5] * motion[38];
+        const gic_real t9 = k[5] * motion[35];
+        const gic_real t10 = (k[6] * motion[7] + k[7] * motion[6]) * t8 + (k[6] * motion[4] + k[7] * motion[3]) * t9;
+        const gic_real t11 = ((k[6] * motion[10] + k[7] * motion[9]) * t7 + t10) * k[16];
+        const gic_real t12 = (k[8] * motion[7] + k[9] * motion[6]) * t8 + (k[8] * motion[4] + k[9] * motion[3]) * t9;
+        const gic_real t13 = ((k[8] * motion[10] + k[9] * motion[9]) * t7 + t12) * k[17];
+        const gic_real t14 = motion[32] + (k[1] * motion[40] + k[2] * motion[39]) - (m0[2] + R(-0.03500000000000001) * m0[10]);
+        const gic_real t15 = motion[31] + (k[1] * motion[37] + k[2] * motion[36]) - (m0[1] + R(-0.03500000000000001) * m0[7]);
+        const gic_real t16 = motion[30] + (k[1] * motion[34] + k[2] * motion[33]) - (m0[0] + R(-0.03500000000000001) * m0[4]);
+        const gic_real t17 = (R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6]) * t15 + (R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3]) * t16;
+        const gic_real t18 = ((R(-0.43971364724701895) * m0[10] + R(0.898138023036952) * m0[9]) * t14 + t17) * R(24.99999999999999);
+        const gic_real t19 = GIC_MAX(GIC_MAX(GIC_MAX(t6, GIC_FABS(t11)), GIC_FABS(t13)), GIC_FABS(t18));
+        const gic_real t20 = (R(0.8981380230369522) * m0[7] + R(0.43971364724701906) * m0[6]) * t15 + (R(0.8981380230369522) * m0[4] + R(0.43971364724701906) * m0[3]) * t16;
+        const gic_real t21 = ((R(0.8981380230369522) * m0[10] + R(0.43971364724701906) * m0[9]) * t14 + t20) * R(24.999999999999982);
+        const gic_real t22 = GIC_MAX(t19, GIC_FABS(t21));
+        worst = t22;
     }
     return worst;
 }
@@ -2151,8 +1856,7 @@ static int andrews_recover_piece(andrews *self, andrews_links *links, const gic_
     /* stage 1: K1 */
     links->x[0] = start[0]; /* beta */
     links->rate[0] = xd[0];
-    links->change[0] = start[0] - old[0];
-    status = andrews_solve_K1(self, andrews_k_K1[0], links, old + 1, start + 1, self->motion + 0, self->inertia + 0);
+    status = andrews_solve_K1(self, andrews_k_K1[0], links, start + 1, self->motion + 0, self->inertia + 0);
     if (status != GIC_OK) {
         self->head.subset = 0;
         return status;
@@ -2162,7 +1866,7 @@ static int andrews_recover_piece(andrews *self, andrews_links *links, const gic_
     links->x[0] = start[0]; /* beta */
     links->rate[0] = xd[0];
     links->change[0] = start[0] - old[0];
-    status = andrews_solve_K2_K3(self, andrews_k_K2_K3[0], links, old + 21, start + 21, self->motion + 30, self->inertia + 23);
+    status = andrews_solve_K2_K3(self, andrews_k_K2_K3[0], links, old + 1, start + 1, self->motion + 30, self->inertia + 23);
     if (status != GIC_OK) {
         self->head.subset = 1;
         return status;
@@ -2172,7 +1876,7 @@ static int andrews_recover_piece(andrews *self, andrews_links *links, const gic_
     links->x[0] = start[0]; /* beta */
     links->rate[0] = xd[0];
     links->change[0] = start[0] - old[0];
-    status = andrews_solve_K5_K4(self, andrews_k_K5_K4[0], links, old + 75, start + 75, self->motion + 90, self->inertia + 46);
+    status = andrews_solve_K5_K4(self, andrews_k_K5_K4[0], links, old + 55, start + 55, self->motion + 90, self->inertia + 46);
     if (status != GIC_OK) {
         self->head.subset = 2;
         return status;
@@ -2182,7 +1886,7 @@ static int andrews_recover_piece(andrews *self, andrews_links *links, const gic_
     links->x[0] = start[0]; /* beta */
     links->rate[0] = xd[0];
     links->change[0] = start[0] - old[0];
-    status = andrews_solve_K5_K4(self, andrews_k_K5_K4[1], links, old + 138, start + 138, self->motion + 150, self->inertia + 69);
+    status = andrews_solve_K5_K4(self, andrews_k_K5_K4[1], links, old + 118, start + 118, self->motion + 150, self->inertia + 69);
     if (status != GIC_OK) {
         self->head.subset = 3;
         return status;
@@ -2295,8 +1999,8 @@ static int andrews_measure(const andrews *self, gic_real time, const gic_real *y
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    const gic_real *const s = self->start[self->head.flip], *const lambda = self->multiplier;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)s, (void)rate, (void)out;
+    const gic_real *const lambda = self->multiplier;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)out;
     (void)lambda;
     {
         const gic_real t1 = m[62] + (m[70] * R(-0.018000000000000002) + m[69] * R(0.020000000000000004));
@@ -2552,58 +2256,233 @@ static int andrews_measure(const andrews *self, gic_real time, const gic_real *y
 
 static void andrews_place(const andrews *self, const gic_real *y, const gic_real *e, gic_real *pose)
 {
-    const gic_real *const m = self->motion, *const s = self->start[self->head.flip];
-    (void)y, (void)e, (void)m, (void)s, (void)pose;
+    const gic_real *const m = self->motion;
+    (void)y, (void)e, (void)m, (void)pose;
     {
-        const gic_real t1 = m[0] + (m[4] * R(-6.776263578034403e-21) + m[3] * R(0.00092));
-        const gic_real t2 = m[1] + (m[7] * R(-6.776263578034403e-21) + m[6] * R(0.00092));
-        const gic_real t3 = m[2] + (m[10] * R(-6.776263578034403e-21) + m[9] * R(0.00092));
-        const gic_real t4 = (s[4] > GIC_R(0) ? s[4] : -s[4]);
-        const gic_real t5 = (s[4] > GIC_R(0) ? s[5] : -s[5]);
-        const gic_real t6 = (s[4] > GIC_R(0) ? s[6] : -s[6]);
-        const gic_real t7 = (s[4] > GIC_R(0) ? s[7] : -s[7]);
-        const gic_real t8 = m[30] + m[33] * R(-0.0115);
-        const gic_real t9 = m[31] + m[36] * R(-0.0115);
-        const gic_real t10 = m[32] + m[39] * R(-0.0115);
-        const gic_real t11 = (s[24] > GIC_R(0) ? s[24] : -s[24]);
-        const gic_real t12 = (s[24] > GIC_R(0) ? s[25] : -s[25]);
-        const gic_real t13 = (s[24] > GIC_R(0) ? s[26] : -s[26]);
-        const gic_real t14 = (s[24] > GIC_R(0) ? s[27] : -s[27]);
-        const gic_real t15 = m[60] + (m[64] * R(-0.018740000000000003) + m[63] * R(0.010430000000000002));
-        const gic_real t16 = m[61] + (m[67] * R(-0.018740000000000003) + m[66] * R(0.010430000000000002));
-        const gic_real t17 = m[62] + (m[70] * R(-0.018740000000000003) + m[69] * R(0.010430000000000002));
-        const gic_real t18 = (s[31] > GIC_R(0) ? s[31] : -s[31]);
-        const gic_real t19 = (s[31] > GIC_R(0) ? s[32] : -s[32]);
-        const gic_real t20 = (s[31] > GIC_R(0) ? s[33] : -s[33]);
-        const gic_real t21 = (s[31] > GIC_R(0) ? s[34] : -s[34]);
-        const gic_real t22 = m[120] + (m[124] * R(-0.005789999999999998) + m[123] * R(1.3010426069826053e-18));
-        const gic_real t23 = m[121] + (m[127] * R(-0.005789999999999998) + m[126] * R(1.3010426069826053e-18));
-        const gic_real t24 = m[122] + (m[130] * R(-0.005789999999999998) + m[129] * R(1.3010426069826053e-18));
-        const gic_real t25 = (s[85] > GIC_R(0) ? s[85] : -s[85]);
-        const gic_real t26 = (s[85] > GIC_R(0) ? s[86] : -s[86]);
-        const gic_real t27 = (s[85] > GIC_R(0) ? s[87] : -s[87]);
-        const gic_real t28 = (s[85] > GIC_R(0) ? s[88] : -s[88]);
-        const gic_real t29 = m[90] + (m[94] * R(0.009160000000000003) + m[93] * R(0.023080000000000007));
-        const gic_real t30 = m[91] + (m[97] * R(0.009160000000000003) + m[96] * R(0.023080000000000007));
-        const gic_real t31 = m[92] + (m[100] * R(0.009160000000000003) + m[99] * R(0.023080000000000007));
-        const gic_real t32 = (s[78] > GIC_R(0) ? s[78] : -s[78]);
-        const gic_real t33 = (s[78] > GIC_R(0) ? s[79] : -s[79]);
-        const gic_real t34 = (s[78] > GIC_R(0) ? s[80] : -s[80]);
-        const gic_real t35 = (s[78] > GIC_R(0) ? s[81] : -s[81]);
-        const gic_real t36 = m[180] + (m[184] * R(-4.336808689942018e-19) + m[183] * R(0.005790000000000001));
-        const gic_real t37 = m[181] + (m[187] * R(-4.336808689942018e-19) + m[186] * R(0.005790000000000001));
-        const gic_real t38 = m[182] + (m[190] * R(-4.336808689942018e-19) + m[189] * R(0.005790000000000001));
-        const gic_real t39 = (s[148] > GIC_R(0) ? s[148] : -s[148]);
-        const gic_real t40 = (s[148] > GIC_R(0) ? s[149] : -s[149]);
-        const gic_real t41 = (s[148] > GIC_R(0) ? s[150] : -s[150]);
-        const gic_real t42 = (s[148] > GIC_R(0) ? s[151] : -s[151]);
-        const gic_real t43 = m[150] + (m[154] * R(-0.01228) + m[153] * R(-0.004489999999999999));
-        const gic_real t44 = m[151] + (m[157] * R(-0.01228) + m[156] * R(-0.004489999999999999));
-        const gic_real t45 = m[152] + (m[160] * R(-0.01228) + m[159] * R(-0.004489999999999999));
-        const gic_real t46 = (s[141] > GIC_R(0) ? s[141] : -s[141]);
-        const gic_real t47 = (s[141] > GIC_R(0) ? s[142] : -s[142]);
-        const gic_real t48 = (s[141] > GIC_R(0) ? s[143] : -s[143]);
-        const gic_real t49 = (s[141] > GIC_R(0) ? s[144] : -s[144]);
+        const gic_real t1 = R(1.0) + (m[11] - (m[3] + m[7]));
+        const gic_real t2 = R(1.0) + (m[7] - (m[3] + m[11]));
+        const gic_real t3 = m[7] + m[11];
+        const gic_real t4 = R(1.0) + (m[3] - t3);
+        const gic_real t5 = R(1.0) + (m[3] + t3);
+        const gic_real t6 = GIC_MAX(t4, t5);
+        const gic_real t7 = GIC_MAX(t2, t6);
+        const gic_real t8 = t1 - t7;
+        const gic_real t9 = m[6] - m[4];
+        const gic_real t10 = t2 - t6;
+        const gic_real t11 = m[5] - m[9];
+        const gic_real t12 = t4 - t5;
+        const gic_real t13 = m[10] - m[8];
+        const gic_real t14 = (t8 > GIC_R(0) ? t9 : (t10 > GIC_R(0) ? t11 : (t12 > GIC_R(0) ? t13 : t5)));
+        const gic_real t15 = R(0.5) / GIC_SQRT(GIC_MAX(t1, t7));
+        const gic_real t16 = t14 * t15;
+        const gic_real t17 = m[5] + m[9];
+        const gic_real t18 = m[4] + m[6];
+        const gic_real t19 = (t8 > GIC_R(0) ? t17 : (t10 > GIC_R(0) ? t18 : (t12 > GIC_R(0) ? t4 : t13)));
+        const gic_real t20 = t19 * t15;
+        const gic_real t21 = m[8] + m[10];
+        const gic_real t22 = (t8 > GIC_R(0) ? t21 : (t10 > GIC_R(0) ? t2 : (t12 > GIC_R(0) ? t18 : t11)));
+        const gic_real t23 = t22 * t15;
+        const gic_real t24 = (t8 > GIC_R(0) ? t1 : (t10 > GIC_R(0) ? t21 : (t12 > GIC_R(0) ? t17 : t9)));
+        const gic_real t25 = t24 * t15;
+        const gic_real t26 = R(1.0) + (m[41] - (m[33] + m[37]));
+        const gic_real t27 = R(1.0) + (m[37] - (m[33] + m[41]));
+        const gic_real t28 = m[37] + m[41];
+        const gic_real t29 = R(1.0) + (m[33] - t28);
+        const gic_real t30 = R(1.0) + (m[33] + t28);
+        const gic_real t31 = GIC_MAX(t29, t30);
+        const gic_real t32 = GIC_MAX(t27, t31);
+        const gic_real t33 = t26 - t32;
+        const gic_real t34 = m[36] - m[34];
+        const gic_real t35 = t27 - t31;
+        const gic_real t36 = m[35] - m[39];
+        const gic_real t37 = t29 - t30;
+        const gic_real t38 = m[40] - m[38];
+        const gic_real t39 = (t33 > GIC_R(0) ? t34 : (t35 > GIC_R(0) ? t36 : (t37 > GIC_R(0) ? t38 : t30)));
+        const gic_real t40 = R(0.5) / GIC_SQRT(GIC_MAX(t26, t32));
+        const gic_real t41 = t39 * t40;
+        const gic_real t42 = m[35] + m[39];
+        const gic_real t43 = m[34] + m[36];
+        const gic_real t44 = (t33 > GIC_R(0) ? t42 : (t35 > GIC_R(0) ? t43 : (t37 > GIC_R(0) ? t29 : t38)));
+        const gic_real t45 = t44 * t40;
+        const gic_real t46 = m[38] + m[40];
+        const gic_real t47 = (t33 > GIC_R(0) ? t46 : (t35 > GIC_R(0) ? t27 : (t37 > GIC_R(0) ? t43 : t36)));
+        const gic_real t48 = t47 * t40;
+        const gic_real t49 = (t33 > GIC_R(0) ? t26 : (t35 > GIC_R(0) ? t46 : (t37 > GIC_R(0) ? t42 : t34)));
+        const gic_real t50 = t49 * t40;
+        const gic_real t51 = R(1.0) + (m[71] - (m[63] + m[67]));
+        const gic_real t52 = R(1.0) + (m[67] - (m[63] + m[71]));
+        const gic_real t53 = m[67] + m[71];
+        const gic_real t54 = R(1.0) + (m[63] - t53);
+        const gic_real t55 = R(1.0) + (m[63] + t53);
+        const gic_real t56 = GIC_MAX(t54, t55);
+        const gic_real t57 = GIC_MAX(t52, t56);
+        const gic_real t58 = t51 - t57;
+        const gic_real t59 = m[66] - m[64];
+        const gic_real t60 = t52 - t56;
+        const gic_real t61 = m[65] - m[69];
+        const gic_real t62 = t54 - t55;
+        const gic_real t63 = m[70] - m[68];
+        const gic_real t64 = (t58 > GIC_R(0) ? t59 : (t60 > GIC_R(0) ? t61 : (t62 > GIC_R(0) ? t63 : t55)));
+        const gic_real t65 = R(0.5) / GIC_SQRT(GIC_MAX(t51, t57));
+        const gic_real t66 = t64 * t65;
+        const gic_real t67 = m[65] + m[69];
+        const gic_real t68 = m[64] + m[66];
+        const gic_real t69 = (t58 > GIC_R(0) ? t67 : (t60 > GIC_R(0) ? t68 : (t62 > GIC_R(0) ? t54 : t63)));
+        const gic_real t70 = t69 * t65;
+        const gic_real t71 = m[68] + m[70];
+        const gic_real t72 = (t58 > GIC_R(0) ? t71 : (t60 > GIC_R(0) ? t52 : (t62 > GIC_R(0) ? t68 : t61)));
+        const gic_real t73 = t72 * t65;
+        const gic_real t74 = (t58 > GIC_R(0) ? t51 : (t60 > GIC_R(0) ? t71 : (t62 > GIC_R(0) ? t67 : t59)));
+        const gic_real t75 = t74 * t65;
+        const gic_real t76 = R(1.0) + (m[131] - (m[123] + m[127]));
+        const gic_real t77 = R(1.0) + (m[127] - (m[123] + m[131]));
+        const gic_real t78 = m[127] + m[131];
+        const gic_real t79 = R(1.0) + (m[123] - t78);
+        const gic_real t80 = R(1.0) + (m[123] + t78);
+        const gic_real t81 = GIC_MAX(t79, t80);
+        const gic_real t82 = GIC_MAX(t77, t81);
+        const gic_real t83 = t76 - t82;
+        const gic_real t84 = m[126] - m[124];
+        const gic_real t85 = t77 - t81;
+        const gic_real t86 = m[125] - m[129];
+        const gic_real t87 = t79 - t80;
+        const gic_real t88 = m[130] - m[128];
+        const gic_real t89 = (t83 > GIC_R(0) ? t84 : (t85 > GIC_R(0) ? t86 : (t87 > GIC_R(0) ? t88 : t80)));
+        const gic_real t90 = R(0.5) / GIC_SQRT(GIC_MAX(t76, t82));
+        const gic_real t91 = t89 * t90;
+        const gic_real t92 = m[125] + m[129];
+        const gic_real t93 = m[124] + m[126];
+        const gic_real t94 = (t83 > GIC_R(0) ? t92 : (t85 > GIC_R(0) ? t93 : (t87 > GIC_R(0) ? t79 : t88)));
+        const gic_real t95 = t94 * t90;
+        const gic_real t96 = m[128] + m[130];
+        const gic_real t97 = (t83 > GIC_R(0) ? t96 : (t85 > GIC_R(0) ? t77 : (t87 > GIC_R(0) ? t93 : t86)));
+        const gic_real t98 = t97 * t90;
+        const gic_real t99 = (t83 > GIC_R(0) ? t76 : (t85 > GIC_R(0) ? t96 : (t87 > GIC_R(0) ? t92 : t84)));
+        const gic_real t100 = t99 * t90;
+        const gic_real t101 = R(1.0) + (m[101] - (m[93] + m[97]));
+        const gic_real t102 = R(1.0) + (m[97] - (m[93] + m[101]));
+        const gic_real t103 = m[97] + m[101];
+        const gic_real t104 = R(1.0) + (m[93] - t103);
+        const gic_real t105 = R(1.0) + (m[93] + t103);
+        const gic_real t106 = GIC_MAX(t104, t105);
+        const gic_real t107 = GIC_MAX(t102, t106);
+        const gic_real t108 = t101 - t107;
+        const gic_real t109 = m[96] - m[94];
+        const gic_real t110 = t102 - t106;
+        const gic_real t111 = m[95] - m[99];
+        const gic_real t112 = t104 - t105;
+        const gic_real t113 = m[100] - m[98];
+        const gic_real t114 = (t108 > GIC_R(0) ? t109 : (t110 > GIC_R(0) ? t111 : (t112 > GIC_R(0) ? t113 : t105)));
+        const gic_real t115 = R(0.5) / GIC_SQRT(GIC_MAX(t101, t107));
+        const gic_real t116 = t114 * t115;
+        const gic_real t117 = m[95] + m[99];
+        const gic_real t118 = m[94] + m[96];
+        const gic_real t119 = (t108 > GIC_R(0) ? t117 : (t110 > GIC_R(0) ? t118 : (t112 > GIC_R(0) ? t104 : t113)));
+        const gic_real t120 = t119 * t115;
+        const gic_real t121 = m[98] + m[100];
+        const gic_real t122 = (t108 > GIC_R(0) ? t121 : (t110 > GIC_R(0) ? t102 : (t112 > GIC_R(0) ? t118 : t111)));
+        const gic_real t123 = t122 * t115;
+        const gic_real t124 = (t108 > GIC_R(0) ? t101 : (t110 > GIC_R(0) ? t121 : (t112 > GIC_R(0) ? t117 : t109)));
+        const gic_real t125 = t124 * t115;
+        const gic_real t126 = R(1.0) + (m[191] - (m[183] + m[187]));
+        const gic_real t127 = R(1.0) + (m[187] - (m[183] + m[191]));
+        const gic_real t128 = m[187] + m[191];
+        const gic_real t129 = R(1.0) + (m[183] - t128);
+        const gic_real t130 = R(1.0) + (m[183] + t128);
+        const gic_real t131 = GIC_MAX(t129, t130);
+        const gic_real t132 = GIC_MAX(t127, t131);
+        const gic_real t133 = t126 - t132;
+        const gic_real t134 = m[186] - m[184];
+        const gic_real t135 = t127 - t131;
+        const gic_real t136 = m[185] - m[189];
+        const gic_real t137 = t129 - t130;
+        const gic_real t138 = m[190] - m[188];
+        const gic_real t139 = (t133 > GIC_R(0) ? t134 : (t135 > GIC_R(0) ? t136 : (t137 > GIC_R(0) ? t138 : t130)));
+        const gic_real t140 = R(0.5) / GIC_SQRT(GIC_MAX(t126, t132));
+        const gic_real t141 = t139 * t140;
+        const gic_real t142 = m[185] + m[189];
+        const gic_real t143 = m[184] + m[186];
+        const gic_real t144 = (t133 > GIC_R(0) ? t142 : (t135 > GIC_R(0) ? t143 : (t137 > GIC_R(0) ? t129 : t138)));
+        const gic_real t145 = t144 * t140;
+        const gic_real t146 = m[188] + m[190];
+        const gic_real t147 = (t133 > GIC_R(0) ? t146 : (t135 > GIC_R(0) ? t127 : (t137 > GIC_R(0) ? t143 : t136)));
+        const gic_real t148 = t147 * t140;
+        const gic_real t149 = (t133 > GIC_R(0) ? t126 : (t135 > GIC_R(0) ? t146 : (t137 > GIC_R(0) ? t142 : t134)));
+        const gic_real t150 = t149 * t140;
+        const gic_real t151 = R(1.0) + (m[161] - (m[153] + m[157]));
+        const gic_real t152 = R(1.0) + (m[157] - (m[153] + m[161]));
+        const gic_real t153 = m[157] + m[161];
+        const gic_real t154 = R(1.0) + (m[153] - t153);
+        const gic_real t155 = R(1.0) + (m[153] + t153);
+        const gic_real t156 = GIC_MAX(t154, t155);
+        const gic_real t157 = GIC_MAX(t152, t156);
+        const gic_real t158 = t151 - t157;
+        const gic_real t159 = m[156] - m[154];
+        const gic_real t160 = t152 - t156;
+        const gic_real t161 = m[155] - m[159];
+        const gic_real t162 = t154 - t155;
+        const gic_real t163 = m[160] - m[158];
+        const gic_real t164 = (t158 > GIC_R(0) ? t159 : (t160 > GIC_R(0) ? t161 : (t162 > GIC_R(0) ? t163 : t155)));
+        const gic_real t165 = R(0.5) / GIC_SQRT(GIC_MAX(t151, t157));
+        const gic_real t166 = t164 * t165;
+        const gic_real t167 = m[155] + m[159];
+        const gic_real t168 = m[154] + m[156];
+        const gic_real t169 = (t158 > GIC_R(0) ? t167 : (t160 > GIC_R(0) ? t168 : (t162 > GIC_R(0) ? t154 : t163)));
+        const gic_real t170 = t169 * t165;
+        const gic_real t171 = m[158] + m[160];
+        const gic_real t172 = (t158 > GIC_R(0) ? t171 : (t160 > GIC_R(0) ? t152 : (t162 > GIC_R(0) ? t168 : t161)));
+        const gic_real t173 = t172 * t165;
+        const gic_real t174 = (t158 > GIC_R(0) ? t151 : (t160 > GIC_R(0) ? t171 : (t162 > GIC_R(0) ? t167 : t159)));
+        const gic_real t175 = t174 * t165;
+        const gic_real t176 = m[0] + (m[4] * R(-6.776263578034403e-21) + m[3] * R(0.00092));
+        const gic_real t177 = m[1] + (m[7] * R(-6.776263578034403e-21) + m[6] * R(0.00092));
+        const gic_real t178 = m[2] + (m[10] * R(-6.776263578034403e-21) + m[9] * R(0.00092));
+        const gic_real t179 = (t16 > GIC_R(0) ? t16 : -t16);
+        const gic_real t180 = (t16 > GIC_R(0) ? t20 : -t20);
+        const gic_real t181 = (t16 > GIC_R(0) ? t23 : -t23);
+        const gic_real t182 = (t16 > GIC_R(0) ? t25 : -t25);
+        const gic_real t183 = m[30] + m[33] * R(-0.0115);
+        const gic_real t184 = m[31] + m[36] * R(-0.0115);
+        const gic_real t185 = m[32] + m[39] * R(-0.0115);
+        const gic_real t186 = (t41 > GIC_R(0) ? t41 : -t41);
+        const gic_real t187 = (t41 > GIC_R(0) ? t45 : -t45);
+        const gic_real t188 = (t41 > GIC_R(0) ? t48 : -t48);
+        const gic_real t189 = (t41 > GIC_R(0) ? t50 : -t50);
+        const gic_real t190 = m[60] + (m[64] * R(-0.018740000000000003) + m[63] * R(0.010430000000000002));
+        const gic_real t191 = m[61] + (m[67] * R(-0.018740000000000003) + m[66] * R(0.010430000000000002));
+        const gic_real t192 = m[62] + (m[70] * R(-0.018740000000000003) + m[69] * R(0.010430000000000002));
+        const gic_real t193 = (t66 > GIC_R(0) ? t66 : -t66);
+        const gic_real t194 = (t66 > GIC_R(0) ? t70 : -t70);
+        const gic_real t195 = (t66 > GIC_R(0) ? t73 : -t73);
+        const gic_real t196 = (t66 > GIC_R(0) ? t75 : -t75);
+        const gic_real t197 = m[120] + (m[124] * R(-0.005789999999999998) + m[123] * R(1.3010426069826053e-18));
+        const gic_real t198 = m[121] + (m[127] * R(-0.005789999999999998) + m[126] * R(1.3010426069826053e-18));
+        const gic_real t199 = m[122] + (m[130] * R(-0.005789999999999998) + m[129] * R(1.3010426069826053e-18));
+        const gic_real t200 = (t91 > GIC_R(0) ? t91 : -t91);
+        const gic_real t201 = (t91 > GIC_R(0) ? t95 : -t95);
+        const gic_real t202 = (t91 > GIC_R(0) ? t98 : -t98);
+        const gic_real t203 = (t91 > GIC_R(0) ? t100 : -t100);
+        const gic_real t204 = m[90] + (m[94] * R(0.009160000000000003) + m[93] * R(0.023080000000000007));
+        const gic_real t205 = m[91] + (m[97] * R(0.009160000000000003) + m[96] * R(0.023080000000000007));
+        const gic_real t206 = m[92] + (m[100] * R(0.009160000000000003) + m[99] * R(0.023080000000000007));
+        const gic_real t207 = (t116 > GIC_R(0) ? t116 : -t116);
+        const gic_real t208 = (t116 > GIC_R(0) ? t120 : -t120);
+        const gic_real t209 = (t116 > GIC_R(0) ? t123 : -t123);
+        const gic_real t210 = (t116 > GIC_R(0) ? t125 : -t125);
+        const gic_real t211 = m[180] + (m[184] * R(-4.336808689942018e-19) + m[183] * R(0.005790000000000001));
+        const gic_real t212 = m[181] + (m[187] * R(-4.336808689942018e-19) + m[186] * R(0.005790000000000001));
+        const gic_real t213 = m[182] + (m[190] * R(-4.336808689942018e-19) + m[189] * R(0.005790000000000001));
+        const gic_real t214 = (t141 > GIC_R(0) ? t141 : -t141);
+        const gic_real t215 = (t141 > GIC_R(0) ? t145 : -t145);
+        const gic_real t216 = (t141 > GIC_R(0) ? t148 : -t148);
+        const gic_real t217 = (t141 > GIC_R(0) ? t150 : -t150);
+        const gic_real t218 = m[150] + (m[154] * R(-0.01228) + m[153] * R(-0.004489999999999999));
+        const gic_real t219 = m[151] + (m[157] * R(-0.01228) + m[156] * R(-0.004489999999999999));
+        const gic_real t220 = m[152] + (m[160] * R(-0.01228) + m[159] * R(-0.004489999999999999));
+        const gic_real t221 = (t166 > GIC_R(0) ? t166 : -t166);
+        const gic_real t222 = (t166 > GIC_R(0) ? t170 : -t170);
+        const gic_real t223 = (t166 > GIC_R(0) ? t173 : -t173);
+        const gic_real t224 = (t166 > GIC_R(0) ? t175 : -t175);
         pose[0] = R(0.0);
         pose[1] = R(0.0);
         pose[2] = R(0.0);
@@ -2611,55 +2490,55 @@ static void andrews_place(const andrews *self, const gic_real *y, const gic_real
         pose[4] = R(0.0);
         pose[5] = R(0.0);
         pose[6] = R(0.0);
-        pose[7] = t1;
-        pose[8] = t2;
-        pose[9] = t3;
-        pose[10] = t4;
-        pose[11] = t5;
-        pose[12] = t6;
-        pose[13] = t7;
-        pose[14] = t8;
-        pose[15] = t9;
-        pose[16] = t10;
-        pose[17] = t11;
-        pose[18] = t12;
-        pose[19] = t13;
-        pose[20] = t14;
-        pose[21] = t15;
-        pose[22] = t16;
-        pose[23] = t17;
-        pose[24] = t18;
-        pose[25] = t19;
-        pose[26] = t20;
-        pose[27] = t21;
-        pose[28] = t22;
-        pose[29] = t23;
-        pose[30] = t24;
-        pose[31] = t25;
-        pose[32] = t26;
-        pose[33] = t27;
-        pose[34] = t28;
-        pose[35] = t29;
-        pose[36] = t30;
-        pose[37] = t31;
-        pose[38] = t32;
-        pose[39] = t33;
-        pose[40] = t34;
-        pose[41] = t35;
-        pose[42] = t36;
-        pose[43] = t37;
-        pose[44] = t38;
-        pose[45] = t39;
-        pose[46] = t40;
-        pose[47] = t41;
-        pose[48] = t42;
-        pose[49] = t43;
-        pose[50] = t44;
-        pose[51] = t45;
-        pose[52] = t46;
-        pose[53] = t47;
-        pose[54] = t48;
-        pose[55] = t49;
+        pose[7] = t176;
+        pose[8] = t177;
+        pose[9] = t178;
+        pose[10] = t179;
+        pose[11] = t180;
+        pose[12] = t181;
+        pose[13] = t182;
+        pose[14] = t183;
+        pose[15] = t184;
+        pose[16] = t185;
+        pose[17] = t186;
+        pose[18] = t187;
+        pose[19] = t188;
+        pose[20] = t189;
+        pose[21] = t190;
+        pose[22] = t191;
+        pose[23] = t192;
+        pose[24] = t193;
+        pose[25] = t194;
+        pose[26] = t195;
+        pose[27] = t196;
+        pose[28] = t197;
+        pose[29] = t198;
+        pose[30] = t199;
+        pose[31] = t200;
+        pose[32] = t201;
+        pose[33] = t202;
+        pose[34] = t203;
+        pose[35] = t204;
+        pose[36] = t205;
+        pose[37] = t206;
+        pose[38] = t207;
+        pose[39] = t208;
+        pose[40] = t209;
+        pose[41] = t210;
+        pose[42] = t211;
+        pose[43] = t212;
+        pose[44] = t213;
+        pose[45] = t214;
+        pose[46] = t215;
+        pose[47] = t216;
+        pose[48] = t217;
+        pose[49] = t218;
+        pose[50] = t219;
+        pose[51] = t220;
+        pose[52] = t221;
+        pose[53] = t222;
+        pose[54] = t223;
+        pose[55] = t224;
     }
 }
 
@@ -2860,18 +2739,17 @@ static const char *const andrews_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
 static const struct {
     int place;
     gic_real q[7];
 } andrews_design[] = {
-    {1, {R(-1.0842021724855044e-19), R(6.776263578034403e-21), R(0.0), R(0.9995239622458657), R(-0.0), R(-0.0), R(-0.03085204849479701)}}, /* K1 */
-    {21, {R(0.006986674115451445), R(-0.00043172306456889544), R(0.0), R(0.9995239622458657), R(-0.0), R(-0.0), R(-0.03085204849479701)}}, /* K2 */
-    {28, {R(-0.03635000000000001), R(0.03273000000000001), R(0.0), R(0.9742017304021154), R(0.0), R(0.0), R(0.22567895001865834)}}, /* K3 */
-    {75, {R(-0.06934000000000001), R(-0.0022700000000000116), R(0.0), R(0.9704560533208088), R(0.0), R(0.0), R(0.24127794879142972)}}, /* K5 */
-    {82, {R(-0.03399720388583998), R(0.01646197167499768), R(0.0), R(0.9376406891940403), R(0.0), R(0.0), R(0.34760600968298155)}}, /* K4 */
-    {138, {R(-0.06934), R(-0.002270000000000001), R(0.0), R(0.8166154899056267), R(0.0), R(0.0), R(0.5771820697545907)}}, /* K7 */
-    {145, {R(-0.0316331345074089), R(-0.015618868668304538), R(0.0), R(0.8756870468531347), R(0.0), R(0.0), R(0.48287906971998273)}}, /* K6 */
+    {1, {R(0.006986674115451445), R(-0.00043172306456889544), R(0.0), R(0.9995239622458657), R(-0.0), R(-0.0), R(-0.03085204849479701)}}, /* K2 */
+    {8, {R(-0.03635000000000001), R(0.03273000000000001), R(0.0), R(0.9742017304021154), R(0.0), R(0.0), R(0.22567895001865834)}}, /* K3 */
+    {55, {R(-0.06934000000000001), R(-0.0022700000000000116), R(0.0), R(0.9704560533208088), R(0.0), R(0.0), R(0.24127794879142972)}}, /* K5 */
+    {62, {R(-0.03399720388583998), R(0.01646197167499768), R(0.0), R(0.9376406891940403), R(0.0), R(0.0), R(0.34760600968298155)}}, /* K4 */
+    {118, {R(-0.06934), R(-0.002270000000000001), R(0.0), R(0.8166154899056267), R(0.0), R(0.0), R(0.5771820697545907)}}, /* K7 */
+    {125, {R(-0.0316331345074089), R(-0.015618868668304538), R(0.0), R(0.8756870468531347), R(0.0), R(0.0), R(0.48287906971998273)}}, /* K6 */
 };
 
 static const gic_real andrews_initial[ANDREWS_STATE_ROOM] = {
@@ -2908,7 +2786,7 @@ int andrews_setup_with(andrews *self, const gic_real *parameter)
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < ANDREWS_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = andrews_coordinate_design[i];
-    for (body = 0; body < ANDREWS_BODIES - 1; ++body)
+    for (body = 0; body < ANDREWS_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][andrews_design[body].place + i] = andrews_design[body].q[i];
     status = andrews_orient(self, self->state, e, turn);
@@ -3535,19 +3413,19 @@ static GIC_COLD gic_real andrews_residual(const andrews *self)
     (void)links;
     (void)one;
     links.x[0] = start[0];
-    one = andrews_residual_K1(andrews_k_K1[0], &links, start + 1);
+    one = andrews_residual_K1(andrews_k_K1[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);
     links.known[0] = self->motion + 0;
     links.x[0] = start[0];
-    one = andrews_residual_K2_K3(andrews_k_K2_K3[0], &links, start + 21);
+    one = andrews_residual_K2_K3(andrews_k_K2_K3[0], &links, self->motion + 30);
     largest = GIC_MAX(largest, one);
     links.known[0] = self->motion + 60;
     links.x[0] = start[0];
-    one = andrews_residual_K5_K4(andrews_k_K5_K4[0], &links, start + 75);
+    one = andrews_residual_K5_K4(andrews_k_K5_K4[0], &links, self->motion + 90);
     largest = GIC_MAX(largest, one);
     links.known[0] = self->motion + 60;
     links.x[0] = start[0];
-    one = andrews_residual_K5_K4(andrews_k_K5_K4[1], &links, start + 138);
+    one = andrews_residual_K5_K4(andrews_k_K5_K4[1], &links, self->motion + 150);
     largest = GIC_MAX(largest, one);
     return largest;
 }

@@ -40,14 +40,14 @@
  *         subsets        3, 4
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'K1' (1 times)                        187       268       3      0         4
- *   subset 'K2_K3' (1 times)                     686       863       6      0         0
- *   subset 'K5_K4' (2 times)                     736       921       6      0         0
- *   forces and equations of motion                28        28       2      1         0
- *   all together                                2373      3001      23      1         4
- *   outputs, when asked for                      241       405       0      1        18
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'K1' (1 times, closed form)                        20        56       2      1         2
+ *   subset 'K2_K3' (1 times)                                 686       863       6      0         0
+ *   subset 'K5_K4' (2 times)                                 736       921       6      0         0
+ *   forces and equations of motion                            28        28       2      1         0
+ *   all together                                            2206      2789      22      2         2
+ *   outputs, when asked for                                  241       405       0      1        18
  */
 #ifndef ANDREWS_H
 #define ANDREWS_H
@@ -77,6 +77,7 @@ enum {
     ANDREWS_UNKNOWNS = 1,
     ANDREWS_SUBSETS = 4,
     ANDREWS_BODIES = 8,
+    ANDREWS_FOLLOWED = 6,
     ANDREWS_WHEELS = 0,
     ANDREWS_TWIST = 0,
     ANDREWS_STATE_ROOM = 2,
@@ -87,7 +88,7 @@ enum {
     ANDREWS_DISCRETE_ROOM = 1,
     ANDREWS_COORDINATE_ROOM = 1,
     ANDREWS_UNKNOWN_ROOM = 1,
-    ANDREWS_START_ROOM = 201,
+    ANDREWS_START_ROOM = 181,
     ANDREWS_MOTION_ROOM = 210,
     ANDREWS_INERTIA_ROOM = 92,
     ANDREWS_MULTIPLIER_ROOM = 1,

@@ -60,15 +60,15 @@
  *         subsets        7, 8
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      137       164       2      0         0
- *   subset 'lca_f_l' (2 times)                   291       362       3      0         0
- *   subset 'wheel_r_l' (2 times)                 594       673       6      0         0
- *   subset 'wheel_f_l' (2 times)                 534       606       3      0         0
- *   forces and equations of motion               720       665      11      0         4
- *   all together                                3695      4111      37      0         4
- *   outputs, when asked for                      681       796       0      0        13
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
+ *   subset 'lca_f_l' (2 times, closed form)                   68       109       1      1         0
+ *   subset 'wheel_r_l' (2 times)                             594       673       6      0         0
+ *   subset 'wheel_f_l' (2 times, closed form)                380       470       5      2         0
+ *   forces and equations of motion                           720       665      11      0         4
+ *   all together                                            2819      3194      35      6         4
+ *   outputs, when asked for                                  681       796       0      0        13
  */
 #ifndef FIVE_LINK_H
 #define FIVE_LINK_H
@@ -98,6 +98,7 @@ enum {
     FIVE_LINK_UNKNOWNS = 11,
     FIVE_LINK_SUBSETS = 8,
     FIVE_LINK_BODIES = 8,
+    FIVE_LINK_FOLLOWED = 2,
     FIVE_LINK_WHEELS = 4,
     FIVE_LINK_TWIST = 12,
     FIVE_LINK_STATE_ROOM = 23,
@@ -108,7 +109,7 @@ enum {
     FIVE_LINK_DISCRETE_ROOM = 1,
     FIVE_LINK_COORDINATE_ROOM = 5,
     FIVE_LINK_UNKNOWN_ROOM = 11,
-    FIVE_LINK_START_ROOM = 229,
+    FIVE_LINK_START_ROOM = 97,
     FIVE_LINK_MOTION_ROOM = 222,
     FIVE_LINK_INERTIA_ROOM = 179,
     FIVE_LINK_MULTIPLIER_ROOM = 1,

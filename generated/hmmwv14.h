@@ -68,15 +68,15 @@
  *         subsets        9, 10
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      137       164       2      0         0
- *   subset 'lca_f_l' (4 times)                   291       362       3      0         0
- *   subset 'uca_f_l_wheel_f_l' (2 times)         931      1033       6      0         0
- *   subset 'uca_r_l_wheel_r_l' (2 times)         785       866       6      0         0
- *   forces and equations of motion               964       859      15      4         4
- *   all together                                5697      6269      53      4         4
- *   outputs, when asked for                     1132      1370       4      4        19
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
+ *   subset 'lca_f_l' (4 times, closed form)                   68       109       1      1         0
+ *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        599       717       6      2         0
+ *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        477       575       6      2         0
+ *   forces and equations of motion                           964       859      15      4         4
+ *   all together                                            3403      3904      43     16         4
+ *   outputs, when asked for                                 1132      1370       4      4        19
  */
 #ifndef HMMWV14_H
 #define HMMWV14_H
@@ -106,6 +106,7 @@ enum {
     HMMWV14_UNKNOWNS = 11,
     HMMWV14_SUBSETS = 10,
     HMMWV14_BODIES = 14,
+    HMMWV14_FOLLOWED = 0,
     HMMWV14_WHEELS = 4,
     HMMWV14_TWIST = 12,
     HMMWV14_STATE_ROOM = 23,
@@ -116,7 +117,7 @@ enum {
     HMMWV14_DISCRETE_ROOM = 1,
     HMMWV14_COORDINATE_ROOM = 5,
     HMMWV14_UNKNOWN_ROOM = 11,
-    HMMWV14_START_ROOM = 351,
+    HMMWV14_START_ROOM = 5,
     HMMWV14_MOTION_ROOM = 414,
     HMMWV14_INERTIA_ROOM = 225,
     HMMWV14_MULTIPLIER_ROOM = 1,

@@ -66,15 +66,15 @@
  *         subsets        9, 10
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      137       164       2      0         0
- *   subset 'lca_f_l' (4 times)                   291       362       3      0         0
- *   subset 'wheel_f_l' (2 times)                 534       606       3      0         0
- *   subset 'wheel_r_l' (2 times)                 447       538       3      0         0
- *   forces and equations of motion               984       859      15      4        24
- *   all together                                4247      4759      41      4        24
- *   outputs, when asked for                      889      1010       4      4        27
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
+ *   subset 'lca_f_l' (4 times, closed form)                   68       109       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                380       470       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                295       386       4      1         0
+ *   forces and equations of motion                           984       859      15      4        24
+ *   all together                                            2621      3032      37     14        24
+ *   outputs, when asked for                                  889      1010       4      4        27
  */
 #include "hmmwv_full.h"
 
@@ -162,1312 +162,667 @@ static const gic_real hmmwv_full_k_rack[1][1] = {
 };
 
 /* Class 'rack': 6 unknowns of rack.
- * start: pose 7 numbers a body, S from 7, factors from 13. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
+ * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
 static int hmmwv_full_solve_rack(hmmwv_full *self, const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
-    gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    const gic_real *const change = links->change;
     const gic_real *const turn = links->turn;
-    const gic_real *const s = old + 7; /* unit velocities at the start */
-    const gic_real *const f = old + 13; /* factors at the start */
-    gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
-    const gic_real enough = GIC_ENOUGH(R(2.072648852345));
-    int i;
-    (void)k, (void)inertia;
-    for (i = 0; i < 7; ++i)
-        q[i] = old[i];
-    if (!links->cold) {
-        /* predict: the old pose moved by its unit velocities times the change of the coordinates */
-        {
-            const gic_real t1 = change[0] * s[3];
-            const gic_real t2 = change[0] * s[4];
-            const gic_real t3 = change[0] * s[5];
-            const gic_real t4 = change[0] * s[2];
-            const gic_real t5 = t4 * R(0.5);
-            const gic_real t6 = change[0] * s[1];
-            const gic_real t7 = t6 * R(0.5);
-            const gic_real t8 = change[0] * s[0];
-            const gic_real t9 = t8 * R(0.5);
-            const gic_real t10 = q[3] - (q[6] * t5 + (q[5] * t7 + q[4] * t9));
-            const gic_real t11 = q[6] + (q[5] * t9 - q[4] * t7 + q[3] * t5);
-            const gic_real t12 = q[5] + (q[4] * t5 - q[6] * t9 + q[3] * t7);
-            const gic_real t13 = q[4] + (q[6] * t7 - q[5] * t5 + q[3] * t9);
-            const gic_real t14 = t11 * t11 + (t12 * t12 + t13 * t13) + t10 * t10;
-            const gic_real t15 = R(1.5) - R(0.5) * t14;
-            const gic_real t16 = t4 * t4 + (t6 * t6 + t8 * t8) + (t3 * t3 + (t2 * t2 + t1 * t1));
-            const gic_real t17 = q[0] + t1;
-            const gic_real t18 = q[1] + t2;
-            const gic_real t19 = q[2] + t3;
-            const gic_real t20 = t10 * t15;
-            const gic_real t21 = t13 * t15;
-            const gic_real t22 = t12 * t15;
-            const gic_real t23 = t11 * t15;
-            q[0] = t17;
-            q[1] = t18;
-            q[2] = t19;
-            q[3] = t20;
-            q[4] = t21;
-            q[5] = t22;
-            q[6] = t23;
-            reach = t16;
-        }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding */
-        for (i = 0; i < GIC_CHORDS; ++i) {
-            {
-                const gic_real t1 = R(1.438648) - q[0];
-                const gic_real t2 = x[0] - q[1];
-                const gic_real t3 = R(0.05422899999999997) - q[2];
-                const gic_real t4 = q[6] + q[6];
-                const gic_real t5 = q[4] + q[4];
-                const gic_real t6 = q[3] * t4 - q[5] * t5;
-                const gic_real t7 = q[5] + q[5];
-                const gic_real t8 = f[4] * (q[4] * t4 + q[3] * t7 - t6 * f[3]);
-                const gic_real t9 = f[0] * (t6 - f[2] * t8);
-                const gic_real t10 = R(0.5) * t9;
-                const gic_real t11 = R(0.5) * t8;
-                const gic_real t12 = f[0] * (q[6] * t7 + q[3] * t5 - f[1] * t8);
-                const gic_real t13 = R(0.5) * t12;
-                const gic_real t14 = q[3] - (q[6] * t10 + (q[5] * t11 + q[4] * t13));
-                const gic_real t15 = q[6] + (q[5] * t13 - q[4] * t11 + q[3] * t10);
-                const gic_real t16 = q[5] + (q[4] * t10 - q[6] * t13 + q[3] * t11);
-                const gic_real t17 = q[4] + (q[6] * t11 - q[5] * t10 + q[3] * t13);
-                const gic_real t18 = t15 * t15 + (t16 * t16 + t17 * t17) + t14 * t14;
-                const gic_real t19 = R(1.5) - R(0.5) * t18;
-                const gic_real t20 = t9 * t9 + (t8 * t8 + t12 * t12) + (t3 * t3 + (t2 * t2 + t1 * t1));
-                const gic_real t21 = q[0] + t1;
-                const gic_real t22 = q[1] + t2;
-                const gic_real t23 = q[2] + t3;
-                const gic_real t24 = t14 * t19;
-                const gic_real t25 = t17 * t19;
-                const gic_real t26 = t16 * t19;
-                const gic_real t27 = t15 * t19;
-                q[0] = t21;
-                q[1] = t22;
-                q[2] = t23;
-                q[3] = t24;
-                q[4] = t25;
-                q[5] = t26;
-                q[6] = t27;
-                step = t20;
-            }
-            ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
-                return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
-                break;
-        }
+    (void)k, (void)start, (void)inertia;
+    {
+        const gic_real t1 = x[0] * R(9.072);
+        const gic_real t2 = x[0] * t1;
+        const gic_real t3 = x[0] * turn[0] - R(1.438648) * turn[1];
+        const gic_real t4 = rate[0] + (rate[0] + (R(1.438648) * turn[2] - R(0.05422899999999997) * turn[0]));
+        const gic_real t5 = turn[1] * t3 - turn[2] * t4;
+        const gic_real t6 = R(9.072) * t5;
+        const gic_real t7 = R(0.05422899999999997) * turn[1] - x[0] * turn[2];
+        const gic_real t8 = turn[2] * t7 - turn[0] * t3;
+        const gic_real t9 = R(9.072) * t8;
+        const gic_real t10 = turn[0] * t4 - turn[1] * t7;
+        const gic_real t11 = R(9.072) * t10;
+        const gic_real t12 = x[0];
+        const gic_real t13 = rate[0];
+        const gic_real t14 = R(1.0) + (t2 + R(0.026678796448751967));
+        const gic_real t15 = R(1.0) + (R(18.776391592025085) + t2);
+        const gic_real t16 = -(t12 * R(13.051414655999999));
+        const gic_real t17 = -(t12 * R(0.4919654879999997));
+        const gic_real t18 = t12 * t11 - R(0.4919654879999997) * t8;
+        const gic_real t19 = R(0.4919654879999997) * t5 - R(13.051414655999999) * t10;
+        const gic_real t20 = R(13.051414655999999) * t8 - t12 * t6;
+        motion[0] = R(1.438648);
+        motion[1] = t12;
+        motion[2] = R(0.05422899999999997);
+        motion[3] = R(1.0);
+        motion[4] = R(0.0);
+        motion[5] = R(0.0);
+        motion[6] = R(0.0);
+        motion[7] = R(1.0);
+        motion[8] = R(0.0);
+        motion[9] = R(0.0);
+        motion[10] = R(0.0);
+        motion[11] = R(1.0);
+        motion[12] = R(0.0);
+        motion[13] = R(0.0);
+        motion[14] = R(0.0);
+        motion[15] = R(0.0);
+        motion[16] = t13;
+        motion[17] = R(0.0);
+        motion[18] = R(0.0);
+        motion[19] = R(0.0);
+        motion[20] = R(0.0);
+        motion[21] = R(0.0);
+        motion[22] = R(0.0);
+        motion[23] = R(0.0);
+        motion[24] = R(0.0);
+        motion[25] = R(0.0);
+        motion[26] = R(0.0);
+        motion[27] = R(0.0);
+        motion[28] = R(1.0);
+        motion[29] = R(0.0);
+        inertia[0] = R(13.051414655999999);
+        inertia[1] = t1;
+        inertia[2] = R(0.4919654879999997);
+        inertia[3] = t14;
+        inertia[4] = R(19.803070388473838);
+        inertia[5] = t15;
+        inertia[6] = t16;
+        inertia[7] = R(-0.7077651653802236);
+        inertia[8] = t17;
+        inertia[9] = t6;
+        inertia[10] = t9;
+        inertia[11] = t11;
+        inertia[12] = t18;
+        inertia[13] = t19;
+        inertia[14] = t20;
+        inertia[15] = R(0.0);
+        inertia[16] = R(9.072);
+        inertia[17] = R(0.0);
+        inertia[18] = R(-0.4919654879999997);
+        inertia[19] = R(0.0);
+        inertia[20] = R(13.051414655999999);
+        inertia[21] = t9;
+        inertia[22] = R(9.072);
     }
-    for (i = 0; i < GIC_PASSES; ++i) {
-        /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
-        {
-            const gic_real t1 = q[4] + q[4];
-            const gic_real t2 = q[4] * t1;
-            const gic_real t3 = q[6] + q[6];
-            const gic_real t4 = t2 + q[6] * t3;
-            const gic_real t5 = t4 - R(1.0);
-            if (!(GIC_FABS(t5) > R(1e-07)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t6 = q[5] + q[5];
-            const gic_real t7 = t2 + q[5] * t6;
-            const gic_real t8 = q[6] * t6;
-            const gic_real t9 = q[3] * t1;
-            const gic_real t10 = t8 + t9;
-            const gic_real t11 = R(1.0) / t5;
-            const gic_real t12 = (t8 - t9) * t11;
-            const gic_real t13 = t7 - R(1.0) - t10 * t12;
-            if (!(GIC_FABS(t13) > R(1e-07)))
-                return GIC_ERROR_SINGULAR;
-            if (!(R(1.0) - t4 > R(0.0)))
-                return GIC_ERROR_SINGULAR;
-            if (!(R(1.0) - t7 > R(0.0)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t14 = R(1.438648) - q[0];
-            const gic_real t15 = q[0] + t14;
-            const gic_real t16 = x[0] - q[1];
-            const gic_real t17 = q[1] + t16;
-            const gic_real t18 = R(0.05422899999999997) - q[2];
-            const gic_real t19 = q[2] + t18;
-            const gic_real t20 = q[3] * t3;
-            const gic_real t21 = q[5] * t1;
-            const gic_real t22 = t20 - t21;
-            const gic_real t23 = R(1.0) / t13;
-            const gic_real t24 = t23 * (q[4] * t3 + q[3] * t6 - t22 * t12);
-            const gic_real t25 = t11 * (t22 - t10 * t24);
-            const gic_real t26 = R(0.5) * t25;
-            const gic_real t27 = R(0.5) * t24;
-            const gic_real t28 = t21 - t20;
-            const gic_real t29 = t11 * (t10 - t28 * t24);
-            const gic_real t30 = R(0.5) * t29;
-            const gic_real t31 = q[3] - (q[6] * t26 + (q[5] * t27 + q[4] * t30));
-            const gic_real t32 = q[6] + (q[5] * t30 - q[4] * t27 + q[3] * t26);
-            const gic_real t33 = q[5] + (q[4] * t26 - q[6] * t30 + q[3] * t27);
-            const gic_real t34 = q[4] + (q[6] * t27 - q[5] * t26 + q[3] * t30);
-            const gic_real t35 = t32 * t32 + (t33 * t33 + t34 * t34) + t31 * t31;
-            const gic_real t36 = R(1.5) - R(0.5) * t35;
-            const gic_real t37 = t31 * t36;
-            const gic_real t38 = t34 * t36;
-            const gic_real t39 = t33 * t36;
-            const gic_real t40 = t32 * t36;
-            const gic_real t41 = t18 * t18 + (t16 * t16 + t14 * t14) + (t25 * t25 + (t24 * t24 + t29 * t29));
-            const gic_real t42 = t39 + t39;
-            const gic_real t43 = t39 * t42;
-            const gic_real t44 = t40 + t40;
-            const gic_real t45 = t40 * t44;
-            const gic_real t46 = t38 + t38;
-            const gic_real t47 = t39 * t46;
-            const gic_real t48 = t37 * t44;
-            const gic_real t49 = t38 * t44;
-            const gic_real t50 = t37 * t42;
-            const gic_real t51 = t38 * t46;
-            const gic_real t52 = t40 * t42;
-            const gic_real t53 = t37 * t46;
-            const gic_real t54 = t15 * R(9.072);
-            const gic_real t55 = t17 * R(9.072);
-            const gic_real t56 = t19 * R(9.072);
-            const gic_real t57 = t17 * t55;
-            const gic_real t58 = t19 * t56;
-            const gic_real t59 = t15 * t54;
-            const gic_real t60 = t17 * turn[0] - t15 * turn[1];
-            const gic_real t61 = rate[0] + (rate[0] + (t15 * turn[2] - t19 * turn[0]));
-            const gic_real t62 = R(9.072) * (turn[1] * t60 - turn[2] * t61);
-            const gic_real t63 = t19 * turn[1] - t17 * turn[2];
-            const gic_real t64 = R(9.072) * (turn[2] * t63 - turn[0] * t60);
-            const gic_real t65 = R(9.072) * (turn[0] * t61 - turn[1] * t63);
-            const gic_real t66 = R(1.0) - (t43 + t45);
-            const gic_real t67 = t47 - t48;
-            const gic_real t68 = t49 + t50;
-            const gic_real t69 = t47 + t48;
-            const gic_real t70 = R(1.0) - (t51 + t45);
-            const gic_real t71 = t52 - t53;
-            const gic_real t72 = t49 - t50;
-            const gic_real t73 = t52 + t53;
-            const gic_real t74 = R(1.0) - (t51 + t43);
-            const gic_real t75 = rate[0];
-            const gic_real t76 = R(1.0) + (t57 + t58);
-            const gic_real t77 = R(1.0) + (t59 + t58);
-            const gic_real t78 = R(1.0) + (t59 + t57);
-            const gic_real t79 = -(t17 * t54);
-            const gic_real t80 = -(t19 * t54);
-            const gic_real t81 = -(t19 * t55);
-            const gic_real t82 = t17 * t65 - t19 * t64;
-            const gic_real t83 = t19 * t62 - t15 * t65;
-            const gic_real t84 = t15 * t64 - t17 * t62;
-            const gic_real t85 = -t56;
-            q[0] = t15;
-            q[1] = t17;
-            q[2] = t19;
-            q[3] = t37;
-            q[4] = t38;
-            q[5] = t39;
-            q[6] = t40;
-            step = t41;
-            motion[0] = t15;
-            motion[1] = t17;
-            motion[2] = t19;
-            motion[3] = t66;
-            motion[4] = t67;
-            motion[5] = t68;
-            motion[6] = t69;
-            motion[7] = t70;
-            motion[8] = t71;
-            motion[9] = t72;
-            motion[10] = t73;
-            motion[11] = t74;
-            motion[12] = R(0.0);
-            motion[13] = R(0.0);
-            motion[14] = R(0.0);
-            motion[15] = R(0.0);
-            motion[16] = t75;
-            motion[17] = R(0.0);
-            motion[18] = R(0.0);
-            motion[19] = R(0.0);
-            motion[20] = R(0.0);
-            motion[21] = R(0.0);
-            motion[22] = R(0.0);
-            motion[23] = R(0.0);
-            motion[24] = R(0.0);
-            motion[25] = R(0.0);
-            motion[26] = R(0.0);
-            motion[27] = R(0.0);
-            motion[28] = R(1.0);
-            motion[29] = R(0.0);
-            start[7] = R(0.0);
-            start[8] = R(0.0);
-            start[9] = R(0.0);
-            start[10] = R(0.0);
-            start[11] = R(1.0);
-            start[12] = R(0.0);
-            start[13] = t11;
-            start[14] = t28;
-            start[15] = t10;
-            start[16] = t12;
-            start[17] = t23;
-            inertia[0] = t54;
-            inertia[1] = t55;
-            inertia[2] = t56;
-            inertia[3] = t76;
-            inertia[4] = t77;
-            inertia[5] = t78;
-            inertia[6] = t79;
-            inertia[7] = t80;
-            inertia[8] = t81;
-            inertia[9] = t62;
-            inertia[10] = t64;
-            inertia[11] = t65;
-            inertia[12] = t82;
-            inertia[13] = t83;
-            inertia[14] = t84;
-            inertia[15] = R(0.0);
-            inertia[16] = R(9.072);
-            inertia[17] = R(0.0);
-            inertia[18] = t85;
-            inertia[19] = R(0.0);
-            inertia[20] = t54;
-            inertia[21] = t64;
-            inertia[22] = R(9.072);
-        }
-        ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
-            return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
-            if (step > self->head.largest_step)
-                self->head.largest_step = step;
-            ++self->head.newton_count;
-            for (i = 0; i < 7; ++i)
-                start[i] = q[i];
-            return GIC_OK;
-        }
-        before = step;
-    }
-    return GIC_ERROR_NEWTON;
+    ++self->head.newton_count;
+    return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset at the pose q, relative to its size. */
+/* Largest constraint residual of such a subset, relative to its size. */
 static GIC_COLD gic_real hmmwv_full_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT q)
+    const gic_real *GIC_RESTRICT motion)
 {
     const gic_real *const x = links->x;
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = q[4] + q[4];
-        const gic_real t2 = q[6] + q[6];
-        const gic_real t3 = q[5] + q[5];
-        const gic_real t4 = GIC_MAX(GIC_FABS(q[5] * t1 - q[3] * t2), GIC_FABS(-(q[6] * t3 + q[3] * t1)));
-        const gic_real t5 = GIC_MAX(t4, GIC_FABS(-(q[4] * t2 + q[3] * t3)));
-        const gic_real t6 = GIC_MAX(GIC_MAX(t5, GIC_FABS(q[0] - R(1.438648))), GIC_FABS(R(0.05422899999999997) - q[2]));
-        const gic_real t7 = GIC_MAX(t6, GIC_FABS(q[1] - x[0]));
-        worst = t7;
+        const gic_real t1 = GIC_MAX(GIC_MAX(GIC_FABS(motion[4]), GIC_FABS(-motion[10])), GIC_FABS(-motion[5]));
+        const gic_real t2 = GIC_MAX(GIC_MAX(t1, GIC_FABS(motion[0] - R(1.438648))), GIC_FABS(R(0.05422899999999997) - motion[2]));
+        const gic_real t3 = GIC_MAX(t2, GIC_FABS(motion[1] - x[0]));
+        worst = t3;
     }
     return worst;
 }
 
-static const gic_real hmmwv_full_k_lca_f_l[4][11] = {
+static const gic_real hmmwv_full_k_lca_f_l[4][27] = {
     { /* lca_f_l */
-        R(1.688965), R(0.307086), R(0.01121887479261392), R(0.2403881036540444),
-        R(0.09720579999999998), R(0.19748500000000002), R(0.509778), R(1.792978),
-        R(3.0379110359107786e-06), R(0.24689200985615367), R(7.8923759275231005),
+        R(0.1582643473416399), R(0.004637870464427621), R(0.038649583990999964), R(-0.05607209753299996),
+        R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428), R(10.049655409199131),
+        R(-10.049655409199131), R(0.19748500000000002), R(0.307086), R(0.509778),
+        R(51.57660077184113), R(209.3566321652691), R(-209.35663216526908), R(51.576600771841136),
+        R(-51.57660077184113), R(209.35663216526908), R(3.0379110359107786e-06), R(0.24689200985615367),
+        R(1.688965), R(40.476046225), R(0.01121887479261392), R(0.2403881036540444),
+        R(0.09720579999999998), R(1.792978), R(7.892375927523102),
     },
     { /* lca_f_r */
-        R(1.688965), R(-0.307086), R(0.01121887479261392), R(-0.2403881036540444),
-        R(0.09720579999999998), R(0.19748500000000002), R(-0.509778), R(1.792978),
-        R(3.0379110359107786e-06), R(-0.24689200985615367), R(7.8923759275231005),
+        R(0.1582643473416399), R(0.004637870464427621), R(0.038649583990999964), R(-0.05607209753299996),
+        R(0.038649583990999964), R(-0.05607209753299996), R(-50.90547521989428), R(10.049655409199131),
+        R(-10.049655409199131), R(0.19748500000000002), R(-0.307086), R(-0.509778),
+        R(-51.57660077184113), R(209.3566321652691), R(-209.35663216526908), R(-51.576600771841136),
+        R(51.57660077184113), R(209.35663216526908), R(3.0379110359107786e-06), R(-0.24689200985615367),
+        R(1.688965), R(40.476046225), R(0.01121887479261392), R(-0.2403881036540444),
+        R(0.09720579999999998), R(1.792978), R(7.892375927523102),
     },
     { /* lca_r_l */
-        R(-1.688965), R(0.307086), R(0.011218874792613923), R(0.24038810365404442),
-        R(-0.09720579999999998), R(0.2564892), R(0.5015738), R(-1.792978),
-        R(-3.0379110358344508e-06), R(0.246867347245056), R(6.355965194292886),
+        R(0.18179218931811988), R(0.006000421990375402), R(0.03396250304259998), R(-0.06962018656579994),
+        R(-0.03396250304259998), R(0.06962018656579994), R(39.34606605646901), R(7.767620356494952),
+        R(-7.767620356494952), R(0.2564892), R(0.307086), R(0.5015738),
+        R(39.86479513590535), R(161.81677595488463), R(-161.8167759548846), R(39.864795135905354),
+        R(-39.86479513590535), R(161.8167759548846), R(-3.0379110358344508e-06), R(0.246867347245056),
+        R(-1.688965), R(-40.476046225), R(0.011218874792613923), R(0.24038810365404442),
+        R(-0.09720579999999998), R(-1.792978), R(6.355965194292886),
     },
     { /* lca_r_r */
-        R(-1.688965), R(-0.307086), R(0.011218874792613923), R(-0.24038810365404442),
-        R(-0.09720579999999998), R(0.2564892), R(-0.5015738), R(-1.792978),
-        R(-3.0379110358344508e-06), R(-0.246867347245056), R(6.355965194292886),
+        R(0.18179218931811988), R(0.006000421990375402), R(0.03396250304259998), R(-0.06962018656579994),
+        R(0.03396250304259998), R(-0.06962018656579994), R(-39.34606605646901), R(7.767620356494952),
+        R(-7.767620356494952), R(0.2564892), R(-0.307086), R(-0.5015738),
+        R(-39.86479513590535), R(161.81677595488463), R(-161.8167759548846), R(-39.864795135905354),
+        R(39.86479513590535), R(161.8167759548846), R(-3.0379110358344508e-06), R(-0.246867347245056),
+        R(-1.688965), R(-40.476046225), R(0.011218874792613923), R(-0.24038810365404442),
+        R(-0.09720579999999998), R(-1.792978), R(6.355965194292886),
     },
 };
 
 /* Class 'lca_f_l': 6 unknowns of lca_f_l, lca_f_r, lca_r_l, lca_r_r.
- * start: pose 7 numbers a body, S from 7, factors from 13. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
+ * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
 static int hmmwv_full_solve_lca_f_l(hmmwv_full *self, const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
-    gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    const gic_real *const change = links->change;
     const gic_real *const turn = links->turn;
-    const gic_real *const s = old + 7; /* unit velocities at the start */
-    const gic_real *const f = old + 13; /* factors at the start */
-    gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
-    const gic_real enough = GIC_ENOUGH(R(43.74775795073611));
-    int i;
-    (void)k, (void)inertia;
-    for (i = 0; i < 7; ++i)
-        q[i] = old[i];
-    if (!links->cold) {
-        /* predict: the old pose moved by its unit velocities times the change of the coordinates */
-        {
-            const gic_real t1 = change[0] * s[3];
-            const gic_real t2 = change[0] * s[4];
-            const gic_real t3 = change[0] * s[5];
-            const gic_real t4 = change[0] * s[2];
-            const gic_real t5 = R(0.5) * t4;
-            const gic_real t6 = change[0] * s[1];
-            const gic_real t7 = R(0.5) * t6;
-            const gic_real t8 = change[0] * s[0];
-            const gic_real t9 = R(0.5) * t8;
-            const gic_real t10 = q[3] - (q[6] * t5 + (q[5] * t7 + q[4] * t9));
-            const gic_real t11 = q[6] + (q[5] * t9 - q[4] * t7 + q[3] * t5);
-            const gic_real t12 = q[5] + (q[4] * t5 - q[6] * t9 + q[3] * t7);
-            const gic_real t13 = q[4] + (q[6] * t7 - q[5] * t5 + q[3] * t9);
-            const gic_real t14 = t11 * t11 + (t12 * t12 + t13 * t13) + t10 * t10;
-            const gic_real t15 = R(1.5) - R(0.5) * t14;
-            const gic_real t16 = (t3 * t3 + (t2 * t2 + t1 * t1)) * R(14.845325569322135);
-            const gic_real t17 = t4 * t4 + (t6 * t6 + t8 * t8) + t16;
-            const gic_real t18 = q[0] + t1;
-            const gic_real t19 = q[1] + t2;
-            const gic_real t20 = q[2] + t3;
-            const gic_real t21 = t10 * t15;
-            const gic_real t22 = t13 * t15;
-            const gic_real t23 = t12 * t15;
-            const gic_real t24 = t11 * t15;
-            q[0] = t18;
-            q[1] = t19;
-            q[2] = t20;
-            q[3] = t21;
-            q[4] = t22;
-            q[5] = t23;
-            q[6] = t24;
-            reach = t17;
-        }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding */
-        for (i = 0; i < GIC_CHORDS; ++i) {
-            {
-                const gic_real t1 = k[0] - q[0];
-                const gic_real t2 = k[1] - q[1];
-                const gic_real t3 = q[4] + q[4];
-                const gic_real t4 = q[4] * t3;
-                const gic_real t5 = q[5] + q[5];
-                const gic_real t6 = q[5] * t5;
-                const gic_real t7 = q[6] * t5;
-                const gic_real t8 = q[3] * t3;
-                const gic_real t9 = q[6] + q[6];
-                const gic_real t10 = q[4] * t9;
-                const gic_real t11 = q[3] * t5;
-                const gic_real t12 = t10 - t11;
-                const gic_real t13 = k[2] * (R(1.0) - (t4 + t6)) + (k[3] * (t7 + t8) + k[4] * t12);
-                const gic_real t14 = q[2] + t13 - k[5];
-                const gic_real t15 = q[6] * t9;
-                const gic_real t16 = q[5] * t3;
-                const gic_real t17 = q[3] * t9;
-                const gic_real t18 = t16 + t17;
-                const gic_real t19 = k[2] * (t7 - t8) + (k[3] * (R(1.0) - (t4 + t15)) + k[4] * t18);
-                const gic_real t20 = q[1] + t19 - k[6];
-                const gic_real t21 = k[3] * (t16 - t17) + k[4] * (R(1.0) - (t6 + t15));
-                const gic_real t22 = q[0] + (k[2] * (t10 + t11) + t21) - k[7];
-                const gic_real t23 = t14 * t14 + (t20 * t20 + t22 * t22) - x[0] * x[0];
-                const gic_real t24 = q[2] * f[6] - (t23 * R(0.5) + f[4] * t1 + f[5] * t2);
-                const gic_real t25 = R(0.9999999999999998) * t18;
-                const gic_real t26 = R(0.9999999999999998) * t12;
-                const gic_real t27 = f[9] * (t24 + t25 * f[7] + t26 * f[8]);
-                const gic_real t28 = f[0] * (f[1] * t27 - t25);
-                const gic_real t29 = R(0.5) * t28;
-                const gic_real t30 = R(0.5) * t27;
-                const gic_real t31 = f[2] * (t26 + f[3] * t27);
-                const gic_real t32 = R(0.5) * t31;
-                const gic_real t33 = q[3] - (q[6] * t29 + (q[4] * t30 - q[5] * t32));
-                const gic_real t34 = q[6] + (q[4] * t32 + q[5] * t30 + q[3] * t29);
-                const gic_real t35 = q[5] + (q[4] * t29 - q[6] * t30 - q[3] * t32);
-                const gic_real t36 = q[4] + (q[3] * t30 - (q[5] * t29 + q[6] * t32));
-                const gic_real t37 = t34 * t34 + (t35 * t35 + t36 * t36) + t33 * t33;
-                const gic_real t38 = R(1.5) - R(0.5) * t37;
-                const gic_real t39 = R(14.845325569322135) * (q[2] * q[2] + (t2 * t2 + t1 * t1));
-                const gic_real t40 = t28 * t28 + (t31 * t31 + t27 * t27) + t39;
-                const gic_real t41 = q[0] + t1;
-                const gic_real t42 = q[1] + t2;
-                const gic_real t43 = t33 * t38;
-                const gic_real t44 = t36 * t38;
-                const gic_real t45 = t35 * t38;
-                const gic_real t46 = t34 * t38;
-                q[0] = t41;
-                q[1] = t42;
-                q[2] = R(0.0);
-                q[3] = t43;
-                q[4] = t44;
-                q[5] = t45;
-                q[6] = t46;
-                step = t40;
-            }
-            ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
-                return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
-                break;
-        }
-    }
-    for (i = 0; i < GIC_PASSES; ++i) {
-        /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
-        {
-            const gic_real t1 = q[5] + q[5];
-            const gic_real t2 = q[5] * t1;
-            const gic_real t3 = q[6] + q[6];
-            const gic_real t4 = q[6] * t3;
-            const gic_real t5 = R(1.0) - (t2 + t4);
-            const gic_real t6 = R(0.9999999999999998) * t5;
-            if (!(GIC_FABS(t6) > R(9.999999999999997e-08)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t7 = q[6] * t1;
-            const gic_real t8 = q[4] + q[4];
-            const gic_real t9 = q[3] * t8;
-            const gic_real t10 = q[4] * t8;
-            const gic_real t11 = q[5] * t8;
-            const gic_real t12 = q[3] * t3;
-            const gic_real t13 = t11 + t12;
-            const gic_real t14 = k[2] * (t7 - t9) + (k[3] * (R(1.0) - (t10 + t4)) + k[4] * t13);
-            const gic_real t15 = q[4] * t3;
-            const gic_real t16 = q[3] * t1;
-            const gic_real t17 = t15 - t16;
-            const gic_real t18 = k[2] * (R(1.0) - (t10 + t2)) + (k[3] * (t7 + t9) + k[4] * t17);
-            const gic_real t19 = q[2] + t18 - k[5];
-            const gic_real t20 = q[1] + t14 - k[6];
-            const gic_real t21 = R(0.9999999999999998) * t17;
-            const gic_real t22 = k[2] * (t15 + t16) + (k[3] * (t11 - t12) + k[4] * t5);
-            const gic_real t23 = q[0] + t22 - k[7];
-            const gic_real t24 = R(1.0) / t6;
-            const gic_real t25 = (t22 * t20 - t14 * t23) * t24;
-            const gic_real t26 = R(0.9999999999999998) * t13;
-            const gic_real t27 = R(1.0) / -t6;
-            const gic_real t28 = (t18 * t23 - t22 * t19) * t27;
-            const gic_real t29 = t14 * t19 - t18 * t20 + t21 * t25 - t26 * t28;
-            if (!(GIC_FABS(t29) > R(7.681214843839653e-09)))
-                return GIC_ERROR_SINGULAR;
-            if (!(t6 > R(0.0)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t30 = k[0] - q[0];
-            const gic_real t31 = q[0] + t30;
-            const gic_real t32 = k[1] - q[1];
-            const gic_real t33 = q[1] + t32;
-            const gic_real t34 = R(1.0) / t29;
-            const gic_real t35 = t19 * t19 + (t20 * t20 + t23 * t23) - x[0] * x[0];
-            const gic_real t36 = q[2] * t19 - (t35 * R(0.5) + t23 * t30 + t20 * t32);
-            const gic_real t37 = t34 * (t36 + t26 * t25 + t21 * t28);
-            const gic_real t38 = t24 * (t21 * t37 - t26);
-            const gic_real t39 = R(0.5) * t38;
-            const gic_real t40 = R(0.5) * t37;
-            const gic_real t41 = t27 * (t21 + t26 * t37);
-            const gic_real t42 = R(0.5) * t41;
-            const gic_real t43 = q[3] - (q[6] * t39 + (q[4] * t40 - q[5] * t42));
-            const gic_real t44 = q[6] + (q[4] * t42 + q[5] * t40 + q[3] * t39);
-            const gic_real t45 = q[5] + (q[4] * t39 - q[6] * t40 - q[3] * t42);
-            const gic_real t46 = q[4] + (q[3] * t40 - (q[5] * t39 + q[6] * t42));
-            const gic_real t47 = t44 * t44 + (t45 * t45 + t46 * t46) + t43 * t43;
-            const gic_real t48 = R(1.5) - R(0.5) * t47;
-            const gic_real t49 = t43 * t48;
-            const gic_real t50 = t46 * t48;
-            const gic_real t51 = t45 * t48;
-            const gic_real t52 = t44 * t48;
-            const gic_real t53 = R(14.845325569322135) * (q[2] * q[2] + (t32 * t32 + t30 * t30));
-            const gic_real t54 = t53 + (t38 * t38 + (t41 * t41 + t37 * t37));
-            const gic_real t55 = t51 + t51;
-            const gic_real t56 = t51 * t55;
-            const gic_real t57 = t52 + t52;
-            const gic_real t58 = t52 * t57;
-            const gic_real t59 = t50 + t50;
-            const gic_real t60 = t51 * t59;
-            const gic_real t61 = t49 * t57;
-            const gic_real t62 = t60 - t61;
-            const gic_real t63 = t50 * t57;
-            const gic_real t64 = t49 * t55;
-            const gic_real t65 = t63 + t64;
-            const gic_real t66 = t50 * t59;
-            const gic_real t67 = R(1.0) - (t66 + t58);
-            const gic_real t68 = t52 * t55;
-            const gic_real t69 = t49 * t59;
-            const gic_real t70 = t68 - t69;
-            const gic_real t71 = t68 + t69;
-            const gic_real t72 = R(1.0) - (t66 + t56);
-            const gic_real t73 = x[0] * t34;
-            const gic_real t74 = rate[0] * t73;
-            const gic_real t75 = t27 * (t26 * t73);
-            const gic_real t76 = rate[0] * t75;
-            const gic_real t77 = t24 * (t21 * t73);
-            const gic_real t78 = rate[0] * t77;
-            const gic_real t79 = t22 * t76 + t14 * t74;
-            const gic_real t80 = t22 * t78 - t18 * t74;
-            const gic_real t81 = t14 * t78 + t18 * t76;
-            const gic_real t82 = t20 * (t74 * t79 + t78 * t81) + t23 * (t78 * t80 + t76 * t79);
-            const gic_real t83 = t79 * t79 + (t80 * t80 + t81 * t81) + (t19 * (t74 * t80 - t76 * t81) - t82);
-            const gic_real t84 = t26 * t78 + t21 * t76;
-            const gic_real t85 = t74 * (t6 * t76 + t26 * t74) + t78 * t84;
-            const gic_real t86 = t76 * t84 - t74 * (t6 * t78 - t21 * t74);
-            const gic_real t87 = rate[0] * rate[0] - t83 - t25 * t85 - t28 * t86;
-            const gic_real t88 = t34 * t87;
-            const gic_real t89 = t27 * (t86 - t26 * t88);
-            const gic_real t90 = t24 * (t85 + t21 * t88);
-            const gic_real t91 = -t75;
-            const gic_real t92 = t65 * k[8] + t62 * k[9];
-            const gic_real t93 = t31 + t92;
-            const gic_real t94 = R(23.965) * t93;
-            const gic_real t95 = t70 * k[8] + t67 * k[9];
-            const gic_real t96 = t33 + t95;
-            const gic_real t97 = R(23.965) * t96;
-            const gic_real t98 = t72 * k[8] + t71 * k[9];
-            const gic_real t99 = R(23.965) * t98;
-            const gic_real t100 = t65 * R(0.4469);
-            const gic_real t101 = R(0.4469) + t65 * t100;
-            const gic_real t102 = t96 * t97;
-            const gic_real t103 = t98 * t99;
-            const gic_real t104 = t70 * R(0.4469);
-            const gic_real t105 = R(0.4469) + t70 * t104;
-            const gic_real t106 = t93 * t94;
-            const gic_real t107 = R(0.4469) + t72 * (t72 * R(0.4469));
-            const gic_real t108 = t70 * t100;
-            const gic_real t109 = t72 * t100;
-            const gic_real t110 = t72 * t104;
-            const gic_real t111 = t76 * t92 + t74 * t95;
-            const gic_real t112 = t111 + (t111 + (turn[0] * t96 - turn[1] * t93));
-            const gic_real t113 = t78 * t92 - t74 * t98;
-            const gic_real t114 = t113 + (t113 + (turn[2] * t93 - turn[0] * t98));
-            const gic_real t115 = turn[1] * t112 - turn[2] * t114 - (t78 * t113 + t76 * t111);
-            const gic_real t116 = R(23.965) * (t115 + (t89 * t98 - t90 * t95));
-            const gic_real t117 = t78 * t95 + t76 * t98;
-            const gic_real t118 = turn[1] * t98 - turn[2] * t96 - t117 - t117;
-            const gic_real t119 = turn[2] * t118 - turn[0] * t112 - (t74 * t111 + t78 * t117);
-            const gic_real t120 = R(23.965) * (t119 + (t90 * t92 - t88 * t98));
-            const gic_real t121 = turn[0] * t114 - turn[1] * t118 + (t74 * t113 - t76 * t117);
-            const gic_real t122 = R(23.965) * (t121 + (t88 * t95 - t89 * t92));
-            const gic_real t123 = t90 - (t74 * turn[1] + t76 * turn[0]);
-            const gic_real t124 = t89 + (t74 * turn[2] - t78 * turn[0]);
-            const gic_real t125 = t88 + (t76 * turn[2] + t78 * turn[1]);
-            const gic_real t126 = turn[1] - t76;
-            const gic_real t127 = t78 + turn[2];
-            const gic_real t128 = t74 + turn[0];
-            const gic_real t129 = t107 * t127 + (t110 * t126 + t109 * t128);
-            const gic_real t130 = t110 * t127 + (t105 * t126 + t108 * t128);
-            const gic_real t131 = t109 * t123 + (t108 * t124 + t101 * t125) + (t126 * t129 - t127 * t130);
-            const gic_real t132 = t109 * t127 + (t108 * t126 + t101 * t128);
-            const gic_real t133 = t110 * t123 + (t105 * t124 + t108 * t125) + (t127 * t132 - t128 * t129);
-            const gic_real t134 = t107 * t123 + (t110 * t124 + t109 * t125) + (t128 * t130 - t126 * t132);
-            const gic_real t135 = t77 * t95 + t75 * t98;
-            const gic_real t136 = R(23.965) * t135;
-            const gic_real t137 = t77 * t92 - t73 * t98;
-            const gic_real t138 = R(23.965) * t137;
-            const gic_real t139 = t75 * t92 + t73 * t95;
-            const gic_real t140 = R(23.965) * t139;
-            const gic_real t141 = t77 * t109 + (t73 * t101 - t75 * t108);
-            const gic_real t142 = t77 * t110 + (t73 * t108 - t75 * t105);
-            const gic_real t143 = t77 * t107 + (t73 * t109 - t75 * t110);
-            const gic_real t144 = t77 * t134 + (t73 * t131 - t75 * t133) + (t122 * t139 + (t120 * t137 - t116 * t135));
-            const gic_real t145 = t77 * t143 + (t73 * t141 - t75 * t142) + (t139 * t140 + (t137 * t138 + t135 * t136));
-            const gic_real t146 = R(1.0) - (t56 + t58);
-            const gic_real t147 = t60 + t61;
-            const gic_real t148 = t63 - t64;
-            const gic_real t149 = -t76;
-            const gic_real t150 = t101 + (t102 + t103);
-            const gic_real t151 = t105 + (t106 + t103);
-            const gic_real t152 = t107 + (t106 + t102);
-            const gic_real t153 = t108 - t96 * t94;
-            const gic_real t154 = t109 - t98 * t94;
-            const gic_real t155 = t110 - t98 * t97;
-            const gic_real t156 = t131 + (t96 * t122 - t98 * t120);
-            const gic_real t157 = t133 + (t98 * t116 - t93 * t122);
-            const gic_real t158 = t134 + (t93 * t120 - t96 * t116);
-            const gic_real t159 = -t136;
-            const gic_real t160 = t141 + (t96 * t140 - t98 * t138);
-            const gic_real t161 = t142 - (t93 * t140 + t98 * t136);
-            const gic_real t162 = t143 + (t96 * t136 + t93 * t138);
-            q[0] = t31;
-            q[1] = t33;
-            q[2] = R(0.0);
-            q[3] = t49;
-            q[4] = t50;
-            q[5] = t51;
-            q[6] = t52;
-            step = t54;
-            motion[0] = t31;
-            motion[1] = t33;
-            motion[2] = R(0.0);
-            motion[3] = t146;
-            motion[4] = t62;
-            motion[5] = t65;
-            motion[6] = t147;
-            motion[7] = t67;
-            motion[8] = t70;
-            motion[9] = t148;
-            motion[10] = t71;
-            motion[11] = t72;
-            motion[12] = t74;
-            motion[13] = t149;
-            motion[14] = t78;
-            motion[15] = R(0.0);
-            motion[16] = R(0.0);
-            motion[17] = R(0.0);
-            motion[18] = t88;
-            motion[19] = t89;
-            motion[20] = t90;
-            motion[21] = R(0.0);
-            motion[22] = R(0.0);
-            motion[23] = R(0.0);
-            motion[24] = t73;
-            motion[25] = t91;
-            motion[26] = t77;
-            motion[27] = R(0.0);
-            motion[28] = R(0.0);
-            motion[29] = R(0.0);
-            start[7] = t73;
-            start[8] = t91;
-            start[9] = t77;
-            start[10] = R(0.0);
-            start[11] = R(0.0);
-            start[12] = R(0.0);
-            start[13] = t24;
-            start[14] = t21;
-            start[15] = t27;
-            start[16] = t26;
-            start[17] = t23;
-            start[18] = t20;
-            start[19] = t19;
-            start[20] = t25;
-            start[21] = t28;
-            start[22] = t34;
-            inertia[0] = t94;
-            inertia[1] = t97;
-            inertia[2] = t99;
-            inertia[3] = t150;
-            inertia[4] = t151;
-            inertia[5] = t152;
-            inertia[6] = t153;
-            inertia[7] = t154;
-            inertia[8] = t155;
-            inertia[9] = t116;
-            inertia[10] = t120;
-            inertia[11] = t122;
-            inertia[12] = t156;
-            inertia[13] = t157;
-            inertia[14] = t158;
-            inertia[15] = t159;
-            inertia[16] = t138;
-            inertia[17] = t140;
-            inertia[18] = t160;
-            inertia[19] = t161;
-            inertia[20] = t162;
-            inertia[21] = t144;
-            inertia[22] = t145;
-        }
-        ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
+    (void)k, (void)start, (void)inertia;
+    {
+        const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.010110666875399986);
+        const gic_real t2 = k[1] - t1 * t1;
+        if (!(t2 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
-            if (step > self->head.largest_step)
-                self->head.largest_step = step;
-            ++self->head.newton_count;
-            for (i = 0; i < 7; ++i)
-                start[i] = q[i];
-            return GIC_OK;
-        }
-        before = step;
+        const gic_real t3 = GIC_SQRT(t2);
+        const gic_real t4 = k[2] * t1 - t3 * k[3];
+        const gic_real t5 = t3 * k[4] + k[5] * t1;
+        const gic_real t6 = t4 * k[6] + t5 * k[7];
+        const gic_real t7 = t4 * k[8] + t5 * k[6];
+        const gic_real t8 = t7 - k[9];
+        const gic_real t9 = k[10] + t6 - k[11];
+        const gic_real t10 = t6 * t8 - t7 * t9;
+        if (!(GIC_FABS(t10) > R(7.681214843839653e-09)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t11 = t5 * k[12] + t4 * k[13];
+        const gic_real t12 = t5 * k[14] + t4 * k[15];
+        const gic_real t13 = t5 * k[13] + t4 * k[16];
+        const gic_real t14 = t5 * k[15] + t4 * k[17];
+        const gic_real t15 = R(1.0) / t10;
+        const gic_real t16 = x[0] * t15;
+        const gic_real t17 = rate[0] * t16;
+        const gic_real t18 = t6 * t17;
+        const gic_real t19 = t7 * t17;
+        const gic_real t20 = t18 * t18 + t19 * t19 - (t8 * (t17 * t19) + t9 * (t17 * t18));
+        const gic_real t21 = t15 * (rate[0] * rate[0] - t20);
+        const gic_real t22 = t12 * k[18] + t11 * k[19];
+        const gic_real t23 = k[10] + t22;
+        const gic_real t24 = R(23.965) * t23;
+        const gic_real t25 = t14 * k[18] + t13 * k[19];
+        const gic_real t26 = R(23.965) * t25;
+        const gic_real t27 = t23 * t24;
+        const gic_real t28 = t25 * t26;
+        const gic_real t29 = t12 * R(0.4469);
+        const gic_real t30 = R(0.4469) + t12 * t29;
+        const gic_real t31 = R(0.4469) + t14 * (t14 * R(0.4469));
+        const gic_real t32 = t14 * t29;
+        const gic_real t33 = t17 * t22;
+        const gic_real t34 = t33 + (t33 + (turn[0] * t23 - k[20] * turn[1]));
+        const gic_real t35 = t17 * t25;
+        const gic_real t36 = k[20] * turn[2] - turn[0] * t25 - t35 - t35;
+        const gic_real t37 = R(23.965) * (turn[1] * t34 - turn[2] * t36);
+        const gic_real t38 = turn[1] * t25 - turn[2] * t23;
+        const gic_real t39 = turn[2] * t38 - turn[0] * t34 - t17 * t33 - t21 * t25;
+        const gic_real t40 = R(23.965) * t39;
+        const gic_real t41 = turn[0] * t36 - turn[1] * t38 - t17 * t35 + t21 * t22;
+        const gic_real t42 = R(23.965) * t41;
+        const gic_real t43 = turn[2] * t31 + turn[1] * t32;
+        const gic_real t44 = turn[2] * t32 + turn[1] * t30;
+        const gic_real t45 = t21 * R(0.4469) + (turn[1] * t43 - turn[2] * t44);
+        const gic_real t46 = t17 * turn[2];
+        const gic_real t47 = t17 * turn[1];
+        const gic_real t48 = t17 + turn[0];
+        const gic_real t49 = R(0.4469) * t48;
+        const gic_real t50 = t30 * t46 - t32 * t47 + (turn[2] * t49 - t48 * t43);
+        const gic_real t51 = t32 * t46 - t31 * t47 + (t48 * t44 - turn[1] * t49);
+        const gic_real t52 = t16 * t25;
+        const gic_real t53 = R(23.965) * t52;
+        const gic_real t54 = t16 * t22;
+        const gic_real t55 = R(23.965) * t54;
+        const gic_real t56 = t16 * R(0.4469);
+        const gic_real t57 = R(0.4469) + (t27 + t28);
+        const gic_real t58 = t30 + (R(68.36262541240713) + t28);
+        const gic_real t59 = t31 + (R(68.36262541240713) + t27);
+        const gic_real t60 = -(t23 * k[21]);
+        const gic_real t61 = -(t25 * k[21]);
+        const gic_real t62 = t32 - t25 * t24;
+        const gic_real t63 = t45 + (t23 * t42 - t25 * t40);
+        const gic_real t64 = t50 + (t25 * t37 - k[21] * t41);
+        const gic_real t65 = t51 + (k[21] * t39 - t23 * t37);
+        const gic_real t66 = -t53;
+        const gic_real t67 = t56 + (t25 * t53 + t23 * t55);
+        const gic_real t68 = -(k[21] * t54);
+        const gic_real t69 = -(k[21] * t52);
+        const gic_real t70 = t16 * t45 + (t42 * t54 - t40 * t52);
+        const gic_real t71 = t16 * t56 + (t54 * t55 + t52 * t53);
+        motion[0] = k[20];
+        motion[1] = k[10];
+        motion[2] = R(0.0);
+        motion[3] = R(0.9999999999999998);
+        motion[4] = R(0.0);
+        motion[5] = R(0.0);
+        motion[6] = R(0.0);
+        motion[7] = t11;
+        motion[8] = t12;
+        motion[9] = R(0.0);
+        motion[10] = t13;
+        motion[11] = t14;
+        motion[12] = t17;
+        motion[13] = R(0.0);
+        motion[14] = R(0.0);
+        motion[15] = R(0.0);
+        motion[16] = R(0.0);
+        motion[17] = R(0.0);
+        motion[18] = t21;
+        motion[19] = R(0.0);
+        motion[20] = R(0.0);
+        motion[21] = R(0.0);
+        motion[22] = R(0.0);
+        motion[23] = R(0.0);
+        motion[24] = t16;
+        motion[25] = R(0.0);
+        motion[26] = R(0.0);
+        motion[27] = R(0.0);
+        motion[28] = R(0.0);
+        motion[29] = R(0.0);
+        inertia[0] = k[21];
+        inertia[1] = t24;
+        inertia[2] = t26;
+        inertia[3] = t57;
+        inertia[4] = t58;
+        inertia[5] = t59;
+        inertia[6] = t60;
+        inertia[7] = t61;
+        inertia[8] = t62;
+        inertia[9] = t37;
+        inertia[10] = t40;
+        inertia[11] = t42;
+        inertia[12] = t63;
+        inertia[13] = t64;
+        inertia[14] = t65;
+        inertia[15] = R(0.0);
+        inertia[16] = t66;
+        inertia[17] = t55;
+        inertia[18] = t67;
+        inertia[19] = t68;
+        inertia[20] = t69;
+        inertia[21] = t70;
+        inertia[22] = t71;
     }
-    return GIC_ERROR_NEWTON;
+    ++self->head.newton_count;
+    return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset at the pose q, relative to its size. */
+/* Largest constraint residual of such a subset, relative to its size. */
 static GIC_COLD gic_real hmmwv_full_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT q)
+    const gic_real *GIC_RESTRICT motion)
 {
     const gic_real *const x = links->x;
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_FABS((q[0] - k[0]) * R(3.852963219305647)), GIC_FABS((q[1] - k[1]) * R(3.852963219305647)));
-        const gic_real t2 = q[4] + q[4];
-        const gic_real t3 = q[5] * t2;
-        const gic_real t4 = q[6] + q[6];
-        const gic_real t5 = q[3] * t4;
-        const gic_real t6 = t3 + t5;
-        const gic_real t7 = q[4] * t4;
-        const gic_real t8 = q[5] + q[5];
-        const gic_real t9 = q[3] * t8;
-        const gic_real t10 = t7 - t9;
-        const gic_real t11 = GIC_MAX(GIC_MAX(GIC_MAX(t1, GIC_FABS(q[2] * R(3.852963219305647))), GIC_FABS(t6)), GIC_FABS(t10));
-        const gic_real t12 = q[4] * t2;
-        const gic_real t13 = q[5] * t8;
-        const gic_real t14 = q[6] * t8;
-        const gic_real t15 = q[3] * t2;
-        const gic_real t16 = k[2] * (R(1.0) - (t12 + t13)) + (k[3] * (t14 + t15) + k[4] * t10);
-        const gic_real t17 = q[2] + t16 - k[5];
-        const gic_real t18 = q[6] * t4;
-        const gic_real t19 = k[2] * (t14 - t15) + (k[3] * (R(1.0) - (t12 + t18)) + k[4] * t6);
-        const gic_real t20 = q[1] + t19 - k[6];
-        const gic_real t21 = k[3] * (t3 - t5) + k[4] * (R(1.0) - (t13 + t18));
-        const gic_real t22 = q[0] + (k[2] * (t7 + t9) + t21) - k[7];
-        const gic_real t23 = t17 * t17 + (t20 * t20 + t22 * t22) - x[0] * x[0];
-        const gic_real t24 = GIC_MAX(t11, GIC_FABS(t23 * k[10]));
-        worst = t24;
+        const gic_real t1 = GIC_MAX(GIC_FABS((motion[0] - k[20]) * R(3.852963219305647)), GIC_FABS((motion[1] - k[10]) * R(3.852963219305647)));
+        const gic_real t2 = GIC_MAX(GIC_MAX(t1, GIC_FABS(motion[2] * R(3.852963219305647))), GIC_FABS(R(0.9999999999999998) * motion[6]));
+        const gic_real t3 = motion[2] + (k[22] * motion[11] + (k[23] * motion[10] + k[24] * motion[9]));
+        const gic_real t4 = t3 - k[9];
+        const gic_real t5 = motion[1] + (k[22] * motion[8] + (k[23] * motion[7] + k[24] * motion[6]));
+        const gic_real t6 = t5 - k[11];
+        const gic_real t7 = motion[0] + (k[22] * motion[5] + (k[23] * motion[4] + k[24] * motion[3]));
+        const gic_real t8 = t7 - k[25];
+        const gic_real t9 = t4 * t4 + (t6 * t6 + t8 * t8) - x[0] * x[0];
+        const gic_real t10 = GIC_MAX(GIC_MAX(t2, GIC_FABS(R(0.9999999999999998) * motion[9])), GIC_FABS(t9 * k[26]));
+        worst = t10;
     }
     return worst;
 }
 
-static const gic_real hmmwv_full_k_wheel_f_l[2][7] = {
+static const gic_real hmmwv_full_k_wheel_f_l[2][12] = {
     { /* wheel_f_l */
-        R(0.49375935710120966), R(0.03459480000000004), R(0.448437), R(-0.07099299999999997),
-        R(0.4527638), R(-0.1394133303209898), R(0.08910630000000008),
+        R(0.49375935710120966), R(0.4527638), R(-0.1394133303209898), R(0.448437),
+        R(-1.0), R(-7.5372227832688194), R(2.5885748225120313), R(-0.608667505195622),
+        R(-4.242021150632486), R(0.08910630000000008), R(0.03459480000000004), R(-0.07099299999999997),
     },
     { /* wheel_f_r */
-        R(-0.49375935710120966), R(-0.03459480000000004), R(-0.448437), R(0.07099299999999997),
-        R(-0.4527638), R(0.1394133303209898), R(-0.08910630000000008),
+        R(-0.49375935710120966), R(-0.4527638), R(0.1394133303209898), R(-0.448437),
+        R(1.0), R(7.5372227832688194), R(-2.5885748225120313), R(0.608667505195622),
+        R(4.242021150632486), R(-0.08910630000000008), R(-0.03459480000000004), R(0.07099299999999997),
     },
 };
 
 /* Class 'wheel_f_l': 6 unknowns of wheel_f_l, wheel_f_r.
- * start: pose 7 numbers a body, S from 7, factors from 19. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
+ * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
 static int hmmwv_full_solve_wheel_f_l(hmmwv_full *self, const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
-    gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     const gic_real *const rate = links->rate;
-    const gic_real *const change = links->change;
     const gic_real *const turn = links->turn;
-    const gic_real *const s = old + 7; /* unit velocities at the start */
-    const gic_real *const f = old + 19; /* factors at the start */
-    gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
-    const gic_real enough = GIC_ENOUGH(R(28.861380328376388));
-    int i;
-    (void)k, (void)inertia;
-    for (i = 0; i < 7; ++i)
-        q[i] = old[i];
-    if (!links->cold) {
-        /* predict: the old pose moved by its unit velocities times the change of the coordinates */
-        {
-            const gic_real t1 = change[0] * s[3] + change[1] * s[9];
-            const gic_real t2 = change[0] * s[4] + change[1] * s[10];
-            const gic_real t3 = change[0] * s[5] + change[1] * s[11];
-            const gic_real t4 = change[0] * s[2] + change[1] * s[8];
-            const gic_real t5 = R(0.5) * t4;
-            const gic_real t6 = change[0] * s[1] + change[1] * s[7];
-            const gic_real t7 = R(0.5) * t6;
-            const gic_real t8 = change[0] * s[0] + change[1] * s[6];
-            const gic_real t9 = R(0.5) * t8;
-            const gic_real t10 = q[3] - (q[6] * t5 + (q[5] * t7 + q[4] * t9));
-            const gic_real t11 = q[6] + (q[5] * t9 - q[4] * t7 + q[3] * t5);
-            const gic_real t12 = q[5] + (q[4] * t5 - q[6] * t9 + q[3] * t7);
-            const gic_real t13 = q[4] + (q[6] * t7 - q[5] * t5 + q[3] * t9);
-            const gic_real t14 = t11 * t11 + (t12 * t12 + t13 * t13) + t10 * t10;
-            const gic_real t15 = R(1.5) - R(0.5) * t14;
-            const gic_real t16 = (t3 * t3 + (t2 * t2 + t1 * t1)) * R(8.573627050492615);
-            const gic_real t17 = t4 * t4 + (t6 * t6 + t8 * t8) + t16;
-            const gic_real t18 = q[0] + t1;
-            const gic_real t19 = q[1] + t2;
-            const gic_real t20 = q[2] + t3;
-            const gic_real t21 = t10 * t15;
-            const gic_real t22 = t13 * t15;
-            const gic_real t23 = t12 * t15;
-            const gic_real t24 = t11 * t15;
-            q[0] = t18;
-            q[1] = t19;
-            q[2] = t20;
-            q[3] = t21;
-            q[4] = t22;
-            q[5] = t23;
-            q[6] = t24;
-            reach = t17;
-        }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding */
-        for (i = 0; i < GIC_CHORDS; ++i) {
-            {
-                const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[0] * m1[4] + R(-0.03556000000000003) * m1[3]));
-                const gic_real t2 = t1 - q[0];
-                const gic_real t3 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[0] * m1[7] + R(-0.03556000000000003) * m1[6]));
-                const gic_real t4 = t3 - q[1];
-                const gic_real t5 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[0] * m1[10] + R(-0.03556000000000003) * m1[9]));
-                const gic_real t6 = t5 - q[2];
-                const gic_real t7 = q[4] + q[4];
-                const gic_real t8 = q[4] * t7;
-                const gic_real t9 = q[5] + q[5];
-                const gic_real t10 = q[5] * t9;
-                const gic_real t11 = R(1.0) - (t8 + t10);
-                const gic_real t12 = q[6] * t9;
-                const gic_real t13 = q[3] * t7;
-                const gic_real t14 = t12 + t13;
-                const gic_real t15 = q[6] + q[6];
-                const gic_real t16 = q[4] * t15;
-                const gic_real t17 = q[3] * t9;
-                const gic_real t18 = t16 - t17;
-                const gic_real t19 = q[2] + (R(0.10177780000000003) * t11 + (k[1] * t14 + R(-0.14025880000000002) * t18));
-                const gic_real t20 = t19 - (m0[2] + k[2] * m0[10]);
-                const gic_real t21 = t12 - t13;
-                const gic_real t22 = q[6] * t15;
-                const gic_real t23 = R(1.0) - (t8 + t22);
-                const gic_real t24 = q[5] * t7;
-                const gic_real t25 = q[3] * t15;
-                const gic_real t26 = t24 + t25;
-                const gic_real t27 = q[1] + (R(0.10177780000000003) * t21 + (k[1] * t23 + R(-0.14025880000000002) * t26));
-                const gic_real t28 = t27 - (m0[1] + k[2] * m0[7]);
-                const gic_real t29 = t16 + t17;
-                const gic_real t30 = t24 - t25;
-                const gic_real t31 = R(1.0) - (t10 + t22);
-                const gic_real t32 = q[0] + (R(0.10177780000000003) * t29 + (k[1] * t30 + R(-0.14025880000000002) * t31));
-                const gic_real t33 = t32 - (m0[0] + k[2] * m0[4]);
-                const gic_real t34 = t20 * t20 + (t28 * t28 + t33 * t33) - R(0.14941089924212003);
-                const gic_real t35 = t34 * R(0.5) + f[0] * t2 + f[1] * t4 + f[2] * t6;
-                const gic_real t36 = q[2] + (R(0.33360360000000006) * t11 + (k[3] * t14 + R(-0.017475200000000024) * t18));
-                const gic_real t37 = t36 - R(0.23411769999999998);
-                const gic_real t38 = q[1] + (R(0.33360360000000006) * t21 + (k[3] * t23 + R(-0.017475200000000024) * t26));
-                const gic_real t39 = t38 - k[4];
-                const gic_real t40 = q[0] + (R(0.33360360000000006) * t29 + (k[3] * t30 + R(-0.017475200000000024) * t31));
-                const gic_real t41 = t40 - R(1.593883);
-                const gic_real t42 = t37 * t37 + (t39 * t39 + t41 * t41) - R(0.07115456010869);
-                const gic_real t43 = R(0.5) * t42 + f[6] * t2 + f[7] * t4 + f[8] * t6;
-                const gic_real t44 = f[9] * t35 - t43;
-                const gic_real t45 = R(4.3116545195287515e-08) - (R(0.21526024724178433) * t37 + (k[5] * t39 + R(0.9665541626242249) * t41));
-                const gic_real t46 = t45 - R(0.9665541626242249) * t2 - k[5] * t4 - R(0.21526024724178433) * t6;
-                const gic_real t47 = f[14] * (t46 + f[12] * t35 - f[13] * t44);
-                const gic_real t48 = f[10] * (t44 - f[11] * t47);
-                const gic_real t49 = R(0.5) * t48;
-                const gic_real t50 = R(0.5) * t47;
-                const gic_real t51 = f[3] * (t35 + f[4] * t48 + f[5] * t47);
-                const gic_real t52 = R(0.5) * t51;
-                const gic_real t53 = q[3] - (q[6] * t49 + (q[5] * t50 - q[4] * t52));
-                const gic_real t54 = q[6] + (q[3] * t49 - (q[4] * t50 + q[5] * t52));
-                const gic_real t55 = q[5] + (q[6] * t52 + q[4] * t49 + q[3] * t50);
-                const gic_real t56 = q[4] + (q[6] * t50 - q[5] * t49 - q[3] * t52);
-                const gic_real t57 = t54 * t54 + (t55 * t55 + t56 * t56) + t53 * t53;
-                const gic_real t58 = R(1.5) - R(0.5) * t57;
-                const gic_real t59 = R(8.573627050492615) * (t6 * t6 + (t4 * t4 + t2 * t2));
-                const gic_real t60 = t48 * t48 + (t47 * t47 + t51 * t51) + t59;
-                const gic_real t61 = q[0] + t2;
-                const gic_real t62 = q[1] + t4;
-                const gic_real t63 = q[2] + t6;
-                const gic_real t64 = t53 * t58;
-                const gic_real t65 = t56 * t58;
-                const gic_real t66 = t55 * t58;
-                const gic_real t67 = t54 * t58;
-                q[0] = t61;
-                q[1] = t62;
-                q[2] = t63;
-                q[3] = t64;
-                q[4] = t65;
-                q[5] = t66;
-                q[6] = t67;
-                step = t60;
-            }
-            ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
-                return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
-                break;
-        }
-    }
-    for (i = 0; i < GIC_PASSES; ++i) {
-        /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
-        {
-            const gic_real t1 = q[5] + q[5];
-            const gic_real t2 = q[6] * t1;
-            const gic_real t3 = q[4] + q[4];
-            const gic_real t4 = q[3] * t3;
-            const gic_real t5 = t2 - t4;
-            const gic_real t6 = q[4] * t3;
-            const gic_real t7 = q[6] + q[6];
-            const gic_real t8 = q[6] * t7;
-            const gic_real t9 = R(1.0) - (t6 + t8);
-            const gic_real t10 = q[5] * t3;
-            const gic_real t11 = q[3] * t7;
-            const gic_real t12 = t10 + t11;
-            const gic_real t13 = R(0.10177780000000003) * t5 + (k[1] * t9 + R(-0.14025880000000002) * t12);
-            const gic_real t14 = q[5] * t1;
-            const gic_real t15 = R(1.0) - (t6 + t14);
-            const gic_real t16 = t2 + t4;
-            const gic_real t17 = q[4] * t7;
-            const gic_real t18 = q[3] * t1;
-            const gic_real t19 = t17 - t18;
-            const gic_real t20 = R(0.10177780000000003) * t15 + (k[1] * t16 + R(-0.14025880000000002) * t19);
-            const gic_real t21 = q[2] + t20;
-            const gic_real t22 = k[2] * m0[10];
-            const gic_real t23 = m0[2] + t22;
-            const gic_real t24 = t21 - t23;
-            const gic_real t25 = q[1] + t13;
-            const gic_real t26 = k[2] * m0[7];
-            const gic_real t27 = m0[1] + t26;
-            const gic_real t28 = t25 - t27;
-            const gic_real t29 = t13 * t24 - t20 * t28;
-            if (!(GIC_FABS(t29) > R(4.982107507841006e-09)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t30 = t17 + t18;
-            const gic_real t31 = t10 - t11;
-            const gic_real t32 = R(1.0) - (t14 + t8);
-            const gic_real t33 = R(0.33360360000000006) * t30 + (k[3] * t31 + R(-0.017475200000000024) * t32);
-            const gic_real t34 = R(0.33360360000000006) * t5 + (k[3] * t9 + R(-0.017475200000000024) * t12);
-            const gic_real t35 = q[1] + t34 - k[4];
-            const gic_real t36 = q[0] + t33 - R(1.593883);
-            const gic_real t37 = R(0.10177780000000003) * t30 + (k[1] * t31 + R(-0.14025880000000002) * t32);
-            const gic_real t38 = q[0] + t37;
-            const gic_real t39 = k[2] * m0[4];
-            const gic_real t40 = m0[0] + t39;
-            const gic_real t41 = t38 - t40;
-            const gic_real t42 = t37 * t28 - t13 * t41;
-            const gic_real t43 = R(0.33360360000000006) * t15 + (k[3] * t16 + R(-0.017475200000000024) * t19);
-            const gic_real t44 = q[2] + t43 - R(0.23411769999999998);
-            const gic_real t45 = R(1.0) / t29;
-            const gic_real t46 = (t34 * t44 - t43 * t35) * t45;
-            const gic_real t47 = t33 * t35 - t34 * t36 - t42 * t46;
-            if (!(GIC_FABS(t47) > R(1.683634808211139e-08)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t48 = t20 * t41 - t37 * t24;
-            const gic_real t49 = (R(0.21526024724178433) * t34 - k[5] * t43) * t45;
-            const gic_real t50 = t43 * t36 - t33 * t44 - t48 * t46;
-            const gic_real t51 = R(1.0) / t47;
-            const gic_real t52 = (k[5] * t33 - R(0.9665541626242249) * t34 - t42 * t49) * t51;
-            const gic_real t53 = R(0.9665541626242249) * t43 - R(0.21526024724178433) * t33 - t48 * t49 - t50 * t52;
-            if (!(GIC_FABS(t53) > R(3.535665395436722e-08)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t54 = R(6.938893903907228e-18) * m1[5] + (k[0] * m1[4] + R(-0.03556000000000003) * m1[3]);
-            const gic_real t55 = m1[0] + t54 - q[0];
-            const gic_real t56 = q[0] + t55;
-            const gic_real t57 = R(6.938893903907228e-18) * m1[8] + (k[0] * m1[7] + R(-0.03556000000000003) * m1[6]);
-            const gic_real t58 = m1[1] + t57 - q[1];
-            const gic_real t59 = q[1] + t58;
-            const gic_real t60 = R(6.938893903907228e-18) * m1[11] + (k[0] * m1[10] + R(-0.03556000000000003) * m1[9]);
-            const gic_real t61 = m1[2] + t60 - q[2];
-            const gic_real t62 = q[2] + t61;
-            const gic_real t63 = t24 * t24 + (t28 * t28 + t41 * t41) - R(0.14941089924212003);
-            const gic_real t64 = t63 * R(0.5) + t41 * t55 + t28 * t58 + t24 * t61;
-            const gic_real t65 = t44 * t44 + (t35 * t35 + t36 * t36) - R(0.07115456010869);
-            const gic_real t66 = R(0.5) * t65 + t36 * t55 + t35 * t58 + t44 * t61;
-            const gic_real t67 = t46 * t64 - t66;
-            const gic_real t68 = R(1.0) / t53;
-            const gic_real t69 = R(4.3116545195287515e-08) - (R(0.21526024724178433) * t44 + (k[5] * t35 + R(0.9665541626242249) * t36));
-            const gic_real t70 = t69 - R(0.9665541626242249) * t55 - k[5] * t58 - R(0.21526024724178433) * t61;
-            const gic_real t71 = t68 * (t70 + t49 * t64 - t52 * t67);
-            const gic_real t72 = t51 * (t67 - t50 * t71);
-            const gic_real t73 = R(0.5) * t72;
-            const gic_real t74 = R(0.5) * t71;
-            const gic_real t75 = t45 * (t64 + t42 * t72 + t48 * t71);
-            const gic_real t76 = R(0.5) * t75;
-            const gic_real t77 = q[3] - (q[6] * t73 + (q[5] * t74 - q[4] * t76));
-            const gic_real t78 = q[6] + (q[3] * t73 - (q[4] * t74 + q[5] * t76));
-            const gic_real t79 = q[5] + (q[6] * t76 + q[4] * t73 + q[3] * t74);
-            const gic_real t80 = q[4] + (q[6] * t74 - q[5] * t73 - q[3] * t76);
-            const gic_real t81 = t78 * t78 + (t79 * t79 + t80 * t80) + t77 * t77;
-            const gic_real t82 = R(1.5) - R(0.5) * t81;
-            const gic_real t83 = t77 * t82;
-            const gic_real t84 = t80 * t82;
-            const gic_real t85 = t79 * t82;
-            const gic_real t86 = t78 * t82;
-            const gic_real t87 = R(8.573627050492615) * (t61 * t61 + (t58 * t58 + t55 * t55));
-            const gic_real t88 = t87 + (t72 * t72 + (t71 * t71 + t75 * t75));
-            const gic_real t89 = t85 + t85;
-            const gic_real t90 = t85 * t89;
-            const gic_real t91 = t86 + t86;
-            const gic_real t92 = t86 * t91;
-            const gic_real t93 = R(1.0) - (t90 + t92);
-            const gic_real t94 = t84 + t84;
-            const gic_real t95 = t85 * t94;
-            const gic_real t96 = t83 * t91;
-            const gic_real t97 = t95 - t96;
-            const gic_real t98 = t84 * t91;
-            const gic_real t99 = t83 * t89;
-            const gic_real t100 = t98 + t99;
-            const gic_real t101 = t95 + t96;
-            const gic_real t102 = t84 * t94;
-            const gic_real t103 = R(1.0) - (t102 + t92);
-            const gic_real t104 = t86 * t89;
-            const gic_real t105 = t83 * t94;
-            const gic_real t106 = t104 - t105;
-            const gic_real t107 = t98 - t99;
-            const gic_real t108 = t104 + t105;
-            const gic_real t109 = R(1.0) - (t102 + t90);
-            const gic_real t110 = m0[24] * (t22 * t28 - t26 * t24) + m0[25] * (t39 * t24 - t22 * t41);
-            const gic_real t111 = t110 + m0[26] * (t26 * t41 - t39 * t28) + m0[27] * (t40 - t38);
-            const gic_real t112 = t111 + m0[28] * (t27 - t25) + m0[29] * (t23 - t21);
-            const gic_real t113 = t46 * t112;
-            const gic_real t114 = t68 * (t49 * t112 - t52 * t113);
-            const gic_real t115 = t51 * (t113 - t50 * t114);
-            const gic_real t116 = t45 * (t112 + t42 * t115 + t48 * t114);
-            const gic_real t117 = m1[27] - (m1[26] * t57 - m1[25] * t60);
-            const gic_real t118 = m1[28] - (m1[24] * t60 - m1[26] * t54);
-            const gic_real t119 = m1[29] - (m1[25] * t54 - m1[24] * t57);
-            const gic_real t120 = t41 * t117 + t28 * t118 + t24 * t119;
-            const gic_real t121 = t46 * t120 - (t36 * t117 + t35 * t118 + t44 * t119);
-            const gic_real t122 = t49 * t120 - (R(0.9665541626242249) * t117 + k[5] * t118 + R(0.21526024724178433) * t119);
-            const gic_real t123 = t68 * (t122 - t52 * t121);
-            const gic_real t124 = t51 * (t121 - t50 * t123);
-            const gic_real t125 = t45 * (t120 + t42 * t124 + t48 * t123);
-            const gic_real t126 = rate[0] * t116 + rate[1] * t125;
-            const gic_real t127 = rate[0] * t114 + rate[1] * t123;
-            const gic_real t128 = rate[0] * t115 + rate[1] * t124;
-            const gic_real t129 = rate[1] * t117;
-            const gic_real t130 = rate[1] * t118;
-            const gic_real t131 = rate[1] * t119;
-            const gic_real t132 = t37 * t127 + t13 * t126;
-            const gic_real t133 = m0[12] * t26 - m0[13] * t39;
-            const gic_real t134 = t131 - t132 - (m0[17] + t133);
-            const gic_real t135 = t20 * t126 + t37 * t128;
-            const gic_real t136 = m0[14] * t39 - m0[12] * t22;
-            const gic_real t137 = t130 + t135 - (m0[16] + t136);
-            const gic_real t138 = t20 * t127 - t13 * t128;
-            const gic_real t139 = m0[13] * t22 - m0[14] * t26;
-            const gic_real t140 = t129 + t138 - (m0[15] + t139);
-            const gic_real t141 = m0[14] * t139 - m0[12] * t133 + (m0[20] * t39 - m0[18] * t22);
-            const gic_real t142 = t28 * (t128 * t138 - t126 * t132 - (m0[22] + t141));
-            const gic_real t143 = m0[13] * t133 - m0[14] * t136 + (m0[19] * t22 - m0[20] * t26);
-            const gic_real t144 = t41 * (m0[21] + t143 + (t128 * t135 + t127 * t132));
-            const gic_real t145 = m0[12] * t136 - m0[13] * t139 + (m0[18] * t26 - m0[19] * t39);
-            const gic_real t146 = t24 * (m0[23] + t145 + (t127 * t138 + t126 * t135));
-            const gic_real t147 = t134 * t134 + (t137 * t137 + t140 * t140) + (t142 - t144 - t146);
-            const gic_real t148 = m1[12] * t57 - m1[13] * t54;
-            const gic_real t149 = m1[14] * t54 - m1[12] * t60;
-            const gic_real t150 = m1[13] * t148 - m1[14] * t149 + (m1[19] * t60 - m1[20] * t57);
-            const gic_real t151 = m1[21] + t150;
-            const gic_real t152 = m1[13] * t60 - m1[14] * t57;
-            const gic_real t153 = m1[14] * t152 - m1[12] * t148 + (m1[20] * t54 - m1[18] * t60);
-            const gic_real t154 = m1[22] + t153;
-            const gic_real t155 = m1[12] * t149 - m1[13] * t152 + (m1[18] * t57 - m1[19] * t54);
-            const gic_real t156 = m1[23] + t155;
-            const gic_real t157 = t147 + t151 * t41 + t154 * t28 + t156 * t24;
-            const gic_real t158 = t33 * t127 + t34 * t126;
-            const gic_real t159 = t131 - t158;
-            const gic_real t160 = t43 * t126 + t33 * t128;
-            const gic_real t161 = t130 + t160;
-            const gic_real t162 = t43 * t127 - t34 * t128;
-            const gic_real t163 = t129 + t162;
-            const gic_real t164 = t128 * t162 - t126 * t158;
-            const gic_real t165 = t128 * t160 + t127 * t158;
-            const gic_real t166 = t127 * t162 + t126 * t160;
-            const gic_real t167 = t159 * t159 + (t161 * t161 + t163 * t163) + (t35 * t164 - t36 * t165 - t44 * t166);
-            const gic_real t168 = t167 + t151 * t36 + t154 * t35 + t156 * t44;
-            const gic_real t169 = t46 * t157 - t168;
-            const gic_real t170 = R(0.21526024724178433) * t166 - (k[5] * t164 - R(0.9665541626242249) * t165) - R(0.9665541626242249) * t151;
-            const gic_real t171 = t170 - k[5] * t154 - R(0.21526024724178433) * t156 + t49 * t157;
-            const gic_real t172 = t68 * (t171 - t52 * t169);
-            const gic_real t173 = t51 * (t169 - t50 * t172);
-            const gic_real t174 = t45 * (t157 + t42 * t173 + t48 * t172);
-            const gic_real t175 = -t116;
-            const gic_real t176 = -t125;
-            const gic_real t177 = t100 * R(0.09182100000000004) + (t97 * k[6] + t93 * R(-0.004825999999999997));
-            const gic_real t178 = t56 + t177;
-            const gic_real t179 = R(90.555) * t178;
-            const gic_real t180 = t106 * R(0.09182100000000004) + (t103 * k[6] + t101 * R(-0.004825999999999997));
-            const gic_real t181 = t59 + t180;
-            const gic_real t182 = R(90.555) * t181;
-            const gic_real t183 = t109 * R(0.09182100000000004) + (t108 * k[6] + t107 * R(-0.004825999999999997));
-            const gic_real t184 = t62 + t183;
-            const gic_real t185 = R(90.555) * t184;
-            const gic_real t186 = t97 * R(2.8083995);
-            const gic_real t187 = t93 * R(0.12192999999999987);
-            const gic_real t188 = R(4.7728205) + (t97 * t186 + t93 * t187);
-            const gic_real t189 = t181 * t182;
-            const gic_real t190 = t184 * t185;
-            const gic_real t191 = t103 * R(2.8083995);
-            const gic_real t192 = t101 * R(0.12192999999999987);
-            const gic_real t193 = R(4.7728205) + (t103 * t191 + t101 * t192);
-            const gic_real t194 = t178 * t179;
-            const gic_real t195 = R(4.7728205) + (t108 * (t108 * R(2.8083995)) + t107 * (t107 * R(0.12192999999999987)));
-            const gic_real t196 = t103 * t186 + t101 * t187;
-            const gic_real t197 = t108 * t186 + t107 * t187;
-            const gic_real t198 = t108 * t191 + t107 * t192;
-            const gic_real t199 = t127 * t177 + t126 * t180;
-            const gic_real t200 = t131 - t199;
-            const gic_real t201 = t200 + (t200 + (turn[0] * t181 - turn[1] * t178));
-            const gic_real t202 = t126 * t183 + t128 * t177;
-            const gic_real t203 = t130 + t202;
-            const gic_real t204 = t203 + (t203 + (turn[2] * t178 - turn[0] * t184));
-            const gic_real t205 = turn[1] * t201 - turn[2] * t204 - (t128 * t202 + t127 * t199);
-            const gic_real t206 = R(90.555) * (t151 + (t205 + (t172 * t183 - t173 * t180)));
-            const gic_real t207 = t127 * t183 - t128 * t180;
-            const gic_real t208 = t129 + t207;
-            const gic_real t209 = t208 + (t208 + (turn[1] * t184 - turn[2] * t181));
-            const gic_real t210 = turn[2] * t209 - turn[0] * t201 + (t128 * t207 - t126 * t199);
-            const gic_real t211 = R(90.555) * (t154 + (t210 + (t174 * t183 + t173 * t177)));
-            const gic_real t212 = turn[0] * t204 - turn[1] * t209 - (t127 * t207 + t126 * t202);
-            const gic_real t213 = R(90.555) * (t156 + (t212 - (t172 * t177 + t174 * t180)));
-            const gic_real t214 = t173 + (t126 * turn[1] + t127 * turn[0]);
-            const gic_real t215 = t172 - (t128 * turn[0] + t126 * turn[2]);
-            const gic_real t216 = t128 * turn[1] - t127 * turn[2] - t174;
-            const gic_real t217 = t127 + turn[1];
-            const gic_real t218 = t128 + turn[2];
-            const gic_real t219 = turn[0] - t126;
-            const gic_real t220 = t195 * t218 + (t198 * t217 + t197 * t219);
-            const gic_real t221 = t198 * t218 + (t193 * t217 + t196 * t219);
-            const gic_real t222 = t197 * t214 + (t196 * t215 + t188 * t216) + (t217 * t220 - t218 * t221);
-            const gic_real t223 = t197 * t218 + (t196 * t217 + t188 * t219);
-            const gic_real t224 = t198 * t214 + (t193 * t215 + t196 * t216) + (t218 * t223 - t219 * t220);
-            const gic_real t225 = t195 * t214 + (t198 * t215 + t197 * t216) + (t219 * t221 - t217 * t223);
-            const gic_real t226 = t114 * t183 - t115 * t180;
-            const gic_real t227 = R(90.555) * t226;
-            const gic_real t228 = t116 * t183 + t115 * t177;
-            const gic_real t229 = R(90.555) * t228;
-            const gic_real t230 = t114 * t177 + t116 * t180;
-            const gic_real t231 = R(90.555) * t230;
-            const gic_real t232 = t115 * t197 + (t114 * t196 - t116 * t188);
-            const gic_real t233 = t115 * t198 + (t114 * t193 - t116 * t196);
-            const gic_real t234 = t115 * t195 + (t114 * t198 - t116 * t197);
-            const gic_real t235 = t115 * t225 + (t114 * t224 - t116 * t222) + (t211 * t228 + t206 * t226 - t213 * t230);
-            const gic_real t236 = t117 + (t123 * t183 - t124 * t180);
-            const gic_real t237 = R(90.555) * t236;
-            const gic_real t238 = t118 + (t125 * t183 + t124 * t177);
-            const gic_real t239 = R(90.555) * t238;
-            const gic_real t240 = t119 - (t123 * t177 + t125 * t180);
-            const gic_real t241 = R(90.555) * t240;
-            const gic_real t242 = t124 * t197 + (t123 * t196 - t125 * t188);
-            const gic_real t243 = t124 * t198 + (t123 * t193 - t125 * t196);
-            const gic_real t244 = t124 * t195 + (t123 * t198 - t125 * t197);
-            const gic_real t245 = t124 * t225 + (t123 * t224 - t125 * t222) + (t213 * t240 + (t211 * t238 + t206 * t236));
-            const gic_real t246 = t115 * t234 + (t114 * t233 - t116 * t232) + (t230 * t231 + (t228 * t229 + t226 * t227));
-            const gic_real t247 = t115 * t244 + (t114 * t243 - t116 * t242) + (t228 * t239 + t226 * t237 - t230 * t241);
-            const gic_real t248 = t124 * t244 + (t123 * t243 - t125 * t242) + (t240 * t241 + (t238 * t239 + t236 * t237));
-            const gic_real t249 = -t126;
-            const gic_real t250 = -t174;
-            const gic_real t251 = t188 + (t189 + t190);
-            const gic_real t252 = t193 + (t194 + t190);
-            const gic_real t253 = t195 + (t194 + t189);
-            const gic_real t254 = t196 - t181 * t179;
-            const gic_real t255 = t197 - t184 * t179;
-            const gic_real t256 = t198 - t184 * t182;
-            const gic_real t257 = t222 + (t181 * t213 - t184 * t211);
-            const gic_real t258 = t224 + (t184 * t206 - t178 * t213);
-            const gic_real t259 = t225 + (t178 * t211 - t181 * t206);
-            const gic_real t260 = -t231;
-            const gic_real t261 = t232 - (t184 * t229 + t181 * t231);
-            const gic_real t262 = t233 + (t178 * t231 + t184 * t227);
-            const gic_real t263 = t234 + (t178 * t229 - t181 * t227);
-            const gic_real t264 = t242 + (t181 * t241 - t184 * t239);
-            const gic_real t265 = t243 + (t184 * t237 - t178 * t241);
-            const gic_real t266 = t244 + (t178 * t239 - t181 * t237);
-            q[0] = t56;
-            q[1] = t59;
-            q[2] = t62;
-            q[3] = t83;
-            q[4] = t84;
-            q[5] = t85;
-            q[6] = t86;
-            step = t88;
-            motion[0] = t56;
-            motion[1] = t59;
-            motion[2] = t62;
-            motion[3] = t93;
-            motion[4] = t97;
-            motion[5] = t100;
-            motion[6] = t101;
-            motion[7] = t103;
-            motion[8] = t106;
-            motion[9] = t107;
-            motion[10] = t108;
-            motion[11] = t109;
-            motion[12] = t249;
-            motion[13] = t127;
-            motion[14] = t128;
-            motion[15] = t129;
-            motion[16] = t130;
-            motion[17] = t131;
-            motion[18] = t250;
-            motion[19] = t172;
-            motion[20] = t173;
-            motion[21] = t151;
-            motion[22] = t154;
-            motion[23] = t156;
-            motion[24] = t175;
-            motion[25] = t114;
-            motion[26] = t115;
-            motion[27] = R(0.0);
-            motion[28] = R(0.0);
-            motion[29] = R(0.0);
-            motion[30] = t176;
-            motion[31] = t123;
-            motion[32] = t124;
-            motion[33] = t117;
-            motion[34] = t118;
-            motion[35] = t119;
-            start[7] = t175;
-            start[8] = t114;
-            start[9] = t115;
-            start[10] = R(0.0);
-            start[11] = R(0.0);
-            start[12] = R(0.0);
-            start[13] = t176;
-            start[14] = t123;
-            start[15] = t124;
-            start[16] = t117;
-            start[17] = t118;
-            start[18] = t119;
-            start[19] = t41;
-            start[20] = t28;
-            start[21] = t24;
-            start[22] = t45;
-            start[23] = t42;
-            start[24] = t48;
-            start[25] = t36;
-            start[26] = t35;
-            start[27] = t44;
-            start[28] = t46;
-            start[29] = t51;
-            start[30] = t50;
-            start[31] = t49;
-            start[32] = t52;
-            start[33] = t68;
-            inertia[0] = t179;
-            inertia[1] = t182;
-            inertia[2] = t185;
-            inertia[3] = t251;
-            inertia[4] = t252;
-            inertia[5] = t253;
-            inertia[6] = t254;
-            inertia[7] = t255;
-            inertia[8] = t256;
-            inertia[9] = t206;
-            inertia[10] = t211;
-            inertia[11] = t213;
-            inertia[12] = t257;
-            inertia[13] = t258;
-            inertia[14] = t259;
-            inertia[15] = t227;
-            inertia[16] = t229;
-            inertia[17] = t260;
-            inertia[18] = t261;
-            inertia[19] = t262;
-            inertia[20] = t263;
-            inertia[21] = t235;
-            inertia[22] = t237;
-            inertia[23] = t239;
-            inertia[24] = t241;
-            inertia[25] = t264;
-            inertia[26] = t265;
-            inertia[27] = t266;
-            inertia[28] = t245;
-            inertia[29] = t246;
-            inertia[30] = t247;
-            inertia[31] = t248;
-        }
-        ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
+    (void)k, (void)start, (void)inertia;
+    {
+        const gic_real t1 = R(6.938893903907228e-18) * m1[8] + (k[0] * m1[7] + R(-0.03556000000000003) * m1[6]);
+        const gic_real t2 = m1[1] + t1;
+        const gic_real t3 = k[1] - t2;
+        const gic_real t4 = R(6.938893903907228e-18) * m1[5] + (k[0] * m1[4] + R(-0.03556000000000003) * m1[3]);
+        const gic_real t5 = m1[0] + t4;
+        const gic_real t6 = R(1.593883) - t5;
+        const gic_real t7 = R(0.9665541626242249) * t3 - k[2] * t6;
+        const gic_real t8 = R(6.938893903907228e-18) * m1[11] + (k[0] * m1[10] + R(-0.03556000000000003) * m1[9]);
+        const gic_real t9 = m1[2] + t8;
+        const gic_real t10 = R(0.23411769999999998) - t9;
+        const gic_real t11 = R(0.21526024724178433) * t6 - R(0.9665541626242249) * t10;
+        const gic_real t12 = k[2] * t10 - R(0.21526024724178433) * t3;
+        const gic_real t13 = R(1.0) / (t7 * t7 + (t11 * t11 + t12 * t12));
+        const gic_real t14 = R(0.21526024724178433) * t10 + (k[2] * t3 + R(0.9665541626242249) * t6);
+        const gic_real t15 = R(4.3116545195287515e-08) + t14;
+        const gic_real t16 = t10 * t10 + (t3 * t3 + t6 * t6);
+        const gic_real t17 = R(0.5) * (R(0.11663675059700003) + t16 - R(0.07115456010869));
+        const gic_real t18 = t13 * (t15 * t16 - t14 * t17);
+        const gic_real t19 = t13 * (t17 - t14 * t15);
+        const gic_real t20 = t13 * (R(0.11663675059700003) - t15 * t18 - t17 * t19);
+        if (!(t20 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
-            if (step > self->head.largest_step)
-                self->head.largest_step = step;
-            ++self->head.newton_count;
-            for (i = 0; i < 7; ++i)
-                start[i] = q[i];
-            return GIC_OK;
-        }
-        before = step;
+        const gic_real t21 = k[3] * m0[10];
+        const gic_real t22 = m0[2] + t21;
+        const gic_real t23 = t22 - t9;
+        const gic_real t24 = GIC_SQRT(t20) * k[4];
+        const gic_real t25 = R(0.21526024724178433) * t18 + t10 * t19 + t7 * t24;
+        const gic_real t26 = k[3] * m0[7];
+        const gic_real t27 = m0[1] + t26;
+        const gic_real t28 = t27 - t2;
+        const gic_real t29 = k[2] * t18 + t3 * t19 + t11 * t24;
+        const gic_real t30 = k[3] * m0[4];
+        const gic_real t31 = m0[0] + t30;
+        const gic_real t32 = t31 - t5;
+        const gic_real t33 = R(0.9665541626242249) * t18 + t6 * t19 + t12 * t24;
+        const gic_real t34 = t23 * t25 + (t28 * t29 + t32 * t33);
+        const gic_real t35 = R(8.573627050492615) * t34;
+        const gic_real t36 = t23 - t25 * t35;
+        const gic_real t37 = t28 - t29 * t35;
+        const gic_real t38 = t32 - t33 * t35;
+        const gic_real t39 = R(1.0) / (t36 * t36 + (t37 * t37 + t38 * t38));
+        const gic_real t40 = R(0.031228051737320014) + (t23 * t23 + (t28 * t28 + t32 * t32));
+        const gic_real t41 = R(0.5) * (t40 - R(0.14941089924212003)) - R(0.2910617987184667) * t34;
+        const gic_real t42 = t39 * t41;
+        const gic_real t43 = R(8.573627050492615) * (t39 * (R(0.021346939557573212) - t41 * t42));
+        if (!(t43 > R(0.0)))
+            return GIC_ERROR_NEWTON;
+        const gic_real t44 = k[4] * GIC_SQRT(t43);
+        const gic_real t45 = t37 * t42 + (t25 * t38 - t33 * t36) * t44;
+        const gic_real t46 = t45 + t29 * R(0.2910617987184667);
+        const gic_real t47 = t36 * t42 + (t33 * t37 - t29 * t38) * t44;
+        const gic_real t48 = t47 + t25 * R(0.2910617987184667);
+        const gic_real t49 = t9 + t48;
+        const gic_real t50 = t49 - t22;
+        const gic_real t51 = t2 + t46;
+        const gic_real t52 = t51 - t27;
+        const gic_real t53 = t46 * t50 - t48 * t52;
+        if (!(GIC_FABS(t53) > R(4.982107507841006e-09)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t54 = t2 + t29 - k[1];
+        const gic_real t55 = t5 + t33 - R(1.593883);
+        const gic_real t56 = t38 * t42 + (t29 * t36 - t25 * t37) * t44;
+        const gic_real t57 = t56 + t33 * R(0.2910617987184667);
+        const gic_real t58 = t5 + t57;
+        const gic_real t59 = t58 - t31;
+        const gic_real t60 = t57 * t52 - t46 * t59;
+        const gic_real t61 = t9 + t25 - R(0.23411769999999998);
+        const gic_real t62 = R(1.0) / t53;
+        const gic_real t63 = (t29 * t61 - t25 * t54) * t62;
+        const gic_real t64 = t33 * t54 - t29 * t55 - t60 * t63;
+        if (!(GIC_FABS(t64) > R(1.683634808211139e-08)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t65 = t48 * t59 - t57 * t50;
+        const gic_real t66 = (R(0.21526024724178433) * t29 - k[2] * t25) * t62;
+        const gic_real t67 = t25 * t55 - t33 * t61 - t65 * t63;
+        const gic_real t68 = R(1.0) / t64;
+        const gic_real t69 = (k[2] * t33 - R(0.9665541626242249) * t29 - t60 * t66) * t68;
+        const gic_real t70 = R(0.9665541626242249) * t25 - R(0.21526024724178433) * t33 - t65 * t66 - t67 * t69;
+        if (!(GIC_FABS(t70) > R(3.5356653954367224e-08)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t71 = t29 * t47 - t25 * t45;
+        const gic_real t72 = t71 * k[5] + (t56 * R(-6.332169372123424) + t33 * R(-0.14982584743276875));
+        const gic_real t73 = t71 * R(-18.07838873614245) + (t56 * k[6] + t33 * k[7]);
+        const gic_real t74 = t71 * k[8] + (t56 * R(0.2191665982107646) + t33 * R(2.8601928491017183));
+        const gic_real t75 = t25 * t56 - t33 * t47;
+        const gic_real t76 = t75 * k[5] + (t45 * R(-6.332169372123424) + t29 * R(-0.14982584743276875));
+        const gic_real t77 = t75 * R(-18.07838873614245) + (t45 * k[6] + t29 * k[7]);
+        const gic_real t78 = t75 * k[8] + (t45 * R(0.2191665982107646) + t29 * R(2.8601928491017183));
+        const gic_real t79 = t33 * t45 - t29 * t56;
+        const gic_real t80 = t79 * k[5] + (t47 * R(-6.332169372123424) + t25 * R(-0.14982584743276875));
+        const gic_real t81 = t79 * R(-18.07838873614245) + (t47 * k[6] + t25 * k[7]);
+        const gic_real t82 = t79 * k[8] + (t47 * R(0.2191665982107646) + t25 * R(2.8601928491017183));
+        const gic_real t83 = m0[24] * (t21 * t52 - t26 * t50) + m0[25] * (t30 * t50 - t21 * t59);
+        const gic_real t84 = t83 + m0[26] * (t26 * t59 - t30 * t52) + m0[27] * (t31 - t58);
+        const gic_real t85 = t84 + m0[28] * (t27 - t51) + m0[29] * (t22 - t49);
+        const gic_real t86 = t63 * t85;
+        const gic_real t87 = R(1.0) / t70;
+        const gic_real t88 = t87 * (t66 * t85 - t69 * t86);
+        const gic_real t89 = t68 * (t86 - t67 * t88);
+        const gic_real t90 = t62 * (t85 + t60 * t89 + t65 * t88);
+        const gic_real t91 = m1[27] - (m1[26] * t1 - m1[25] * t8);
+        const gic_real t92 = m1[28] - (m1[24] * t8 - m1[26] * t4);
+        const gic_real t93 = m1[29] - (m1[25] * t4 - m1[24] * t1);
+        const gic_real t94 = t59 * t91 + t52 * t92 + t50 * t93;
+        const gic_real t95 = t63 * t94 - (t55 * t91 + t54 * t92 + t61 * t93);
+        const gic_real t96 = t66 * t94 - (R(0.9665541626242249) * t91 + k[2] * t92 + R(0.21526024724178433) * t93);
+        const gic_real t97 = t87 * (t96 - t69 * t95);
+        const gic_real t98 = t68 * (t95 - t67 * t97);
+        const gic_real t99 = t62 * (t94 + t60 * t98 + t65 * t97);
+        const gic_real t100 = rate[0] * t90 + rate[1] * t99;
+        const gic_real t101 = rate[0] * t88 + rate[1] * t97;
+        const gic_real t102 = rate[0] * t89 + rate[1] * t98;
+        const gic_real t103 = rate[1] * t91;
+        const gic_real t104 = rate[1] * t92;
+        const gic_real t105 = rate[1] * t93;
+        const gic_real t106 = t57 * t101 + t46 * t100;
+        const gic_real t107 = m0[12] * t26 - m0[13] * t30;
+        const gic_real t108 = t105 - t106 - (m0[17] + t107);
+        const gic_real t109 = t48 * t100 + t57 * t102;
+        const gic_real t110 = m0[14] * t30 - m0[12] * t21;
+        const gic_real t111 = t104 + t109 - (m0[16] + t110);
+        const gic_real t112 = t48 * t101 - t46 * t102;
+        const gic_real t113 = m0[13] * t21 - m0[14] * t26;
+        const gic_real t114 = t103 + t112 - (m0[15] + t113);
+        const gic_real t115 = m0[14] * t113 - m0[12] * t107 + (m0[20] * t30 - m0[18] * t21);
+        const gic_real t116 = t52 * (t102 * t112 - t100 * t106 - (m0[22] + t115));
+        const gic_real t117 = m0[13] * t107 - m0[14] * t110 + (m0[19] * t21 - m0[20] * t26);
+        const gic_real t118 = t59 * (m0[21] + t117 + (t102 * t109 + t101 * t106));
+        const gic_real t119 = m0[12] * t110 - m0[13] * t113 + (m0[18] * t26 - m0[19] * t30);
+        const gic_real t120 = t50 * (m0[23] + t119 + (t101 * t112 + t100 * t109));
+        const gic_real t121 = t108 * t108 + (t111 * t111 + t114 * t114) + (t116 - t118 - t120);
+        const gic_real t122 = m1[12] * t1 - m1[13] * t4;
+        const gic_real t123 = m1[14] * t4 - m1[12] * t8;
+        const gic_real t124 = m1[13] * t122 - m1[14] * t123 + (m1[19] * t8 - m1[20] * t1);
+        const gic_real t125 = m1[21] + t124;
+        const gic_real t126 = m1[13] * t8 - m1[14] * t1;
+        const gic_real t127 = m1[14] * t126 - m1[12] * t122 + (m1[20] * t4 - m1[18] * t8);
+        const gic_real t128 = m1[22] + t127;
+        const gic_real t129 = m1[12] * t123 - m1[13] * t126 + (m1[18] * t1 - m1[19] * t4);
+        const gic_real t130 = m1[23] + t129;
+        const gic_real t131 = t121 + t125 * t59 + t128 * t52 + t130 * t50;
+        const gic_real t132 = t33 * t101 + t29 * t100;
+        const gic_real t133 = t105 - t132;
+        const gic_real t134 = t25 * t100 + t33 * t102;
+        const gic_real t135 = t104 + t134;
+        const gic_real t136 = t25 * t101 - t29 * t102;
+        const gic_real t137 = t103 + t136;
+        const gic_real t138 = t102 * t136 - t100 * t132;
+        const gic_real t139 = t102 * t134 + t101 * t132;
+        const gic_real t140 = t101 * t136 + t100 * t134;
+        const gic_real t141 = t133 * t133 + (t135 * t135 + t137 * t137) + (t54 * t138 - t55 * t139 - t61 * t140);
+        const gic_real t142 = t141 + t125 * t55 + t128 * t54 + t130 * t61;
+        const gic_real t143 = t63 * t131 - t142;
+        const gic_real t144 = R(0.21526024724178433) * t140 - (k[2] * t138 - R(0.9665541626242249) * t139) - R(0.9665541626242249) * t125;
+        const gic_real t145 = t144 - k[2] * t128 - R(0.21526024724178433) * t130 + t66 * t131;
+        const gic_real t146 = t87 * (t145 - t69 * t143);
+        const gic_real t147 = t68 * (t143 - t67 * t146);
+        const gic_real t148 = t62 * (t131 + t60 * t147 + t65 * t146);
+        const gic_real t149 = t74 * R(0.09182100000000004) + (t73 * k[9] + t72 * R(-0.004825999999999997));
+        const gic_real t150 = t5 + t149;
+        const gic_real t151 = R(90.555) * t150;
+        const gic_real t152 = t78 * R(0.09182100000000004) + (t77 * k[9] + t76 * R(-0.004825999999999997));
+        const gic_real t153 = t2 + t152;
+        const gic_real t154 = R(90.555) * t153;
+        const gic_real t155 = t82 * R(0.09182100000000004) + (t81 * k[9] + t80 * R(-0.004825999999999997));
+        const gic_real t156 = t9 + t155;
+        const gic_real t157 = R(90.555) * t156;
+        const gic_real t158 = t73 * R(2.8083995);
+        const gic_real t159 = t72 * R(0.12192999999999987);
+        const gic_real t160 = R(4.7728205) + (t73 * t158 + t72 * t159);
+        const gic_real t161 = t153 * t154;
+        const gic_real t162 = t156 * t157;
+        const gic_real t163 = t77 * R(2.8083995);
+        const gic_real t164 = t76 * R(0.12192999999999987);
+        const gic_real t165 = R(4.7728205) + (t77 * t163 + t76 * t164);
+        const gic_real t166 = t150 * t151;
+        const gic_real t167 = R(4.7728205) + (t81 * (t81 * R(2.8083995)) + t80 * (t80 * R(0.12192999999999987)));
+        const gic_real t168 = t77 * t158 + t76 * t159;
+        const gic_real t169 = t81 * t158 + t80 * t159;
+        const gic_real t170 = t81 * t163 + t80 * t164;
+        const gic_real t171 = t101 * t149 + t100 * t152;
+        const gic_real t172 = t105 - t171;
+        const gic_real t173 = t172 + (t172 + (turn[0] * t153 - turn[1] * t150));
+        const gic_real t174 = t100 * t155 + t102 * t149;
+        const gic_real t175 = t104 + t174;
+        const gic_real t176 = t175 + (t175 + (turn[2] * t150 - turn[0] * t156));
+        const gic_real t177 = turn[1] * t173 - turn[2] * t176 - (t102 * t174 + t101 * t171);
+        const gic_real t178 = R(90.555) * (t125 + (t177 + (t146 * t155 - t147 * t152)));
+        const gic_real t179 = t101 * t155 - t102 * t152;
+        const gic_real t180 = t103 + t179;
+        const gic_real t181 = t180 + (t180 + (turn[1] * t156 - turn[2] * t153));
+        const gic_real t182 = turn[2] * t181 - turn[0] * t173 + (t102 * t179 - t100 * t171);
+        const gic_real t183 = R(90.555) * (t128 + (t182 + (t148 * t155 + t147 * t149)));
+        const gic_real t184 = turn[0] * t176 - turn[1] * t181 - (t101 * t179 + t100 * t174);
+        const gic_real t185 = R(90.555) * (t130 + (t184 - (t146 * t149 + t148 * t152)));
+        const gic_real t186 = t147 + (t100 * turn[1] + t101 * turn[0]);
+        const gic_real t187 = t146 - (t102 * turn[0] + t100 * turn[2]);
+        const gic_real t188 = t102 * turn[1] - t101 * turn[2] - t148;
+        const gic_real t189 = t101 + turn[1];
+        const gic_real t190 = t102 + turn[2];
+        const gic_real t191 = turn[0] - t100;
+        const gic_real t192 = t167 * t190 + (t170 * t189 + t169 * t191);
+        const gic_real t193 = t170 * t190 + (t165 * t189 + t168 * t191);
+        const gic_real t194 = t169 * t186 + (t168 * t187 + t160 * t188) + (t189 * t192 - t190 * t193);
+        const gic_real t195 = t169 * t190 + (t168 * t189 + t160 * t191);
+        const gic_real t196 = t170 * t186 + (t165 * t187 + t168 * t188) + (t190 * t195 - t191 * t192);
+        const gic_real t197 = t167 * t186 + (t170 * t187 + t169 * t188) + (t191 * t193 - t189 * t195);
+        const gic_real t198 = t88 * t155 - t89 * t152;
+        const gic_real t199 = R(90.555) * t198;
+        const gic_real t200 = t90 * t155 + t89 * t149;
+        const gic_real t201 = R(90.555) * t200;
+        const gic_real t202 = t88 * t149 + t90 * t152;
+        const gic_real t203 = R(90.555) * t202;
+        const gic_real t204 = t89 * t169 + (t88 * t168 - t90 * t160);
+        const gic_real t205 = t89 * t170 + (t88 * t165 - t90 * t168);
+        const gic_real t206 = t89 * t167 + (t88 * t170 - t90 * t169);
+        const gic_real t207 = t89 * t197 + (t88 * t196 - t90 * t194) + (t183 * t200 + t178 * t198 - t185 * t202);
+        const gic_real t208 = t91 + (t97 * t155 - t98 * t152);
+        const gic_real t209 = R(90.555) * t208;
+        const gic_real t210 = t92 + (t99 * t155 + t98 * t149);
+        const gic_real t211 = R(90.555) * t210;
+        const gic_real t212 = t93 - (t97 * t149 + t99 * t152);
+        const gic_real t213 = R(90.555) * t212;
+        const gic_real t214 = t98 * t169 + (t97 * t168 - t99 * t160);
+        const gic_real t215 = t98 * t170 + (t97 * t165 - t99 * t168);
+        const gic_real t216 = t98 * t167 + (t97 * t170 - t99 * t169);
+        const gic_real t217 = t98 * t197 + (t97 * t196 - t99 * t194) + (t185 * t212 + (t183 * t210 + t178 * t208));
+        const gic_real t218 = t89 * t206 + (t88 * t205 - t90 * t204) + (t202 * t203 + (t200 * t201 + t198 * t199));
+        const gic_real t219 = t89 * t216 + (t88 * t215 - t90 * t214) + (t200 * t211 + t198 * t209 - t202 * t213);
+        const gic_real t220 = t98 * t216 + (t97 * t215 - t99 * t214) + (t212 * t213 + (t210 * t211 + t208 * t209));
+        const gic_real t221 = -t100;
+        const gic_real t222 = -t148;
+        const gic_real t223 = -t90;
+        const gic_real t224 = -t99;
+        const gic_real t225 = t160 + (t161 + t162);
+        const gic_real t226 = t165 + (t166 + t162);
+        const gic_real t227 = t167 + (t166 + t161);
+        const gic_real t228 = t168 - t153 * t151;
+        const gic_real t229 = t169 - t156 * t151;
+        const gic_real t230 = t170 - t156 * t154;
+        const gic_real t231 = t194 + (t153 * t185 - t156 * t183);
+        const gic_real t232 = t196 + (t156 * t178 - t150 * t185);
+        const gic_real t233 = t197 + (t150 * t183 - t153 * t178);
+        const gic_real t234 = -t203;
+        const gic_real t235 = t204 - (t156 * t201 + t153 * t203);
+        const gic_real t236 = t205 + (t150 * t203 + t156 * t199);
+        const gic_real t237 = t206 + (t150 * t201 - t153 * t199);
+        const gic_real t238 = t214 + (t153 * t213 - t156 * t211);
+        const gic_real t239 = t215 + (t156 * t209 - t150 * t213);
+        const gic_real t240 = t216 + (t150 * t211 - t153 * t209);
+        motion[0] = t5;
+        motion[1] = t2;
+        motion[2] = t9;
+        motion[3] = t72;
+        motion[4] = t73;
+        motion[5] = t74;
+        motion[6] = t76;
+        motion[7] = t77;
+        motion[8] = t78;
+        motion[9] = t80;
+        motion[10] = t81;
+        motion[11] = t82;
+        motion[12] = t221;
+        motion[13] = t101;
+        motion[14] = t102;
+        motion[15] = t103;
+        motion[16] = t104;
+        motion[17] = t105;
+        motion[18] = t222;
+        motion[19] = t146;
+        motion[20] = t147;
+        motion[21] = t125;
+        motion[22] = t128;
+        motion[23] = t130;
+        motion[24] = t223;
+        motion[25] = t88;
+        motion[26] = t89;
+        motion[27] = R(0.0);
+        motion[28] = R(0.0);
+        motion[29] = R(0.0);
+        motion[30] = t224;
+        motion[31] = t97;
+        motion[32] = t98;
+        motion[33] = t91;
+        motion[34] = t92;
+        motion[35] = t93;
+        inertia[0] = t151;
+        inertia[1] = t154;
+        inertia[2] = t157;
+        inertia[3] = t225;
+        inertia[4] = t226;
+        inertia[5] = t227;
+        inertia[6] = t228;
+        inertia[7] = t229;
+        inertia[8] = t230;
+        inertia[9] = t178;
+        inertia[10] = t183;
+        inertia[11] = t185;
+        inertia[12] = t231;
+        inertia[13] = t232;
+        inertia[14] = t233;
+        inertia[15] = t199;
+        inertia[16] = t201;
+        inertia[17] = t234;
+        inertia[18] = t235;
+        inertia[19] = t236;
+        inertia[20] = t237;
+        inertia[21] = t207;
+        inertia[22] = t209;
+        inertia[23] = t211;
+        inertia[24] = t213;
+        inertia[25] = t238;
+        inertia[26] = t239;
+        inertia[27] = t240;
+        inertia[28] = t217;
+        inertia[29] = t218;
+        inertia[30] = t219;
+        inertia[31] = t220;
     }
-    return GIC_ERROR_NEWTON;
+    ++self->head.newton_count;
+    return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset at the pose q, relative to its size. */
+/* Largest constraint residual of such a subset, relative to its size. */
 static GIC_COLD gic_real hmmwv_full_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT q)
+    const gic_real *GIC_RESTRICT motion)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
@@ -1476,580 +831,343 @@ static GIC_COLD gic_real hmmwv_full_residual_wheel_f_l(const gic_real *GIC_RESTR
     {
         const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (k[0] * m1[4] + R(-0.03556000000000003) * m1[3]));
         const gic_real t2 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (k[0] * m1[7] + R(-0.03556000000000003) * m1[6]));
-        const gic_real t3 = GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928075656552032)), GIC_FABS((q[1] - t2) * R(2.928075656552032)));
+        const gic_real t3 = GIC_MAX(GIC_FABS((motion[0] - t1) * R(2.928075656552032)), GIC_FABS((motion[1] - t2) * R(2.928075656552032)));
         const gic_real t4 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (k[0] * m1[10] + R(-0.03556000000000003) * m1[9]));
-        const gic_real t5 = q[4] + q[4];
-        const gic_real t6 = q[4] * t5;
-        const gic_real t7 = q[5] + q[5];
-        const gic_real t8 = q[5] * t7;
-        const gic_real t9 = R(1.0) - (t6 + t8);
-        const gic_real t10 = q[6] * t7;
-        const gic_real t11 = q[3] * t5;
-        const gic_real t12 = t10 + t11;
-        const gic_real t13 = q[6] + q[6];
-        const gic_real t14 = q[4] * t13;
-        const gic_real t15 = q[3] * t7;
-        const gic_real t16 = t14 - t15;
-        const gic_real t17 = q[2] + (R(0.10177780000000003) * t9 + (k[1] * t12 + R(-0.14025880000000002) * t16));
-        const gic_real t18 = t17 - (m0[2] + k[2] * m0[10]);
-        const gic_real t19 = t10 - t11;
-        const gic_real t20 = q[6] * t13;
-        const gic_real t21 = R(1.0) - (t6 + t20);
-        const gic_real t22 = q[5] * t5;
-        const gic_real t23 = q[3] * t13;
-        const gic_real t24 = t22 + t23;
-        const gic_real t25 = q[1] + (R(0.10177780000000003) * t19 + (k[1] * t21 + R(-0.14025880000000002) * t24));
-        const gic_real t26 = t25 - (m0[1] + k[2] * m0[7]);
-        const gic_real t27 = t14 + t15;
-        const gic_real t28 = t22 - t23;
-        const gic_real t29 = R(1.0) - (t8 + t20);
-        const gic_real t30 = q[0] + (R(0.10177780000000003) * t27 + (k[1] * t28 + R(-0.14025880000000002) * t29));
-        const gic_real t31 = t30 - (m0[0] + k[2] * m0[4]);
-        const gic_real t32 = t18 * t18 + (t26 * t26 + t31 * t31) - R(0.14941089924212003);
-        const gic_real t33 = GIC_MAX(GIC_MAX(t3, GIC_FABS((q[2] - t4) * R(2.928075656552032))), GIC_FABS(t32 * R(3.9285226675160785)));
-        const gic_real t34 = q[2] + (R(0.33360360000000006) * t9 + (k[3] * t12 + R(-0.017475200000000024) * t16));
-        const gic_real t35 = t34 - R(0.23411769999999998);
-        const gic_real t36 = q[1] + (R(0.33360360000000006) * t19 + (k[3] * t21 + R(-0.017475200000000024) * t24));
-        const gic_real t37 = t36 - k[4];
-        const gic_real t38 = q[0] + (R(0.33360360000000006) * t27 + (k[3] * t28 + R(-0.017475200000000024) * t29));
-        const gic_real t39 = t38 - R(1.593883);
-        const gic_real t40 = t35 * t35 + (t37 * t37 + t39 * t39) - R(0.07115456010869);
-        const gic_real t41 = R(0.21526024724178433) * t35 + (k[5] * t37 + R(0.9665541626242249) * t39) - R(4.3116545195287515e-08);
-        const gic_real t42 = GIC_MAX(GIC_MAX(t33, GIC_FABS(t40 * R(5.571891251504319))), GIC_FABS(t41 * R(3.029396354366955)));
-        worst = t42;
+        const gic_real t5 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[10] * motion[10] + R(-0.14025880000000002) * motion[9]));
+        const gic_real t6 = t5 - (m0[2] + k[3] * m0[10]);
+        const gic_real t7 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[10] * motion[7] + R(-0.14025880000000002) * motion[6]));
+        const gic_real t8 = t7 - (m0[1] + k[3] * m0[7]);
+        const gic_real t9 = motion[0] + (R(0.10177780000000003) * motion[5] + (k[10] * motion[4] + R(-0.14025880000000002) * motion[3]));
+        const gic_real t10 = t9 - (m0[0] + k[3] * m0[4]);
+        const gic_real t11 = t6 * t6 + (t8 * t8 + t10 * t10) - R(0.14941089924212003);
+        const gic_real t12 = GIC_MAX(GIC_MAX(t3, GIC_FABS((motion[2] - t4) * R(2.928075656552032))), GIC_FABS(t11 * R(3.9285226675160785)));
+        const gic_real t13 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[11] * motion[10] + R(-0.017475200000000024) * motion[9]));
+        const gic_real t14 = t13 - R(0.23411769999999998);
+        const gic_real t15 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[11] * motion[7] + R(-0.017475200000000024) * motion[6]));
+        const gic_real t16 = t15 - k[1];
+        const gic_real t17 = motion[0] + (R(0.33360360000000006) * motion[5] + (k[11] * motion[4] + R(-0.017475200000000024) * motion[3]));
+        const gic_real t18 = t17 - R(1.593883);
+        const gic_real t19 = t14 * t14 + (t16 * t16 + t18 * t18) - R(0.07115456010869);
+        const gic_real t20 = R(0.21526024724178433) * t14 + (k[2] * t16 + R(0.9665541626242249) * t18) - R(4.3116545195287515e-08);
+        const gic_real t21 = GIC_MAX(GIC_MAX(t12, GIC_FABS(t19 * R(5.571891251504317))), GIC_FABS(t20 * R(3.029396354366955)));
+        worst = t21;
     }
     return worst;
 }
 
-static const gic_real hmmwv_full_k_wheel_r_l[2][6] = {
+static const gic_real hmmwv_full_k_wheel_r_l[2][7] = {
     { /* wheel_r_l */
-        R(0.49375935710120966), R(0.23920559337529687), R(-0.23920559337529682), R(-0.07099299999999997),
-        R(0.462153), R(0.08910630000000008),
+        R(-0.23920559337529682), R(0.49375935710120966), R(0.462153), R(0.23920559337529687),
+        R(-0.07099299999999997), R(-1.0), R(0.08910630000000008),
     },
     { /* wheel_r_r */
-        R(-0.49375935710120966), R(-0.23920559337529687), R(0.23920559337529682), R(0.07099299999999997),
-        R(-0.462153), R(-0.08910630000000008),
+        R(0.23920559337529682), R(-0.49375935710120966), R(-0.462153), R(-0.23920559337529687),
+        R(0.07099299999999997), R(1.0), R(-0.08910630000000008),
     },
 };
 
 /* Class 'wheel_r_l': 6 unknowns of wheel_r_l, wheel_r_r.
- * start: pose 7 numbers a body, S from 7, factors from 13. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
+ * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
 static int hmmwv_full_solve_wheel_r_l(hmmwv_full *self, const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
-    gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
     const gic_real *const rate = links->rate;
-    const gic_real *const change = links->change;
     const gic_real *const turn = links->turn;
-    const gic_real *const s = old + 7; /* unit velocities at the start */
-    const gic_real *const f = old + 13; /* factors at the start */
-    gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
-    const gic_real enough = GIC_ENOUGH(R(28.869811926497114));
-    int i;
-    (void)k, (void)inertia;
-    for (i = 0; i < 7; ++i)
-        q[i] = old[i];
-    if (!links->cold) {
-        /* predict: the old pose moved by its unit velocities times the change of the coordinates */
-        {
-            const gic_real t1 = change[0] * s[3];
-            const gic_real t2 = change[0] * s[4];
-            const gic_real t3 = change[0] * s[5];
-            const gic_real t4 = change[0] * s[2];
-            const gic_real t5 = R(0.5) * t4;
-            const gic_real t6 = change[0] * s[1];
-            const gic_real t7 = R(0.5) * t6;
-            const gic_real t8 = change[0] * s[0];
-            const gic_real t9 = R(0.5) * t8;
-            const gic_real t10 = q[3] - (q[6] * t5 + (q[5] * t7 + q[4] * t9));
-            const gic_real t11 = q[6] + (q[5] * t9 - q[4] * t7 + q[3] * t5);
-            const gic_real t12 = q[5] + (q[4] * t5 - q[6] * t9 + q[3] * t7);
-            const gic_real t13 = q[4] + (q[6] * t7 - q[5] * t5 + q[3] * t9);
-            const gic_real t14 = t11 * t11 + (t12 * t12 + t13 * t13) + t10 * t10;
-            const gic_real t15 = R(1.5) - R(0.5) * t14;
-            const gic_real t16 = (t3 * t3 + (t2 * t2 + t1 * t1)) * R(8.576131760139356);
-            const gic_real t17 = t4 * t4 + (t6 * t6 + t8 * t8) + t16;
-            const gic_real t18 = q[0] + t1;
-            const gic_real t19 = q[1] + t2;
-            const gic_real t20 = q[2] + t3;
-            const gic_real t21 = t10 * t15;
-            const gic_real t22 = t13 * t15;
-            const gic_real t23 = t12 * t15;
-            const gic_real t24 = t11 * t15;
-            q[0] = t18;
-            q[1] = t19;
-            q[2] = t20;
-            q[3] = t21;
-            q[4] = t22;
-            q[5] = t23;
-            q[6] = t24;
-            reach = t17;
-        }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding */
-        for (i = 0; i < GIC_CHORDS; ++i) {
-            {
-                const gic_real t1 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[0] * m0[4] + R(0.03556000000000003) * m0[3]));
-                const gic_real t2 = t1 - q[0];
-                const gic_real t3 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[0] * m0[7] + R(0.03556000000000003) * m0[6]));
-                const gic_real t4 = t3 - q[1];
-                const gic_real t5 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[0] * m0[10] + R(0.03556000000000003) * m0[9]));
-                const gic_real t6 = t5 - q[2];
-                const gic_real t7 = q[6] + q[6];
-                const gic_real t8 = q[4] * t7;
-                const gic_real t9 = q[5] + q[5];
-                const gic_real t10 = q[3] * t9;
-                const gic_real t11 = t8 - t10;
-                const gic_real t12 = q[4] + q[4];
-                const gic_real t13 = q[5] * t12;
-                const gic_real t14 = q[3] * t7;
-                const gic_real t15 = t13 + t14;
-                const gic_real t16 = q[5] * t9;
-                const gic_real t17 = q[6] * t7;
-                const gic_real t18 = R(1.0) - (t16 + t17);
-                const gic_real t19 = t15 * (k[1] * m0[8] + R(0.9709689408513393) * m0[7]) + t18 * (k[1] * m0[5] + R(0.9709689408513393) * m0[4]);
-                const gic_real t20 = t11 * (k[1] * m0[11] + R(0.9709689408513393) * m0[10]) + t19;
-                const gic_real t21 = t15 * (R(0.9709689408513391) * m0[8] + k[2] * m0[7]) + t18 * (R(0.9709689408513391) * m0[5] + k[2] * m0[4]);
-                const gic_real t22 = t20 * f[3] - (t11 * (R(0.9709689408513391) * m0[11] + k[2] * m0[10]) + t21);
-                const gic_real t23 = q[4] * t12;
-                const gic_real t24 = q[6] * t9;
-                const gic_real t25 = q[3] * t12;
-                const gic_real t26 = R(0.33401) * (R(1.0) - (t23 + t16)) + k[3] * (t24 + t25);
-                const gic_real t27 = q[2] + t26 - R(0.22567900000000007);
-                const gic_real t28 = R(0.33401) * (t24 - t25) + k[3] * (R(1.0) - (t23 + t17));
-                const gic_real t29 = q[1] + t28 - k[4];
-                const gic_real t30 = q[0] + (R(0.33401) * (t8 + t10) + k[3] * (t13 - t14));
-                const gic_real t31 = t30 - R(-1.475859);
-                const gic_real t32 = t27 * t27 + (t29 * t29 + t31 * t31) - R(0.095812034182);
-                const gic_real t33 = t32 * R(0.5) + f[6] * t2 + f[7] * t4 + f[8] * t6;
-                const gic_real t34 = f[11] * (t20 * f[9] - t33 - f[10] * t22);
-                const gic_real t35 = f[4] * (t22 - f[5] * t34);
-                const gic_real t36 = R(0.5) * t35;
-                const gic_real t37 = R(0.5) * t34;
-                const gic_real t38 = f[0] * (t20 + f[1] * t35 + f[2] * t34);
-                const gic_real t39 = R(0.5) * t38;
-                const gic_real t40 = q[3] - (q[5] * t36 + q[4] * t37 - q[6] * t39);
-                const gic_real t41 = q[6] + (q[5] * t37 - q[4] * t36 - q[3] * t39);
-                const gic_real t42 = q[5] + (q[3] * t36 - (q[6] * t37 + q[4] * t39));
-                const gic_real t43 = q[4] + (q[5] * t39 + q[6] * t36 + q[3] * t37);
-                const gic_real t44 = t41 * t41 + (t42 * t42 + t43 * t43) + t40 * t40;
-                const gic_real t45 = R(1.5) - R(0.5) * t44;
-                const gic_real t46 = R(8.576131760139356) * (t6 * t6 + (t4 * t4 + t2 * t2));
-                const gic_real t47 = t38 * t38 + (t35 * t35 + t34 * t34) + t46;
-                const gic_real t48 = q[0] + t2;
-                const gic_real t49 = q[1] + t4;
-                const gic_real t50 = q[2] + t6;
-                const gic_real t51 = t40 * t45;
-                const gic_real t52 = t43 * t45;
-                const gic_real t53 = t42 * t45;
-                const gic_real t54 = t41 * t45;
-                q[0] = t48;
-                q[1] = t49;
-                q[2] = t50;
-                q[3] = t51;
-                q[4] = t52;
-                q[5] = t53;
-                q[6] = t54;
-                step = t47;
-            }
-            ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
-                return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
-                break;
-        }
-    }
-    for (i = 0; i < GIC_PASSES; ++i) {
-        /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
-        {
-            const gic_real t1 = q[5] + q[5];
-            const gic_real t2 = q[5] * t1;
-            const gic_real t3 = q[6] + q[6];
-            const gic_real t4 = q[6] * t3;
-            const gic_real t5 = R(1.0) - (t2 + t4);
-            const gic_real t6 = k[1] * m0[8] + R(0.9709689408513393) * m0[7];
-            const gic_real t7 = t5 * t6;
-            const gic_real t8 = q[4] + q[4];
-            const gic_real t9 = q[5] * t8;
-            const gic_real t10 = q[3] * t3;
-            const gic_real t11 = t9 + t10;
-            const gic_real t12 = k[1] * m0[5] + R(0.9709689408513393) * m0[4];
-            const gic_real t13 = t11 * t12;
-            const gic_real t14 = t7 - t13;
-            if (!(GIC_FABS(t14) > R(9.999999999999997e-08)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t15 = q[4] * t3;
-            const gic_real t16 = q[3] * t1;
-            const gic_real t17 = t15 - t16;
-            const gic_real t18 = R(0.9709689408513391) * m0[5] + k[2] * m0[4];
-            const gic_real t19 = t17 * t18;
-            const gic_real t20 = R(0.9709689408513391) * m0[11] + k[2] * m0[10];
-            const gic_real t21 = t5 * t20;
-            const gic_real t22 = t17 * t12;
-            const gic_real t23 = k[1] * m0[11] + R(0.9709689408513393) * m0[10];
-            const gic_real t24 = t5 * t23;
-            const gic_real t25 = t22 - t24;
-            const gic_real t26 = R(0.9709689408513391) * m0[8] + k[2] * m0[7];
-            const gic_real t27 = t5 * t26;
-            const gic_real t28 = t11 * t18;
-            const gic_real t29 = R(1.0) / t14;
-            const gic_real t30 = (t27 - t28) * t29;
-            const gic_real t31 = t19 - t21 - t25 * t30;
-            if (!(GIC_FABS(t31) > R(1.1250269614846692e-07)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t32 = q[6] * t1;
-            const gic_real t33 = q[3] * t8;
-            const gic_real t34 = q[4] * t8;
-            const gic_real t35 = R(0.33401) * (t32 - t33) + k[3] * (R(1.0) - (t34 + t4));
-            const gic_real t36 = R(0.33401) * (R(1.0) - (t34 + t2)) + k[3] * (t32 + t33);
-            const gic_real t37 = q[2] + t36 - R(0.22567900000000007);
-            const gic_real t38 = q[1] + t35 - k[4];
-            const gic_real t39 = t11 * t23;
-            const gic_real t40 = t17 * t6;
-            const gic_real t41 = t39 - t40;
-            const gic_real t42 = R(0.33401) * (t15 + t16) + k[3] * (t9 - t10);
-            const gic_real t43 = q[0] + t42 - R(-1.475859);
-            const gic_real t44 = (t42 * t38 - t35 * t43) * t29;
-            const gic_real t45 = t11 * t20;
-            const gic_real t46 = t17 * t26;
-            const gic_real t47 = t45 - t46 - t41 * t30;
-            const gic_real t48 = R(1.0) / t31;
-            const gic_real t49 = (t36 * t43 - t42 * t37 - t25 * t44) * t48;
-            const gic_real t50 = t35 * t37 - t36 * t38 - t41 * t44 - t47 * t49;
-            if (!(GIC_FABS(t50) > R(8.646996244896176e-09)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t51 = t17 * (R(0.9999999999999998) * m0[9]) + (t11 * (R(0.9999999999999998) * m0[6]) + t5 * (R(0.9999999999999998) * m0[3]));
-            if (!(t51 > R(0.0)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t52 = R(6.938893903907228e-18) * m0[5] + (k[0] * m0[4] + R(0.03556000000000003) * m0[3]);
-            const gic_real t53 = m0[0] + t52 - q[0];
-            const gic_real t54 = q[0] + t53;
-            const gic_real t55 = R(6.938893903907228e-18) * m0[8] + (k[0] * m0[7] + R(0.03556000000000003) * m0[6]);
-            const gic_real t56 = m0[1] + t55 - q[1];
-            const gic_real t57 = q[1] + t56;
-            const gic_real t58 = R(6.938893903907228e-18) * m0[11] + (k[0] * m0[10] + R(0.03556000000000003) * m0[9]);
-            const gic_real t59 = m0[2] + t58 - q[2];
-            const gic_real t60 = q[2] + t59;
-            const gic_real t61 = t17 * t23 + (t11 * t6 + t5 * t12);
-            const gic_real t62 = t61 * t30 - (t17 * t20 + (t11 * t26 + t5 * t18));
-            const gic_real t63 = R(1.0) / t50;
-            const gic_real t64 = t37 * t37 + (t38 * t38 + t43 * t43) - R(0.095812034182);
-            const gic_real t65 = t64 * R(0.5) + t43 * t53 + t38 * t56 + t37 * t59;
-            const gic_real t66 = t63 * (t61 * t44 - t65 - t49 * t62);
-            const gic_real t67 = t48 * (t62 - t47 * t66);
-            const gic_real t68 = R(0.5) * t67;
-            const gic_real t69 = R(0.5) * t66;
-            const gic_real t70 = t29 * (t61 + t25 * t67 + t41 * t66);
-            const gic_real t71 = R(0.5) * t70;
-            const gic_real t72 = q[3] - (q[5] * t68 + q[4] * t69 - q[6] * t71);
-            const gic_real t73 = q[6] + (q[5] * t69 - q[4] * t68 - q[3] * t71);
-            const gic_real t74 = q[5] + (q[3] * t68 - (q[6] * t69 + q[4] * t71));
-            const gic_real t75 = q[4] + (q[5] * t71 + q[6] * t68 + q[3] * t69);
-            const gic_real t76 = t73 * t73 + (t74 * t74 + t75 * t75) + t72 * t72;
-            const gic_real t77 = R(1.5) - R(0.5) * t76;
-            const gic_real t78 = t72 * t77;
-            const gic_real t79 = t75 * t77;
-            const gic_real t80 = t74 * t77;
-            const gic_real t81 = t73 * t77;
-            const gic_real t82 = R(8.576131760139356) * (t59 * t59 + (t56 * t56 + t53 * t53));
-            const gic_real t83 = t82 + (t70 * t70 + (t67 * t67 + t66 * t66));
-            const gic_real t84 = t80 + t80;
-            const gic_real t85 = t80 * t84;
-            const gic_real t86 = t81 + t81;
-            const gic_real t87 = t81 * t86;
-            const gic_real t88 = R(1.0) - (t85 + t87);
-            const gic_real t89 = t79 + t79;
-            const gic_real t90 = t80 * t89;
-            const gic_real t91 = t78 * t86;
-            const gic_real t92 = t90 - t91;
-            const gic_real t93 = t79 * t86;
-            const gic_real t94 = t78 * t84;
-            const gic_real t95 = t93 + t94;
-            const gic_real t96 = t90 + t91;
-            const gic_real t97 = t79 * t89;
-            const gic_real t98 = R(1.0) - (t97 + t87);
-            const gic_real t99 = t81 * t84;
-            const gic_real t100 = t78 * t89;
-            const gic_real t101 = t99 - t100;
-            const gic_real t102 = t93 - t94;
-            const gic_real t103 = t99 + t100;
-            const gic_real t104 = R(1.0) - (t97 + t85);
-            const gic_real t105 = m0[24] * (t40 - t39) + m0[25] * (t24 - t22) + m0[26] * (t13 - t7);
-            const gic_real t106 = m0[27] - (m0[26] * t55 - m0[25] * t58);
-            const gic_real t107 = m0[28] - (m0[24] * t58 - m0[26] * t52);
-            const gic_real t108 = m0[29] - (m0[25] * t52 - m0[24] * t55);
-            const gic_real t109 = t44 * t105 - (t43 * t106 + t38 * t107 + t37 * t108);
-            const gic_real t110 = m0[24] * (t46 - t45) + m0[25] * (t21 - t19) + m0[26] * (t28 - t27);
-            const gic_real t111 = t30 * t105 - t110;
-            const gic_real t112 = t63 * (t109 - t49 * t111);
-            const gic_real t113 = rate[0] * t112;
-            const gic_real t114 = t48 * (t111 - t47 * t112);
-            const gic_real t115 = rate[0] * t114;
-            const gic_real t116 = t29 * (t105 + t25 * t114 + t41 * t112);
-            const gic_real t117 = rate[0] * t116;
-            const gic_real t118 = rate[0] * t106;
-            const gic_real t119 = rate[0] * t107;
-            const gic_real t120 = rate[0] * t108;
-            const gic_real t121 = m0[12] * t6 - m0[13] * t12;
-            const gic_real t122 = t11 * t113 - t5 * t115;
-            const gic_real t123 = m0[13] * t23 - m0[14] * t6;
-            const gic_real t124 = t11 * t117 + t17 * t115;
-            const gic_real t125 = m0[14] * t12 - m0[12] * t23;
-            const gic_real t126 = t17 * t113 + t5 * t117;
-            const gic_real t127 = t121 * t122 + (t123 * t124 - t125 * t126);
-            const gic_real t128 = m0[12] * t125 - m0[13] * t123 + (m0[18] * t6 - m0[19] * t12);
-            const gic_real t129 = m0[14] * t123 - m0[12] * t121 + (m0[20] * t12 - m0[18] * t23);
-            const gic_real t130 = m0[13] * t121 - m0[14] * t125 + (m0[19] * t23 - m0[20] * t6);
-            const gic_real t131 = t115 * t122 - t117 * t126;
-            const gic_real t132 = t113 * t122 + t117 * t124;
-            const gic_real t133 = t115 * t124 + t113 * t126;
-            const gic_real t134 = t17 * t128 + (t11 * t129 + t5 * t130) + (t12 * t131 - t6 * t132 - t23 * t133);
-            const gic_real t135 = t127 + t127 + t134;
-            const gic_real t136 = t35 * t113 - t42 * t115;
-            const gic_real t137 = t120 + t136;
-            const gic_real t138 = t36 * t113 + t42 * t117;
-            const gic_real t139 = t119 - t138;
-            const gic_real t140 = t35 * t117 + t36 * t115;
-            const gic_real t141 = t118 + t140;
-            const gic_real t142 = t43 * (t115 * t136 - t117 * t138) - t38 * (t113 * t136 + t117 * t140);
-            const gic_real t143 = t137 * t137 + (t139 * t139 + t141 * t141) + (t142 - t37 * (t115 * t140 + t113 * t138));
-            const gic_real t144 = m0[12] * t55 - m0[13] * t52;
-            const gic_real t145 = m0[14] * t52 - m0[12] * t58;
-            const gic_real t146 = m0[13] * t144 - m0[14] * t145 + (m0[19] * t58 - m0[20] * t55);
-            const gic_real t147 = m0[21] + t146;
-            const gic_real t148 = m0[13] * t58 - m0[14] * t55;
-            const gic_real t149 = m0[14] * t148 - m0[12] * t144 + (m0[20] * t52 - m0[18] * t58);
-            const gic_real t150 = m0[22] + t149;
-            const gic_real t151 = m0[12] * t145 - m0[13] * t148 + (m0[18] * t55 - m0[19] * t52);
-            const gic_real t152 = m0[23] + t151;
-            const gic_real t153 = t143 + t147 * t43 + t150 * t38 + t152 * t37;
-            const gic_real t154 = m0[12] * t26 - m0[13] * t18;
-            const gic_real t155 = m0[13] * t20 - m0[14] * t26;
-            const gic_real t156 = m0[14] * t18 - m0[12] * t20;
-            const gic_real t157 = t154 * t122 + (t155 * t124 - t156 * t126);
-            const gic_real t158 = m0[12] * t156 - m0[13] * t155 + (m0[18] * t26 - m0[19] * t18);
-            const gic_real t159 = m0[14] * t155 - m0[12] * t154 + (m0[20] * t18 - m0[18] * t20);
-            const gic_real t160 = m0[13] * t154 - m0[14] * t156 + (m0[19] * t20 - m0[20] * t26);
-            const gic_real t161 = t17 * t158 + (t11 * t159 + t5 * t160) + (t18 * t131 - t26 * t132 - t20 * t133);
-            const gic_real t162 = t30 * t135 - (t157 + t157 + t161);
-            const gic_real t163 = t63 * (t44 * t135 - t153 - t49 * t162);
-            const gic_real t164 = t48 * (t162 - t47 * t163);
-            const gic_real t165 = t29 * (t135 + t25 * t164 + t41 * t163);
-            const gic_real t166 = -t116;
-            const gic_real t167 = t95 * R(0.09182100000000004) + t92 * k[5];
-            const gic_real t168 = t54 + t167;
-            const gic_real t169 = R(90.555) * t168;
-            const gic_real t170 = t101 * R(0.09182100000000004) + t98 * k[5];
-            const gic_real t171 = t57 + t170;
-            const gic_real t172 = R(90.555) * t171;
-            const gic_real t173 = t104 * R(0.09182100000000004) + t103 * k[5];
-            const gic_real t174 = t60 + t173;
-            const gic_real t175 = R(90.555) * t174;
-            const gic_real t176 = t92 * R(2.8083995);
-            const gic_real t177 = t88 * R(0.12192999999999987);
-            const gic_real t178 = R(4.7728205) + (t92 * t176 + t88 * t177);
-            const gic_real t179 = t171 * t172;
-            const gic_real t180 = t174 * t175;
-            const gic_real t181 = t98 * R(2.8083995);
-            const gic_real t182 = t96 * R(0.12192999999999987);
-            const gic_real t183 = R(4.7728205) + (t98 * t181 + t96 * t182);
-            const gic_real t184 = t168 * t169;
-            const gic_real t185 = R(4.7728205) + (t103 * (t103 * R(2.8083995)) + t102 * (t102 * R(0.12192999999999987)));
-            const gic_real t186 = t98 * t176 + t96 * t177;
-            const gic_real t187 = t103 * t176 + t102 * t177;
-            const gic_real t188 = t103 * t181 + t102 * t182;
-            const gic_real t189 = t113 * t170 - t115 * t167;
-            const gic_real t190 = t120 + t189;
-            const gic_real t191 = t190 + (t190 + (turn[0] * t171 - turn[1] * t168));
-            const gic_real t192 = t113 * t173 + t117 * t167;
-            const gic_real t193 = t119 - t192;
-            const gic_real t194 = t193 + (t193 + (turn[2] * t168 - turn[0] * t174));
-            const gic_real t195 = turn[1] * t191 - turn[2] * t194 + (t115 * t189 - t117 * t192);
-            const gic_real t196 = R(90.555) * (t147 + (t195 + (t165 * t170 + t164 * t173)));
-            const gic_real t197 = t117 * t170 + t115 * t173;
-            const gic_real t198 = t118 + t197;
-            const gic_real t199 = t198 + (t198 + (turn[1] * t174 - turn[2] * t171));
-            const gic_real t200 = turn[2] * t199 - turn[0] * t191 - (t113 * t189 + t117 * t197);
-            const gic_real t201 = R(90.555) * (t150 + (t200 - (t163 * t173 + t165 * t167)));
-            const gic_real t202 = turn[0] * t194 - turn[1] * t199 - (t115 * t197 + t113 * t192);
-            const gic_real t203 = R(90.555) * (t152 + (t202 + (t163 * t170 - t164 * t167)));
-            const gic_real t204 = t115 * turn[0] - t113 * turn[1] - t165;
-            const gic_real t205 = t164 + (t117 * turn[0] + t113 * turn[2]);
-            const gic_real t206 = t163 - (t115 * turn[2] + t117 * turn[1]);
-            const gic_real t207 = t115 + turn[1];
-            const gic_real t208 = turn[2] - t117;
-            const gic_real t209 = t113 + turn[0];
-            const gic_real t210 = t185 * t208 + (t188 * t207 + t187 * t209);
-            const gic_real t211 = t188 * t208 + (t183 * t207 + t186 * t209);
-            const gic_real t212 = t187 * t204 + (t186 * t205 + t178 * t206) + (t207 * t210 - t208 * t211);
-            const gic_real t213 = t187 * t208 + (t186 * t207 + t178 * t209);
-            const gic_real t214 = t188 * t204 + (t183 * t205 + t186 * t206) + (t208 * t213 - t209 * t210);
-            const gic_real t215 = t185 * t204 + (t188 * t205 + t187 * t206) + (t209 * t211 - t207 * t213);
-            const gic_real t216 = t106 + (t116 * t170 + t114 * t173);
-            const gic_real t217 = R(90.555) * t216;
-            const gic_real t218 = t107 - (t112 * t173 + t116 * t167);
-            const gic_real t219 = R(90.555) * t218;
-            const gic_real t220 = t108 + (t112 * t170 - t114 * t167);
-            const gic_real t221 = R(90.555) * t220;
-            const gic_real t222 = t114 * t186 + t112 * t178 - t116 * t187;
-            const gic_real t223 = t114 * t183 + t112 * t186 - t116 * t188;
-            const gic_real t224 = t114 * t188 + t112 * t187 - t116 * t185;
-            const gic_real t225 = t114 * t214 + t112 * t212 - t116 * t215 + (t203 * t220 + (t201 * t218 + t196 * t216));
-            const gic_real t226 = t114 * t223 + t112 * t222 - t116 * t224 + (t220 * t221 + (t218 * t219 + t216 * t217));
-            const gic_real t227 = -t117;
-            const gic_real t228 = -t165;
-            const gic_real t229 = t178 + (t179 + t180);
-            const gic_real t230 = t183 + (t184 + t180);
-            const gic_real t231 = t185 + (t184 + t179);
-            const gic_real t232 = t186 - t171 * t169;
-            const gic_real t233 = t187 - t174 * t169;
-            const gic_real t234 = t188 - t174 * t172;
-            const gic_real t235 = t212 + (t171 * t203 - t174 * t201);
-            const gic_real t236 = t214 + (t174 * t196 - t168 * t203);
-            const gic_real t237 = t215 + (t168 * t201 - t171 * t196);
-            const gic_real t238 = t222 + (t171 * t221 - t174 * t219);
-            const gic_real t239 = t223 + (t174 * t217 - t168 * t221);
-            const gic_real t240 = t224 + (t168 * t219 - t171 * t217);
-            q[0] = t54;
-            q[1] = t57;
-            q[2] = t60;
-            q[3] = t78;
-            q[4] = t79;
-            q[5] = t80;
-            q[6] = t81;
-            step = t83;
-            motion[0] = t54;
-            motion[1] = t57;
-            motion[2] = t60;
-            motion[3] = t88;
-            motion[4] = t92;
-            motion[5] = t95;
-            motion[6] = t96;
-            motion[7] = t98;
-            motion[8] = t101;
-            motion[9] = t102;
-            motion[10] = t103;
-            motion[11] = t104;
-            motion[12] = t113;
-            motion[13] = t115;
-            motion[14] = t227;
-            motion[15] = t118;
-            motion[16] = t119;
-            motion[17] = t120;
-            motion[18] = t163;
-            motion[19] = t164;
-            motion[20] = t228;
-            motion[21] = t147;
-            motion[22] = t150;
-            motion[23] = t152;
-            motion[24] = t112;
-            motion[25] = t114;
-            motion[26] = t166;
-            motion[27] = t106;
-            motion[28] = t107;
-            motion[29] = t108;
-            start[7] = t112;
-            start[8] = t114;
-            start[9] = t166;
-            start[10] = t106;
-            start[11] = t107;
-            start[12] = t108;
-            start[13] = t29;
-            start[14] = t25;
-            start[15] = t41;
-            start[16] = t30;
-            start[17] = t48;
-            start[18] = t47;
-            start[19] = t43;
-            start[20] = t38;
-            start[21] = t37;
-            start[22] = t44;
-            start[23] = t49;
-            start[24] = t63;
-            inertia[0] = t169;
-            inertia[1] = t172;
-            inertia[2] = t175;
-            inertia[3] = t229;
-            inertia[4] = t230;
-            inertia[5] = t231;
-            inertia[6] = t232;
-            inertia[7] = t233;
-            inertia[8] = t234;
-            inertia[9] = t196;
-            inertia[10] = t201;
-            inertia[11] = t203;
-            inertia[12] = t235;
-            inertia[13] = t236;
-            inertia[14] = t237;
-            inertia[15] = t217;
-            inertia[16] = t219;
-            inertia[17] = t221;
-            inertia[18] = t238;
-            inertia[19] = t239;
-            inertia[20] = t240;
-            inertia[21] = t225;
-            inertia[22] = t226;
-        }
-        ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
+    (void)k, (void)start, (void)inertia;
+    {
+        const gic_real t1 = R(0.9709689408513391) * m0[11] + k[0] * m0[10];
+        const gic_real t2 = R(6.938893903907228e-18) * m0[11] + (k[1] * m0[10] + R(0.03556000000000003) * m0[9]);
+        const gic_real t3 = m0[2] + t2;
+        const gic_real t4 = R(0.22567900000000007) - t3;
+        const gic_real t5 = R(0.9709689408513391) * m0[8] + k[0] * m0[7];
+        const gic_real t6 = R(6.938893903907228e-18) * m0[8] + (k[1] * m0[7] + R(0.03556000000000003) * m0[6]);
+        const gic_real t7 = m0[1] + t6;
+        const gic_real t8 = k[2] - t7;
+        const gic_real t9 = R(0.9709689408513391) * m0[5] + k[0] * m0[4];
+        const gic_real t10 = R(6.938893903907228e-18) * m0[5] + (k[1] * m0[4] + R(0.03556000000000003) * m0[3]);
+        const gic_real t11 = m0[0] + t10;
+        const gic_real t12 = R(-1.475859) - t11;
+        const gic_real t13 = t1 * t4 + (t5 * t8 + t9 * t12);
+        const gic_real t14 = k[3] * m0[11] + R(0.9709689408513393) * m0[10];
+        const gic_real t15 = k[3] * m0[8] + R(0.9709689408513393) * m0[7];
+        const gic_real t16 = k[3] * m0[5] + R(0.9709689408513393) * m0[4];
+        const gic_real t17 = t14 * t4 + (t15 * t8 + t16 * t12);
+        const gic_real t18 = k[4] * t13 - R(0.33401) * t17;
+        const gic_real t19 = R(0.33401) * t13 + k[4] * t17;
+        const gic_real t20 = t18 * t18 + t19 * t19;
+        const gic_real t21 = R(0.11660268614899998) + (t4 * t4 + (t8 * t8 + t12 * t12));
+        const gic_real t22 = R(0.5) * (t21 - R(0.095812034182));
+        const gic_real t23 = t20 - t22 * t22;
+        if (!(t23 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
-            if (step > self->head.largest_step)
-                self->head.largest_step = step;
-            ++self->head.newton_count;
-            for (i = 0; i < 7; ++i)
-                start[i] = q[i];
-            return GIC_OK;
-        }
-        before = step;
+        const gic_real t24 = R(0.9999999999999998) * m0[3];
+        const gic_real t25 = t24 * t15;
+        const gic_real t26 = R(0.9999999999999998) * m0[6];
+        const gic_real t27 = t26 * t16;
+        const gic_real t28 = t25 - t27;
+        if (!(GIC_FABS(t28) > R(9.999999999999996e-08)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t29 = R(0.9999999999999998) * m0[9];
+        const gic_real t30 = t29 * t9;
+        const gic_real t31 = t24 * t1;
+        const gic_real t32 = t29 * t16;
+        const gic_real t33 = t24 * t14;
+        const gic_real t34 = t32 - t33;
+        const gic_real t35 = t24 * t5;
+        const gic_real t36 = t26 * t9;
+        const gic_real t37 = R(1.0) / t28;
+        const gic_real t38 = (t35 - t36) * t37;
+        const gic_real t39 = t30 - t31 - t34 * t38;
+        if (!(GIC_FABS(t39) > R(1.1250269614846688e-07)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t40 = R(1.0) / t20;
+        const gic_real t41 = GIC_SQRT(t23) * k[5];
+        const gic_real t42 = t40 * (t22 * t19 - t18 * t41);
+        const gic_real t43 = t40 * (t19 * t41 + t22 * t18);
+        const gic_real t44 = t42 * (k[4] * t15 + R(0.33401) * t5) + t43 * (k[4] * t5 + t15 * R(-0.33401));
+        const gic_real t45 = t42 * (k[4] * t14 + R(0.33401) * t1) + t43 * (k[4] * t1 + t14 * R(-0.33401));
+        const gic_real t46 = t3 + t45 - R(0.22567900000000007);
+        const gic_real t47 = t7 + t44 - k[2];
+        const gic_real t48 = t26 * t14;
+        const gic_real t49 = t29 * t15;
+        const gic_real t50 = t48 - t49;
+        const gic_real t51 = t42 * (k[4] * t16 + R(0.33401) * t9) + t43 * (k[4] * t9 + t16 * R(-0.33401));
+        const gic_real t52 = t11 + t51 - R(-1.475859);
+        const gic_real t53 = (t51 * t47 - t44 * t52) * t37;
+        const gic_real t54 = t26 * t1;
+        const gic_real t55 = t29 * t5;
+        const gic_real t56 = t54 - t55 - t50 * t38;
+        const gic_real t57 = R(1.0) / t39;
+        const gic_real t58 = (t45 * t52 - t51 * t46 - t34 * t53) * t57;
+        const gic_real t59 = t44 * t46 - t45 * t47 - t50 * t53 - t56 * t58;
+        if (!(GIC_FABS(t59) > R(8.646996244896167e-09)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t60 = t16 * t42 + t9 * t43;
+        const gic_real t61 = t9 * t42 - t16 * t43;
+        const gic_real t62 = t15 * t42 + t5 * t43;
+        const gic_real t63 = t5 * t42 - t15 * t43;
+        const gic_real t64 = t14 * t42 + t1 * t43;
+        const gic_real t65 = t1 * t42 - t14 * t43;
+        const gic_real t66 = R(1.0) / t59;
+        const gic_real t67 = m0[24] * (t49 - t48) + m0[25] * (t33 - t32) + m0[26] * (t27 - t25);
+        const gic_real t68 = m0[27] - (m0[26] * t6 - m0[25] * t2);
+        const gic_real t69 = m0[28] - (m0[24] * t2 - m0[26] * t10);
+        const gic_real t70 = m0[29] - (m0[25] * t10 - m0[24] * t6);
+        const gic_real t71 = t53 * t67 - (t52 * t68 + t47 * t69 + t46 * t70);
+        const gic_real t72 = m0[24] * (t55 - t54) + m0[25] * (t31 - t30) + m0[26] * (t36 - t35);
+        const gic_real t73 = t38 * t67 - t72;
+        const gic_real t74 = t66 * (t71 - t58 * t73);
+        const gic_real t75 = rate[0] * t74;
+        const gic_real t76 = t57 * (t73 - t56 * t74);
+        const gic_real t77 = rate[0] * t76;
+        const gic_real t78 = t37 * (t67 + t34 * t76 + t50 * t74);
+        const gic_real t79 = rate[0] * t78;
+        const gic_real t80 = rate[0] * t68;
+        const gic_real t81 = rate[0] * t69;
+        const gic_real t82 = rate[0] * t70;
+        const gic_real t83 = m0[12] * t15 - m0[13] * t16;
+        const gic_real t84 = t26 * t75 - t24 * t77;
+        const gic_real t85 = m0[13] * t14 - m0[14] * t15;
+        const gic_real t86 = t26 * t79 + t29 * t77;
+        const gic_real t87 = m0[14] * t16 - m0[12] * t14;
+        const gic_real t88 = t29 * t75 + t24 * t79;
+        const gic_real t89 = t83 * t84 + (t85 * t86 - t87 * t88);
+        const gic_real t90 = m0[12] * t87 - m0[13] * t85 + (m0[18] * t15 - m0[19] * t16);
+        const gic_real t91 = m0[14] * t85 - m0[12] * t83 + (m0[20] * t16 - m0[18] * t14);
+        const gic_real t92 = m0[13] * t83 - m0[14] * t87 + (m0[19] * t14 - m0[20] * t15);
+        const gic_real t93 = t77 * t84 - t79 * t88;
+        const gic_real t94 = t75 * t84 + t79 * t86;
+        const gic_real t95 = t77 * t86 + t75 * t88;
+        const gic_real t96 = t29 * t90 + (t26 * t91 + t24 * t92) + (t16 * t93 - t15 * t94 - t14 * t95);
+        const gic_real t97 = t89 + t89 + t96;
+        const gic_real t98 = t44 * t75 - t51 * t77;
+        const gic_real t99 = t82 + t98;
+        const gic_real t100 = t45 * t75 + t51 * t79;
+        const gic_real t101 = t81 - t100;
+        const gic_real t102 = t44 * t79 + t45 * t77;
+        const gic_real t103 = t80 + t102;
+        const gic_real t104 = t52 * (t77 * t98 - t79 * t100) - t47 * (t75 * t98 + t79 * t102);
+        const gic_real t105 = t99 * t99 + (t101 * t101 + t103 * t103) + (t104 - t46 * (t77 * t102 + t75 * t100));
+        const gic_real t106 = m0[12] * t6 - m0[13] * t10;
+        const gic_real t107 = m0[14] * t10 - m0[12] * t2;
+        const gic_real t108 = m0[13] * t106 - m0[14] * t107 + (m0[19] * t2 - m0[20] * t6);
+        const gic_real t109 = m0[21] + t108;
+        const gic_real t110 = m0[13] * t2 - m0[14] * t6;
+        const gic_real t111 = m0[14] * t110 - m0[12] * t106 + (m0[20] * t10 - m0[18] * t2);
+        const gic_real t112 = m0[22] + t111;
+        const gic_real t113 = m0[12] * t107 - m0[13] * t110 + (m0[18] * t6 - m0[19] * t10);
+        const gic_real t114 = m0[23] + t113;
+        const gic_real t115 = t105 + t109 * t52 + t112 * t47 + t114 * t46;
+        const gic_real t116 = m0[12] * t5 - m0[13] * t9;
+        const gic_real t117 = m0[13] * t1 - m0[14] * t5;
+        const gic_real t118 = m0[14] * t9 - m0[12] * t1;
+        const gic_real t119 = t116 * t84 + (t117 * t86 - t118 * t88);
+        const gic_real t120 = m0[12] * t118 - m0[13] * t117 + (m0[18] * t5 - m0[19] * t9);
+        const gic_real t121 = m0[14] * t117 - m0[12] * t116 + (m0[20] * t9 - m0[18] * t1);
+        const gic_real t122 = m0[13] * t116 - m0[14] * t118 + (m0[19] * t1 - m0[20] * t5);
+        const gic_real t123 = t29 * t120 + (t26 * t121 + t24 * t122) + (t9 * t93 - t5 * t94 - t1 * t95);
+        const gic_real t124 = t38 * t97 - (t119 + t119 + t123);
+        const gic_real t125 = t66 * (t53 * t97 - t115 - t58 * t124);
+        const gic_real t126 = t57 * (t124 - t56 * t125);
+        const gic_real t127 = t37 * (t97 + t34 * t126 + t50 * t125);
+        const gic_real t128 = t61 * R(0.09182100000000004) + t60 * k[6];
+        const gic_real t129 = t11 + t128;
+        const gic_real t130 = R(90.555) * t129;
+        const gic_real t131 = t63 * R(0.09182100000000004) + t62 * k[6];
+        const gic_real t132 = t7 + t131;
+        const gic_real t133 = R(90.555) * t132;
+        const gic_real t134 = t65 * R(0.09182100000000004) + t64 * k[6];
+        const gic_real t135 = t3 + t134;
+        const gic_real t136 = R(90.555) * t135;
+        const gic_real t137 = t60 * R(2.8083995);
+        const gic_real t138 = m0[3] * R(0.12192999999999984);
+        const gic_real t139 = R(4.7728205) + (t60 * t137 + t24 * t138);
+        const gic_real t140 = t132 * t133;
+        const gic_real t141 = t135 * t136;
+        const gic_real t142 = t62 * R(2.8083995);
+        const gic_real t143 = m0[6] * R(0.12192999999999984);
+        const gic_real t144 = R(4.7728205) + (t62 * t142 + t26 * t143);
+        const gic_real t145 = t129 * t130;
+        const gic_real t146 = R(4.7728205) + (t64 * (t64 * R(2.8083995)) + t29 * (m0[9] * R(0.12192999999999984)));
+        const gic_real t147 = t62 * t137 + t26 * t138;
+        const gic_real t148 = t64 * t137 + t29 * t138;
+        const gic_real t149 = t64 * t142 + t29 * t143;
+        const gic_real t150 = t75 * t131 - t77 * t128;
+        const gic_real t151 = t82 + t150;
+        const gic_real t152 = t151 + (t151 + (turn[0] * t132 - turn[1] * t129));
+        const gic_real t153 = t75 * t134 + t79 * t128;
+        const gic_real t154 = t81 - t153;
+        const gic_real t155 = t154 + (t154 + (turn[2] * t129 - turn[0] * t135));
+        const gic_real t156 = turn[1] * t152 - turn[2] * t155 + (t77 * t150 - t79 * t153);
+        const gic_real t157 = R(90.555) * (t109 + (t156 + (t127 * t131 + t126 * t134)));
+        const gic_real t158 = t79 * t131 + t77 * t134;
+        const gic_real t159 = t80 + t158;
+        const gic_real t160 = t159 + (t159 + (turn[1] * t135 - turn[2] * t132));
+        const gic_real t161 = turn[2] * t160 - turn[0] * t152 - (t75 * t150 + t79 * t158);
+        const gic_real t162 = R(90.555) * (t112 + (t161 - (t125 * t134 + t127 * t128)));
+        const gic_real t163 = turn[0] * t155 - turn[1] * t160 - (t77 * t158 + t75 * t153);
+        const gic_real t164 = R(90.555) * (t114 + (t163 + (t125 * t131 - t126 * t128)));
+        const gic_real t165 = t77 * turn[0] - t75 * turn[1] - t127;
+        const gic_real t166 = t126 + (t79 * turn[0] + t75 * turn[2]);
+        const gic_real t167 = t125 - (t77 * turn[2] + t79 * turn[1]);
+        const gic_real t168 = t77 + turn[1];
+        const gic_real t169 = turn[2] - t79;
+        const gic_real t170 = t75 + turn[0];
+        const gic_real t171 = t146 * t169 + (t149 * t168 + t148 * t170);
+        const gic_real t172 = t149 * t169 + (t144 * t168 + t147 * t170);
+        const gic_real t173 = t148 * t165 + (t147 * t166 + t139 * t167) + (t168 * t171 - t169 * t172);
+        const gic_real t174 = t148 * t169 + (t147 * t168 + t139 * t170);
+        const gic_real t175 = t149 * t165 + (t144 * t166 + t147 * t167) + (t169 * t174 - t170 * t171);
+        const gic_real t176 = t146 * t165 + (t149 * t166 + t148 * t167) + (t170 * t172 - t168 * t174);
+        const gic_real t177 = t68 + (t78 * t131 + t76 * t134);
+        const gic_real t178 = R(90.555) * t177;
+        const gic_real t179 = t69 - (t74 * t134 + t78 * t128);
+        const gic_real t180 = R(90.555) * t179;
+        const gic_real t181 = t70 + (t74 * t131 - t76 * t128);
+        const gic_real t182 = R(90.555) * t181;
+        const gic_real t183 = t76 * t147 + t74 * t139 - t78 * t148;
+        const gic_real t184 = t76 * t144 + t74 * t147 - t78 * t149;
+        const gic_real t185 = t76 * t149 + t74 * t148 - t78 * t146;
+        const gic_real t186 = t76 * t175 + t74 * t173 - t78 * t176 + (t164 * t181 + (t162 * t179 + t157 * t177));
+        const gic_real t187 = t76 * t184 + t74 * t183 - t78 * t185 + (t181 * t182 + (t179 * t180 + t177 * t178));
+        const gic_real t188 = -t79;
+        const gic_real t189 = -t127;
+        const gic_real t190 = -t78;
+        const gic_real t191 = t139 + (t140 + t141);
+        const gic_real t192 = t144 + (t145 + t141);
+        const gic_real t193 = t146 + (t145 + t140);
+        const gic_real t194 = t147 - t132 * t130;
+        const gic_real t195 = t148 - t135 * t130;
+        const gic_real t196 = t149 - t135 * t133;
+        const gic_real t197 = t173 + (t132 * t164 - t135 * t162);
+        const gic_real t198 = t175 + (t135 * t157 - t129 * t164);
+        const gic_real t199 = t176 + (t129 * t162 - t132 * t157);
+        const gic_real t200 = t183 + (t132 * t182 - t135 * t180);
+        const gic_real t201 = t184 + (t135 * t178 - t129 * t182);
+        const gic_real t202 = t185 + (t129 * t180 - t132 * t178);
+        motion[0] = t11;
+        motion[1] = t7;
+        motion[2] = t3;
+        motion[3] = t24;
+        motion[4] = t60;
+        motion[5] = t61;
+        motion[6] = t26;
+        motion[7] = t62;
+        motion[8] = t63;
+        motion[9] = t29;
+        motion[10] = t64;
+        motion[11] = t65;
+        motion[12] = t75;
+        motion[13] = t77;
+        motion[14] = t188;
+        motion[15] = t80;
+        motion[16] = t81;
+        motion[17] = t82;
+        motion[18] = t125;
+        motion[19] = t126;
+        motion[20] = t189;
+        motion[21] = t109;
+        motion[22] = t112;
+        motion[23] = t114;
+        motion[24] = t74;
+        motion[25] = t76;
+        motion[26] = t190;
+        motion[27] = t68;
+        motion[28] = t69;
+        motion[29] = t70;
+        inertia[0] = t130;
+        inertia[1] = t133;
+        inertia[2] = t136;
+        inertia[3] = t191;
+        inertia[4] = t192;
+        inertia[5] = t193;
+        inertia[6] = t194;
+        inertia[7] = t195;
+        inertia[8] = t196;
+        inertia[9] = t157;
+        inertia[10] = t162;
+        inertia[11] = t164;
+        inertia[12] = t197;
+        inertia[13] = t198;
+        inertia[14] = t199;
+        inertia[15] = t178;
+        inertia[16] = t180;
+        inertia[17] = t182;
+        inertia[18] = t200;
+        inertia[19] = t201;
+        inertia[20] = t202;
+        inertia[21] = t186;
+        inertia[22] = t187;
     }
-    return GIC_ERROR_NEWTON;
+    ++self->head.newton_count;
+    return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset at the pose q, relative to its size. */
+/* Largest constraint residual of such a subset, relative to its size. */
 static GIC_COLD gic_real hmmwv_full_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT q)
+    const gic_real *GIC_RESTRICT motion)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[0] * m0[4] + R(0.03556000000000003) * m0[3]));
-        const gic_real t2 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[0] * m0[7] + R(0.03556000000000003) * m0[6]));
-        const gic_real t3 = GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928503331078754)), GIC_FABS((q[1] - t2) * R(2.928503331078754)));
-        const gic_real t4 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[0] * m0[10] + R(0.03556000000000003) * m0[9]));
-        const gic_real t5 = q[6] + q[6];
-        const gic_real t6 = q[4] * t5;
-        const gic_real t7 = q[5] + q[5];
-        const gic_real t8 = q[3] * t7;
-        const gic_real t9 = t6 - t8;
-        const gic_real t10 = q[4] + q[4];
-        const gic_real t11 = q[5] * t10;
-        const gic_real t12 = q[3] * t5;
-        const gic_real t13 = t11 + t12;
-        const gic_real t14 = q[5] * t7;
-        const gic_real t15 = q[6] * t5;
-        const gic_real t16 = R(1.0) - (t14 + t15);
-        const gic_real t17 = t13 * (k[1] * m0[8] + R(0.9709689408513393) * m0[7]) + t16 * (k[1] * m0[5] + R(0.9709689408513393) * m0[4]);
-        const gic_real t18 = (t9 * (k[1] * m0[11] + R(0.9709689408513393) * m0[10]) + t17) * R(1.0000000000000002);
-        const gic_real t19 = GIC_MAX(GIC_MAX(t3, GIC_FABS((q[2] - t4) * R(2.928503331078754))), GIC_FABS(t18));
-        const gic_real t20 = t13 * (R(0.9709689408513391) * m0[8] + k[2] * m0[7]) + t16 * (R(0.9709689408513391) * m0[5] + k[2] * m0[4]);
-        const gic_real t21 = (t9 * (R(0.9709689408513391) * m0[11] + k[2] * m0[10]) + t20) * R(1.0000000000000004);
-        const gic_real t22 = q[4] * t10;
-        const gic_real t23 = q[6] * t7;
-        const gic_real t24 = q[3] * t10;
-        const gic_real t25 = R(0.33401) * (R(1.0) - (t22 + t14)) + k[3] * (t23 + t24);
-        const gic_real t26 = q[2] + t25 - R(0.22567900000000007);
-        const gic_real t27 = R(0.33401) * (t23 - t24) + k[3] * (R(1.0) - (t22 + t15));
-        const gic_real t28 = q[1] + t27 - k[4];
-        const gic_real t29 = q[0] + (R(0.33401) * (t6 + t8) + k[3] * (t11 - t12));
-        const gic_real t30 = t29 - R(-1.475859);
-        const gic_real t31 = t26 * t26 + (t28 * t28 + t30 * t30) - R(0.095812034182);
-        const gic_real t32 = GIC_MAX(GIC_MAX(t19, GIC_FABS(t21)), GIC_FABS(t31 * R(5.7792183827260155)));
-        worst = t32;
+        const gic_real t1 = m0[0] + (R(6.938893903907228e-18) * m0[5] + (k[1] * m0[4] + R(0.03556000000000003) * m0[3]));
+        const gic_real t2 = m0[1] + (R(6.938893903907228e-18) * m0[8] + (k[1] * m0[7] + R(0.03556000000000003) * m0[6]));
+        const gic_real t3 = GIC_MAX(GIC_FABS((motion[0] - t1) * R(2.928503331078754)), GIC_FABS((motion[1] - t2) * R(2.928503331078754)));
+        const gic_real t4 = m0[2] + (R(6.938893903907228e-18) * m0[11] + (k[1] * m0[10] + R(0.03556000000000003) * m0[9]));
+        const gic_real t5 = (k[3] * m0[8] + R(0.9709689408513393) * m0[7]) * motion[6] + (k[3] * m0[5] + R(0.9709689408513393) * m0[4]) * motion[3];
+        const gic_real t6 = ((k[3] * m0[11] + R(0.9709689408513393) * m0[10]) * motion[9] + t5) * R(1.0000000000000004);
+        const gic_real t7 = GIC_MAX(GIC_MAX(t3, GIC_FABS((motion[2] - t4) * R(2.928503331078754))), GIC_FABS(t6));
+        const gic_real t8 = (R(0.9709689408513391) * m0[8] + k[0] * m0[7]) * motion[6] + (R(0.9709689408513391) * m0[5] + k[0] * m0[4]) * motion[3];
+        const gic_real t9 = ((R(0.9709689408513391) * m0[11] + k[0] * m0[10]) * motion[9] + t8) * R(1.0000000000000007);
+        const gic_real t10 = motion[2] + (R(0.33401) * motion[11] + k[4] * motion[10]) - R(0.22567900000000007);
+        const gic_real t11 = motion[1] + (R(0.33401) * motion[8] + k[4] * motion[7]) - k[2];
+        const gic_real t12 = motion[0] + (R(0.33401) * motion[5] + k[4] * motion[4]) - R(-1.475859);
+        const gic_real t13 = t10 * t10 + (t11 * t11 + t12 * t12) - R(0.095812034182);
+        const gic_real t14 = GIC_MAX(GIC_MAX(t7, GIC_FABS(t9)), GIC_FABS(t13 * R(5.77921838272602)));
+        worst = t14;
     }
     return worst;
 }
@@ -2078,8 +1196,7 @@ static int hmmwv_full_recover_piece(hmmwv_full *self, hmmwv_full_links *links, c
     /* stage 2: rack */
     links->x[0] = start[4]; /* rack */
     links->rate[0] = xd[4];
-    links->change[0] = start[4] - old[4];
-    status = hmmwv_full_solve_rack(self, hmmwv_full_k_rack[0], links, old + 5, start + 5, self->motion + 0, self->inertia + 0);
+    status = hmmwv_full_solve_rack(self, hmmwv_full_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
     if (status != GIC_OK) {
         self->head.subset = 1;
         return status;
@@ -2087,8 +1204,7 @@ static int hmmwv_full_recover_piece(hmmwv_full *self, hmmwv_full_links *links, c
     /* stage 2: lca_f_l */
     links->x[0] = start[0]; /* spring_f_l */
     links->rate[0] = xd[0];
-    links->change[0] = start[0] - old[0];
-    status = hmmwv_full_solve_lca_f_l(self, hmmwv_full_k_lca_f_l[0], links, old + 23, start + 23, self->motion + 30, self->inertia + 23);
+    status = hmmwv_full_solve_lca_f_l(self, hmmwv_full_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
     if (status != GIC_OK) {
         self->head.subset = 2;
         return status;
@@ -2096,8 +1212,7 @@ static int hmmwv_full_recover_piece(hmmwv_full *self, hmmwv_full_links *links, c
     /* stage 2: lca_f_r */
     links->x[0] = start[1]; /* spring_f_r */
     links->rate[0] = xd[1];
-    links->change[0] = start[1] - old[1];
-    status = hmmwv_full_solve_lca_f_l(self, hmmwv_full_k_lca_f_l[1], links, old + 46, start + 46, self->motion + 60, self->inertia + 46);
+    status = hmmwv_full_solve_lca_f_l(self, hmmwv_full_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
     if (status != GIC_OK) {
         self->head.subset = 3;
         return status;
@@ -2105,8 +1220,7 @@ static int hmmwv_full_recover_piece(hmmwv_full *self, hmmwv_full_links *links, c
     /* stage 2: lca_r_l */
     links->x[0] = start[2]; /* spring_r_l */
     links->rate[0] = xd[2];
-    links->change[0] = start[2] - old[2];
-    status = hmmwv_full_solve_lca_f_l(self, hmmwv_full_k_lca_f_l[2], links, old + 69, start + 69, self->motion + 90, self->inertia + 69);
+    status = hmmwv_full_solve_lca_f_l(self, hmmwv_full_k_lca_f_l[2], links, start + 5, self->motion + 90, self->inertia + 69);
     if (status != GIC_OK) {
         self->head.subset = 4;
         return status;
@@ -2114,8 +1228,7 @@ static int hmmwv_full_recover_piece(hmmwv_full *self, hmmwv_full_links *links, c
     /* stage 2: lca_r_r */
     links->x[0] = start[3]; /* spring_r_r */
     links->rate[0] = xd[3];
-    links->change[0] = start[3] - old[3];
-    status = hmmwv_full_solve_lca_f_l(self, hmmwv_full_k_lca_f_l[3], links, old + 92, start + 92, self->motion + 120, self->inertia + 92);
+    status = hmmwv_full_solve_lca_f_l(self, hmmwv_full_k_lca_f_l[3], links, start + 5, self->motion + 120, self->inertia + 92);
     if (status != GIC_OK) {
         self->head.subset = 5;
         return status;
@@ -2125,11 +1238,9 @@ static int hmmwv_full_recover_piece(hmmwv_full *self, hmmwv_full_links *links, c
     links->known[1] = self->motion + 30; /* lca_f_l */
     links->x[0] = start[4]; /* rack */
     links->rate[0] = xd[4];
-    links->change[0] = start[4] - old[4];
     links->x[1] = start[0]; /* spring_f_l */
     links->rate[1] = xd[0];
-    links->change[1] = start[0] - old[0];
-    status = hmmwv_full_solve_wheel_f_l(self, hmmwv_full_k_wheel_f_l[0], links, old + 115, start + 115, self->motion + 150, self->inertia + 115);
+    status = hmmwv_full_solve_wheel_f_l(self, hmmwv_full_k_wheel_f_l[0], links, start + 5, self->motion + 150, self->inertia + 115);
     if (status != GIC_OK) {
         self->head.subset = 6;
         return status;
@@ -2139,11 +1250,9 @@ static int hmmwv_full_recover_piece(hmmwv_full *self, hmmwv_full_links *links, c
     links->known[1] = self->motion + 60; /* lca_f_r */
     links->x[0] = start[4]; /* rack */
     links->rate[0] = xd[4];
-    links->change[0] = start[4] - old[4];
     links->x[1] = start[1]; /* spring_f_r */
     links->rate[1] = xd[1];
-    links->change[1] = start[1] - old[1];
-    status = hmmwv_full_solve_wheel_f_l(self, hmmwv_full_k_wheel_f_l[1], links, old + 149, start + 149, self->motion + 186, self->inertia + 147);
+    status = hmmwv_full_solve_wheel_f_l(self, hmmwv_full_k_wheel_f_l[1], links, start + 5, self->motion + 186, self->inertia + 147);
     if (status != GIC_OK) {
         self->head.subset = 7;
         return status;
@@ -2152,8 +1261,7 @@ static int hmmwv_full_recover_piece(hmmwv_full *self, hmmwv_full_links *links, c
     links->known[0] = self->motion + 90; /* lca_r_l */
     links->x[0] = start[2]; /* spring_r_l */
     links->rate[0] = xd[2];
-    links->change[0] = start[2] - old[2];
-    status = hmmwv_full_solve_wheel_r_l(self, hmmwv_full_k_wheel_r_l[0], links, old + 183, start + 183, self->motion + 222, self->inertia + 179);
+    status = hmmwv_full_solve_wheel_r_l(self, hmmwv_full_k_wheel_r_l[0], links, start + 5, self->motion + 222, self->inertia + 179);
     if (status != GIC_OK) {
         self->head.subset = 8;
         return status;
@@ -2162,8 +1270,7 @@ static int hmmwv_full_recover_piece(hmmwv_full *self, hmmwv_full_links *links, c
     links->known[0] = self->motion + 120; /* lca_r_r */
     links->x[0] = start[3]; /* spring_r_r */
     links->rate[0] = xd[3];
-    links->change[0] = start[3] - old[3];
-    status = hmmwv_full_solve_wheel_r_l(self, hmmwv_full_k_wheel_r_l[1], links, old + 208, start + 208, self->motion + 252, self->inertia + 202);
+    status = hmmwv_full_solve_wheel_r_l(self, hmmwv_full_k_wheel_r_l[1], links, start + 5, self->motion + 252, self->inertia + 202);
     if (status != GIC_OK) {
         self->head.subset = 9;
         return status;
@@ -2901,8 +2008,8 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    const gic_real *const s = self->start[self->head.flip], *const lambda = self->multiplier;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)s, (void)rate, (void)out;
+    const gic_real *const lambda = self->multiplier;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)out;
     (void)lambda;
     {
         const gic_real t1 = e[3] + e[3];
@@ -3531,8 +2638,8 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
 
 static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gic_real *e, gic_real *pose)
 {
-    const gic_real *const m = self->motion, *const s = self->start[self->head.flip];
-    (void)y, (void)e, (void)m, (void)s, (void)pose;
+    const gic_real *const m = self->motion;
+    (void)y, (void)e, (void)m, (void)pose;
     {
         const gic_real t1 = e[3] + e[3];
         const gic_real t2 = e[1] * t1;
@@ -3558,221 +2665,446 @@ static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gi
         const gic_real t22 = t14 + t15;
         const gic_real t23 = t2 - t4;
         const gic_real t24 = y[2] + (m[2] * t21 + (m[1] * t22 + m[0] * t23));
-        const gic_real t25 = e[0] * s[8];
-        const gic_real t26 = e[3] * s[11] + (e[2] * s[10] + e[1] * s[9]);
-        const gic_real t27 = t25 - t26;
-        const gic_real t28 = e[2] * s[11] - e[3] * s[10] + (e[1] * s[8] + e[0] * s[9]);
-        const gic_real t29 = e[3] * s[9] - e[1] * s[11] + (e[2] * s[8] + e[0] * s[10]);
-        const gic_real t30 = e[1] * s[10] - e[2] * s[9] + (e[3] * s[8] + e[0] * s[11]);
-        const gic_real t31 = m[32] + (m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367));
-        const gic_real t32 = m[31] + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
-        const gic_real t33 = m[30] + (m[35] * R(3.0379110359107786e-06) + m[34] * R(0.24689200985615367));
-        const gic_real t34 = y[0] + (t5 * t31 + (t9 * t32 + t12 * t33));
-        const gic_real t35 = y[1] + (t16 * t31 + (t18 * t32 + t19 * t33));
-        const gic_real t36 = y[2] + (t21 * t31 + (t22 * t32 + t23 * t33));
-        const gic_real t37 = e[0] * s[26];
-        const gic_real t38 = e[3] * s[29] + (e[2] * s[28] + e[1] * s[27]);
-        const gic_real t39 = t37 - t38;
-        const gic_real t40 = e[2] * s[29] - e[3] * s[28] + (e[1] * s[26] + e[0] * s[27]);
-        const gic_real t41 = e[3] * s[27] - e[1] * s[29] + (e[2] * s[26] + e[0] * s[28]);
-        const gic_real t42 = e[1] * s[28] - e[2] * s[27] + (e[3] * s[26] + e[0] * s[29]);
-        const gic_real t43 = m[62] + (m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367));
-        const gic_real t44 = m[61] + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t45 = m[60] + (m[65] * R(3.0379110359107786e-06) + m[64] * R(-0.24689200985615367));
-        const gic_real t46 = y[0] + (t5 * t43 + (t9 * t44 + t12 * t45));
-        const gic_real t47 = y[1] + (t16 * t43 + (t18 * t44 + t19 * t45));
-        const gic_real t48 = y[2] + (t21 * t43 + (t22 * t44 + t23 * t45));
-        const gic_real t49 = e[0] * s[49];
-        const gic_real t50 = e[3] * s[52] + (e[2] * s[51] + e[1] * s[50]);
-        const gic_real t51 = t49 - t50;
-        const gic_real t52 = e[2] * s[52] - e[3] * s[51] + (e[1] * s[49] + e[0] * s[50]);
-        const gic_real t53 = e[3] * s[50] - e[1] * s[52] + (e[2] * s[49] + e[0] * s[51]);
-        const gic_real t54 = e[1] * s[51] - e[2] * s[50] + (e[3] * s[49] + e[0] * s[52]);
-        const gic_real t55 = m[152] + (m[161] * R(0.09182100000000004) + (m[160] * R(0.08910630000000008) + m[159] * R(-0.004825999999999997)));
-        const gic_real t56 = m[151] + (m[158] * R(0.09182100000000004) + (m[157] * R(0.08910630000000008) + m[156] * R(-0.004825999999999997)));
-        const gic_real t57 = m[150] + (m[155] * R(0.09182100000000004) + (m[154] * R(0.08910630000000008) + m[153] * R(-0.004825999999999997)));
-        const gic_real t58 = y[0] + (t5 * t55 + (t9 * t56 + t12 * t57));
-        const gic_real t59 = y[1] + (t16 * t55 + (t18 * t56 + t19 * t57));
-        const gic_real t60 = y[2] + (t21 * t55 + (t22 * t56 + t23 * t57));
-        const gic_real t61 = e[0] * s[118];
-        const gic_real t62 = e[3] * s[121] + (e[2] * s[120] + e[1] * s[119]);
-        const gic_real t63 = t61 - t62;
-        const gic_real t64 = e[2] * s[121] - e[3] * s[120] + (e[1] * s[118] + e[0] * s[119]);
-        const gic_real t65 = e[3] * s[119] - e[1] * s[121] + (e[2] * s[118] + e[0] * s[120]);
-        const gic_real t66 = e[1] * s[120] - e[2] * s[119] + (e[3] * s[118] + e[0] * s[121]);
-        const gic_real t67 = m[188] + (m[197] * R(0.09182100000000004) + (m[196] * R(-0.08910630000000008) + m[195] * R(-0.004825999999999997)));
-        const gic_real t68 = m[187] + (m[194] * R(0.09182100000000004) + (m[193] * R(-0.08910630000000008) + m[192] * R(-0.004825999999999997)));
-        const gic_real t69 = m[186] + (m[191] * R(0.09182100000000004) + (m[190] * R(-0.08910630000000008) + m[189] * R(-0.004825999999999997)));
-        const gic_real t70 = y[0] + (t5 * t67 + (t9 * t68 + t12 * t69));
-        const gic_real t71 = y[1] + (t16 * t67 + (t18 * t68 + t19 * t69));
-        const gic_real t72 = y[2] + (t21 * t67 + (t22 * t68 + t23 * t69));
-        const gic_real t73 = e[0] * s[152];
-        const gic_real t74 = e[3] * s[155] + (e[2] * s[154] + e[1] * s[153]);
-        const gic_real t75 = t73 - t74;
-        const gic_real t76 = e[2] * s[155] - e[3] * s[154] + (e[1] * s[152] + e[0] * s[153]);
-        const gic_real t77 = e[3] * s[153] - e[1] * s[155] + (e[2] * s[152] + e[0] * s[154]);
-        const gic_real t78 = e[1] * s[154] - e[2] * s[153] + (e[3] * s[152] + e[0] * s[155]);
-        const gic_real t79 = m[92] + (m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056));
-        const gic_real t80 = m[91] + (m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056));
-        const gic_real t81 = m[90] + (m[95] * R(-3.0379110358344508e-06) + m[94] * R(0.246867347245056));
-        const gic_real t82 = y[0] + (t5 * t79 + (t9 * t80 + t12 * t81));
-        const gic_real t83 = y[1] + (t16 * t79 + (t18 * t80 + t19 * t81));
-        const gic_real t84 = y[2] + (t21 * t79 + (t22 * t80 + t23 * t81));
-        const gic_real t85 = e[0] * s[72];
-        const gic_real t86 = e[3] * s[75] + (e[2] * s[74] + e[1] * s[73]);
-        const gic_real t87 = t85 - t86;
-        const gic_real t88 = e[2] * s[75] - e[3] * s[74] + (e[1] * s[72] + e[0] * s[73]);
-        const gic_real t89 = e[3] * s[73] - e[1] * s[75] + (e[2] * s[72] + e[0] * s[74]);
-        const gic_real t90 = e[1] * s[74] - e[2] * s[73] + (e[3] * s[72] + e[0] * s[75]);
-        const gic_real t91 = m[122] + (m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056));
-        const gic_real t92 = m[121] + (m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056));
-        const gic_real t93 = m[120] + (m[125] * R(-3.0379110358344508e-06) + m[124] * R(-0.246867347245056));
-        const gic_real t94 = y[0] + (t5 * t91 + (t9 * t92 + t12 * t93));
-        const gic_real t95 = y[1] + (t16 * t91 + (t18 * t92 + t19 * t93));
-        const gic_real t96 = y[2] + (t21 * t91 + (t22 * t92 + t23 * t93));
-        const gic_real t97 = e[0] * s[95];
-        const gic_real t98 = e[3] * s[98] + (e[2] * s[97] + e[1] * s[96]);
-        const gic_real t99 = t97 - t98;
-        const gic_real t100 = e[2] * s[98] - e[3] * s[97] + (e[1] * s[95] + e[0] * s[96]);
-        const gic_real t101 = e[3] * s[96] - e[1] * s[98] + (e[2] * s[95] + e[0] * s[97]);
-        const gic_real t102 = e[1] * s[97] - e[2] * s[96] + (e[3] * s[95] + e[0] * s[98]);
-        const gic_real t103 = m[224] + (m[233] * R(0.09182100000000004) + m[232] * R(0.08910630000000008));
-        const gic_real t104 = m[223] + (m[230] * R(0.09182100000000004) + m[229] * R(0.08910630000000008));
-        const gic_real t105 = m[222] + (m[227] * R(0.09182100000000004) + m[226] * R(0.08910630000000008));
-        const gic_real t106 = y[0] + (t5 * t103 + (t9 * t104 + t12 * t105));
-        const gic_real t107 = y[1] + (t16 * t103 + (t18 * t104 + t19 * t105));
-        const gic_real t108 = y[2] + (t21 * t103 + (t22 * t104 + t23 * t105));
-        const gic_real t109 = e[0] * s[186];
-        const gic_real t110 = e[3] * s[189] + (e[2] * s[188] + e[1] * s[187]);
-        const gic_real t111 = t109 - t110;
-        const gic_real t112 = e[2] * s[189] - e[3] * s[188] + (e[1] * s[186] + e[0] * s[187]);
-        const gic_real t113 = e[3] * s[187] - e[1] * s[189] + (e[2] * s[186] + e[0] * s[188]);
-        const gic_real t114 = e[1] * s[188] - e[2] * s[187] + (e[3] * s[186] + e[0] * s[189]);
-        const gic_real t115 = m[254] + (m[263] * R(0.09182100000000004) + m[262] * R(-0.08910630000000008));
-        const gic_real t116 = m[253] + (m[260] * R(0.09182100000000004) + m[259] * R(-0.08910630000000008));
-        const gic_real t117 = m[252] + (m[257] * R(0.09182100000000004) + m[256] * R(-0.08910630000000008));
-        const gic_real t118 = y[0] + (t5 * t115 + (t9 * t116 + t12 * t117));
-        const gic_real t119 = y[1] + (t16 * t115 + (t18 * t116 + t19 * t117));
-        const gic_real t120 = y[2] + (t21 * t115 + (t22 * t116 + t23 * t117));
-        const gic_real t121 = e[0] * s[211];
-        const gic_real t122 = e[3] * s[214] + (e[2] * s[213] + e[1] * s[212]);
-        const gic_real t123 = t121 - t122;
-        const gic_real t124 = e[2] * s[214] - e[3] * s[213] + (e[1] * s[211] + e[0] * s[212]);
-        const gic_real t125 = e[3] * s[212] - e[1] * s[214] + (e[2] * s[211] + e[0] * s[213]);
-        const gic_real t126 = e[1] * s[213] - e[2] * s[212] + (e[3] * s[211] + e[0] * s[214]);
-        const gic_real t127 = y[0];
-        const gic_real t128 = y[1];
-        const gic_real t129 = y[2];
-        const gic_real t130 = e[0];
-        const gic_real t131 = e[1];
-        const gic_real t132 = e[2];
-        const gic_real t133 = e[3];
-        const gic_real t134 = (t27 > GIC_R(0) ? t27 : t26 - t25);
-        const gic_real t135 = (t27 > GIC_R(0) ? t28 : -t28);
-        const gic_real t136 = (t27 > GIC_R(0) ? t29 : -t29);
-        const gic_real t137 = (t27 > GIC_R(0) ? t30 : -t30);
-        const gic_real t138 = (t39 > GIC_R(0) ? t39 : t38 - t37);
-        const gic_real t139 = (t39 > GIC_R(0) ? t40 : -t40);
-        const gic_real t140 = (t39 > GIC_R(0) ? t41 : -t41);
-        const gic_real t141 = (t39 > GIC_R(0) ? t42 : -t42);
-        const gic_real t142 = (t51 > GIC_R(0) ? t51 : t50 - t49);
-        const gic_real t143 = (t51 > GIC_R(0) ? t52 : -t52);
-        const gic_real t144 = (t51 > GIC_R(0) ? t53 : -t53);
-        const gic_real t145 = (t51 > GIC_R(0) ? t54 : -t54);
-        const gic_real t146 = (t63 > GIC_R(0) ? t63 : t62 - t61);
-        const gic_real t147 = (t63 > GIC_R(0) ? t64 : -t64);
-        const gic_real t148 = (t63 > GIC_R(0) ? t65 : -t65);
-        const gic_real t149 = (t63 > GIC_R(0) ? t66 : -t66);
-        const gic_real t150 = (t75 > GIC_R(0) ? t75 : t74 - t73);
-        const gic_real t151 = (t75 > GIC_R(0) ? t76 : -t76);
-        const gic_real t152 = (t75 > GIC_R(0) ? t77 : -t77);
-        const gic_real t153 = (t75 > GIC_R(0) ? t78 : -t78);
-        const gic_real t154 = (t87 > GIC_R(0) ? t87 : t86 - t85);
-        const gic_real t155 = (t87 > GIC_R(0) ? t88 : -t88);
-        const gic_real t156 = (t87 > GIC_R(0) ? t89 : -t89);
-        const gic_real t157 = (t87 > GIC_R(0) ? t90 : -t90);
-        const gic_real t158 = (t99 > GIC_R(0) ? t99 : t98 - t97);
-        const gic_real t159 = (t99 > GIC_R(0) ? t100 : -t100);
-        const gic_real t160 = (t99 > GIC_R(0) ? t101 : -t101);
-        const gic_real t161 = (t99 > GIC_R(0) ? t102 : -t102);
-        const gic_real t162 = (t111 > GIC_R(0) ? t111 : t110 - t109);
-        const gic_real t163 = (t111 > GIC_R(0) ? t112 : -t112);
-        const gic_real t164 = (t111 > GIC_R(0) ? t113 : -t113);
-        const gic_real t165 = (t111 > GIC_R(0) ? t114 : -t114);
-        const gic_real t166 = (t123 > GIC_R(0) ? t123 : t122 - t121);
-        const gic_real t167 = (t123 > GIC_R(0) ? t124 : -t124);
-        const gic_real t168 = (t123 > GIC_R(0) ? t125 : -t125);
-        const gic_real t169 = (t123 > GIC_R(0) ? t126 : -t126);
-        pose[0] = t127;
-        pose[1] = t128;
-        pose[2] = t129;
-        pose[3] = t130;
-        pose[4] = t131;
-        pose[5] = t132;
-        pose[6] = t133;
+        const gic_real t25 = R(1.0) + (m[11] - (m[3] + m[7]));
+        const gic_real t26 = R(1.0) + (m[7] - (m[3] + m[11]));
+        const gic_real t27 = m[7] + m[11];
+        const gic_real t28 = R(1.0) + (m[3] - t27);
+        const gic_real t29 = R(1.0) + (m[3] + t27);
+        const gic_real t30 = GIC_MAX(t28, t29);
+        const gic_real t31 = GIC_MAX(t26, t30);
+        const gic_real t32 = t25 - t31;
+        const gic_real t33 = m[6] - m[4];
+        const gic_real t34 = t26 - t30;
+        const gic_real t35 = m[5] - m[9];
+        const gic_real t36 = t28 - t29;
+        const gic_real t37 = m[10] - m[8];
+        const gic_real t38 = (t32 > GIC_R(0) ? t33 : (t34 > GIC_R(0) ? t35 : (t36 > GIC_R(0) ? t37 : t29)));
+        const gic_real t39 = R(0.5) / GIC_SQRT(GIC_MAX(t25, t31));
+        const gic_real t40 = t38 * t39;
+        const gic_real t41 = e[0] * t40;
+        const gic_real t42 = m[8] + m[10];
+        const gic_real t43 = m[5] + m[9];
+        const gic_real t44 = (t32 > GIC_R(0) ? t25 : (t34 > GIC_R(0) ? t42 : (t36 > GIC_R(0) ? t43 : t33)));
+        const gic_real t45 = t44 * t39;
+        const gic_real t46 = m[4] + m[6];
+        const gic_real t47 = (t32 > GIC_R(0) ? t42 : (t34 > GIC_R(0) ? t26 : (t36 > GIC_R(0) ? t46 : t35)));
+        const gic_real t48 = t47 * t39;
+        const gic_real t49 = (t32 > GIC_R(0) ? t43 : (t34 > GIC_R(0) ? t46 : (t36 > GIC_R(0) ? t28 : t37)));
+        const gic_real t50 = t49 * t39;
+        const gic_real t51 = e[3] * t45 + (e[2] * t48 + e[1] * t50);
+        const gic_real t52 = t41 - t51;
+        const gic_real t53 = e[2] * t45 - e[3] * t48 + (e[1] * t40 + e[0] * t50);
+        const gic_real t54 = e[3] * t50 - e[1] * t45 + (e[2] * t40 + e[0] * t48);
+        const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t40 + e[0] * t45);
+        const gic_real t56 = m[32] + (m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367));
+        const gic_real t57 = m[31] + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
+        const gic_real t58 = m[30] + (m[35] * R(3.0379110359107786e-06) + m[34] * R(0.24689200985615367));
+        const gic_real t59 = y[0] + (t5 * t56 + (t9 * t57 + t12 * t58));
+        const gic_real t60 = y[1] + (t16 * t56 + (t18 * t57 + t19 * t58));
+        const gic_real t61 = y[2] + (t21 * t56 + (t22 * t57 + t23 * t58));
+        const gic_real t62 = R(1.0) + (m[41] - (m[33] + m[37]));
+        const gic_real t63 = R(1.0) + (m[37] - (m[33] + m[41]));
+        const gic_real t64 = m[37] + m[41];
+        const gic_real t65 = R(1.0) + (m[33] - t64);
+        const gic_real t66 = R(1.0) + (m[33] + t64);
+        const gic_real t67 = GIC_MAX(t65, t66);
+        const gic_real t68 = GIC_MAX(t63, t67);
+        const gic_real t69 = t62 - t68;
+        const gic_real t70 = m[36] - m[34];
+        const gic_real t71 = t63 - t67;
+        const gic_real t72 = m[35] - m[39];
+        const gic_real t73 = t65 - t66;
+        const gic_real t74 = m[40] - m[38];
+        const gic_real t75 = (t69 > GIC_R(0) ? t70 : (t71 > GIC_R(0) ? t72 : (t73 > GIC_R(0) ? t74 : t66)));
+        const gic_real t76 = R(0.5) / GIC_SQRT(GIC_MAX(t62, t68));
+        const gic_real t77 = t75 * t76;
+        const gic_real t78 = e[0] * t77;
+        const gic_real t79 = m[38] + m[40];
+        const gic_real t80 = m[35] + m[39];
+        const gic_real t81 = (t69 > GIC_R(0) ? t62 : (t71 > GIC_R(0) ? t79 : (t73 > GIC_R(0) ? t80 : t70)));
+        const gic_real t82 = t81 * t76;
+        const gic_real t83 = m[34] + m[36];
+        const gic_real t84 = (t69 > GIC_R(0) ? t79 : (t71 > GIC_R(0) ? t63 : (t73 > GIC_R(0) ? t83 : t72)));
+        const gic_real t85 = t84 * t76;
+        const gic_real t86 = (t69 > GIC_R(0) ? t80 : (t71 > GIC_R(0) ? t83 : (t73 > GIC_R(0) ? t65 : t74)));
+        const gic_real t87 = t86 * t76;
+        const gic_real t88 = e[3] * t82 + (e[2] * t85 + e[1] * t87);
+        const gic_real t89 = t78 - t88;
+        const gic_real t90 = e[2] * t82 - e[3] * t85 + (e[1] * t77 + e[0] * t87);
+        const gic_real t91 = e[3] * t87 - e[1] * t82 + (e[2] * t77 + e[0] * t85);
+        const gic_real t92 = e[1] * t85 - e[2] * t87 + (e[3] * t77 + e[0] * t82);
+        const gic_real t93 = m[62] + (m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367));
+        const gic_real t94 = m[61] + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
+        const gic_real t95 = m[60] + (m[65] * R(3.0379110359107786e-06) + m[64] * R(-0.24689200985615367));
+        const gic_real t96 = y[0] + (t5 * t93 + (t9 * t94 + t12 * t95));
+        const gic_real t97 = y[1] + (t16 * t93 + (t18 * t94 + t19 * t95));
+        const gic_real t98 = y[2] + (t21 * t93 + (t22 * t94 + t23 * t95));
+        const gic_real t99 = R(1.0) + (m[71] - (m[63] + m[67]));
+        const gic_real t100 = R(1.0) + (m[67] - (m[63] + m[71]));
+        const gic_real t101 = m[67] + m[71];
+        const gic_real t102 = R(1.0) + (m[63] - t101);
+        const gic_real t103 = R(1.0) + (m[63] + t101);
+        const gic_real t104 = GIC_MAX(t102, t103);
+        const gic_real t105 = GIC_MAX(t100, t104);
+        const gic_real t106 = t99 - t105;
+        const gic_real t107 = m[66] - m[64];
+        const gic_real t108 = t100 - t104;
+        const gic_real t109 = m[65] - m[69];
+        const gic_real t110 = t102 - t103;
+        const gic_real t111 = m[70] - m[68];
+        const gic_real t112 = (t106 > GIC_R(0) ? t107 : (t108 > GIC_R(0) ? t109 : (t110 > GIC_R(0) ? t111 : t103)));
+        const gic_real t113 = R(0.5) / GIC_SQRT(GIC_MAX(t99, t105));
+        const gic_real t114 = t112 * t113;
+        const gic_real t115 = e[0] * t114;
+        const gic_real t116 = m[68] + m[70];
+        const gic_real t117 = m[65] + m[69];
+        const gic_real t118 = (t106 > GIC_R(0) ? t99 : (t108 > GIC_R(0) ? t116 : (t110 > GIC_R(0) ? t117 : t107)));
+        const gic_real t119 = t118 * t113;
+        const gic_real t120 = m[64] + m[66];
+        const gic_real t121 = (t106 > GIC_R(0) ? t116 : (t108 > GIC_R(0) ? t100 : (t110 > GIC_R(0) ? t120 : t109)));
+        const gic_real t122 = t121 * t113;
+        const gic_real t123 = (t106 > GIC_R(0) ? t117 : (t108 > GIC_R(0) ? t120 : (t110 > GIC_R(0) ? t102 : t111)));
+        const gic_real t124 = t123 * t113;
+        const gic_real t125 = e[3] * t119 + (e[2] * t122 + e[1] * t124);
+        const gic_real t126 = t115 - t125;
+        const gic_real t127 = e[2] * t119 - e[3] * t122 + (e[1] * t114 + e[0] * t124);
+        const gic_real t128 = e[3] * t124 - e[1] * t119 + (e[2] * t114 + e[0] * t122);
+        const gic_real t129 = e[1] * t122 - e[2] * t124 + (e[3] * t114 + e[0] * t119);
+        const gic_real t130 = m[152] + (m[161] * R(0.09182100000000004) + (m[160] * R(0.08910630000000008) + m[159] * R(-0.004825999999999997)));
+        const gic_real t131 = m[151] + (m[158] * R(0.09182100000000004) + (m[157] * R(0.08910630000000008) + m[156] * R(-0.004825999999999997)));
+        const gic_real t132 = m[150] + (m[155] * R(0.09182100000000004) + (m[154] * R(0.08910630000000008) + m[153] * R(-0.004825999999999997)));
+        const gic_real t133 = y[0] + (t5 * t130 + (t9 * t131 + t12 * t132));
+        const gic_real t134 = y[1] + (t16 * t130 + (t18 * t131 + t19 * t132));
+        const gic_real t135 = y[2] + (t21 * t130 + (t22 * t131 + t23 * t132));
+        const gic_real t136 = R(1.0) + (m[161] - (m[153] + m[157]));
+        const gic_real t137 = R(1.0) + (m[157] - (m[153] + m[161]));
+        const gic_real t138 = m[157] + m[161];
+        const gic_real t139 = R(1.0) + (m[153] - t138);
+        const gic_real t140 = R(1.0) + (m[153] + t138);
+        const gic_real t141 = GIC_MAX(t139, t140);
+        const gic_real t142 = GIC_MAX(t137, t141);
+        const gic_real t143 = t136 - t142;
+        const gic_real t144 = m[156] - m[154];
+        const gic_real t145 = t137 - t141;
+        const gic_real t146 = m[155] - m[159];
+        const gic_real t147 = t139 - t140;
+        const gic_real t148 = m[160] - m[158];
+        const gic_real t149 = (t143 > GIC_R(0) ? t144 : (t145 > GIC_R(0) ? t146 : (t147 > GIC_R(0) ? t148 : t140)));
+        const gic_real t150 = R(0.5) / GIC_SQRT(GIC_MAX(t136, t142));
+        const gic_real t151 = t149 * t150;
+        const gic_real t152 = e[0] * t151;
+        const gic_real t153 = m[158] + m[160];
+        const gic_real t154 = m[155] + m[159];
+        const gic_real t155 = (t143 > GIC_R(0) ? t136 : (t145 > GIC_R(0) ? t153 : (t147 > GIC_R(0) ? t154 : t144)));
+        const gic_real t156 = t155 * t150;
+        const gic_real t157 = m[154] + m[156];
+        const gic_real t158 = (t143 > GIC_R(0) ? t153 : (t145 > GIC_R(0) ? t137 : (t147 > GIC_R(0) ? t157 : t146)));
+        const gic_real t159 = t158 * t150;
+        const gic_real t160 = (t143 > GIC_R(0) ? t154 : (t145 > GIC_R(0) ? t157 : (t147 > GIC_R(0) ? t139 : t148)));
+        const gic_real t161 = t160 * t150;
+        const gic_real t162 = e[3] * t156 + (e[2] * t159 + e[1] * t161);
+        const gic_real t163 = t152 - t162;
+        const gic_real t164 = e[2] * t156 - e[3] * t159 + (e[1] * t151 + e[0] * t161);
+        const gic_real t165 = e[3] * t161 - e[1] * t156 + (e[2] * t151 + e[0] * t159);
+        const gic_real t166 = e[1] * t159 - e[2] * t161 + (e[3] * t151 + e[0] * t156);
+        const gic_real t167 = m[188] + (m[197] * R(0.09182100000000004) + (m[196] * R(-0.08910630000000008) + m[195] * R(-0.004825999999999997)));
+        const gic_real t168 = m[187] + (m[194] * R(0.09182100000000004) + (m[193] * R(-0.08910630000000008) + m[192] * R(-0.004825999999999997)));
+        const gic_real t169 = m[186] + (m[191] * R(0.09182100000000004) + (m[190] * R(-0.08910630000000008) + m[189] * R(-0.004825999999999997)));
+        const gic_real t170 = y[0] + (t5 * t167 + (t9 * t168 + t12 * t169));
+        const gic_real t171 = y[1] + (t16 * t167 + (t18 * t168 + t19 * t169));
+        const gic_real t172 = y[2] + (t21 * t167 + (t22 * t168 + t23 * t169));
+        const gic_real t173 = R(1.0) + (m[197] - (m[189] + m[193]));
+        const gic_real t174 = R(1.0) + (m[193] - (m[189] + m[197]));
+        const gic_real t175 = m[193] + m[197];
+        const gic_real t176 = R(1.0) + (m[189] - t175);
+        const gic_real t177 = R(1.0) + (m[189] + t175);
+        const gic_real t178 = GIC_MAX(t176, t177);
+        const gic_real t179 = GIC_MAX(t174, t178);
+        const gic_real t180 = t173 - t179;
+        const gic_real t181 = m[192] - m[190];
+        const gic_real t182 = t174 - t178;
+        const gic_real t183 = m[191] - m[195];
+        const gic_real t184 = t176 - t177;
+        const gic_real t185 = m[196] - m[194];
+        const gic_real t186 = (t180 > GIC_R(0) ? t181 : (t182 > GIC_R(0) ? t183 : (t184 > GIC_R(0) ? t185 : t177)));
+        const gic_real t187 = R(0.5) / GIC_SQRT(GIC_MAX(t173, t179));
+        const gic_real t188 = t186 * t187;
+        const gic_real t189 = e[0] * t188;
+        const gic_real t190 = m[194] + m[196];
+        const gic_real t191 = m[191] + m[195];
+        const gic_real t192 = (t180 > GIC_R(0) ? t173 : (t182 > GIC_R(0) ? t190 : (t184 > GIC_R(0) ? t191 : t181)));
+        const gic_real t193 = t192 * t187;
+        const gic_real t194 = m[190] + m[192];
+        const gic_real t195 = (t180 > GIC_R(0) ? t190 : (t182 > GIC_R(0) ? t174 : (t184 > GIC_R(0) ? t194 : t183)));
+        const gic_real t196 = t195 * t187;
+        const gic_real t197 = (t180 > GIC_R(0) ? t191 : (t182 > GIC_R(0) ? t194 : (t184 > GIC_R(0) ? t176 : t185)));
+        const gic_real t198 = t197 * t187;
+        const gic_real t199 = e[3] * t193 + (e[2] * t196 + e[1] * t198);
+        const gic_real t200 = t189 - t199;
+        const gic_real t201 = e[2] * t193 - e[3] * t196 + (e[1] * t188 + e[0] * t198);
+        const gic_real t202 = e[3] * t198 - e[1] * t193 + (e[2] * t188 + e[0] * t196);
+        const gic_real t203 = e[1] * t196 - e[2] * t198 + (e[3] * t188 + e[0] * t193);
+        const gic_real t204 = m[92] + (m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056));
+        const gic_real t205 = m[91] + (m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056));
+        const gic_real t206 = m[90] + (m[95] * R(-3.0379110358344508e-06) + m[94] * R(0.246867347245056));
+        const gic_real t207 = y[0] + (t5 * t204 + (t9 * t205 + t12 * t206));
+        const gic_real t208 = y[1] + (t16 * t204 + (t18 * t205 + t19 * t206));
+        const gic_real t209 = y[2] + (t21 * t204 + (t22 * t205 + t23 * t206));
+        const gic_real t210 = R(1.0) + (m[101] - (m[93] + m[97]));
+        const gic_real t211 = R(1.0) + (m[97] - (m[93] + m[101]));
+        const gic_real t212 = m[97] + m[101];
+        const gic_real t213 = R(1.0) + (m[93] - t212);
+        const gic_real t214 = R(1.0) + (m[93] + t212);
+        const gic_real t215 = GIC_MAX(t213, t214);
+        const gic_real t216 = GIC_MAX(t211, t215);
+        const gic_real t217 = t210 - t216;
+        const gic_real t218 = m[96] - m[94];
+        const gic_real t219 = t211 - t215;
+        const gic_real t220 = m[95] - m[99];
+        const gic_real t221 = t213 - t214;
+        const gic_real t222 = m[100] - m[98];
+        const gic_real t223 = (t217 > GIC_R(0) ? t218 : (t219 > GIC_R(0) ? t220 : (t221 > GIC_R(0) ? t222 : t214)));
+        const gic_real t224 = R(0.5) / GIC_SQRT(GIC_MAX(t210, t216));
+        const gic_real t225 = t223 * t224;
+        const gic_real t226 = e[0] * t225;
+        const gic_real t227 = m[98] + m[100];
+        const gic_real t228 = m[95] + m[99];
+        const gic_real t229 = (t217 > GIC_R(0) ? t210 : (t219 > GIC_R(0) ? t227 : (t221 > GIC_R(0) ? t228 : t218)));
+        const gic_real t230 = t229 * t224;
+        const gic_real t231 = m[94] + m[96];
+        const gic_real t232 = (t217 > GIC_R(0) ? t227 : (t219 > GIC_R(0) ? t211 : (t221 > GIC_R(0) ? t231 : t220)));
+        const gic_real t233 = t232 * t224;
+        const gic_real t234 = (t217 > GIC_R(0) ? t228 : (t219 > GIC_R(0) ? t231 : (t221 > GIC_R(0) ? t213 : t222)));
+        const gic_real t235 = t234 * t224;
+        const gic_real t236 = e[3] * t230 + (e[2] * t233 + e[1] * t235);
+        const gic_real t237 = t226 - t236;
+        const gic_real t238 = e[2] * t230 - e[3] * t233 + (e[1] * t225 + e[0] * t235);
+        const gic_real t239 = e[3] * t235 - e[1] * t230 + (e[2] * t225 + e[0] * t233);
+        const gic_real t240 = e[1] * t233 - e[2] * t235 + (e[3] * t225 + e[0] * t230);
+        const gic_real t241 = m[122] + (m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056));
+        const gic_real t242 = m[121] + (m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056));
+        const gic_real t243 = m[120] + (m[125] * R(-3.0379110358344508e-06) + m[124] * R(-0.246867347245056));
+        const gic_real t244 = y[0] + (t5 * t241 + (t9 * t242 + t12 * t243));
+        const gic_real t245 = y[1] + (t16 * t241 + (t18 * t242 + t19 * t243));
+        const gic_real t246 = y[2] + (t21 * t241 + (t22 * t242 + t23 * t243));
+        const gic_real t247 = R(1.0) + (m[131] - (m[123] + m[127]));
+        const gic_real t248 = R(1.0) + (m[127] - (m[123] + m[131]));
+        const gic_real t249 = m[127] + m[131];
+        const gic_real t250 = R(1.0) + (m[123] - t249);
+        const gic_real t251 = R(1.0) + (m[123] + t249);
+        const gic_real t252 = GIC_MAX(t250, t251);
+        const gic_real t253 = GIC_MAX(t248, t252);
+        const gic_real t254 = t247 - t253;
+        const gic_real t255 = m[126] - m[124];
+        const gic_real t256 = t248 - t252;
+        const gic_real t257 = m[125] - m[129];
+        const gic_real t258 = t250 - t251;
+        const gic_real t259 = m[130] - m[128];
+        const gic_real t260 = (t254 > GIC_R(0) ? t255 : (t256 > GIC_R(0) ? t257 : (t258 > GIC_R(0) ? t259 : t251)));
+        const gic_real t261 = R(0.5) / GIC_SQRT(GIC_MAX(t247, t253));
+        const gic_real t262 = t260 * t261;
+        const gic_real t263 = e[0] * t262;
+        const gic_real t264 = m[128] + m[130];
+        const gic_real t265 = m[125] + m[129];
+        const gic_real t266 = (t254 > GIC_R(0) ? t247 : (t256 > GIC_R(0) ? t264 : (t258 > GIC_R(0) ? t265 : t255)));
+        const gic_real t267 = t266 * t261;
+        const gic_real t268 = m[124] + m[126];
+        const gic_real t269 = (t254 > GIC_R(0) ? t264 : (t256 > GIC_R(0) ? t248 : (t258 > GIC_R(0) ? t268 : t257)));
+        const gic_real t270 = t269 * t261;
+        const gic_real t271 = (t254 > GIC_R(0) ? t265 : (t256 > GIC_R(0) ? t268 : (t258 > GIC_R(0) ? t250 : t259)));
+        const gic_real t272 = t271 * t261;
+        const gic_real t273 = e[3] * t267 + (e[2] * t270 + e[1] * t272);
+        const gic_real t274 = t263 - t273;
+        const gic_real t275 = e[2] * t267 - e[3] * t270 + (e[1] * t262 + e[0] * t272);
+        const gic_real t276 = e[3] * t272 - e[1] * t267 + (e[2] * t262 + e[0] * t270);
+        const gic_real t277 = e[1] * t270 - e[2] * t272 + (e[3] * t262 + e[0] * t267);
+        const gic_real t278 = m[224] + (m[233] * R(0.09182100000000004) + m[232] * R(0.08910630000000008));
+        const gic_real t279 = m[223] + (m[230] * R(0.09182100000000004) + m[229] * R(0.08910630000000008));
+        const gic_real t280 = m[222] + (m[227] * R(0.09182100000000004) + m[226] * R(0.08910630000000008));
+        const gic_real t281 = y[0] + (t5 * t278 + (t9 * t279 + t12 * t280));
+        const gic_real t282 = y[1] + (t16 * t278 + (t18 * t279 + t19 * t280));
+        const gic_real t283 = y[2] + (t21 * t278 + (t22 * t279 + t23 * t280));
+        const gic_real t284 = R(1.0) + (m[233] - (m[225] + m[229]));
+        const gic_real t285 = R(1.0) + (m[229] - (m[225] + m[233]));
+        const gic_real t286 = m[229] + m[233];
+        const gic_real t287 = R(1.0) + (m[225] - t286);
+        const gic_real t288 = R(1.0) + (m[225] + t286);
+        const gic_real t289 = GIC_MAX(t287, t288);
+        const gic_real t290 = GIC_MAX(t285, t289);
+        const gic_real t291 = t284 - t290;
+        const gic_real t292 = m[228] - m[226];
+        const gic_real t293 = t285 - t289;
+        const gic_real t294 = m[227] - m[231];
+        const gic_real t295 = t287 - t288;
+        const gic_real t296 = m[232] - m[230];
+        const gic_real t297 = (t291 > GIC_R(0) ? t292 : (t293 > GIC_R(0) ? t294 : (t295 > GIC_R(0) ? t296 : t288)));
+        const gic_real t298 = R(0.5) / GIC_SQRT(GIC_MAX(t284, t290));
+        const gic_real t299 = t297 * t298;
+        const gic_real t300 = e[0] * t299;
+        const gic_real t301 = m[230] + m[232];
+        const gic_real t302 = m[227] + m[231];
+        const gic_real t303 = (t291 > GIC_R(0) ? t284 : (t293 > GIC_R(0) ? t301 : (t295 > GIC_R(0) ? t302 : t292)));
+        const gic_real t304 = t303 * t298;
+        const gic_real t305 = m[226] + m[228];
+        const gic_real t306 = (t291 > GIC_R(0) ? t301 : (t293 > GIC_R(0) ? t285 : (t295 > GIC_R(0) ? t305 : t294)));
+        const gic_real t307 = t306 * t298;
+        const gic_real t308 = (t291 > GIC_R(0) ? t302 : (t293 > GIC_R(0) ? t305 : (t295 > GIC_R(0) ? t287 : t296)));
+        const gic_real t309 = t308 * t298;
+        const gic_real t310 = e[3] * t304 + (e[2] * t307 + e[1] * t309);
+        const gic_real t311 = t300 - t310;
+        const gic_real t312 = e[2] * t304 - e[3] * t307 + (e[1] * t299 + e[0] * t309);
+        const gic_real t313 = e[3] * t309 - e[1] * t304 + (e[2] * t299 + e[0] * t307);
+        const gic_real t314 = e[1] * t307 - e[2] * t309 + (e[3] * t299 + e[0] * t304);
+        const gic_real t315 = m[254] + (m[263] * R(0.09182100000000004) + m[262] * R(-0.08910630000000008));
+        const gic_real t316 = m[253] + (m[260] * R(0.09182100000000004) + m[259] * R(-0.08910630000000008));
+        const gic_real t317 = m[252] + (m[257] * R(0.09182100000000004) + m[256] * R(-0.08910630000000008));
+        const gic_real t318 = y[0] + (t5 * t315 + (t9 * t316 + t12 * t317));
+        const gic_real t319 = y[1] + (t16 * t315 + (t18 * t316 + t19 * t317));
+        const gic_real t320 = y[2] + (t21 * t315 + (t22 * t316 + t23 * t317));
+        const gic_real t321 = R(1.0) + (m[263] - (m[255] + m[259]));
+        const gic_real t322 = R(1.0) + (m[259] - (m[255] + m[263]));
+        const gic_real t323 = m[259] + m[263];
+        const gic_real t324 = R(1.0) + (m[255] - t323);
+        const gic_real t325 = R(1.0) + (m[255] + t323);
+        const gic_real t326 = GIC_MAX(t324, t325);
+        const gic_real t327 = GIC_MAX(t322, t326);
+        const gic_real t328 = t321 - t327;
+        const gic_real t329 = m[258] - m[256];
+        const gic_real t330 = t322 - t326;
+        const gic_real t331 = m[257] - m[261];
+        const gic_real t332 = t324 - t325;
+        const gic_real t333 = m[262] - m[260];
+        const gic_real t334 = (t328 > GIC_R(0) ? t329 : (t330 > GIC_R(0) ? t331 : (t332 > GIC_R(0) ? t333 : t325)));
+        const gic_real t335 = R(0.5) / GIC_SQRT(GIC_MAX(t321, t327));
+        const gic_real t336 = t334 * t335;
+        const gic_real t337 = e[0] * t336;
+        const gic_real t338 = m[260] + m[262];
+        const gic_real t339 = m[257] + m[261];
+        const gic_real t340 = (t328 > GIC_R(0) ? t321 : (t330 > GIC_R(0) ? t338 : (t332 > GIC_R(0) ? t339 : t329)));
+        const gic_real t341 = t340 * t335;
+        const gic_real t342 = m[256] + m[258];
+        const gic_real t343 = (t328 > GIC_R(0) ? t338 : (t330 > GIC_R(0) ? t322 : (t332 > GIC_R(0) ? t342 : t331)));
+        const gic_real t344 = t343 * t335;
+        const gic_real t345 = (t328 > GIC_R(0) ? t339 : (t330 > GIC_R(0) ? t342 : (t332 > GIC_R(0) ? t324 : t333)));
+        const gic_real t346 = t345 * t335;
+        const gic_real t347 = e[3] * t341 + (e[2] * t344 + e[1] * t346);
+        const gic_real t348 = t337 - t347;
+        const gic_real t349 = e[2] * t341 - e[3] * t344 + (e[1] * t336 + e[0] * t346);
+        const gic_real t350 = e[3] * t346 - e[1] * t341 + (e[2] * t336 + e[0] * t344);
+        const gic_real t351 = e[1] * t344 - e[2] * t346 + (e[3] * t336 + e[0] * t341);
+        const gic_real t352 = y[0];
+        const gic_real t353 = y[1];
+        const gic_real t354 = y[2];
+        const gic_real t355 = e[0];
+        const gic_real t356 = e[1];
+        const gic_real t357 = e[2];
+        const gic_real t358 = e[3];
+        const gic_real t359 = (t52 > GIC_R(0) ? t52 : t51 - t41);
+        const gic_real t360 = (t52 > GIC_R(0) ? t53 : -t53);
+        const gic_real t361 = (t52 > GIC_R(0) ? t54 : -t54);
+        const gic_real t362 = (t52 > GIC_R(0) ? t55 : -t55);
+        const gic_real t363 = (t89 > GIC_R(0) ? t89 : t88 - t78);
+        const gic_real t364 = (t89 > GIC_R(0) ? t90 : -t90);
+        const gic_real t365 = (t89 > GIC_R(0) ? t91 : -t91);
+        const gic_real t366 = (t89 > GIC_R(0) ? t92 : -t92);
+        const gic_real t367 = (t126 > GIC_R(0) ? t126 : t125 - t115);
+        const gic_real t368 = (t126 > GIC_R(0) ? t127 : -t127);
+        const gic_real t369 = (t126 > GIC_R(0) ? t128 : -t128);
+        const gic_real t370 = (t126 > GIC_R(0) ? t129 : -t129);
+        const gic_real t371 = (t163 > GIC_R(0) ? t163 : t162 - t152);
+        const gic_real t372 = (t163 > GIC_R(0) ? t164 : -t164);
+        const gic_real t373 = (t163 > GIC_R(0) ? t165 : -t165);
+        const gic_real t374 = (t163 > GIC_R(0) ? t166 : -t166);
+        const gic_real t375 = (t200 > GIC_R(0) ? t200 : t199 - t189);
+        const gic_real t376 = (t200 > GIC_R(0) ? t201 : -t201);
+        const gic_real t377 = (t200 > GIC_R(0) ? t202 : -t202);
+        const gic_real t378 = (t200 > GIC_R(0) ? t203 : -t203);
+        const gic_real t379 = (t237 > GIC_R(0) ? t237 : t236 - t226);
+        const gic_real t380 = (t237 > GIC_R(0) ? t238 : -t238);
+        const gic_real t381 = (t237 > GIC_R(0) ? t239 : -t239);
+        const gic_real t382 = (t237 > GIC_R(0) ? t240 : -t240);
+        const gic_real t383 = (t274 > GIC_R(0) ? t274 : t273 - t263);
+        const gic_real t384 = (t274 > GIC_R(0) ? t275 : -t275);
+        const gic_real t385 = (t274 > GIC_R(0) ? t276 : -t276);
+        const gic_real t386 = (t274 > GIC_R(0) ? t277 : -t277);
+        const gic_real t387 = (t311 > GIC_R(0) ? t311 : t310 - t300);
+        const gic_real t388 = (t311 > GIC_R(0) ? t312 : -t312);
+        const gic_real t389 = (t311 > GIC_R(0) ? t313 : -t313);
+        const gic_real t390 = (t311 > GIC_R(0) ? t314 : -t314);
+        const gic_real t391 = (t348 > GIC_R(0) ? t348 : t347 - t337);
+        const gic_real t392 = (t348 > GIC_R(0) ? t349 : -t349);
+        const gic_real t393 = (t348 > GIC_R(0) ? t350 : -t350);
+        const gic_real t394 = (t348 > GIC_R(0) ? t351 : -t351);
+        pose[0] = t352;
+        pose[1] = t353;
+        pose[2] = t354;
+        pose[3] = t355;
+        pose[4] = t356;
+        pose[5] = t357;
+        pose[6] = t358;
         pose[7] = t13;
         pose[8] = t20;
         pose[9] = t24;
-        pose[10] = t134;
-        pose[11] = t135;
-        pose[12] = t136;
-        pose[13] = t137;
-        pose[14] = t34;
-        pose[15] = t35;
-        pose[16] = t36;
-        pose[17] = t138;
-        pose[18] = t139;
-        pose[19] = t140;
-        pose[20] = t141;
-        pose[21] = t46;
-        pose[22] = t47;
-        pose[23] = t48;
-        pose[24] = t142;
-        pose[25] = t143;
-        pose[26] = t144;
-        pose[27] = t145;
-        pose[28] = t58;
-        pose[29] = t59;
-        pose[30] = t60;
-        pose[31] = t146;
-        pose[32] = t147;
-        pose[33] = t148;
-        pose[34] = t149;
-        pose[35] = t70;
-        pose[36] = t71;
-        pose[37] = t72;
-        pose[38] = t150;
-        pose[39] = t151;
-        pose[40] = t152;
-        pose[41] = t153;
-        pose[42] = t82;
-        pose[43] = t83;
-        pose[44] = t84;
-        pose[45] = t154;
-        pose[46] = t155;
-        pose[47] = t156;
-        pose[48] = t157;
-        pose[49] = t94;
-        pose[50] = t95;
-        pose[51] = t96;
-        pose[52] = t158;
-        pose[53] = t159;
-        pose[54] = t160;
-        pose[55] = t161;
-        pose[56] = t106;
-        pose[57] = t107;
-        pose[58] = t108;
-        pose[59] = t162;
-        pose[60] = t163;
-        pose[61] = t164;
-        pose[62] = t165;
-        pose[63] = t118;
-        pose[64] = t119;
-        pose[65] = t120;
-        pose[66] = t166;
-        pose[67] = t167;
-        pose[68] = t168;
-        pose[69] = t169;
+        pose[10] = t359;
+        pose[11] = t360;
+        pose[12] = t361;
+        pose[13] = t362;
+        pose[14] = t59;
+        pose[15] = t60;
+        pose[16] = t61;
+        pose[17] = t363;
+        pose[18] = t364;
+        pose[19] = t365;
+        pose[20] = t366;
+        pose[21] = t96;
+        pose[22] = t97;
+        pose[23] = t98;
+        pose[24] = t367;
+        pose[25] = t368;
+        pose[26] = t369;
+        pose[27] = t370;
+        pose[28] = t133;
+        pose[29] = t134;
+        pose[30] = t135;
+        pose[31] = t371;
+        pose[32] = t372;
+        pose[33] = t373;
+        pose[34] = t374;
+        pose[35] = t170;
+        pose[36] = t171;
+        pose[37] = t172;
+        pose[38] = t375;
+        pose[39] = t376;
+        pose[40] = t377;
+        pose[41] = t378;
+        pose[42] = t207;
+        pose[43] = t208;
+        pose[44] = t209;
+        pose[45] = t379;
+        pose[46] = t380;
+        pose[47] = t381;
+        pose[48] = t382;
+        pose[49] = t244;
+        pose[50] = t245;
+        pose[51] = t246;
+        pose[52] = t383;
+        pose[53] = t384;
+        pose[54] = t385;
+        pose[55] = t386;
+        pose[56] = t281;
+        pose[57] = t282;
+        pose[58] = t283;
+        pose[59] = t387;
+        pose[60] = t388;
+        pose[61] = t389;
+        pose[62] = t390;
+        pose[63] = t318;
+        pose[64] = t319;
+        pose[65] = t320;
+        pose[66] = t391;
+        pose[67] = t392;
+        pose[68] = t393;
+        pose[69] = t394;
     }
 }
 
@@ -4058,20 +3390,12 @@ static const char *const hmmwv_full_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
 static const struct {
     int place;
     gic_real q[7];
 } hmmwv_full_design[] = {
-    {5, {R(1.438648), R(0.0), R(0.05422899999999997), R(1.0), R(0.0), R(0.0), R(0.0)}}, /* rack */
-    {23, {R(1.688965), R(0.30708600000000014), R(0.0), R(0.9927157047340742), R(-0.1204804115793527), R(0.0), R(0.0)}}, /* lca_f_l */
-    {46, {R(1.688965), R(-0.30708600000000014), R(0.0), R(0.9927157047340742), R(0.1204804115793527), R(0.0), R(0.0)}}, /* lca_f_r */
-    {69, {R(-1.688965), R(0.3070860000000001), R(0.0), R(0.9927157047340742), R(-0.1204804115793527), R(0.0), R(0.0)}}, /* lca_r_l */
-    {92, {R(-1.688965), R(-0.3070860000000001), R(0.0), R(0.9927157047340742), R(0.1204804115793527), R(0.0), R(0.0)}}, /* lca_r_r */
-    {115, {R(1.653405), R(0.786511), R(-0.11810999999999999), R(1.0), R(0.0), R(0.0), R(0.0)}}, /* wheel_f_l */
-    {149, {R(1.653405), R(-0.786511), R(-0.11810999999999999), R(1.0), R(0.0), R(0.0), R(0.0)}}, /* wheel_f_r */
-    {183, {R(-1.653405), R(0.786511), R(-0.11810999999999999), R(1.0), R(0.0), R(0.0), R(0.0)}}, /* wheel_r_l */
-    {208, {R(-1.653405), R(-0.786511), R(-0.11810999999999999), R(1.0), R(0.0), R(0.0), R(0.0)}}, /* wheel_r_r */
+    {0, {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}}
 };
 
 static const gic_real hmmwv_full_initial[HMMWV_FULL_STATE_ROOM] = {
@@ -4129,7 +3453,7 @@ int hmmwv_full_setup_with(hmmwv_full *self, const gic_real *parameter)
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < HMMWV_FULL_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = hmmwv_full_coordinate_design[i];
-    for (body = 0; body < HMMWV_FULL_BODIES - 1; ++body)
+    for (body = 0; body < HMMWV_FULL_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][hmmwv_full_design[body].place + i] = hmmwv_full_design[body].q[i];
     status = hmmwv_full_orient(self, self->state, e, turn);
@@ -5685,39 +5009,39 @@ static GIC_COLD gic_real hmmwv_full_residual(const hmmwv_full *self)
     (void)links;
     (void)one;
     links.x[0] = start[4];
-    one = hmmwv_full_residual_rack(hmmwv_full_k_rack[0], &links, start + 5);
+    one = hmmwv_full_residual_rack(hmmwv_full_k_rack[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);
     links.x[0] = start[0];
-    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[0], &links, start + 23);
+    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[0], &links, self->motion + 30);
     largest = GIC_MAX(largest, one);
     links.x[0] = start[1];
-    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[1], &links, start + 46);
+    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[1], &links, self->motion + 60);
     largest = GIC_MAX(largest, one);
     links.x[0] = start[2];
-    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[2], &links, start + 69);
+    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[2], &links, self->motion + 90);
     largest = GIC_MAX(largest, one);
     links.x[0] = start[3];
-    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[3], &links, start + 92);
+    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[3], &links, self->motion + 120);
     largest = GIC_MAX(largest, one);
     links.known[0] = self->motion + 0;
     links.known[1] = self->motion + 30;
     links.x[0] = start[4];
     links.x[1] = start[0];
-    one = hmmwv_full_residual_wheel_f_l(hmmwv_full_k_wheel_f_l[0], &links, start + 115);
+    one = hmmwv_full_residual_wheel_f_l(hmmwv_full_k_wheel_f_l[0], &links, self->motion + 150);
     largest = GIC_MAX(largest, one);
     links.known[0] = self->motion + 0;
     links.known[1] = self->motion + 60;
     links.x[0] = start[4];
     links.x[1] = start[1];
-    one = hmmwv_full_residual_wheel_f_l(hmmwv_full_k_wheel_f_l[1], &links, start + 149);
+    one = hmmwv_full_residual_wheel_f_l(hmmwv_full_k_wheel_f_l[1], &links, self->motion + 186);
     largest = GIC_MAX(largest, one);
     links.known[0] = self->motion + 90;
     links.x[0] = start[2];
-    one = hmmwv_full_residual_wheel_r_l(hmmwv_full_k_wheel_r_l[0], &links, start + 183);
+    one = hmmwv_full_residual_wheel_r_l(hmmwv_full_k_wheel_r_l[0], &links, self->motion + 222);
     largest = GIC_MAX(largest, one);
     links.known[0] = self->motion + 120;
     links.x[0] = start[3];
-    one = hmmwv_full_residual_wheel_r_l(hmmwv_full_k_wheel_r_l[1], &links, start + 208);
+    one = hmmwv_full_residual_wheel_r_l(hmmwv_full_k_wheel_r_l[1], &links, self->motion + 252);
     largest = GIC_MAX(largest, one);
     return largest;
 }

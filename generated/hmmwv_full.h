@@ -66,15 +66,15 @@
  *         subsets        9, 10
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      137       164       2      0         0
- *   subset 'lca_f_l' (4 times)                   291       362       3      0         0
- *   subset 'wheel_f_l' (2 times)                 534       606       3      0         0
- *   subset 'wheel_r_l' (2 times)                 447       538       3      0         0
- *   forces and equations of motion               984       859      15      4        24
- *   all together                                4247      4759      41      4        24
- *   outputs, when asked for                      889      1010       4      4        27
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
+ *   subset 'lca_f_l' (4 times, closed form)                   68       109       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                380       470       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                295       386       4      1         0
+ *   forces and equations of motion                           984       859      15      4        24
+ *   all together                                            2621      3032      37     14        24
+ *   outputs, when asked for                                  889      1010       4      4        27
  */
 #ifndef HMMWV_FULL_H
 #define HMMWV_FULL_H
@@ -104,6 +104,7 @@ enum {
     HMMWV_FULL_UNKNOWNS = 11,
     HMMWV_FULL_SUBSETS = 10,
     HMMWV_FULL_BODIES = 10,
+    HMMWV_FULL_FOLLOWED = 0,
     HMMWV_FULL_WHEELS = 4,
     HMMWV_FULL_TWIST = 12,
     HMMWV_FULL_STATE_ROOM = 23,
@@ -114,7 +115,7 @@ enum {
     HMMWV_FULL_DISCRETE_ROOM = 1,
     HMMWV_FULL_COORDINATE_ROOM = 5,
     HMMWV_FULL_UNKNOWN_ROOM = 11,
-    HMMWV_FULL_START_ROOM = 233,
+    HMMWV_FULL_START_ROOM = 5,
     HMMWV_FULL_MOTION_ROOM = 282,
     HMMWV_FULL_INERTIA_ROOM = 225,
     HMMWV_FULL_MULTIPLIER_ROOM = 1,

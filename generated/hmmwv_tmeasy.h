@@ -66,19 +66,19 @@
  *         subsets        9, 10
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      137       164       2      0         0
- *   subset 'lca_f_l' (4 times)                   291       362       3      0         0
- *   subset 'wheel_f_l' (2 times)                 534       606       3      0         0
- *   subset 'wheel_r_l' (2 times)                 447       538       3      0         0
- *   forces and equations of motion               608       510       8      0         0
- *   motion of the wheels                         225       231       0      0         0
- *   drives and brakes                              0         2       0      0         0
- *   wheel 'tire_f_l' (4 times)                   160       246      33     14         5
- *   a fast step: all wheels                      640       986     132     56        20
- *   all together                                4736      5627     166     56        20
- *   outputs, when asked for                     1053      1211       0      0         7
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
+ *   subset 'lca_f_l' (4 times, closed form)                   68       109       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                380       470       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                295       386       4      1         0
+ *   forces and equations of motion                           608       510       8      0         0
+ *   motion of the wheels                                     225       231       0      0         0
+ *   drives and brakes                                          0         2       0      0         0
+ *   wheel 'tire_f_l' (4 times)                               160       246      33     14         5
+ *   a fast step: all wheels                                  640       986     132     56        20
+ *   all together                                            3110      3900     162     66        20
+ *   outputs, when asked for                                 1053      1211       0      0         7
  */
 #ifndef HMMWV_TMEASY_H
 #define HMMWV_TMEASY_H
@@ -111,6 +111,7 @@ enum {
     HMMWV_TMEASY_UNKNOWNS = 10,
     HMMWV_TMEASY_SUBSETS = 10,
     HMMWV_TMEASY_BODIES = 10,
+    HMMWV_TMEASY_FOLLOWED = 0,
     HMMWV_TMEASY_WHEELS = 4,
     HMMWV_TMEASY_TWIST = 11,
     HMMWV_TMEASY_STATE_ROOM = 37,
@@ -121,7 +122,7 @@ enum {
     HMMWV_TMEASY_DISCRETE_ROOM = 1,
     HMMWV_TMEASY_COORDINATE_ROOM = 5,
     HMMWV_TMEASY_UNKNOWN_ROOM = 10,
-    HMMWV_TMEASY_START_ROOM = 233,
+    HMMWV_TMEASY_START_ROOM = 5,
     HMMWV_TMEASY_MOTION_ROOM = 282,
     HMMWV_TMEASY_INERTIA_ROOM = 225,
     HMMWV_TMEASY_MULTIPLIER_ROOM = 1,

@@ -66,20 +66,20 @@
  *         subsets        9, 10
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      137       164       2      0         0
- *   subset 'lca_f_l' (4 times)                   291       362       3      0         0
- *   subset 'wheel_f_l' (2 times)                 534       606       3      0         0
- *   subset 'wheel_r_l' (2 times)                 447       538       3      0         0
- *   forces and equations of motion               648       558       8      0         0
- *   motion of the wheels                         225       231       0      0         0
- *   drives and brakes                              0         1       0      0         0
- *   wheel 'tire_f_l' (4 times)                   194       313      23     12        37
- *   powertrain                                    47        68       6      0         4
- *   a fast step: all of these                    823      1321      98     48       152
- *   all together                                4959      6010     132     48       152
- *   outputs, when asked for                     1109      1295       0      0         7
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
+ *   subset 'lca_f_l' (4 times, closed form)                   68       109       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                380       470       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                295       386       4      1         0
+ *   forces and equations of motion                           648       558       8      0         0
+ *   motion of the wheels                                     225       231       0      0         0
+ *   drives and brakes                                          0         1       0      0         0
+ *   wheel 'tire_f_l' (4 times)                               194       313      23     12        37
+ *   powertrain                                                47        68       6      0         4
+ *   a fast step: all of these                                823      1321      98     48       152
+ *   all together                                            3333      4283     128     58       152
+ *   outputs, when asked for                                 1109      1295       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H
 #define HMMWV_VEHICLE_H
@@ -116,6 +116,7 @@ enum {
     HMMWV_VEHICLE_UNKNOWNS = 10,
     HMMWV_VEHICLE_SUBSETS = 10,
     HMMWV_VEHICLE_BODIES = 10,
+    HMMWV_VEHICLE_FOLLOWED = 0,
     HMMWV_VEHICLE_WHEELS = 4,
     HMMWV_VEHICLE_TWIST = 11,
     HMMWV_VEHICLE_STATE_ROOM = 39,
@@ -126,7 +127,7 @@ enum {
     HMMWV_VEHICLE_DISCRETE_ROOM = 3,
     HMMWV_VEHICLE_COORDINATE_ROOM = 5,
     HMMWV_VEHICLE_UNKNOWN_ROOM = 10,
-    HMMWV_VEHICLE_START_ROOM = 233,
+    HMMWV_VEHICLE_START_ROOM = 5,
     HMMWV_VEHICLE_MOTION_ROOM = 282,
     HMMWV_VEHICLE_INERTIA_ROOM = 225,
     HMMWV_VEHICLE_MULTIPLIER_ROOM = 1,

@@ -20,12 +20,12 @@
  *         subsets        1
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'rod' (1 times)                       172       249       3      0         4
- *   forces and equations of motion                 2         3       1      0         0
- *   all together                                 174       252       4      0         4
- *   outputs, when asked for                       39        59       0      0         0
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'rod' (1 times, closed form)                       14        40       2      1         2
+ *   forces and equations of motion                             2         3       1      0         0
+ *   all together                                              16        43       3      1         2
+ *   outputs, when asked for                                   39        59       0      0         0
  */
 #include "pendulum.h"
 
@@ -113,321 +113,101 @@ static const gic_real pendulum_k_rod[1][1] = {
 };
 
 /* Class 'rod': 6 unknowns of rod.
- * start: pose 7 numbers a body, S from 7, factors from 13. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
+ * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
 static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, const pendulum_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
-    gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    const gic_real *const change = links->change;
-    const gic_real *const s = old + 7; /* unit velocities at the start */
-    const gic_real *const f = old + 13; /* factors at the start */
-    gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
-    const gic_real enough = GIC_ENOUGH(R(0.0));
-    int i;
-    (void)k, (void)inertia;
-    for (i = 0; i < 7; ++i)
-        q[i] = old[i];
-    if (!links->cold) {
-        /* predict: the old pose moved by its unit velocities times the change of the coordinates */
-        {
-            const gic_real t1 = change[0] * s[3];
-            const gic_real t2 = change[0] * s[4];
-            const gic_real t3 = change[0] * s[5];
-            const gic_real t4 = change[0] * s[2];
-            const gic_real t5 = t4 * R(0.5);
-            const gic_real t6 = change[0] * s[1];
-            const gic_real t7 = t6 * R(0.5);
-            const gic_real t8 = change[0] * s[0];
-            const gic_real t9 = t8 * R(0.5);
-            const gic_real t10 = q[3] - (q[6] * t5 + (q[5] * t7 + q[4] * t9));
-            const gic_real t11 = q[6] + (q[5] * t9 - q[4] * t7 + q[3] * t5);
-            const gic_real t12 = q[5] + (q[4] * t5 - q[6] * t9 + q[3] * t7);
-            const gic_real t13 = q[4] + (q[6] * t7 - q[5] * t5 + q[3] * t9);
-            const gic_real t14 = t11 * t11 + (t12 * t12 + t13 * t13) + t10 * t10;
-            const gic_real t15 = R(1.5) - R(0.5) * t14;
-            const gic_real t16 = t4 * t4 + (t6 * t6 + t8 * t8) + (t3 * t3 + (t2 * t2 + t1 * t1));
-            const gic_real t17 = q[0] + t1;
-            const gic_real t18 = q[1] + t2;
-            const gic_real t19 = q[2] + t3;
-            const gic_real t20 = t10 * t15;
-            const gic_real t21 = t13 * t15;
-            const gic_real t22 = t12 * t15;
-            const gic_real t23 = t11 * t15;
-            q[0] = t17;
-            q[1] = t18;
-            q[2] = t19;
-            q[3] = t20;
-            q[4] = t21;
-            q[5] = t22;
-            q[6] = t23;
-            reach = t16;
-        }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding */
-        for (i = 0; i < GIC_CHORDS; ++i) {
-            {
-                const gic_real t1 = q[4] + q[4];
-                const gic_real t2 = q[6] + q[6];
-                const gic_real t3 = q[5] * t1 - q[3] * t2;
-                const gic_real t4 = q[5] + q[5];
-                const gic_real t5 = (R(1.0) - (q[5] * t4 + q[6] * t2)) * GIC_SIN(x[0]);
-                const gic_real t6 = t5 - (q[4] * t2 - q[3] * t4) * GIC_COS(x[0]);
-                const gic_real t7 = q[6] * t4 + q[3] * t1;
-                const gic_real t8 = f[6] * (t6 - t3 * f[4] - t7 * f[5]);
-                const gic_real t9 = f[0] * (t3 + f[1] * t8);
-                const gic_real t10 = R(0.5) * t9;
-                const gic_real t11 = R(0.5) * t8;
-                const gic_real t12 = f[2] * (t7 - f[3] * t8);
-                const gic_real t13 = R(0.5) * t12;
-                const gic_real t14 = q[3] - (q[6] * t10 + (q[5] * t11 + q[4] * t13));
-                const gic_real t15 = q[6] + (q[5] * t13 - q[4] * t11 + q[3] * t10);
-                const gic_real t16 = q[5] + (q[4] * t10 - q[6] * t13 + q[3] * t11);
-                const gic_real t17 = q[4] + (q[6] * t11 - q[5] * t10 + q[3] * t13);
-                const gic_real t18 = t15 * t15 + (t16 * t16 + t17 * t17) + t14 * t14;
-                const gic_real t19 = R(1.5) - R(0.5) * t18;
-                const gic_real t20 = t9 * t9 + (t8 * t8 + t12 * t12) + (q[2] * q[2] + (q[1] * q[1] + q[0] * q[0]));
-                const gic_real t21 = t14 * t19;
-                const gic_real t22 = t17 * t19;
-                const gic_real t23 = t16 * t19;
-                const gic_real t24 = t15 * t19;
-                q[0] = R(0.0);
-                q[1] = R(0.0);
-                q[2] = R(0.0);
-                q[3] = t21;
-                q[4] = t22;
-                q[5] = t23;
-                q[6] = t24;
-                step = t20;
-            }
-            ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
-                return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
-                break;
-        }
-    }
-    for (i = 0; i < GIC_PASSES; ++i) {
-        /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
-        {
-            const gic_real t1 = q[4] + q[4];
-            const gic_real t2 = q[6] + q[6];
-            const gic_real t3 = q[6] * t2;
-            const gic_real t4 = q[4] * t1 + t3;
-            const gic_real t5 = R(1.0) - t4;
-            if (!(GIC_FABS(t5) > R(1e-07)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t6 = t4 - R(1.0);
-            if (!(GIC_FABS(t6) > R(1e-07)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t7 = q[5] + q[5];
-            const gic_real t8 = q[5] * t7 + t3;
-            const gic_real t9 = GIC_COS(x[0]);
-            const gic_real t10 = q[4] * t2 - q[3] * t7;
-            const gic_real t11 = GIC_SIN(x[0]);
-            const gic_real t12 = t10 * t11;
-            const gic_real t13 = q[6] * t7 + q[3] * t1;
-            const gic_real t14 = q[5] * t1;
-            const gic_real t15 = q[3] * t2;
-            const gic_real t16 = t14 + t15;
-            const gic_real t17 = R(1.0) / t5;
-            const gic_real t18 = t16 * t11 * t17;
-            const gic_real t19 = t14 - t15;
-            const gic_real t20 = R(1.0) / t6;
-            const gic_real t21 = t16 * t9 * t20;
-            const gic_real t22 = (t8 - R(1.0)) * t9 - t12 + t13 * t18 - t19 * t21;
-            if (!(GIC_FABS(t22) > R(1e-07)))
-                return GIC_ERROR_SINGULAR;
-            if (!(t5 > R(0.0)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t23 = R(1.0) - t8;
-            const gic_real t24 = t23 * t9 + t12;
-            if (!(t24 > R(0.0)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t25 = R(1.0) / t22;
-            const gic_real t26 = t23 * t11 - t10 * t9 - t19 * t18 - t13 * t21;
-            const gic_real t27 = t25 * t26;
-            const gic_real t28 = t17 * (t19 + t13 * t27);
-            const gic_real t29 = R(0.5) * t28;
-            const gic_real t30 = R(0.5) * t27;
-            const gic_real t31 = t20 * (t13 - t19 * t27);
-            const gic_real t32 = R(0.5) * t31;
-            const gic_real t33 = q[3] - (q[6] * t29 + (q[5] * t30 + q[4] * t32));
-            const gic_real t34 = q[6] + (q[5] * t32 - q[4] * t30 + q[3] * t29);
-            const gic_real t35 = q[5] + (q[4] * t29 - q[6] * t32 + q[3] * t30);
-            const gic_real t36 = q[4] + (q[6] * t30 - q[5] * t29 + q[3] * t32);
-            const gic_real t37 = t34 * t34 + (t35 * t35 + t36 * t36) + t33 * t33;
-            const gic_real t38 = R(1.5) - R(0.5) * t37;
-            const gic_real t39 = t33 * t38;
-            const gic_real t40 = t36 * t38;
-            const gic_real t41 = t35 * t38;
-            const gic_real t42 = t34 * t38;
-            const gic_real t43 = q[2] * q[2] + (q[1] * q[1] + q[0] * q[0]) + (t28 * t28 + (t27 * t27 + t31 * t31));
-            const gic_real t44 = t41 + t41;
-            const gic_real t45 = t41 * t44;
-            const gic_real t46 = t42 + t42;
-            const gic_real t47 = t42 * t46;
-            const gic_real t48 = R(1.0) - (t45 + t47);
-            const gic_real t49 = t40 + t40;
-            const gic_real t50 = t41 * t49;
-            const gic_real t51 = t39 * t46;
-            const gic_real t52 = t40 * t46;
-            const gic_real t53 = t39 * t44;
-            const gic_real t54 = t50 + t51;
-            const gic_real t55 = t40 * t49;
-            const gic_real t56 = t42 * t44;
-            const gic_real t57 = t39 * t49;
-            const gic_real t58 = t52 - t53;
-            const gic_real t59 = t24 * t25;
-            const gic_real t60 = t20 * (t19 * t59);
-            const gic_real t61 = rate[0] * t60;
-            const gic_real t62 = rate[0] * t59;
-            const gic_real t63 = t17 * (t13 * t59);
-            const gic_real t64 = rate[0] * t63;
-            const gic_real t65 = t15 - t14;
-            const gic_real t66 = t65 * t64 - t13 * t61;
-            const gic_real t67 = t61 * t66 - t62 * (t6 * t64 + t13 * t62);
-            const gic_real t68 = t10 * t62 - t16 * t64;
-            const gic_real t69 = t23 * t62 + t16 * t61;
-            const gic_real t70 = rate[0] * (t9 * t68 - t11 * t69);
-            const gic_real t71 = t10 * t61 + t23 * t64;
-            const gic_real t72 = t11 * (t64 * t71 + t62 * t69) - t9 * (t62 * t68 + t61 * t71);
-            const gic_real t73 = t64 * t66 + t62 * (t65 * t62 + t6 * t61);
-            const gic_real t74 = t70 + t70 - t72 - t18 * t73 - t21 * t67;
-            const gic_real t75 = t25 * t74;
-            const gic_real t76 = t20 * (t67 - t19 * t75);
-            const gic_real t77 = t17 * (t73 + t13 * t75);
-            const gic_real t78 = -t60;
-            const gic_real t79 = t58 * R(-0.5);
-            const gic_real t80 = t54 * R(-0.5);
-            const gic_real t81 = t59 * t79 - t63 * t80;
-            const gic_real t82 = t48 * R(-0.5);
-            const gic_real t83 = t60 * t79 + t63 * t82;
-            const gic_real t84 = t59 * t82 + t60 * t80;
-            const gic_real t85 = t60 * R(0.25);
-            const gic_real t86 = t59 * R(0.25);
-            const gic_real t87 = t63 * R(0.25);
-            const gic_real t88 = t61 * R(0.25);
-            const gic_real t89 = t62 * R(0.25);
-            const gic_real t90 = t63 * (t77 * R(0.25) + (t62 * t88 - t61 * t89));
-            const gic_real t91 = t64 * R(0.25);
-            const gic_real t92 = t59 * (t75 * R(0.25) + (t61 * t91 - t64 * t88));
-            const gic_real t93 = t60 * (t76 * R(0.25) + (t62 * t91 - t64 * t89));
-            const gic_real t94 = t62 * t79 - t64 * t80;
-            const gic_real t95 = t62 * t82 + t61 * t80;
-            const gic_real t96 = t64 * t94 - t61 * t95 + (t77 * t82 - t76 * t79);
-            const gic_real t97 = t61 * t79 + t64 * t82;
-            const gic_real t98 = t75 * t79 - t77 * t80 - (t64 * t97 + t62 * t95);
-            const gic_real t99 = t76 * t80 - t75 * t82 - (t62 * t94 + t61 * t97);
-            const gic_real t100 = t90 + (t92 - t93) + (t96 * t83 + t98 * t81 - t99 * t84);
-            const gic_real t101 = t63 * t87 + (t59 * t86 + t60 * t85) + (t84 * t84 + (t83 * t83 + t81 * t81));
-            const gic_real t102 = t50 - t51;
-            const gic_real t103 = t52 + t53;
-            const gic_real t104 = R(1.0) - (t55 + t47);
-            const gic_real t105 = t56 - t57;
-            const gic_real t106 = t56 + t57;
-            const gic_real t107 = R(1.0) - (t55 + t45);
-            const gic_real t108 = -t61;
-            const gic_real t109 = -t84;
-            const gic_real t110 = -(t85 + (t79 * t83 + t80 * t84));
-            const gic_real t111 = t86 + (t82 * t84 + t79 * t81);
-            const gic_real t112 = t87 + (t82 * t83 - t80 * t81);
-            q[0] = R(0.0);
-            q[1] = R(0.0);
-            q[2] = R(0.0);
-            q[3] = t39;
-            q[4] = t40;
-            q[5] = t41;
-            q[6] = t42;
-            step = t43;
-            motion[0] = R(0.0);
-            motion[1] = R(0.0);
-            motion[2] = R(0.0);
-            motion[3] = t48;
-            motion[4] = t102;
-            motion[5] = t103;
-            motion[6] = t54;
-            motion[7] = t104;
-            motion[8] = t105;
-            motion[9] = t58;
-            motion[10] = t106;
-            motion[11] = t107;
-            motion[12] = t108;
-            motion[13] = t62;
-            motion[14] = t64;
-            motion[15] = R(0.0);
-            motion[16] = R(0.0);
-            motion[17] = R(0.0);
-            motion[18] = t76;
-            motion[19] = t75;
-            motion[20] = t77;
-            motion[21] = R(0.0);
-            motion[22] = R(0.0);
-            motion[23] = R(0.0);
-            motion[24] = t78;
-            motion[25] = t59;
-            motion[26] = t63;
-            motion[27] = R(0.0);
-            motion[28] = R(0.0);
-            motion[29] = R(0.0);
-            start[7] = t78;
-            start[8] = t59;
-            start[9] = t63;
-            start[10] = R(0.0);
-            start[11] = R(0.0);
-            start[12] = R(0.0);
-            start[13] = t17;
-            start[14] = t13;
-            start[15] = t20;
-            start[16] = t19;
-            start[17] = t18;
-            start[18] = t21;
-            start[19] = t25;
-            inertia[15] = t81;
-            inertia[16] = t83;
-            inertia[17] = t109;
-            inertia[18] = t110;
-            inertia[19] = t111;
-            inertia[20] = t112;
-            inertia[21] = t100;
-            inertia[22] = t101;
-        }
-        ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
+    (void)k, (void)start, (void)inertia;
+    {
+        const gic_real t1 = GIC_COS(x[0]);
+        const gic_real t2 = GIC_SIN(x[0]);
+        const gic_real t3 = t1 * t1 + t2 * t2;
+        if (!(t3 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
-            if (step > self->head.largest_step)
-                self->head.largest_step = step;
-            ++self->head.newton_count;
-            for (i = 0; i < 7; ++i)
-                start[i] = q[i];
-            return GIC_OK;
-        }
-        before = step;
+        const gic_real t4 = R(1.0) / t3;
+        const gic_real t5 = GIC_SQRT(t3);
+        const gic_real t6 = t4 * (t2 * t5);
+        const gic_real t7 = t4 * (t1 * t5);
+        const gic_real t8 = t2 * t6 + t1 * t7;
+        if (!(GIC_FABS(t8) > R(1e-07)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t9 = R(1.0) / -t8;
+        const gic_real t10 = t8 * t9;
+        const gic_real t11 = rate[0] * t10;
+        const gic_real t12 = t6 * t11;
+        const gic_real t13 = t7 * t11;
+        const gic_real t14 = rate[0] * (t1 * t12 - t2 * t13);
+        const gic_real t15 = t14 + t14 - (t2 * (t11 * t13) - t1 * (t11 * t12));
+        const gic_real t16 = t9 * t15;
+        const gic_real t17 = t6 * R(-0.5);
+        const gic_real t18 = t10 * t17;
+        const gic_real t19 = t7 * R(-0.5);
+        const gic_real t20 = t10 * t19;
+        const gic_real t21 = t10 * R(0.25);
+        const gic_real t22 = (t11 * (t11 * t17) + t16 * t19) * t20 + (t16 * t17 - t11 * (t11 * t19)) * t18;
+        const gic_real t23 = -t6;
+        const gic_real t24 = -t20;
+        const gic_real t25 = t21 + (t19 * t20 + t17 * t18);
+        const gic_real t26 = t10 * (t16 * R(0.25)) + t22;
+        const gic_real t27 = t10 * t21 + (t20 * t20 + t18 * t18);
+        motion[0] = R(0.0);
+        motion[1] = R(0.0);
+        motion[2] = R(0.0);
+        motion[3] = t7;
+        motion[4] = R(0.0);
+        motion[5] = t23;
+        motion[6] = R(0.0);
+        motion[7] = R(1.0);
+        motion[8] = R(0.0);
+        motion[9] = t6;
+        motion[10] = R(0.0);
+        motion[11] = t7;
+        motion[12] = R(0.0);
+        motion[13] = t11;
+        motion[14] = R(0.0);
+        motion[15] = R(0.0);
+        motion[16] = R(0.0);
+        motion[17] = R(0.0);
+        motion[18] = R(0.0);
+        motion[19] = t16;
+        motion[20] = R(0.0);
+        motion[21] = R(0.0);
+        motion[22] = R(0.0);
+        motion[23] = R(0.0);
+        motion[24] = R(0.0);
+        motion[25] = t10;
+        motion[26] = R(0.0);
+        motion[27] = R(0.0);
+        motion[28] = R(0.0);
+        motion[29] = R(0.0);
+        inertia[15] = t18;
+        inertia[16] = R(0.0);
+        inertia[17] = t24;
+        inertia[18] = R(0.0);
+        inertia[19] = t25;
+        inertia[20] = R(0.0);
+        inertia[21] = t26;
+        inertia[22] = t27;
     }
-    return GIC_ERROR_NEWTON;
+    ++self->head.newton_count;
+    return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset at the pose q, relative to its size. */
+/* Largest constraint residual of such a subset, relative to its size. */
 static GIC_COLD gic_real pendulum_residual_rod(const gic_real *GIC_RESTRICT k, const pendulum_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT q)
+    const gic_real *GIC_RESTRICT motion)
 {
     const gic_real *const x = links->x;
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = q[6] + q[6];
-        const gic_real t2 = q[4] + q[4];
-        const gic_real t3 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(q[0]), GIC_FABS(q[1])), GIC_FABS(q[2])), GIC_FABS(q[3] * t1 - q[5] * t2));
-        const gic_real t4 = q[5] + q[5];
-        const gic_real t5 = GIC_MAX(t3, GIC_FABS(-(q[6] * t4 + q[3] * t2)));
-        const gic_real t6 = (R(1.0) - (q[5] * t4 + q[6] * t1)) * GIC_SIN(x[0]);
-        const gic_real t7 = (q[4] * t1 - q[3] * t4) * GIC_COS(x[0]) - t6;
-        const gic_real t8 = GIC_MAX(t5, GIC_FABS(t7));
-        worst = t8;
+        const gic_real t1 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(motion[0]), GIC_FABS(motion[1])), GIC_FABS(motion[2])), GIC_FABS(-motion[4]));
+        const gic_real t2 = GIC_FABS(GIC_COS(x[0]) * motion[9] - GIC_SIN(x[0]) * motion[3]);
+        const gic_real t3 = GIC_MAX(GIC_MAX(t1, GIC_FABS(-motion[10])), t2);
+        worst = t3;
     }
     return worst;
 }
@@ -452,8 +232,7 @@ static int pendulum_recover_piece(pendulum *self, pendulum_links *links, const g
     /* stage 1: rod */
     links->x[0] = start[0]; /* angle */
     links->rate[0] = xd[0];
-    links->change[0] = start[0] - old[0];
-    status = pendulum_solve_rod(self, pendulum_k_rod[0], links, old + 1, start + 1, self->motion + 0, self->inertia + 0);
+    status = pendulum_solve_rod(self, pendulum_k_rod[0], links, start + 1, self->motion + 0, self->inertia + 0);
     if (status != GIC_OK) {
         self->head.subset = 0;
         return status;
@@ -552,8 +331,8 @@ static int pendulum_measure(const pendulum *self, gic_real time, const gic_real 
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    const gic_real *const s = self->start[self->head.flip], *const lambda = self->multiplier;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)s, (void)rate, (void)out;
+    const gic_real *const lambda = self->multiplier;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)out;
     (void)lambda;
     {
         const gic_real t1 = m[11] * (m[11] * R(0.25)) + (m[10] * (m[10] * R(0.25)) + m[9] * (m[9] * R(0.25)));
@@ -606,16 +385,41 @@ static int pendulum_measure(const pendulum *self, gic_real time, const gic_real 
 
 static void pendulum_place(const pendulum *self, const gic_real *y, const gic_real *e, gic_real *pose)
 {
-    const gic_real *const m = self->motion, *const s = self->start[self->head.flip];
-    (void)y, (void)e, (void)m, (void)s, (void)pose;
+    const gic_real *const m = self->motion;
+    (void)y, (void)e, (void)m, (void)pose;
     {
-        const gic_real t1 = m[0];
-        const gic_real t2 = m[1];
-        const gic_real t3 = m[2];
-        const gic_real t4 = (s[4] > GIC_R(0) ? s[4] : -s[4]);
-        const gic_real t5 = (s[4] > GIC_R(0) ? s[5] : -s[5]);
-        const gic_real t6 = (s[4] > GIC_R(0) ? s[6] : -s[6]);
-        const gic_real t7 = (s[4] > GIC_R(0) ? s[7] : -s[7]);
+        const gic_real t1 = R(1.0) + (m[11] - (m[3] + m[7]));
+        const gic_real t2 = R(1.0) + (m[7] - (m[3] + m[11]));
+        const gic_real t3 = m[7] + m[11];
+        const gic_real t4 = R(1.0) + (m[3] - t3);
+        const gic_real t5 = R(1.0) + (m[3] + t3);
+        const gic_real t6 = GIC_MAX(t4, t5);
+        const gic_real t7 = GIC_MAX(t2, t6);
+        const gic_real t8 = t1 - t7;
+        const gic_real t9 = m[6] - m[4];
+        const gic_real t10 = t2 - t6;
+        const gic_real t11 = m[5] - m[9];
+        const gic_real t12 = t4 - t5;
+        const gic_real t13 = m[10] - m[8];
+        const gic_real t14 = (t8 > GIC_R(0) ? t9 : (t10 > GIC_R(0) ? t11 : (t12 > GIC_R(0) ? t13 : t5)));
+        const gic_real t15 = R(0.5) / GIC_SQRT(GIC_MAX(t1, t7));
+        const gic_real t16 = t14 * t15;
+        const gic_real t17 = m[5] + m[9];
+        const gic_real t18 = m[4] + m[6];
+        const gic_real t19 = (t8 > GIC_R(0) ? t17 : (t10 > GIC_R(0) ? t18 : (t12 > GIC_R(0) ? t4 : t13)));
+        const gic_real t20 = t19 * t15;
+        const gic_real t21 = m[8] + m[10];
+        const gic_real t22 = (t8 > GIC_R(0) ? t21 : (t10 > GIC_R(0) ? t2 : (t12 > GIC_R(0) ? t18 : t11)));
+        const gic_real t23 = t22 * t15;
+        const gic_real t24 = (t8 > GIC_R(0) ? t1 : (t10 > GIC_R(0) ? t21 : (t12 > GIC_R(0) ? t17 : t9)));
+        const gic_real t25 = t24 * t15;
+        const gic_real t26 = m[0];
+        const gic_real t27 = m[1];
+        const gic_real t28 = m[2];
+        const gic_real t29 = (t16 > GIC_R(0) ? t16 : -t16);
+        const gic_real t30 = (t16 > GIC_R(0) ? t20 : -t20);
+        const gic_real t31 = (t16 > GIC_R(0) ? t23 : -t23);
+        const gic_real t32 = (t16 > GIC_R(0) ? t25 : -t25);
         pose[0] = R(0.0);
         pose[1] = R(0.0);
         pose[2] = R(0.0);
@@ -623,13 +427,13 @@ static void pendulum_place(const pendulum *self, const gic_real *y, const gic_re
         pose[4] = R(0.0);
         pose[5] = R(0.0);
         pose[6] = R(0.0);
-        pose[7] = t1;
-        pose[8] = t2;
-        pose[9] = t3;
-        pose[10] = t4;
-        pose[11] = t5;
-        pose[12] = t6;
-        pose[13] = t7;
+        pose[7] = t26;
+        pose[8] = t27;
+        pose[9] = t28;
+        pose[10] = t29;
+        pose[11] = t30;
+        pose[12] = t31;
+        pose[13] = t32;
     }
 }
 
@@ -787,12 +591,12 @@ static const char *const pendulum_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
 static const struct {
     int place;
     gic_real q[7];
 } pendulum_design[] = {
-    {1, {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0), R(0.0)}}, /* rod */
+    {0, {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}}
 };
 
 static const gic_real pendulum_initial[PENDULUM_STATE_ROOM] = {
@@ -829,7 +633,7 @@ int pendulum_setup_with(pendulum *self, const gic_real *parameter)
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < PENDULUM_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = pendulum_coordinate_design[i];
-    for (body = 0; body < PENDULUM_BODIES - 1; ++body)
+    for (body = 0; body < PENDULUM_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][pendulum_design[body].place + i] = pendulum_design[body].q[i];
     status = pendulum_orient(self, self->state, e, turn);
@@ -995,7 +799,7 @@ static GIC_COLD gic_real pendulum_residual(const pendulum *self)
     (void)links;
     (void)one;
     links.x[0] = start[0];
-    one = pendulum_residual_rod(pendulum_k_rod[0], &links, start + 1);
+    one = pendulum_residual_rod(pendulum_k_rod[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);
     return largest;
 }

@@ -20,12 +20,12 @@
  *         subsets        1
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'rod' (1 times)                       172       249       3      0         4
- *   forces and equations of motion                 2         3       1      0         0
- *   all together                                 174       252       4      0         4
- *   outputs, when asked for                       39        59       0      0         0
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'rod' (1 times, closed form)                       14        40       2      1         2
+ *   forces and equations of motion                             2         3       1      0         0
+ *   all together                                              16        43       3      1         2
+ *   outputs, when asked for                                   39        59       0      0         0
  */
 #ifndef PENDULUM_H
 #define PENDULUM_H
@@ -55,6 +55,7 @@ enum {
     PENDULUM_UNKNOWNS = 1,
     PENDULUM_SUBSETS = 1,
     PENDULUM_BODIES = 2,
+    PENDULUM_FOLLOWED = 0,
     PENDULUM_WHEELS = 0,
     PENDULUM_TWIST = 0,
     PENDULUM_STATE_ROOM = 2,
@@ -65,7 +66,7 @@ enum {
     PENDULUM_DISCRETE_ROOM = 1,
     PENDULUM_COORDINATE_ROOM = 1,
     PENDULUM_UNKNOWN_ROOM = 1,
-    PENDULUM_START_ROOM = 21,
+    PENDULUM_START_ROOM = 1,
     PENDULUM_MOTION_ROOM = 30,
     PENDULUM_INERTIA_ROOM = 23,
     PENDULUM_MULTIPLIER_ROOM = 1,

@@ -37,14 +37,14 @@
  *         subsets        3
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'carriage' (1 times)                  113       134       3      0         0
- *   subset 'arm' (1 times)                       482       583       3      0         0
- *   subset 'wheel' (1 times)                     625       711       3      0         0
- *   forces and equations of motion                48        43       2      0         1
- *   all together                                1268      1471      11      0         1
- *   outputs, when asked for                      127       188       0      0         1
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
+ *   subset 'arm' (1 times, closed form)                      330       439       4      1         0
+ *   subset 'wheel' (1 times, closed form)                    452       553       5      2         0
+ *   forces and equations of motion                            48        43       2      0         1
+ *   all together                                             831      1035      11      3         1
+ *   outputs, when asked for                                  127       188       0      0         1
  */
 #include "quarter_car.h"
 
@@ -132,263 +132,71 @@ static const gic_real quarter_car_k_carriage[1][1] = {
 };
 
 /* Class 'carriage': 6 unknowns of carriage.
- * start: pose 7 numbers a body, S from 7, factors from 13. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
+ * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
 static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
-    gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    const gic_real *const change = links->change;
-    const gic_real *const s = old + 7; /* unit velocities at the start */
-    const gic_real *const f = old + 13; /* factors at the start */
-    gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
-    const gic_real enough = GIC_ENOUGH(R(0.4719690000000001));
-    int i;
-    (void)k, (void)inertia;
-    for (i = 0; i < 7; ++i)
-        q[i] = old[i];
-    if (!links->cold) {
-        /* predict: the old pose moved by its unit velocities times the change of the coordinates */
-        {
-            const gic_real t1 = change[0] * s[3];
-            const gic_real t2 = change[0] * s[4];
-            const gic_real t3 = change[0] * s[5];
-            const gic_real t4 = change[0] * s[2];
-            const gic_real t5 = t4 * R(0.5);
-            const gic_real t6 = change[0] * s[1];
-            const gic_real t7 = t6 * R(0.5);
-            const gic_real t8 = change[0] * s[0];
-            const gic_real t9 = t8 * R(0.5);
-            const gic_real t10 = q[3] - (q[6] * t5 + (q[5] * t7 + q[4] * t9));
-            const gic_real t11 = q[6] + (q[5] * t9 - q[4] * t7 + q[3] * t5);
-            const gic_real t12 = q[5] + (q[4] * t5 - q[6] * t9 + q[3] * t7);
-            const gic_real t13 = q[4] + (q[6] * t7 - q[5] * t5 + q[3] * t9);
-            const gic_real t14 = t11 * t11 + (t12 * t12 + t13 * t13) + t10 * t10;
-            const gic_real t15 = R(1.5) - R(0.5) * t14;
-            const gic_real t16 = t4 * t4 + (t6 * t6 + t8 * t8) + (t3 * t3 + (t2 * t2 + t1 * t1));
-            const gic_real t17 = q[0] + t1;
-            const gic_real t18 = q[1] + t2;
-            const gic_real t19 = q[2] + t3;
-            const gic_real t20 = t10 * t15;
-            const gic_real t21 = t13 * t15;
-            const gic_real t22 = t12 * t15;
-            const gic_real t23 = t11 * t15;
-            q[0] = t17;
-            q[1] = t18;
-            q[2] = t19;
-            q[3] = t20;
-            q[4] = t21;
-            q[5] = t22;
-            q[6] = t23;
-            reach = t16;
-        }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding */
-        for (i = 0; i < GIC_CHORDS; ++i) {
-            {
-                const gic_real t1 = x[0] - (q[2] - R(0.687));
-                const gic_real t2 = q[6] + q[6];
-                const gic_real t3 = q[4] + q[4];
-                const gic_real t4 = q[5] + q[5];
-                const gic_real t5 = q[4] * t2 + q[3] * t4;
-                const gic_real t6 = f[5] * (q[3] * t2 - q[5] * t3 + t5 * f[4]);
-                const gic_real t7 = R(0.5) * t6;
-                const gic_real t8 = f[0] * (q[3] * t3 - q[6] * t4 - f[1] * t6);
-                const gic_real t9 = R(0.5) * t8;
-                const gic_real t10 = f[2] * (t5 + f[3] * t6);
-                const gic_real t11 = R(0.5) * t10;
-                const gic_real t12 = q[3] - (q[6] * t7 + (q[4] * t9 - q[5] * t11));
-                const gic_real t13 = q[6] + (q[4] * t11 + q[5] * t9 + q[3] * t7);
-                const gic_real t14 = q[5] + (q[4] * t7 - q[6] * t9 - q[3] * t11);
-                const gic_real t15 = q[4] + (q[3] * t9 - (q[5] * t7 + q[6] * t11));
-                const gic_real t16 = t13 * t13 + (t14 * t14 + t15 * t15) + t12 * t12;
-                const gic_real t17 = R(1.5) - R(0.5) * t16;
-                const gic_real t18 = t6 * t6 + (t10 * t10 + t8 * t8) + (t1 * t1 + (q[1] * q[1] + q[0] * q[0]));
-                const gic_real t19 = q[2] + t1;
-                const gic_real t20 = t12 * t17;
-                const gic_real t21 = t15 * t17;
-                const gic_real t22 = t14 * t17;
-                const gic_real t23 = t13 * t17;
-                q[0] = R(0.0);
-                q[1] = R(0.0);
-                q[2] = t19;
-                q[3] = t20;
-                q[4] = t21;
-                q[5] = t22;
-                q[6] = t23;
-                step = t18;
-            }
-            ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
-                return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
-                break;
-        }
+    (void)k, (void)start, (void)inertia;
+    {
+        const gic_real t1 = R(0.687) + x[0];
+        const gic_real t2 = rate[0];
+        motion[0] = R(0.0);
+        motion[1] = R(0.0);
+        motion[2] = t1;
+        motion[3] = R(1.0);
+        motion[4] = R(0.0);
+        motion[5] = R(0.0);
+        motion[6] = R(0.0);
+        motion[7] = R(1.0);
+        motion[8] = R(0.0);
+        motion[9] = R(0.0);
+        motion[10] = R(0.0);
+        motion[11] = R(1.0);
+        motion[12] = R(0.0);
+        motion[13] = R(0.0);
+        motion[14] = R(0.0);
+        motion[15] = R(0.0);
+        motion[16] = R(0.0);
+        motion[17] = t2;
+        motion[18] = R(0.0);
+        motion[19] = R(0.0);
+        motion[20] = R(0.0);
+        motion[21] = R(0.0);
+        motion[22] = R(0.0);
+        motion[23] = R(0.0);
+        motion[24] = R(0.0);
+        motion[25] = R(0.0);
+        motion[26] = R(0.0);
+        motion[27] = R(0.0);
+        motion[28] = R(0.0);
+        motion[29] = R(1.0);
+        inertia[15] = R(0.0);
+        inertia[16] = R(0.0);
+        inertia[17] = R(525.59);
+        inertia[18] = R(0.0);
+        inertia[19] = R(0.0);
+        inertia[20] = R(0.0);
+        inertia[21] = R(0.0);
+        inertia[22] = R(525.59);
     }
-    for (i = 0; i < GIC_PASSES; ++i) {
-        /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
-        {
-            const gic_real t1 = q[4] + q[4];
-            const gic_real t2 = q[4] * t1;
-            const gic_real t3 = q[5] + q[5];
-            const gic_real t4 = t2 + q[5] * t3;
-            const gic_real t5 = t4 - R(1.0);
-            if (!(GIC_FABS(t5) > R(1e-07)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t6 = R(1.0) - t4;
-            if (!(GIC_FABS(t6) > R(1e-07)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t7 = q[6] + q[6];
-            const gic_real t8 = t2 + q[6] * t7;
-            const gic_real t9 = q[3] * t1;
-            const gic_real t10 = q[6] * t3;
-            const gic_real t11 = t9 - t10;
-            const gic_real t12 = R(1.0) / t6;
-            const gic_real t13 = (t10 + t9) * t12;
-            const gic_real t14 = t8 - R(1.0) - t11 * t13;
-            if (!(GIC_FABS(t14) > R(1e-07)))
-                return GIC_ERROR_SINGULAR;
-            if (!(t6 > R(0.0)))
-                return GIC_ERROR_SINGULAR;
-            if (!(R(1.0) - t8 > R(0.0)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t15 = x[0] - (q[2] - R(0.687));
-            const gic_real t16 = q[2] + t15;
-            const gic_real t17 = R(1.0) / t14;
-            const gic_real t18 = q[4] * t7 + q[3] * t3;
-            const gic_real t19 = t17 * (q[3] * t7 - q[5] * t1 + t18 * t13);
-            const gic_real t20 = R(0.5) * t19;
-            const gic_real t21 = R(1.0) / t5;
-            const gic_real t22 = t21 * (t11 - t18 * t19);
-            const gic_real t23 = R(0.5) * t22;
-            const gic_real t24 = t12 * (t18 + t11 * t19);
-            const gic_real t25 = R(0.5) * t24;
-            const gic_real t26 = q[3] - (q[6] * t20 + (q[4] * t23 - q[5] * t25));
-            const gic_real t27 = q[6] + (q[4] * t25 + q[5] * t23 + q[3] * t20);
-            const gic_real t28 = q[5] + (q[4] * t20 - q[6] * t23 - q[3] * t25);
-            const gic_real t29 = q[4] + (q[3] * t23 - (q[5] * t20 + q[6] * t25));
-            const gic_real t30 = t27 * t27 + (t28 * t28 + t29 * t29) + t26 * t26;
-            const gic_real t31 = R(1.5) - R(0.5) * t30;
-            const gic_real t32 = t26 * t31;
-            const gic_real t33 = t29 * t31;
-            const gic_real t34 = t28 * t31;
-            const gic_real t35 = t27 * t31;
-            const gic_real t36 = t15 * t15 + (q[1] * q[1] + q[0] * q[0]) + (t19 * t19 + (t24 * t24 + t22 * t22));
-            const gic_real t37 = t34 + t34;
-            const gic_real t38 = t34 * t37;
-            const gic_real t39 = t35 + t35;
-            const gic_real t40 = t35 * t39;
-            const gic_real t41 = t33 + t33;
-            const gic_real t42 = t34 * t41;
-            const gic_real t43 = t32 * t39;
-            const gic_real t44 = t33 * t39;
-            const gic_real t45 = t32 * t37;
-            const gic_real t46 = t33 * t41;
-            const gic_real t47 = t35 * t37;
-            const gic_real t48 = t32 * t41;
-            const gic_real t49 = R(1.0) - (t38 + t40);
-            const gic_real t50 = t42 - t43;
-            const gic_real t51 = t44 + t45;
-            const gic_real t52 = t42 + t43;
-            const gic_real t53 = R(1.0) - (t46 + t40);
-            const gic_real t54 = t47 - t48;
-            const gic_real t55 = t44 - t45;
-            const gic_real t56 = t47 + t48;
-            const gic_real t57 = R(1.0) - (t46 + t38);
-            const gic_real t58 = rate[0];
-            q[0] = R(0.0);
-            q[1] = R(0.0);
-            q[2] = t16;
-            q[3] = t32;
-            q[4] = t33;
-            q[5] = t34;
-            q[6] = t35;
-            step = t36;
-            motion[0] = R(0.0);
-            motion[1] = R(0.0);
-            motion[2] = t16;
-            motion[3] = t49;
-            motion[4] = t50;
-            motion[5] = t51;
-            motion[6] = t52;
-            motion[7] = t53;
-            motion[8] = t54;
-            motion[9] = t55;
-            motion[10] = t56;
-            motion[11] = t57;
-            motion[12] = R(0.0);
-            motion[13] = R(0.0);
-            motion[14] = R(0.0);
-            motion[15] = R(0.0);
-            motion[16] = R(0.0);
-            motion[17] = t58;
-            motion[18] = R(0.0);
-            motion[19] = R(0.0);
-            motion[20] = R(0.0);
-            motion[21] = R(0.0);
-            motion[22] = R(0.0);
-            motion[23] = R(0.0);
-            motion[24] = R(0.0);
-            motion[25] = R(0.0);
-            motion[26] = R(0.0);
-            motion[27] = R(0.0);
-            motion[28] = R(0.0);
-            motion[29] = R(1.0);
-            start[7] = R(0.0);
-            start[8] = R(0.0);
-            start[9] = R(0.0);
-            start[10] = R(0.0);
-            start[11] = R(0.0);
-            start[12] = R(1.0);
-            start[13] = t21;
-            start[14] = t18;
-            start[15] = t12;
-            start[16] = t11;
-            start[17] = t13;
-            start[18] = t17;
-            inertia[15] = R(0.0);
-            inertia[16] = R(0.0);
-            inertia[17] = R(525.59);
-            inertia[18] = R(0.0);
-            inertia[19] = R(0.0);
-            inertia[20] = R(0.0);
-            inertia[21] = R(0.0);
-            inertia[22] = R(525.59);
-        }
-        ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
-            return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
-            if (step > self->head.largest_step)
-                self->head.largest_step = step;
-            ++self->head.newton_count;
-            for (i = 0; i < 7; ++i)
-                start[i] = q[i];
-            return GIC_OK;
-        }
-        before = step;
-    }
-    return GIC_ERROR_NEWTON;
+    ++self->head.newton_count;
+    return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset at the pose q, relative to its size. */
+/* Largest constraint residual of such a subset, relative to its size. */
 static GIC_COLD gic_real quarter_car_residual_carriage(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT q)
+    const gic_real *GIC_RESTRICT motion)
 {
     const gic_real *const x = links->x;
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = q[6] + q[6];
-        const gic_real t2 = q[5] + q[5];
-        const gic_real t3 = q[4] + q[4];
-        const gic_real t4 = GIC_MAX(GIC_FABS(q[4] * t1 + q[3] * t2), GIC_FABS(q[6] * t2 - q[3] * t3));
-        const gic_real t5 = GIC_MAX(GIC_MAX(t4, GIC_FABS(q[5] * t3 - q[3] * t1)), GIC_FABS(q[0]));
-        const gic_real t6 = GIC_MAX(GIC_MAX(t5, GIC_FABS(q[1])), GIC_FABS(q[2] - R(0.687) - x[0]));
-        worst = t6;
+        const gic_real t1 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(motion[5]), GIC_FABS(motion[8])), GIC_FABS(motion[4])), GIC_FABS(motion[0]));
+        const gic_real t2 = GIC_MAX(GIC_MAX(t1, GIC_FABS(motion[1])), GIC_FABS(motion[2] - R(0.687) - x[0]));
+        worst = t2;
     }
     return worst;
 }
@@ -400,541 +208,329 @@ static const gic_real quarter_car_k_arm[1][1] = {
 };
 
 /* Class 'arm': 6 unknowns of arm.
- * start: pose 7 numbers a body, S from 7, factors from 19. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
+ * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
 static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
-    gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    const gic_real *const change = links->change;
-    const gic_real *const s = old + 7; /* unit velocities at the start */
-    const gic_real *const f = old + 19; /* factors at the start */
-    gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
-    const gic_real enough = GIC_ENOUGH(R(4.735329459563454));
-    int i;
-    (void)k, (void)inertia;
-    for (i = 0; i < 7; ++i)
-        q[i] = old[i];
-    if (!links->cold) {
-        /* predict: the old pose moved by its unit velocities times the change of the coordinates */
-        {
-            const gic_real t1 = change[0] * s[3] + change[1] * s[9];
-            const gic_real t2 = change[0] * s[4] + change[1] * s[10];
-            const gic_real t3 = change[0] * s[5] + change[1] * s[11];
-            const gic_real t4 = change[0] * s[2] + change[1] * s[8];
-            const gic_real t5 = R(0.5) * t4;
-            const gic_real t6 = change[0] * s[1] + change[1] * s[7];
-            const gic_real t7 = R(0.5) * t6;
-            const gic_real t8 = change[0] * s[0] + change[1] * s[6];
-            const gic_real t9 = R(0.5) * t8;
-            const gic_real t10 = q[3] - (q[6] * t5 + (q[5] * t7 + q[4] * t9));
-            const gic_real t11 = q[6] + (q[5] * t9 - q[4] * t7 + q[3] * t5);
-            const gic_real t12 = q[5] + (q[4] * t5 - q[6] * t9 + q[3] * t7);
-            const gic_real t13 = q[4] + (q[6] * t7 - q[5] * t5 + q[3] * t9);
-            const gic_real t14 = t11 * t11 + (t12 * t12 + t13 * t13) + t10 * t10;
-            const gic_real t15 = R(1.5) - R(0.5) * t14;
-            const gic_real t16 = (t3 * t3 + (t2 * t2 + t1 * t1)) * R(14.84532556932214);
-            const gic_real t17 = t4 * t4 + (t6 * t6 + t8 * t8) + t16;
-            const gic_real t18 = q[0] + t1;
-            const gic_real t19 = q[1] + t2;
-            const gic_real t20 = q[2] + t3;
-            const gic_real t21 = t10 * t15;
-            const gic_real t22 = t13 * t15;
-            const gic_real t23 = t12 * t15;
-            const gic_real t24 = t11 * t15;
-            q[0] = t18;
-            q[1] = t19;
-            q[2] = t20;
-            q[3] = t21;
-            q[4] = t22;
-            q[5] = t23;
-            q[6] = t24;
-            reach = t17;
-        }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding */
-        for (i = 0; i < GIC_CHORDS; ++i) {
-            {
-                const gic_real t1 = m0[0] + (R(-0.21300000000000008) * m0[5] + R(0.307086) * m0[4]) - q[0];
-                const gic_real t2 = m0[1] + (R(-0.21300000000000008) * m0[8] + R(0.307086) * m0[7]) - q[1];
-                const gic_real t3 = m0[2] + (R(-0.21300000000000008) * m0[11] + R(0.307086) * m0[10]) - q[2];
-                const gic_real t4 = q[6] + q[6];
-                const gic_real t5 = q[4] * t4;
-                const gic_real t6 = q[5] + q[5];
-                const gic_real t7 = q[3] * t6;
-                const gic_real t8 = t5 - t7;
-                const gic_real t9 = R(0.9999999999999998) * t8;
-                const gic_real t10 = q[4] + q[4];
-                const gic_real t11 = q[5] * t10;
-                const gic_real t12 = q[3] * t4;
-                const gic_real t13 = t11 + t12;
-                const gic_real t14 = R(0.9999999999999998) * t13;
-                const gic_real t15 = q[5] * t6;
-                const gic_real t16 = q[6] * t4;
-                const gic_real t17 = R(1.0) - (t15 + t16);
-                const gic_real t18 = R(0.9999999999999998) * t17;
-                const gic_real t19 = m0[10] * t9 + (m0[7] * t14 + m0[4] * t18);
-                const gic_real t20 = t19 * f[3] - (m0[11] * t9 + (m0[8] * t14 + m0[5] * t18));
-                const gic_real t21 = q[4] * t10;
-                const gic_real t22 = q[6] * t6;
-                const gic_real t23 = q[3] * t10;
-                const gic_real t24 = R(0.01121887479261392) * (R(1.0) - (t21 + t15)) + (R(0.2403881036540444) * (t22 + t23) + R(0.09720579999999997) * t8);
-                const gic_real t25 = m0[2] + (R(-0.015515000000000057) * m0[11] + (R(0.509778) * m0[10] + R(0.104013) * m0[9]));
-                const gic_real t26 = q[2] + t24 - t25;
-                const gic_real t27 = R(0.01121887479261392) * (t22 - t23) + (R(0.2403881036540444) * (R(1.0) - (t21 + t16)) + R(0.09720579999999997) * t13);
-                const gic_real t28 = m0[1] + (R(-0.015515000000000057) * m0[8] + (R(0.509778) * m0[7] + R(0.104013) * m0[6]));
-                const gic_real t29 = q[1] + t27 - t28;
-                const gic_real t30 = R(0.01121887479261392) * (t5 + t7) + (R(0.2403881036540444) * (t11 - t12) + R(0.09720579999999997) * t17);
-                const gic_real t31 = m0[0] + (R(-0.015515000000000057) * m0[5] + (R(0.509778) * m0[4] + R(0.104013) * m0[3]));
-                const gic_real t32 = q[0] + t30 - t31;
-                const gic_real t33 = t26 * t26 + (t29 * t29 + t32 * t32) - x[0] * x[0];
-                const gic_real t34 = t33 * R(0.5) + f[6] * t1 + f[7] * t2 + f[8] * t3;
-                const gic_real t35 = f[11] * (t19 * f[9] - t34 - f[10] * t20);
-                const gic_real t36 = f[4] * (t20 - f[5] * t35);
-                const gic_real t37 = R(0.5) * t36;
-                const gic_real t38 = R(0.5) * t35;
-                const gic_real t39 = f[0] * (t19 + f[1] * t36 + f[2] * t35);
-                const gic_real t40 = R(0.5) * t39;
-                const gic_real t41 = q[3] - (q[5] * t37 + q[4] * t38 - q[6] * t40);
-                const gic_real t42 = q[6] + (q[5] * t38 - q[4] * t37 - q[3] * t40);
-                const gic_real t43 = q[5] + (q[3] * t37 - (q[6] * t38 + q[4] * t40));
-                const gic_real t44 = q[4] + (q[5] * t40 + q[6] * t37 + q[3] * t38);
-                const gic_real t45 = t42 * t42 + (t43 * t43 + t44 * t44) + t41 * t41;
-                const gic_real t46 = R(1.5) - R(0.5) * t45;
-                const gic_real t47 = R(14.84532556932214) * (t3 * t3 + (t2 * t2 + t1 * t1));
-                const gic_real t48 = t39 * t39 + (t36 * t36 + t35 * t35) + t47;
-                const gic_real t49 = q[0] + t1;
-                const gic_real t50 = q[1] + t2;
-                const gic_real t51 = q[2] + t3;
-                const gic_real t52 = t41 * t46;
-                const gic_real t53 = t44 * t46;
-                const gic_real t54 = t43 * t46;
-                const gic_real t55 = t42 * t46;
-                q[0] = t49;
-                q[1] = t50;
-                q[2] = t51;
-                q[3] = t52;
-                q[4] = t53;
-                q[5] = t54;
-                q[6] = t55;
-                step = t48;
-            }
-            ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
-                return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
-                break;
-        }
-    }
-    for (i = 0; i < GIC_PASSES; ++i) {
-        /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
-        {
-            const gic_real t1 = q[5] + q[5];
-            const gic_real t2 = q[5] * t1;
-            const gic_real t3 = q[6] + q[6];
-            const gic_real t4 = q[6] * t3;
-            const gic_real t5 = R(1.0) - (t2 + t4);
-            const gic_real t6 = R(0.9999999999999998) * t5;
-            const gic_real t7 = m0[7] * t6;
-            const gic_real t8 = q[4] + q[4];
-            const gic_real t9 = q[5] * t8;
-            const gic_real t10 = q[3] * t3;
-            const gic_real t11 = t9 + t10;
-            const gic_real t12 = R(0.9999999999999998) * t11;
-            const gic_real t13 = m0[4] * t12;
-            const gic_real t14 = t7 - t13;
-            if (!(GIC_FABS(t14) > R(9.999999999999997e-08)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t15 = q[4] * t3;
-            const gic_real t16 = q[3] * t1;
-            const gic_real t17 = t15 - t16;
-            const gic_real t18 = R(0.9999999999999998) * t17;
-            const gic_real t19 = m0[5] * t18;
-            const gic_real t20 = m0[11] * t6;
-            const gic_real t21 = m0[4] * t18;
-            const gic_real t22 = m0[10] * t6;
-            const gic_real t23 = t21 - t22;
-            const gic_real t24 = m0[8] * t6;
-            const gic_real t25 = m0[5] * t12;
-            const gic_real t26 = R(1.0) / t14;
-            const gic_real t27 = (t24 - t25) * t26;
-            const gic_real t28 = t19 - t20 - t23 * t27;
-            if (!(GIC_FABS(t28) > R(9.999999999999997e-08)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t29 = q[6] * t1;
-            const gic_real t30 = q[3] * t8;
-            const gic_real t31 = q[4] * t8;
-            const gic_real t32 = R(0.01121887479261392) * (t29 - t30) + (R(0.2403881036540444) * (R(1.0) - (t31 + t4)) + R(0.09720579999999997) * t11);
-            const gic_real t33 = R(0.01121887479261392) * (R(1.0) - (t31 + t2)) + (R(0.2403881036540444) * (t29 + t30) + R(0.09720579999999997) * t17);
-            const gic_real t34 = q[2] + t33;
-            const gic_real t35 = R(-0.015515000000000057) * m0[11] + (R(0.509778) * m0[10] + R(0.104013) * m0[9]);
-            const gic_real t36 = m0[2] + t35;
-            const gic_real t37 = t34 - t36;
-            const gic_real t38 = q[1] + t32;
-            const gic_real t39 = R(-0.015515000000000057) * m0[8] + (R(0.509778) * m0[7] + R(0.104013) * m0[6]);
-            const gic_real t40 = m0[1] + t39;
-            const gic_real t41 = t38 - t40;
-            const gic_real t42 = m0[10] * t12;
-            const gic_real t43 = m0[7] * t18;
-            const gic_real t44 = t42 - t43;
-            const gic_real t45 = R(0.01121887479261392) * (t15 + t16) + (R(0.2403881036540444) * (t9 - t10) + R(0.09720579999999997) * t5);
-            const gic_real t46 = q[0] + t45;
-            const gic_real t47 = R(-0.015515000000000057) * m0[5] + (R(0.509778) * m0[4] + R(0.104013) * m0[3]);
-            const gic_real t48 = m0[0] + t47;
-            const gic_real t49 = t46 - t48;
-            const gic_real t50 = (t45 * t41 - t32 * t49) * t26;
-            const gic_real t51 = m0[11] * t12;
-            const gic_real t52 = m0[8] * t18;
-            const gic_real t53 = t51 - t52 - t44 * t27;
-            const gic_real t54 = R(1.0) / t28;
-            const gic_real t55 = (t33 * t49 - t45 * t37 - t23 * t50) * t54;
-            const gic_real t56 = t32 * t37 - t33 * t41 - t44 * t50 - t53 * t55;
-            if (!(GIC_FABS(t56) > R(6.171290232860452e-09)))
-                return GIC_ERROR_SINGULAR;
-            if (!(m0[9] * t18 + (m0[6] * t12 + m0[3] * t6) > R(0.0)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t57 = R(-0.21300000000000008) * m0[5] + R(0.307086) * m0[4];
-            const gic_real t58 = m0[0] + t57 - q[0];
-            const gic_real t59 = q[0] + t58;
-            const gic_real t60 = R(-0.21300000000000008) * m0[8] + R(0.307086) * m0[7];
-            const gic_real t61 = m0[1] + t60 - q[1];
-            const gic_real t62 = q[1] + t61;
-            const gic_real t63 = R(-0.21300000000000008) * m0[11] + R(0.307086) * m0[10];
-            const gic_real t64 = m0[2] + t63 - q[2];
-            const gic_real t65 = q[2] + t64;
-            const gic_real t66 = m0[10] * t18 + (m0[7] * t12 + m0[4] * t6);
-            const gic_real t67 = t66 * t27 - (m0[11] * t18 + (m0[8] * t12 + m0[5] * t6));
-            const gic_real t68 = R(1.0) / t56;
-            const gic_real t69 = t37 * t37 + (t41 * t41 + t49 * t49) - x[0] * x[0];
-            const gic_real t70 = t69 * R(0.5) + t49 * t58 + t41 * t61 + t37 * t64;
-            const gic_real t71 = t68 * (t66 * t50 - t70 - t55 * t67);
-            const gic_real t72 = t54 * (t67 - t53 * t71);
-            const gic_real t73 = R(0.5) * t72;
-            const gic_real t74 = R(0.5) * t71;
-            const gic_real t75 = t26 * (t66 + t23 * t72 + t44 * t71);
-            const gic_real t76 = R(0.5) * t75;
-            const gic_real t77 = q[3] - (q[5] * t73 + q[4] * t74 - q[6] * t76);
-            const gic_real t78 = q[6] + (q[5] * t74 - q[4] * t73 - q[3] * t76);
-            const gic_real t79 = q[5] + (q[3] * t73 - (q[6] * t74 + q[4] * t76));
-            const gic_real t80 = q[4] + (q[5] * t76 + q[6] * t73 + q[3] * t74);
-            const gic_real t81 = t78 * t78 + (t79 * t79 + t80 * t80) + t77 * t77;
-            const gic_real t82 = R(1.5) - R(0.5) * t81;
-            const gic_real t83 = t77 * t82;
-            const gic_real t84 = t80 * t82;
-            const gic_real t85 = t79 * t82;
-            const gic_real t86 = t78 * t82;
-            const gic_real t87 = R(14.84532556932214) * (t64 * t64 + (t61 * t61 + t58 * t58));
-            const gic_real t88 = t87 + (t75 * t75 + (t72 * t72 + t71 * t71));
-            const gic_real t89 = t85 + t85;
-            const gic_real t90 = t85 * t89;
-            const gic_real t91 = t86 + t86;
-            const gic_real t92 = t86 * t91;
-            const gic_real t93 = t84 + t84;
-            const gic_real t94 = t85 * t93;
-            const gic_real t95 = t83 * t91;
-            const gic_real t96 = t94 - t95;
-            const gic_real t97 = t84 * t91;
-            const gic_real t98 = t83 * t89;
-            const gic_real t99 = t97 + t98;
-            const gic_real t100 = t84 * t93;
-            const gic_real t101 = R(1.0) - (t100 + t92);
-            const gic_real t102 = t86 * t89;
-            const gic_real t103 = t83 * t93;
-            const gic_real t104 = t102 - t103;
-            const gic_real t105 = t102 + t103;
-            const gic_real t106 = R(1.0) - (t100 + t90);
-            const gic_real t107 = x[0] * t68;
-            const gic_real t108 = m0[24] * (t43 - t42) + m0[25] * (t22 - t21) + m0[26] * (t13 - t7);
-            const gic_real t109 = m0[24] * (t35 * t41 - t39 * t37) + m0[25] * (t47 * t37 - t35 * t49);
-            const gic_real t110 = t109 + m0[26] * (t39 * t49 - t47 * t41) + m0[27] * (t48 - t46);
-            const gic_real t111 = t110 + m0[28] * (t40 - t38) + m0[29] * (t36 - t34);
-            const gic_real t112 = m0[27] - (m0[26] * t60 - m0[25] * t63);
-            const gic_real t113 = m0[28] - (m0[24] * t63 - m0[26] * t57);
-            const gic_real t114 = m0[29] - (m0[25] * t57 - m0[24] * t60);
-            const gic_real t115 = t111 + t49 * t112 + t41 * t113 + t37 * t114;
-            const gic_real t116 = m0[24] * (t52 - t51) + m0[25] * (t20 - t19) + m0[26] * (t25 - t24);
-            const gic_real t117 = t27 * t108 - t116;
-            const gic_real t118 = t68 * (t50 * t108 - t115 - t55 * t117);
-            const gic_real t119 = rate[0] * t107 + rate[1] * t118;
-            const gic_real t120 = t54 * (t117 - t53 * t118);
-            const gic_real t121 = t54 * (t53 * t107);
-            const gic_real t122 = rate[1] * t120 - rate[0] * t121;
-            const gic_real t123 = t26 * (t23 * t121 - t44 * t107);
-            const gic_real t124 = t26 * (t108 + t23 * t120 + t44 * t118);
-            const gic_real t125 = rate[0] * t123 - rate[1] * t124;
-            const gic_real t126 = rate[1] * t112;
-            const gic_real t127 = rate[1] * t113;
-            const gic_real t128 = rate[1] * t114;
-            const gic_real t129 = t32 * t119 - t45 * t122;
-            const gic_real t130 = m0[12] * t39 - m0[13] * t47;
-            const gic_real t131 = t128 + t129 - (m0[17] + t130);
-            const gic_real t132 = t45 * t125 - t33 * t119;
-            const gic_real t133 = m0[14] * t47 - m0[12] * t35;
-            const gic_real t134 = t127 + t132 - (m0[16] + t133);
-            const gic_real t135 = t33 * t122 - t32 * t125;
-            const gic_real t136 = m0[13] * t35 - m0[14] * t39;
-            const gic_real t137 = t126 + t135 - (m0[15] + t136);
-            const gic_real t138 = m0[12] * t133 - m0[13] * t136 + (m0[18] * t39 - m0[19] * t47);
-            const gic_real t139 = t37 * (t119 * t132 - t122 * t135 - (m0[23] + t138));
-            const gic_real t140 = m0[14] * t136 - m0[12] * t130 + (m0[20] * t47 - m0[18] * t35);
-            const gic_real t141 = t41 * (t125 * t135 - t119 * t129 - (m0[22] + t140));
-            const gic_real t142 = m0[13] * t130 - m0[14] * t133 + (m0[19] * t35 - m0[20] * t39);
-            const gic_real t143 = t49 * (t122 * t129 - t125 * t132 - (m0[21] + t142));
-            const gic_real t144 = t131 * t131 + (t134 * t134 + t137 * t137) + (t139 + (t141 + t143));
-            const gic_real t145 = m0[12] * t60 - m0[13] * t57;
-            const gic_real t146 = m0[14] * t57 - m0[12] * t63;
-            const gic_real t147 = m0[13] * t145 - m0[14] * t146 + (m0[19] * t63 - m0[20] * t60);
-            const gic_real t148 = m0[21] + t147;
-            const gic_real t149 = m0[13] * t63 - m0[14] * t60;
-            const gic_real t150 = m0[14] * t149 - m0[12] * t145 + (m0[20] * t57 - m0[18] * t63);
-            const gic_real t151 = m0[22] + t150;
-            const gic_real t152 = rate[0] * rate[0] - t144 - t148 * t49 - t151 * t41;
-            const gic_real t153 = m0[12] * t146 - m0[13] * t149 + (m0[18] * t60 - m0[19] * t57);
-            const gic_real t154 = m0[23] + t153;
-            const gic_real t155 = m0[7] * m0[12] - m0[4] * m0[13];
-            const gic_real t156 = t12 * t119 - t6 * t122;
-            const gic_real t157 = m0[4] * m0[14] - m0[10] * m0[12];
-            const gic_real t158 = t6 * t125 - t18 * t119;
-            const gic_real t159 = m0[10] * m0[13] - m0[7] * m0[14];
-            const gic_real t160 = t18 * t122 - t12 * t125;
-            const gic_real t161 = t155 * t156 + (t157 * t158 + t159 * t160);
-            const gic_real t162 = m0[12] * t157 - m0[13] * t159 + (m0[7] * m0[18] - m0[4] * m0[19]);
-            const gic_real t163 = m0[14] * t159 - m0[12] * t155 + (m0[4] * m0[20] - m0[10] * m0[18]);
-            const gic_real t164 = m0[13] * t155 - m0[14] * t157 + (m0[10] * m0[19] - m0[7] * m0[20]);
-            const gic_real t165 = t119 * t158 - t122 * t160;
-            const gic_real t166 = t125 * t160 - t119 * t156;
-            const gic_real t167 = t122 * t156 - t125 * t158;
-            const gic_real t168 = t162 * t18 + (t163 * t12 + t164 * t6) + (m0[10] * t165 + (m0[7] * t166 + m0[4] * t167));
-            const gic_real t169 = t161 + t161 + t168;
-            const gic_real t170 = m0[8] * m0[12] - m0[5] * m0[13];
-            const gic_real t171 = m0[5] * m0[14] - m0[11] * m0[12];
-            const gic_real t172 = m0[11] * m0[13] - m0[8] * m0[14];
-            const gic_real t173 = t170 * t156 + (t171 * t158 + t172 * t160);
-            const gic_real t174 = m0[12] * t171 - m0[13] * t172 + (m0[8] * m0[18] - m0[5] * m0[19]);
-            const gic_real t175 = m0[14] * t172 - m0[12] * t170 + (m0[5] * m0[20] - m0[11] * m0[18]);
-            const gic_real t176 = m0[13] * t170 - m0[14] * t171 + (m0[11] * m0[19] - m0[8] * m0[20]);
-            const gic_real t177 = t18 * t174 + (t12 * t175 + t6 * t176) + (m0[11] * t165 + (m0[8] * t166 + m0[5] * t167));
-            const gic_real t178 = t27 * t169 - (t173 + t173 + t177);
-            const gic_real t179 = t152 - t154 * t37 + t50 * t169 - t55 * t178;
-            const gic_real t180 = t68 * t179;
-            const gic_real t181 = t54 * (t178 - t53 * t180);
-            const gic_real t182 = t26 * (t169 + t23 * t181 + t44 * t180);
-            const gic_real t183 = -t121;
-            const gic_real t184 = -t124;
-            const gic_real t185 = t104 * R(3.0379110359107786e-06) + t101 * R(0.24689200985615367);
-            const gic_real t186 = t106 * R(3.0379110359107786e-06) + t105 * R(0.24689200985615367);
-            const gic_real t187 = t123 * t185 + t121 * t186;
-            const gic_real t188 = R(23.965) * t187;
-            const gic_real t189 = t99 * R(3.0379110359107786e-06) + t96 * R(0.24689200985615367);
-            const gic_real t190 = t123 * t189 - t107 * t186;
-            const gic_real t191 = R(23.965) * t190;
-            const gic_real t192 = t121 * t189 + t107 * t185;
-            const gic_real t193 = R(23.965) * t192;
-            const gic_real t194 = t99 * R(0.4469);
-            const gic_real t195 = t106 * t194;
-            const gic_real t196 = R(0.4469) + t99 * t194;
-            const gic_real t197 = t104 * t194;
-            const gic_real t198 = t123 * t195 + (t107 * t196 - t121 * t197);
-            const gic_real t199 = t62 + t185;
-            const gic_real t200 = t65 + t186;
-            const gic_real t201 = t104 * R(0.4469);
-            const gic_real t202 = t106 * t201;
-            const gic_real t203 = R(0.4469) + t104 * t201;
-            const gic_real t204 = t123 * t202 + (t107 * t197 - t121 * t203);
-            const gic_real t205 = t59 + t189;
-            const gic_real t206 = R(0.4469) + t106 * (t106 * R(0.4469));
-            const gic_real t207 = t123 * t206 + (t107 * t195 - t121 * t202);
-            const gic_real t208 = t125 * t202 + (t122 * t203 + t119 * t197);
-            const gic_real t209 = t125 * t195 + (t122 * t197 + t119 * t196);
-            const gic_real t210 = t181 * t202 + t180 * t195 - t182 * t206 + (t119 * t208 - t122 * t209);
-            const gic_real t211 = t125 * t206 + (t122 * t202 + t119 * t195);
-            const gic_real t212 = t181 * t197 + t180 * t196 - t182 * t195 + (t122 * t211 - t125 * t208);
-            const gic_real t213 = t181 * t203 + t180 * t197 - t182 * t202 + (t125 * t209 - t119 * t211);
-            const gic_real t214 = t125 * t189 - t119 * t186;
-            const gic_real t215 = t122 * t186 - t125 * t185;
-            const gic_real t216 = t119 * t214 - t122 * t215 + (t180 * t185 - t181 * t189);
-            const gic_real t217 = R(23.965) * (t154 + t216);
-            const gic_real t218 = t119 * t185 - t122 * t189;
-            const gic_real t219 = t125 * t215 - t119 * t218 - (t180 * t186 + t182 * t189);
-            const gic_real t220 = R(23.965) * (t151 + t219);
-            const gic_real t221 = t122 * t218 - t125 * t214 + (t182 * t185 + t181 * t186);
-            const gic_real t222 = R(23.965) * (t148 + t221);
-            const gic_real t223 = t123 * t210 + (t107 * t212 - t121 * t213) + (t217 * t192 + (t220 * t190 - t222 * t187));
-            const gic_real t224 = t112 + (t124 * t185 + t120 * t186);
-            const gic_real t225 = R(23.965) * t224;
-            const gic_real t226 = t113 - (t118 * t186 + t124 * t189);
-            const gic_real t227 = R(23.965) * t226;
-            const gic_real t228 = t114 + (t118 * t185 - t120 * t189);
-            const gic_real t229 = R(23.965) * t228;
-            const gic_real t230 = t120 * t197 + t118 * t196 - t124 * t195;
-            const gic_real t231 = t120 * t203 + t118 * t197 - t124 * t202;
-            const gic_real t232 = t120 * t202 + t118 * t195 - t124 * t206;
-            const gic_real t233 = t120 * t213 + t118 * t212 - t124 * t210 + (t217 * t228 + (t220 * t226 + t222 * t224));
-            const gic_real t234 = t123 * t207 + (t107 * t198 - t121 * t204) + (t192 * t193 + (t190 * t191 + t187 * t188));
-            const gic_real t235 = t123 * t232 + (t107 * t230 - t121 * t231) + (t192 * t229 + (t190 * t227 - t187 * t225));
-            const gic_real t236 = t120 * t231 + t118 * t230 - t124 * t232 + (t228 * t229 + (t226 * t227 + t224 * t225));
-            const gic_real t237 = R(1.0) - (t90 + t92);
-            const gic_real t238 = t94 + t95;
-            const gic_real t239 = t97 - t98;
-            const gic_real t240 = -t182;
-            const gic_real t241 = -t188;
-            const gic_real t242 = t198 + (t199 * t193 - t200 * t191);
-            const gic_real t243 = t204 - (t205 * t193 + t200 * t188);
-            const gic_real t244 = t207 + (t199 * t188 + t205 * t191);
-            const gic_real t245 = t230 + (t199 * t229 - t200 * t227);
-            const gic_real t246 = t231 + (t200 * t225 - t205 * t229);
-            const gic_real t247 = t232 + (t205 * t227 - t199 * t225);
-            q[0] = t59;
-            q[1] = t62;
-            q[2] = t65;
-            q[3] = t83;
-            q[4] = t84;
-            q[5] = t85;
-            q[6] = t86;
-            step = t88;
-            motion[0] = t59;
-            motion[1] = t62;
-            motion[2] = t65;
-            motion[3] = t237;
-            motion[4] = t96;
-            motion[5] = t99;
-            motion[6] = t238;
-            motion[7] = t101;
-            motion[8] = t104;
-            motion[9] = t239;
-            motion[10] = t105;
-            motion[11] = t106;
-            motion[12] = t119;
-            motion[13] = t122;
-            motion[14] = t125;
-            motion[15] = t126;
-            motion[16] = t127;
-            motion[17] = t128;
-            motion[18] = t180;
-            motion[19] = t181;
-            motion[20] = t240;
-            motion[21] = t148;
-            motion[22] = t151;
-            motion[23] = t154;
-            motion[24] = t107;
-            motion[25] = t183;
-            motion[26] = t123;
-            motion[27] = R(0.0);
-            motion[28] = R(0.0);
-            motion[29] = R(0.0);
-            motion[30] = t118;
-            motion[31] = t120;
-            motion[32] = t184;
-            motion[33] = t112;
-            motion[34] = t113;
-            motion[35] = t114;
-            start[7] = t107;
-            start[8] = t183;
-            start[9] = t123;
-            start[10] = R(0.0);
-            start[11] = R(0.0);
-            start[12] = R(0.0);
-            start[13] = t118;
-            start[14] = t120;
-            start[15] = t184;
-            start[16] = t112;
-            start[17] = t113;
-            start[18] = t114;
-            start[19] = t26;
-            start[20] = t23;
-            start[21] = t44;
-            start[22] = t27;
-            start[23] = t54;
-            start[24] = t53;
-            start[25] = t49;
-            start[26] = t41;
-            start[27] = t37;
-            start[28] = t50;
-            start[29] = t55;
-            start[30] = t68;
-            inertia[15] = t241;
-            inertia[16] = t191;
-            inertia[17] = t193;
-            inertia[18] = t242;
-            inertia[19] = t243;
-            inertia[20] = t244;
-            inertia[21] = t223;
-            inertia[22] = t225;
-            inertia[23] = t227;
-            inertia[24] = t229;
-            inertia[25] = t245;
-            inertia[26] = t246;
-            inertia[27] = t247;
-            inertia[28] = t233;
-            inertia[29] = t234;
-            inertia[30] = t235;
-            inertia[31] = t236;
-        }
-        ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
+    (void)k, (void)start, (void)inertia;
+    {
+        const gic_real t1 = R(-0.015515000000000057) * m0[11] + (R(0.509778) * m0[10] + R(0.104013) * m0[9]);
+        const gic_real t2 = m0[2] + t1;
+        const gic_real t3 = R(-0.21300000000000008) * m0[11] + R(0.307086) * m0[10];
+        const gic_real t4 = m0[2] + t3;
+        const gic_real t5 = t2 - t4;
+        const gic_real t6 = R(-0.015515000000000057) * m0[8] + (R(0.509778) * m0[7] + R(0.104013) * m0[6]);
+        const gic_real t7 = m0[1] + t6;
+        const gic_real t8 = R(-0.21300000000000008) * m0[8] + R(0.307086) * m0[7];
+        const gic_real t9 = m0[1] + t8;
+        const gic_real t10 = t7 - t9;
+        const gic_real t11 = R(-0.015515000000000057) * m0[5] + (R(0.509778) * m0[4] + R(0.104013) * m0[3]);
+        const gic_real t12 = m0[0] + t11;
+        const gic_real t13 = R(-0.21300000000000008) * m0[5] + R(0.307086) * m0[4];
+        const gic_real t14 = m0[0] + t13;
+        const gic_real t15 = t12 - t14;
+        const gic_real t16 = m0[11] * t5 + (m0[8] * t10 + m0[5] * t15);
+        const gic_real t17 = m0[10] * t5 + (m0[7] * t10 + m0[4] * t15);
+        const gic_real t18 = R(0.23609299999999983) * t16 - t17 * R(-0.04660899999999993);
+        const gic_real t19 = R(-0.04660899999999993) * t16 + R(0.23609299999999983) * t17;
+        const gic_real t20 = t18 * t18 + t19 * t19;
+        const gic_real t21 = R(0.06736127108363994) + (t5 * t5 + (t10 * t10 + t15 * t15));
+        const gic_real t22 = R(0.09720579999999994) * (m0[9] * t5 + (m0[6] * t10 + m0[3] * t15));
+        const gic_real t23 = R(0.5) * (t21 - x[0] * x[0]) - t22;
+        const gic_real t24 = t20 - t23 * t23;
+        if (!(t24 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
-            if (step > self->head.largest_step)
-                self->head.largest_step = step;
-            ++self->head.newton_count;
-            for (i = 0; i < 7; ++i)
-                start[i] = q[i];
-            return GIC_OK;
-        }
-        before = step;
+        const gic_real t25 = m0[3] * m0[7];
+        const gic_real t26 = m0[4] * m0[6];
+        const gic_real t27 = t25 - t26;
+        if (!(GIC_FABS(t27) > R(1e-07)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t28 = m0[5] * m0[9];
+        const gic_real t29 = m0[3] * m0[11];
+        const gic_real t30 = m0[4] * m0[9];
+        const gic_real t31 = m0[3] * m0[10];
+        const gic_real t32 = t30 - t31;
+        const gic_real t33 = m0[3] * m0[8];
+        const gic_real t34 = m0[5] * m0[6];
+        const gic_real t35 = R(1.0) / t27;
+        const gic_real t36 = (t33 - t34) * t35;
+        const gic_real t37 = t28 - t29 - t32 * t36;
+        if (!(GIC_FABS(t37) > R(1e-07)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t38 = R(1.0) / t20;
+        const gic_real t39 = GIC_SQRT(t24);
+        const gic_real t40 = t38 * (t18 * t39 + t19 * t23);
+        const gic_real t41 = m0[6] * R(0.09720579999999994) + t40 * (m0[7] * R(0.23609299999999983) + m0[8] * R(-0.04660899999999993));
+        const gic_real t42 = t38 * (t18 * t23 - t19 * t39);
+        const gic_real t43 = t41 + t42 * (m0[8] * R(0.23609299999999983) + m0[7] * R(0.04660899999999993));
+        const gic_real t44 = m0[9] * R(0.09720579999999994) + t40 * (m0[10] * R(0.23609299999999983) + m0[11] * R(-0.04660899999999993));
+        const gic_real t45 = t44 + t42 * (m0[11] * R(0.23609299999999983) + m0[10] * R(0.04660899999999993));
+        const gic_real t46 = t4 + t45;
+        const gic_real t47 = t46 - t2;
+        const gic_real t48 = t9 + t43;
+        const gic_real t49 = t48 - t7;
+        const gic_real t50 = m0[6] * m0[10];
+        const gic_real t51 = m0[7] * m0[9];
+        const gic_real t52 = t50 - t51;
+        const gic_real t53 = m0[3] * R(0.09720579999999994) + t40 * (m0[4] * R(0.23609299999999983) + m0[5] * R(-0.04660899999999993));
+        const gic_real t54 = t53 + t42 * (m0[5] * R(0.23609299999999983) + m0[4] * R(0.04660899999999993));
+        const gic_real t55 = t14 + t54;
+        const gic_real t56 = t55 - t12;
+        const gic_real t57 = (t54 * t49 - t43 * t56) * t35;
+        const gic_real t58 = m0[6] * m0[11];
+        const gic_real t59 = m0[8] * m0[9];
+        const gic_real t60 = t58 - t59 - t52 * t36;
+        const gic_real t61 = R(1.0) / t37;
+        const gic_real t62 = (t45 * t56 - t54 * t47 - t32 * t57) * t61;
+        const gic_real t63 = t43 * t47 - t45 * t49 - t52 * t57 - t60 * t62;
+        if (!(GIC_FABS(t63) > R(6.171290232860449e-09)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t64 = m0[5] * t40 - m0[4] * t42;
+        const gic_real t65 = m0[4] * t40 + m0[5] * t42;
+        const gic_real t66 = R(-0.23920559337529682) * t64 + R(0.9709689408513393) * t65;
+        const gic_real t67 = R(0.9709689408513391) * t64 + R(0.23920559337529687) * t65;
+        const gic_real t68 = m0[8] * t40 - m0[7] * t42;
+        const gic_real t69 = m0[7] * t40 + m0[8] * t42;
+        const gic_real t70 = R(-0.23920559337529682) * t68 + R(0.9709689408513393) * t69;
+        const gic_real t71 = R(0.9709689408513391) * t68 + R(0.23920559337529687) * t69;
+        const gic_real t72 = m0[11] * t40 - m0[10] * t42;
+        const gic_real t73 = m0[10] * t40 + m0[11] * t42;
+        const gic_real t74 = R(-0.23920559337529682) * t72 + R(0.9709689408513393) * t73;
+        const gic_real t75 = R(0.9709689408513391) * t72 + R(0.23920559337529687) * t73;
+        const gic_real t76 = R(1.0) / t63;
+        const gic_real t77 = x[0] * t76;
+        const gic_real t78 = m0[24] * (t51 - t50) + m0[25] * (t31 - t30) + m0[26] * (t26 - t25);
+        const gic_real t79 = m0[24] * (t1 * t49 - t6 * t47) + m0[25] * (t11 * t47 - t1 * t56);
+        const gic_real t80 = t79 + m0[26] * (t6 * t56 - t11 * t49) + m0[27] * (t12 - t55);
+        const gic_real t81 = t80 + m0[28] * (t7 - t48) + m0[29] * (t2 - t46);
+        const gic_real t82 = m0[27] - (m0[26] * t8 - m0[25] * t3);
+        const gic_real t83 = m0[28] - (m0[24] * t3 - m0[26] * t13);
+        const gic_real t84 = m0[29] - (m0[25] * t13 - m0[24] * t8);
+        const gic_real t85 = t81 + t56 * t82 + t49 * t83 + t47 * t84;
+        const gic_real t86 = m0[24] * (t59 - t58) + m0[25] * (t29 - t28) + m0[26] * (t34 - t33);
+        const gic_real t87 = t36 * t78 - t86;
+        const gic_real t88 = t76 * (t57 * t78 - t85 - t62 * t87);
+        const gic_real t89 = rate[0] * t77 + rate[1] * t88;
+        const gic_real t90 = t61 * (t87 - t60 * t88);
+        const gic_real t91 = t61 * (t60 * t77);
+        const gic_real t92 = rate[1] * t90 - rate[0] * t91;
+        const gic_real t93 = t35 * (t32 * t91 - t52 * t77);
+        const gic_real t94 = t35 * (t78 + t32 * t90 + t52 * t88);
+        const gic_real t95 = rate[0] * t93 - rate[1] * t94;
+        const gic_real t96 = rate[1] * t82;
+        const gic_real t97 = rate[1] * t83;
+        const gic_real t98 = rate[1] * t84;
+        const gic_real t99 = t43 * t89 - t54 * t92;
+        const gic_real t100 = m0[12] * t6 - m0[13] * t11;
+        const gic_real t101 = t98 + t99 - (m0[17] + t100);
+        const gic_real t102 = t54 * t95 - t45 * t89;
+        const gic_real t103 = m0[14] * t11 - m0[12] * t1;
+        const gic_real t104 = t97 + t102 - (m0[16] + t103);
+        const gic_real t105 = t45 * t92 - t43 * t95;
+        const gic_real t106 = m0[13] * t1 - m0[14] * t6;
+        const gic_real t107 = t96 + t105 - (m0[15] + t106);
+        const gic_real t108 = m0[12] * t103 - m0[13] * t106 + (m0[18] * t6 - m0[19] * t11);
+        const gic_real t109 = t47 * (t89 * t102 - t92 * t105 - (m0[23] + t108));
+        const gic_real t110 = m0[14] * t106 - m0[12] * t100 + (m0[20] * t11 - m0[18] * t1);
+        const gic_real t111 = t49 * (t95 * t105 - t89 * t99 - (m0[22] + t110));
+        const gic_real t112 = m0[13] * t100 - m0[14] * t103 + (m0[19] * t1 - m0[20] * t6);
+        const gic_real t113 = t56 * (t92 * t99 - t95 * t102 - (m0[21] + t112));
+        const gic_real t114 = t101 * t101 + (t104 * t104 + t107 * t107) + (t109 + (t111 + t113));
+        const gic_real t115 = m0[12] * t8 - m0[13] * t13;
+        const gic_real t116 = m0[14] * t13 - m0[12] * t3;
+        const gic_real t117 = m0[13] * t115 - m0[14] * t116 + (m0[19] * t3 - m0[20] * t8);
+        const gic_real t118 = m0[21] + t117;
+        const gic_real t119 = m0[13] * t3 - m0[14] * t8;
+        const gic_real t120 = m0[14] * t119 - m0[12] * t115 + (m0[20] * t13 - m0[18] * t3);
+        const gic_real t121 = m0[22] + t120;
+        const gic_real t122 = rate[0] * rate[0] - t114 - t118 * t56 - t121 * t49;
+        const gic_real t123 = m0[12] * t116 - m0[13] * t119 + (m0[18] * t8 - m0[19] * t13);
+        const gic_real t124 = m0[23] + t123;
+        const gic_real t125 = m0[7] * m0[12] - m0[4] * m0[13];
+        const gic_real t126 = m0[6] * t89 - m0[3] * t92;
+        const gic_real t127 = m0[4] * m0[14] - m0[10] * m0[12];
+        const gic_real t128 = m0[3] * t95 - m0[9] * t89;
+        const gic_real t129 = m0[10] * m0[13] - m0[7] * m0[14];
+        const gic_real t130 = m0[9] * t92 - m0[6] * t95;
+        const gic_real t131 = t125 * t126 + (t127 * t128 + t129 * t130);
+        const gic_real t132 = m0[12] * t127 - m0[13] * t129 + (m0[7] * m0[18] - m0[4] * m0[19]);
+        const gic_real t133 = m0[14] * t129 - m0[12] * t125 + (m0[4] * m0[20] - m0[10] * m0[18]);
+        const gic_real t134 = m0[13] * t125 - m0[14] * t127 + (m0[10] * m0[19] - m0[7] * m0[20]);
+        const gic_real t135 = t89 * t128 - t92 * t130;
+        const gic_real t136 = t95 * t130 - t89 * t126;
+        const gic_real t137 = t92 * t126 - t95 * t128;
+        const gic_real t138 = m0[9] * t132 + (m0[6] * t133 + m0[3] * t134) + (m0[10] * t135 + (m0[7] * t136 + m0[4] * t137));
+        const gic_real t139 = t131 + t131 + t138;
+        const gic_real t140 = m0[8] * m0[12] - m0[5] * m0[13];
+        const gic_real t141 = m0[5] * m0[14] - m0[11] * m0[12];
+        const gic_real t142 = m0[11] * m0[13] - m0[8] * m0[14];
+        const gic_real t143 = t140 * t126 + (t141 * t128 + t142 * t130);
+        const gic_real t144 = m0[12] * t141 - m0[13] * t142 + (m0[8] * m0[18] - m0[5] * m0[19]);
+        const gic_real t145 = m0[14] * t142 - m0[12] * t140 + (m0[5] * m0[20] - m0[11] * m0[18]);
+        const gic_real t146 = m0[13] * t140 - m0[14] * t141 + (m0[11] * m0[19] - m0[8] * m0[20]);
+        const gic_real t147 = m0[9] * t144 + (m0[6] * t145 + m0[3] * t146) + (m0[11] * t135 + (m0[8] * t136 + m0[5] * t137));
+        const gic_real t148 = t36 * t139 - (t143 + t143 + t147);
+        const gic_real t149 = t122 - t124 * t47 + t57 * t139 - t62 * t148;
+        const gic_real t150 = t76 * t149;
+        const gic_real t151 = t61 * (t148 - t60 * t150);
+        const gic_real t152 = t35 * (t139 + t32 * t151 + t52 * t150);
+        const gic_real t153 = t71 * R(3.0379110359107786e-06) + t70 * R(0.24689200985615367);
+        const gic_real t154 = t75 * R(3.0379110359107786e-06) + t74 * R(0.24689200985615367);
+        const gic_real t155 = t93 * t153 + t91 * t154;
+        const gic_real t156 = R(23.965) * t155;
+        const gic_real t157 = t67 * R(3.0379110359107786e-06) + t66 * R(0.24689200985615367);
+        const gic_real t158 = t93 * t157 - t77 * t154;
+        const gic_real t159 = R(23.965) * t158;
+        const gic_real t160 = t91 * t157 + t77 * t153;
+        const gic_real t161 = R(23.965) * t160;
+        const gic_real t162 = t67 * R(0.4469);
+        const gic_real t163 = t75 * t162;
+        const gic_real t164 = R(0.4469) + t67 * t162;
+        const gic_real t165 = t71 * t162;
+        const gic_real t166 = t93 * t163 + (t77 * t164 - t91 * t165);
+        const gic_real t167 = t9 + t153;
+        const gic_real t168 = t4 + t154;
+        const gic_real t169 = t71 * R(0.4469);
+        const gic_real t170 = t75 * t169;
+        const gic_real t171 = R(0.4469) + t71 * t169;
+        const gic_real t172 = t93 * t170 + (t77 * t165 - t91 * t171);
+        const gic_real t173 = t14 + t157;
+        const gic_real t174 = R(0.4469) + t75 * (t75 * R(0.4469));
+        const gic_real t175 = t93 * t174 + (t77 * t163 - t91 * t170);
+        const gic_real t176 = t95 * t170 + (t92 * t171 + t89 * t165);
+        const gic_real t177 = t95 * t163 + (t92 * t165 + t89 * t164);
+        const gic_real t178 = t151 * t170 + t150 * t163 - t152 * t174 + (t89 * t176 - t92 * t177);
+        const gic_real t179 = t95 * t174 + (t92 * t170 + t89 * t163);
+        const gic_real t180 = t151 * t165 + t150 * t164 - t152 * t163 + (t92 * t179 - t95 * t176);
+        const gic_real t181 = t151 * t171 + t150 * t165 - t152 * t170 + (t95 * t177 - t89 * t179);
+        const gic_real t182 = t95 * t157 - t89 * t154;
+        const gic_real t183 = t92 * t154 - t95 * t153;
+        const gic_real t184 = t89 * t182 - t92 * t183 + (t150 * t153 - t151 * t157);
+        const gic_real t185 = R(23.965) * (t124 + t184);
+        const gic_real t186 = t89 * t153 - t92 * t157;
+        const gic_real t187 = t95 * t183 - t89 * t186 - (t150 * t154 + t152 * t157);
+        const gic_real t188 = R(23.965) * (t121 + t187);
+        const gic_real t189 = t92 * t186 - t95 * t182 + (t152 * t153 + t151 * t154);
+        const gic_real t190 = R(23.965) * (t118 + t189);
+        const gic_real t191 = t93 * t178 + (t77 * t180 - t91 * t181) + (t185 * t160 + (t188 * t158 - t190 * t155));
+        const gic_real t192 = t82 + (t94 * t153 + t90 * t154);
+        const gic_real t193 = R(23.965) * t192;
+        const gic_real t194 = t83 - (t88 * t154 + t94 * t157);
+        const gic_real t195 = R(23.965) * t194;
+        const gic_real t196 = t84 + (t88 * t153 - t90 * t157);
+        const gic_real t197 = R(23.965) * t196;
+        const gic_real t198 = t90 * t165 + t88 * t164 - t94 * t163;
+        const gic_real t199 = t90 * t171 + t88 * t165 - t94 * t170;
+        const gic_real t200 = t90 * t170 + t88 * t163 - t94 * t174;
+        const gic_real t201 = t90 * t181 + t88 * t180 - t94 * t178 + (t185 * t196 + (t188 * t194 + t190 * t192));
+        const gic_real t202 = t93 * t175 + (t77 * t166 - t91 * t172) + (t160 * t161 + (t158 * t159 + t155 * t156));
+        const gic_real t203 = t93 * t200 + (t77 * t198 - t91 * t199) + (t160 * t197 + (t158 * t195 - t155 * t193));
+        const gic_real t204 = t90 * t199 + t88 * t198 - t94 * t200 + (t196 * t197 + (t194 * t195 + t192 * t193));
+        const gic_real t205 = R(0.9999999999999998) * m0[3];
+        const gic_real t206 = R(0.9999999999999998) * m0[6];
+        const gic_real t207 = R(0.9999999999999998) * m0[9];
+        const gic_real t208 = -t152;
+        const gic_real t209 = -t91;
+        const gic_real t210 = -t94;
+        const gic_real t211 = -t156;
+        const gic_real t212 = t166 + (t167 * t161 - t168 * t159);
+        const gic_real t213 = t172 - (t173 * t161 + t168 * t156);
+        const gic_real t214 = t175 + (t167 * t156 + t173 * t159);
+        const gic_real t215 = t198 + (t167 * t197 - t168 * t195);
+        const gic_real t216 = t199 + (t168 * t193 - t173 * t197);
+        const gic_real t217 = t200 + (t173 * t195 - t167 * t193);
+        motion[0] = t14;
+        motion[1] = t9;
+        motion[2] = t4;
+        motion[3] = t205;
+        motion[4] = t66;
+        motion[5] = t67;
+        motion[6] = t206;
+        motion[7] = t70;
+        motion[8] = t71;
+        motion[9] = t207;
+        motion[10] = t74;
+        motion[11] = t75;
+        motion[12] = t89;
+        motion[13] = t92;
+        motion[14] = t95;
+        motion[15] = t96;
+        motion[16] = t97;
+        motion[17] = t98;
+        motion[18] = t150;
+        motion[19] = t151;
+        motion[20] = t208;
+        motion[21] = t118;
+        motion[22] = t121;
+        motion[23] = t124;
+        motion[24] = t77;
+        motion[25] = t209;
+        motion[26] = t93;
+        motion[27] = R(0.0);
+        motion[28] = R(0.0);
+        motion[29] = R(0.0);
+        motion[30] = t88;
+        motion[31] = t90;
+        motion[32] = t210;
+        motion[33] = t82;
+        motion[34] = t83;
+        motion[35] = t84;
+        inertia[15] = t211;
+        inertia[16] = t159;
+        inertia[17] = t161;
+        inertia[18] = t212;
+        inertia[19] = t213;
+        inertia[20] = t214;
+        inertia[21] = t191;
+        inertia[22] = t193;
+        inertia[23] = t195;
+        inertia[24] = t197;
+        inertia[25] = t215;
+        inertia[26] = t216;
+        inertia[27] = t217;
+        inertia[28] = t201;
+        inertia[29] = t202;
+        inertia[30] = t203;
+        inertia[31] = t204;
     }
-    return GIC_ERROR_NEWTON;
+    ++self->head.newton_count;
+    return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset at the pose q, relative to its size. */
+/* Largest constraint residual of such a subset, relative to its size. */
 static GIC_COLD gic_real quarter_car_residual_arm(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT q)
+    const gic_real *GIC_RESTRICT motion)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const x = links->x;
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = (q[0] - (m0[0] + (R(-0.21300000000000008) * m0[5] + R(0.307086) * m0[4]))) * R(3.852963219305648);
-        const gic_real t2 = (q[1] - (m0[1] + (R(-0.21300000000000008) * m0[8] + R(0.307086) * m0[7]))) * R(3.852963219305648);
-        const gic_real t3 = (q[2] - (m0[2] + (R(-0.21300000000000008) * m0[11] + R(0.307086) * m0[10]))) * R(3.852963219305648);
-        const gic_real t4 = q[6] + q[6];
-        const gic_real t5 = q[4] * t4;
-        const gic_real t6 = q[5] + q[5];
-        const gic_real t7 = q[3] * t6;
-        const gic_real t8 = t5 - t7;
-        const gic_real t9 = R(0.9999999999999998) * t8;
-        const gic_real t10 = q[4] + q[4];
-        const gic_real t11 = q[5] * t10;
-        const gic_real t12 = q[3] * t4;
-        const gic_real t13 = t11 + t12;
-        const gic_real t14 = R(0.9999999999999998) * t13;
-        const gic_real t15 = q[5] * t6;
-        const gic_real t16 = q[6] * t4;
-        const gic_real t17 = R(1.0) - (t15 + t16);
-        const gic_real t18 = R(0.9999999999999998) * t17;
-        const gic_real t19 = (m0[10] * t9 + (m0[7] * t14 + m0[4] * t18)) * R(1.0000000000000002);
-        const gic_real t20 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(t1), GIC_FABS(t2)), GIC_FABS(t3)), GIC_FABS(t19));
-        const gic_real t21 = (m0[11] * t9 + (m0[8] * t14 + m0[5] * t18)) * R(1.0000000000000002);
-        const gic_real t22 = q[4] * t10;
-        const gic_real t23 = q[6] * t6;
-        const gic_real t24 = q[3] * t10;
-        const gic_real t25 = R(0.01121887479261392) * (R(1.0) - (t22 + t15)) + (R(0.2403881036540444) * (t23 + t24) + R(0.09720579999999997) * t8);
-        const gic_real t26 = m0[2] + (R(-0.015515000000000057) * m0[11] + (R(0.509778) * m0[10] + R(0.104013) * m0[9]));
-        const gic_real t27 = q[2] + t25 - t26;
-        const gic_real t28 = R(0.01121887479261392) * (t23 - t24) + (R(0.2403881036540444) * (R(1.0) - (t22 + t16)) + R(0.09720579999999997) * t13);
-        const gic_real t29 = m0[1] + (R(-0.015515000000000057) * m0[8] + (R(0.509778) * m0[7] + R(0.104013) * m0[6]));
-        const gic_real t30 = q[1] + t28 - t29;
-        const gic_real t31 = R(0.01121887479261392) * (t5 + t7) + (R(0.2403881036540444) * (t11 - t12) + R(0.09720579999999997) * t17);
-        const gic_real t32 = m0[0] + (R(-0.015515000000000057) * m0[5] + (R(0.509778) * m0[4] + R(0.104013) * m0[3]));
-        const gic_real t33 = q[0] + t31 - t32;
-        const gic_real t34 = t27 * t27 + (t30 * t30 + t33 * t33) - x[0] * x[0];
-        const gic_real t35 = GIC_MAX(GIC_MAX(t20, GIC_FABS(t21)), GIC_FABS(t34 * R(7.892375927523104)));
-        worst = t35;
+        const gic_real t1 = (motion[0] - (m0[0] + (R(-0.21300000000000008) * m0[5] + R(0.307086) * m0[4]))) * R(3.852963219305648);
+        const gic_real t2 = (motion[1] - (m0[1] + (R(-0.21300000000000008) * m0[8] + R(0.307086) * m0[7]))) * R(3.852963219305648);
+        const gic_real t3 = (motion[2] - (m0[2] + (R(-0.21300000000000008) * m0[11] + R(0.307086) * m0[10]))) * R(3.852963219305648);
+        const gic_real t4 = R(0.9999999999999998) * motion[9];
+        const gic_real t5 = R(0.9999999999999998) * motion[6];
+        const gic_real t6 = R(0.9999999999999998) * motion[3];
+        const gic_real t7 = GIC_FABS(m0[10] * t4 + (m0[7] * t5 + m0[4] * t6));
+        const gic_real t8 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(t1), GIC_FABS(t2)), GIC_FABS(t3)), t7);
+        const gic_real t9 = GIC_FABS(m0[11] * t4 + (m0[8] * t5 + m0[5] * t6));
+        const gic_real t10 = motion[2] + (R(0.01121887479261392) * motion[11] + (R(0.2403881036540444) * motion[10] + R(0.09720579999999997) * motion[9]));
+        const gic_real t11 = m0[2] + (R(-0.015515000000000057) * m0[11] + (R(0.509778) * m0[10] + R(0.104013) * m0[9]));
+        const gic_real t12 = t10 - t11;
+        const gic_real t13 = motion[1] + (R(0.01121887479261392) * motion[8] + (R(0.2403881036540444) * motion[7] + R(0.09720579999999997) * motion[6]));
+        const gic_real t14 = m0[1] + (R(-0.015515000000000057) * m0[8] + (R(0.509778) * m0[7] + R(0.104013) * m0[6]));
+        const gic_real t15 = t13 - t14;
+        const gic_real t16 = motion[0] + (R(0.01121887479261392) * motion[5] + (R(0.2403881036540444) * motion[4] + R(0.09720579999999997) * motion[3]));
+        const gic_real t17 = m0[0] + (R(-0.015515000000000057) * m0[5] + (R(0.509778) * m0[4] + R(0.104013) * m0[3]));
+        const gic_real t18 = t16 - t17;
+        const gic_real t19 = t12 * t12 + (t15 * t15 + t18 * t18) - x[0] * x[0];
+        const gic_real t20 = GIC_MAX(GIC_MAX(t8, t9), GIC_FABS(t19 * R(7.892375927523104)));
+        worst = t20;
     }
     return worst;
 }
@@ -946,555 +542,340 @@ static const gic_real quarter_car_k_wheel[1][1] = {
 };
 
 /* Class 'wheel': 6 unknowns of wheel.
- * start: pose 7 numbers a body, S from 7, factors from 19. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
+ * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
 static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
-    gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const m1 = links->known[1]; /* arm */
     const gic_real *const rate = links->rate;
-    const gic_real *const change = links->change;
-    const gic_real *const s = old + 7; /* unit velocities at the start */
-    const gic_real *const f = old + 19; /* factors at the start */
-    gic_real q[7];
-    gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
-    const gic_real enough = GIC_ENOUGH(R(6.400399145209049));
-    int i;
-    (void)k, (void)inertia;
-    for (i = 0; i < 7; ++i)
-        q[i] = old[i];
-    if (!links->cold) {
-        /* predict: the old pose moved by its unit velocities times the change of the coordinates */
-        {
-            const gic_real t1 = change[0] * s[3] + change[1] * s[9];
-            const gic_real t2 = change[0] * s[4] + change[1] * s[10];
-            const gic_real t3 = change[0] * s[5] + change[1] * s[11];
-            const gic_real t4 = change[0] * s[2] + change[1] * s[8];
-            const gic_real t5 = R(0.5) * t4;
-            const gic_real t6 = change[0] * s[1] + change[1] * s[7];
-            const gic_real t7 = R(0.5) * t6;
-            const gic_real t8 = change[0] * s[0] + change[1] * s[6];
-            const gic_real t9 = R(0.5) * t8;
-            const gic_real t10 = q[3] - (q[6] * t5 + (q[5] * t7 + q[4] * t9));
-            const gic_real t11 = q[6] + (q[5] * t9 - q[4] * t7 + q[3] * t5);
-            const gic_real t12 = q[5] + (q[4] * t5 - q[6] * t9 + q[3] * t7);
-            const gic_real t13 = q[4] + (q[6] * t7 - q[5] * t5 + q[3] * t9);
-            const gic_real t14 = t11 * t11 + (t12 * t12 + t13 * t13) + t10 * t10;
-            const gic_real t15 = R(1.5) - R(0.5) * t14;
-            const gic_real t16 = (t3 * t3 + (t2 * t2 + t1 * t1)) * R(8.573627050492615);
-            const gic_real t17 = t4 * t4 + (t6 * t6 + t8 * t8) + t16;
-            const gic_real t18 = q[0] + t1;
-            const gic_real t19 = q[1] + t2;
-            const gic_real t20 = q[2] + t3;
-            const gic_real t21 = t10 * t15;
-            const gic_real t22 = t13 * t15;
-            const gic_real t23 = t12 * t15;
-            const gic_real t24 = t11 * t15;
-            q[0] = t18;
-            q[1] = t19;
-            q[2] = t20;
-            q[3] = t21;
-            q[4] = t22;
-            q[5] = t23;
-            q[6] = t24;
-            reach = t17;
-        }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding */
-        for (i = 0; i < GIC_CHORDS; ++i) {
-            {
-                const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (R(0.49375935710120966) * m1[4] + R(-0.035559999999999994) * m1[3]));
-                const gic_real t2 = t1 - q[0];
-                const gic_real t3 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (R(0.49375935710120966) * m1[7] + R(-0.035559999999999994) * m1[6]));
-                const gic_real t4 = t3 - q[1];
-                const gic_real t5 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (R(0.49375935710120966) * m1[10] + R(-0.035559999999999994) * m1[9]));
-                const gic_real t6 = t5 - q[2];
-                const gic_real t7 = q[4] + q[4];
-                const gic_real t8 = q[4] * t7;
-                const gic_real t9 = q[5] + q[5];
-                const gic_real t10 = q[5] * t9;
-                const gic_real t11 = R(1.0) - (t8 + t10);
-                const gic_real t12 = q[6] * t9;
-                const gic_real t13 = q[3] * t7;
-                const gic_real t14 = t12 + t13;
-                const gic_real t15 = q[6] + q[6];
-                const gic_real t16 = q[4] * t15;
-                const gic_real t17 = q[3] * t9;
-                const gic_real t18 = t16 - t17;
-                const gic_real t19 = q[2] + (R(0.10177780000000003) * t11 + (R(0.03459480000000004) * t14 + R(-0.1402588) * t18));
-                const gic_real t20 = m0[2] + (R(-0.1587710000000001) * m0[11] + (R(0.448437) * m0[10] + R(-0.250317) * m0[9]));
-                const gic_real t21 = t19 - t20;
-                const gic_real t22 = t12 - t13;
-                const gic_real t23 = q[6] * t15;
-                const gic_real t24 = R(1.0) - (t8 + t23);
-                const gic_real t25 = q[5] * t7;
-                const gic_real t26 = q[3] * t15;
-                const gic_real t27 = t25 + t26;
-                const gic_real t28 = q[1] + (R(0.10177780000000003) * t22 + (R(0.03459480000000004) * t24 + R(-0.1402588) * t27));
-                const gic_real t29 = m0[1] + (R(-0.1587710000000001) * m0[8] + (R(0.448437) * m0[7] + R(-0.250317) * m0[6]));
-                const gic_real t30 = t28 - t29;
-                const gic_real t31 = t16 + t17;
-                const gic_real t32 = t25 - t26;
-                const gic_real t33 = R(1.0) - (t10 + t23);
-                const gic_real t34 = q[0] + (R(0.10177780000000003) * t31 + (R(0.03459480000000004) * t32 + R(-0.1402588) * t33));
-                const gic_real t35 = m0[0] + (R(-0.1587710000000001) * m0[5] + (R(0.448437) * m0[4] + R(-0.250317) * m0[3]));
-                const gic_real t36 = t34 - t35;
-                const gic_real t37 = t21 * t21 + (t30 * t30 + t36 * t36) - R(0.14941089924212003);
-                const gic_real t38 = t37 * R(0.5) + f[0] * t2 + f[1] * t4 + f[2] * t6;
-                const gic_real t39 = q[2] + (R(0.33360360000000006) * t11 + (R(-0.07099299999999997) * t14 + R(-0.017475199999999996) * t18));
-                const gic_real t40 = m0[2] + (R(0.021117699999999906) * m0[11] + (R(0.4527638) * m0[10] + R(-0.095082) * m0[9]));
-                const gic_real t41 = t39 - t40;
-                const gic_real t42 = q[1] + (R(0.33360360000000006) * t22 + (R(-0.07099299999999997) * t24 + R(-0.017475199999999996) * t27));
-                const gic_real t43 = m0[1] + (R(0.021117699999999906) * m0[8] + (R(0.4527638) * m0[7] + R(-0.095082) * m0[6]));
-                const gic_real t44 = t42 - t43;
-                const gic_real t45 = q[0] + (R(0.33360360000000006) * t31 + (R(-0.07099299999999997) * t32 + R(-0.017475199999999996) * t33));
-                const gic_real t46 = m0[0] + (R(0.021117699999999906) * m0[5] + (R(0.4527638) * m0[4] + R(-0.095082) * m0[3]));
-                const gic_real t47 = t45 - t46;
-                const gic_real t48 = t41 * t41 + (t44 * t44 + t47 * t47) - R(0.07115456010869);
-                const gic_real t49 = R(0.5) * t48 + f[6] * t2 + f[7] * t4 + f[8] * t6;
-                const gic_real t50 = f[9] * t38 - t49;
-                const gic_real t51 = t41 * (R(0.21526024724178433) * m0[11] + (R(-0.1394133303209898) * m0[10] + R(0.9665541626242249) * m0[9]));
-                const gic_real t52 = t44 * (R(0.21526024724178433) * m0[8] + (R(-0.1394133303209898) * m0[7] + R(0.9665541626242249) * m0[6]));
-                const gic_real t53 = t47 * (R(0.21526024724178433) * m0[5] + (R(-0.1394133303209898) * m0[4] + R(0.9665541626242249) * m0[3]));
-                const gic_real t54 = R(4.311654514671526e-08) - (t51 + (t52 + t53)) - f[12] * t2 - f[13] * t4;
-                const gic_real t55 = t54 - f[14] * t6 + f[15] * t38 - f[16] * t50;
-                const gic_real t56 = f[17] * t55;
-                const gic_real t57 = f[10] * (t50 - f[11] * t56);
-                const gic_real t58 = R(0.5) * t57;
-                const gic_real t59 = R(0.5) * t56;
-                const gic_real t60 = f[3] * (t38 + f[4] * t57 + f[5] * t56);
-                const gic_real t61 = R(0.5) * t60;
-                const gic_real t62 = q[3] - (q[6] * t58 + (q[5] * t59 - q[4] * t61));
-                const gic_real t63 = q[6] + (q[3] * t58 - (q[4] * t59 + q[5] * t61));
-                const gic_real t64 = q[5] + (q[6] * t61 + q[4] * t58 + q[3] * t59);
-                const gic_real t65 = q[4] + (q[6] * t59 - q[5] * t58 - q[3] * t61);
-                const gic_real t66 = t63 * t63 + (t64 * t64 + t65 * t65) + t62 * t62;
-                const gic_real t67 = R(1.5) - R(0.5) * t66;
-                const gic_real t68 = R(8.573627050492615) * (t6 * t6 + (t4 * t4 + t2 * t2));
-                const gic_real t69 = t57 * t57 + (t56 * t56 + t60 * t60) + t68;
-                const gic_real t70 = q[0] + t2;
-                const gic_real t71 = q[1] + t4;
-                const gic_real t72 = q[2] + t6;
-                const gic_real t73 = t62 * t67;
-                const gic_real t74 = t65 * t67;
-                const gic_real t75 = t64 * t67;
-                const gic_real t76 = t63 * t67;
-                q[0] = t70;
-                q[1] = t71;
-                q[2] = t72;
-                q[3] = t73;
-                q[4] = t74;
-                q[5] = t75;
-                q[6] = t76;
-                step = t69;
-            }
-            ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
-                return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
-                break;
-        }
-    }
-    for (i = 0; i < GIC_PASSES; ++i) {
-        /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
-        {
-            const gic_real t1 = q[5] + q[5];
-            const gic_real t2 = q[6] * t1;
-            const gic_real t3 = q[4] + q[4];
-            const gic_real t4 = q[3] * t3;
-            const gic_real t5 = t2 - t4;
-            const gic_real t6 = q[4] * t3;
-            const gic_real t7 = q[6] + q[6];
-            const gic_real t8 = q[6] * t7;
-            const gic_real t9 = R(1.0) - (t6 + t8);
-            const gic_real t10 = q[5] * t3;
-            const gic_real t11 = q[3] * t7;
-            const gic_real t12 = t10 + t11;
-            const gic_real t13 = R(0.10177780000000003) * t5 + (R(0.03459480000000004) * t9 + R(-0.1402588) * t12);
-            const gic_real t14 = q[5] * t1;
-            const gic_real t15 = R(1.0) - (t6 + t14);
-            const gic_real t16 = t2 + t4;
-            const gic_real t17 = q[4] * t7;
-            const gic_real t18 = q[3] * t1;
-            const gic_real t19 = t17 - t18;
-            const gic_real t20 = R(0.10177780000000003) * t15 + (R(0.03459480000000004) * t16 + R(-0.1402588) * t19);
-            const gic_real t21 = q[2] + t20;
-            const gic_real t22 = R(-0.1587710000000001) * m0[11] + (R(0.448437) * m0[10] + R(-0.250317) * m0[9]);
-            const gic_real t23 = m0[2] + t22;
-            const gic_real t24 = t21 - t23;
-            const gic_real t25 = q[1] + t13;
-            const gic_real t26 = R(-0.1587710000000001) * m0[8] + (R(0.448437) * m0[7] + R(-0.250317) * m0[6]);
-            const gic_real t27 = m0[1] + t26;
-            const gic_real t28 = t25 - t27;
-            const gic_real t29 = t13 * t24 - t20 * t28;
-            if (!(GIC_FABS(t29) > R(4.304353877485567e-09)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t30 = t17 + t18;
-            const gic_real t31 = t10 - t11;
-            const gic_real t32 = R(1.0) - (t14 + t8);
-            const gic_real t33 = R(0.33360360000000006) * t30 + (R(-0.07099299999999997) * t31 + R(-0.017475199999999996) * t32);
-            const gic_real t34 = R(0.33360360000000006) * t5 + (R(-0.07099299999999997) * t9 + R(-0.017475199999999996) * t12);
-            const gic_real t35 = q[1] + t34;
-            const gic_real t36 = R(0.021117699999999906) * m0[8] + (R(0.4527638) * m0[7] + R(-0.095082) * m0[6]);
-            const gic_real t37 = m0[1] + t36;
-            const gic_real t38 = t35 - t37;
-            const gic_real t39 = q[0] + t33;
-            const gic_real t40 = R(0.021117699999999906) * m0[5] + (R(0.4527638) * m0[4] + R(-0.095082) * m0[3]);
-            const gic_real t41 = m0[0] + t40;
-            const gic_real t42 = t39 - t41;
-            const gic_real t43 = R(0.10177780000000003) * t30 + (R(0.03459480000000004) * t31 + R(-0.1402588) * t32);
-            const gic_real t44 = q[0] + t43;
-            const gic_real t45 = R(-0.1587710000000001) * m0[5] + (R(0.448437) * m0[4] + R(-0.250317) * m0[3]);
-            const gic_real t46 = m0[0] + t45;
-            const gic_real t47 = t44 - t46;
-            const gic_real t48 = t43 * t28 - t13 * t47;
-            const gic_real t49 = R(0.33360360000000006) * t15 + (R(-0.07099299999999997) * t16 + R(-0.017475199999999996) * t19);
-            const gic_real t50 = q[2] + t49;
-            const gic_real t51 = R(0.021117699999999906) * m0[11] + (R(0.4527638) * m0[10] + R(-0.095082) * m0[9]);
-            const gic_real t52 = m0[2] + t51;
-            const gic_real t53 = t50 - t52;
-            const gic_real t54 = R(1.0) / t29;
-            const gic_real t55 = (t34 * t53 - t49 * t38) * t54;
-            const gic_real t56 = t33 * t38 - t34 * t42 - t48 * t55;
-            if (!(GIC_FABS(t56) > R(1.263321060974042e-08)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t57 = R(0.21526024724178433) * m0[5] + (R(-0.1394133303209898) * m0[4] + R(0.9665541626242249) * m0[3]);
-            const gic_real t58 = R(0.21526024724178433) * m0[11] + (R(-0.1394133303209898) * m0[10] + R(0.9665541626242249) * m0[9]);
-            const gic_real t59 = t20 * t47 - t43 * t24;
-            const gic_real t60 = R(0.21526024724178433) * m0[8] + (R(-0.1394133303209898) * m0[7] + R(0.9665541626242249) * m0[6]);
-            const gic_real t61 = (t34 * t58 - t49 * t60) * t54;
-            const gic_real t62 = t49 * t42 - t33 * t53 - t59 * t55;
-            const gic_real t63 = R(1.0) / t56;
-            const gic_real t64 = (t33 * t60 - t34 * t57 - t48 * t61) * t63;
-            const gic_real t65 = t49 * t57 - t33 * t58 - t59 * t61 - t62 * t64;
-            if (!(GIC_FABS(t65) > R(3.2601841366889306e-08)))
-                return GIC_ERROR_SINGULAR;
-            const gic_real t66 = R(6.938893903907228e-18) * m1[5] + (R(0.49375935710120966) * m1[4] + R(-0.035559999999999994) * m1[3]);
-            const gic_real t67 = m1[0] + t66 - q[0];
-            const gic_real t68 = q[0] + t67;
-            const gic_real t69 = R(6.938893903907228e-18) * m1[8] + (R(0.49375935710120966) * m1[7] + R(-0.035559999999999994) * m1[6]);
-            const gic_real t70 = m1[1] + t69 - q[1];
-            const gic_real t71 = q[1] + t70;
-            const gic_real t72 = R(6.938893903907228e-18) * m1[11] + (R(0.49375935710120966) * m1[10] + R(-0.035559999999999994) * m1[9]);
-            const gic_real t73 = m1[2] + t72 - q[2];
-            const gic_real t74 = q[2] + t73;
-            const gic_real t75 = t24 * t24 + (t28 * t28 + t47 * t47) - R(0.14941089924212003);
-            const gic_real t76 = t75 * R(0.5) + t47 * t67 + t28 * t70 + t24 * t73;
-            const gic_real t77 = t53 * t53 + (t38 * t38 + t42 * t42) - R(0.07115456010869);
-            const gic_real t78 = R(0.5) * t77 + t42 * t67 + t38 * t70 + t53 * t73;
-            const gic_real t79 = t55 * t76 - t78;
-            const gic_real t80 = R(1.0) / t65;
-            const gic_real t81 = R(4.311654514671526e-08) - (t53 * t58 + (t38 * t60 + t42 * t57));
-            const gic_real t82 = t81 - t57 * t67 - t60 * t70 - t58 * t73;
-            const gic_real t83 = t80 * (t82 + t61 * t76 - t64 * t79);
-            const gic_real t84 = t63 * (t79 - t62 * t83);
-            const gic_real t85 = R(0.5) * t84;
-            const gic_real t86 = R(0.5) * t83;
-            const gic_real t87 = t54 * (t76 + t48 * t84 + t59 * t83);
-            const gic_real t88 = R(0.5) * t87;
-            const gic_real t89 = q[3] - (q[6] * t85 + (q[5] * t86 - q[4] * t88));
-            const gic_real t90 = q[6] + (q[3] * t85 - (q[4] * t86 + q[5] * t88));
-            const gic_real t91 = q[5] + (q[6] * t88 + q[4] * t85 + q[3] * t86);
-            const gic_real t92 = q[4] + (q[6] * t86 - q[5] * t85 - q[3] * t88);
-            const gic_real t93 = t90 * t90 + (t91 * t91 + t92 * t92) + t89 * t89;
-            const gic_real t94 = R(1.5) - R(0.5) * t93;
-            const gic_real t95 = t89 * t94;
-            const gic_real t96 = t92 * t94;
-            const gic_real t97 = t91 * t94;
-            const gic_real t98 = t90 * t94;
-            const gic_real t99 = R(8.573627050492615) * (t73 * t73 + (t70 * t70 + t67 * t67));
-            const gic_real t100 = t99 + (t84 * t84 + (t83 * t83 + t87 * t87));
-            const gic_real t101 = t97 + t97;
-            const gic_real t102 = t97 * t101;
-            const gic_real t103 = t98 + t98;
-            const gic_real t104 = t98 * t103;
-            const gic_real t105 = R(1.0) - (t102 + t104);
-            const gic_real t106 = t96 + t96;
-            const gic_real t107 = t97 * t106;
-            const gic_real t108 = t95 * t103;
-            const gic_real t109 = t107 - t108;
-            const gic_real t110 = t96 * t103;
-            const gic_real t111 = t95 * t101;
-            const gic_real t112 = t110 + t111;
-            const gic_real t113 = t107 + t108;
-            const gic_real t114 = t96 * t106;
-            const gic_real t115 = R(1.0) - (t114 + t104);
-            const gic_real t116 = t98 * t101;
-            const gic_real t117 = t95 * t106;
-            const gic_real t118 = t116 - t117;
-            const gic_real t119 = t110 - t111;
-            const gic_real t120 = t116 + t117;
-            const gic_real t121 = R(1.0) - (t114 + t102);
-            const gic_real t122 = m0[24] * (t22 * t28 - t26 * t24) + m0[25] * (t45 * t24 - t22 * t47);
-            const gic_real t123 = t122 + m0[26] * (t26 * t47 - t45 * t28) + m0[27] * (t46 - t44);
-            const gic_real t124 = t123 + m0[28] * (t27 - t25) + m0[29] * (t23 - t21);
-            const gic_real t125 = m1[33] - (m1[32] * t69 - m1[31] * t72);
-            const gic_real t126 = m1[34] - (m1[30] * t72 - m1[32] * t66);
-            const gic_real t127 = m1[35] - (m1[31] * t66 - m1[30] * t69);
-            const gic_real t128 = t124 + t47 * t125 + t28 * t126 + t24 * t127;
-            const gic_real t129 = m0[24] * (t51 * t38 - t36 * t53) + m0[25] * (t40 * t53 - t51 * t42);
-            const gic_real t130 = t129 + m0[26] * (t36 * t42 - t40 * t38) + m0[27] * (t41 - t39);
-            const gic_real t131 = t130 + m0[28] * (t37 - t35) + m0[29] * (t52 - t50);
-            const gic_real t132 = t131 + t42 * t125 + t38 * t126 + t53 * t127;
-            const gic_real t133 = t55 * t128 - t132;
-            const gic_real t134 = t51 * t60 - t36 * t58 + (t53 * t60 - t38 * t58);
-            const gic_real t135 = t40 * t58 - t51 * t57 + (t42 * t58 - t53 * t57);
-            const gic_real t136 = t36 * t57 - t40 * t60 + (t38 * t57 - t42 * t60);
-            const gic_real t137 = m0[24] * t134 + m0[25] * t135 + m0[26] * t136 - m0[27] * t57;
-            const gic_real t138 = m0[29] * t58 - (t137 - m0[28] * t60) - t57 * t125;
-            const gic_real t139 = t138 - t60 * t126 - t58 * t127 + t61 * t128;
-            const gic_real t140 = t80 * (t139 - t64 * t133);
-            const gic_real t141 = t63 * (t133 - t62 * t140);
-            const gic_real t142 = t54 * (t128 + t48 * t141 + t59 * t140);
-            const gic_real t143 = m1[27] - (m1[26] * t69 - m1[25] * t72);
-            const gic_real t144 = m1[28] - (m1[24] * t72 - m1[26] * t66);
-            const gic_real t145 = m1[29] - (m1[25] * t66 - m1[24] * t69);
-            const gic_real t146 = t47 * t143 + t28 * t144 + t24 * t145;
-            const gic_real t147 = t55 * t146 - (t42 * t143 + t38 * t144 + t53 * t145);
-            const gic_real t148 = t61 * t146 - (t57 * t143 + t60 * t144 + t58 * t145);
-            const gic_real t149 = t80 * (t148 - t64 * t147);
-            const gic_real t150 = t63 * (t147 - t62 * t149);
-            const gic_real t151 = t54 * (t146 + t48 * t150 + t59 * t149);
-            const gic_real t152 = rate[0] * t142 + rate[1] * t151;
-            const gic_real t153 = rate[0] * t140 + rate[1] * t149;
-            const gic_real t154 = rate[0] * t141 + rate[1] * t150;
-            const gic_real t155 = rate[0] * t125 + rate[1] * t143;
-            const gic_real t156 = rate[0] * t126 + rate[1] * t144;
-            const gic_real t157 = rate[0] * t127 + rate[1] * t145;
-            const gic_real t158 = t43 * t153 + t13 * t152;
-            const gic_real t159 = m0[12] * t26 - m0[13] * t45;
-            const gic_real t160 = t157 - t158 - (m0[17] + t159);
-            const gic_real t161 = t20 * t152 + t43 * t154;
-            const gic_real t162 = m0[14] * t45 - m0[12] * t22;
-            const gic_real t163 = t156 + t161 - (m0[16] + t162);
-            const gic_real t164 = t20 * t153 - t13 * t154;
-            const gic_real t165 = m0[13] * t22 - m0[14] * t26;
-            const gic_real t166 = t155 + t164 - (m0[15] + t165);
-            const gic_real t167 = m0[14] * t165 - m0[12] * t159 + (m0[20] * t45 - m0[18] * t22);
-            const gic_real t168 = t28 * (t154 * t164 - t152 * t158 - (m0[22] + t167));
-            const gic_real t169 = m0[13] * t159 - m0[14] * t162 + (m0[19] * t22 - m0[20] * t26);
-            const gic_real t170 = t47 * (m0[21] + t169 + (t154 * t161 + t153 * t158));
-            const gic_real t171 = m0[12] * t162 - m0[13] * t165 + (m0[18] * t26 - m0[19] * t45);
-            const gic_real t172 = t24 * (m0[23] + t171 + (t153 * t164 + t152 * t161));
-            const gic_real t173 = t160 * t160 + (t163 * t163 + t166 * t166) + (t168 - t170 - t172);
-            const gic_real t174 = m1[12] * t69 - m1[13] * t66;
-            const gic_real t175 = m1[14] * t66 - m1[12] * t72;
-            const gic_real t176 = m1[13] * t174 - m1[14] * t175 + (m1[19] * t72 - m1[20] * t69);
-            const gic_real t177 = m1[21] + t176;
-            const gic_real t178 = m1[13] * t72 - m1[14] * t69;
-            const gic_real t179 = m1[14] * t178 - m1[12] * t174 + (m1[20] * t66 - m1[18] * t72);
-            const gic_real t180 = m1[22] + t179;
-            const gic_real t181 = m1[12] * t175 - m1[13] * t178 + (m1[18] * t69 - m1[19] * t66);
-            const gic_real t182 = m1[23] + t181;
-            const gic_real t183 = t173 + t177 * t47 + t180 * t28 + t182 * t24;
-            const gic_real t184 = t33 * t153 + t34 * t152;
-            const gic_real t185 = m0[12] * t36 - m0[13] * t40;
-            const gic_real t186 = t157 - t184 - (m0[17] + t185);
-            const gic_real t187 = t49 * t152 + t33 * t154;
-            const gic_real t188 = m0[14] * t40 - m0[12] * t51;
-            const gic_real t189 = t156 + t187 - (m0[16] + t188);
-            const gic_real t190 = t49 * t153 - t34 * t154;
-            const gic_real t191 = m0[13] * t51 - m0[14] * t36;
-            const gic_real t192 = t155 + t190 - (m0[15] + t191);
-            const gic_real t193 = m0[14] * t191 - m0[12] * t185 + (m0[20] * t40 - m0[18] * t51);
-            const gic_real t194 = t154 * t190 - t152 * t184 - (m0[22] + t193);
-            const gic_real t195 = m0[13] * t185 - m0[14] * t188 + (m0[19] * t51 - m0[20] * t36);
-            const gic_real t196 = m0[21] + t195 + (t154 * t187 + t153 * t184);
-            const gic_real t197 = m0[12] * t188 - m0[13] * t191 + (m0[18] * t36 - m0[19] * t40);
-            const gic_real t198 = m0[23] + t197 + (t153 * t190 + t152 * t187);
-            const gic_real t199 = t186 * t186 + (t189 * t189 + t192 * t192) + (t38 * t194 - t42 * t196 - t53 * t198);
-            const gic_real t200 = t199 + t177 * t42 + t180 * t38 + t182 * t53;
-            const gic_real t201 = t55 * t183 - t200;
-            const gic_real t202 = m0[12] * t60 - m0[13] * t57;
-            const gic_real t203 = m0[14] * t57 - m0[12] * t58;
-            const gic_real t204 = m0[13] * t58 - m0[14] * t60;
-            const gic_real t205 = t202 * t186 + (t203 * t189 + t204 * t192);
-            const gic_real t206 = m0[12] * t203 - m0[13] * t204 + (m0[18] * t60 - m0[19] * t57);
-            const gic_real t207 = m0[14] * t204 - m0[12] * t202 + (m0[20] * t57 - m0[18] * t58);
-            const gic_real t208 = m0[13] * t202 - m0[14] * t203 + (m0[19] * t58 - m0[20] * t60);
-            const gic_real t209 = t53 * t206 + (t38 * t207 + t42 * t208) + (t60 * t194 - t57 * t196 - t58 * t198);
-            const gic_real t210 = t205 + t205 + t209 + t177 * t57 + t180 * t60;
-            const gic_real t211 = t61 * t183 - (t210 + t182 * t58) - t64 * t201;
-            const gic_real t212 = t80 * t211;
-            const gic_real t213 = t63 * (t201 - t62 * t212);
-            const gic_real t214 = t54 * (t183 + t48 * t213 + t59 * t212);
-            const gic_real t215 = -t142;
-            const gic_real t216 = -t151;
-            const gic_real t217 = t121 * R(0.09182100000000004) + (t120 * R(0.08910630000000008) + t119 * R(-0.004825999999999997));
-            const gic_real t218 = t118 * R(0.09182100000000004) + (t115 * R(0.08910630000000008) + t113 * R(-0.004825999999999997));
-            const gic_real t219 = t125 + (t140 * t217 - t141 * t218);
-            const gic_real t220 = R(90.555) * t219;
-            const gic_real t221 = t112 * R(0.09182100000000004) + (t109 * R(0.08910630000000008) + t105 * R(-0.004825999999999997));
-            const gic_real t222 = t126 + (t142 * t217 + t141 * t221);
-            const gic_real t223 = R(90.555) * t222;
-            const gic_real t224 = t127 - (t140 * t221 + t142 * t218);
-            const gic_real t225 = R(90.555) * t224;
-            const gic_real t226 = t109 * R(2.8083995);
-            const gic_real t227 = t105 * R(0.12192999999999987);
-            const gic_real t228 = t120 * t226 + t119 * t227;
-            const gic_real t229 = t115 * t226 + t113 * t227;
-            const gic_real t230 = R(4.7728205) + (t109 * t226 + t105 * t227);
-            const gic_real t231 = t141 * t228 + (t140 * t229 - t142 * t230);
-            const gic_real t232 = t71 + t218;
-            const gic_real t233 = t74 + t217;
-            const gic_real t234 = t115 * R(2.8083995);
-            const gic_real t235 = t113 * R(0.12192999999999987);
-            const gic_real t236 = t120 * t234 + t119 * t235;
-            const gic_real t237 = R(4.7728205) + (t115 * t234 + t113 * t235);
-            const gic_real t238 = t141 * t236 + (t140 * t237 - t142 * t229);
-            const gic_real t239 = t68 + t221;
-            const gic_real t240 = R(4.7728205) + (t120 * (t120 * R(2.8083995)) + t119 * (t119 * R(0.12192999999999987)));
-            const gic_real t241 = t141 * t240 + (t140 * t236 - t142 * t228);
-            const gic_real t242 = t154 * t228 + (t153 * t229 - t152 * t230);
-            const gic_real t243 = t154 * t236 + (t153 * t237 - t152 * t229);
-            const gic_real t244 = t213 * t240 + (t212 * t236 - t214 * t228) - (t153 * t242 + t152 * t243);
-            const gic_real t245 = t154 * t240 + (t153 * t236 - t152 * t228);
-            const gic_real t246 = t213 * t236 + (t212 * t237 - t214 * t229) + (t152 * t245 + t154 * t242);
-            const gic_real t247 = t213 * t228 + (t212 * t229 - t214 * t230) + (t153 * t245 - t154 * t243);
-            const gic_real t248 = t153 * t217 - t154 * t218;
-            const gic_real t249 = t152 * t217 + t154 * t221;
-            const gic_real t250 = t153 * t248 + t152 * t249 + (t212 * t221 + t214 * t218);
-            const gic_real t251 = R(90.555) * (t182 - t250);
-            const gic_real t252 = t153 * t221 + t152 * t218;
-            const gic_real t253 = t154 * t248 - t152 * t252 + (t214 * t217 + t213 * t221);
-            const gic_real t254 = R(90.555) * (t180 + t253);
-            const gic_real t255 = t212 * t217 - t213 * t218 - (t154 * t249 + t153 * t252);
-            const gic_real t256 = R(90.555) * (t177 + t255);
-            const gic_real t257 = t141 * t244 + (t140 * t246 - t142 * t247) + (t251 * t224 + (t254 * t222 + t256 * t219));
-            const gic_real t258 = t143 + (t149 * t217 - t150 * t218);
-            const gic_real t259 = R(90.555) * t258;
-            const gic_real t260 = t144 + (t151 * t217 + t150 * t221);
-            const gic_real t261 = R(90.555) * t260;
-            const gic_real t262 = t145 - (t149 * t221 + t151 * t218);
-            const gic_real t263 = R(90.555) * t262;
-            const gic_real t264 = t150 * t228 + (t149 * t229 - t151 * t230);
-            const gic_real t265 = t150 * t236 + (t149 * t237 - t151 * t229);
-            const gic_real t266 = t150 * t240 + (t149 * t236 - t151 * t228);
-            const gic_real t267 = t150 * t244 + (t149 * t246 - t151 * t247) + (t251 * t262 + (t254 * t260 + t256 * t258));
-            const gic_real t268 = t141 * t241 + (t140 * t238 - t142 * t231) + (t224 * t225 + (t222 * t223 + t219 * t220));
-            const gic_real t269 = t141 * t266 + (t140 * t265 - t142 * t264) + (t224 * t263 + (t222 * t261 + t219 * t259));
-            const gic_real t270 = t150 * t266 + (t149 * t265 - t151 * t264) + (t262 * t263 + (t260 * t261 + t258 * t259));
-            const gic_real t271 = -t152;
-            const gic_real t272 = -t214;
-            const gic_real t273 = t231 + (t232 * t225 - t233 * t223);
-            const gic_real t274 = t238 + (t233 * t220 - t239 * t225);
-            const gic_real t275 = t241 + (t239 * t223 - t232 * t220);
-            const gic_real t276 = t264 + (t232 * t263 - t233 * t261);
-            const gic_real t277 = t265 + (t233 * t259 - t239 * t263);
-            const gic_real t278 = t266 + (t239 * t261 - t232 * t259);
-            q[0] = t68;
-            q[1] = t71;
-            q[2] = t74;
-            q[3] = t95;
-            q[4] = t96;
-            q[5] = t97;
-            q[6] = t98;
-            step = t100;
-            motion[0] = t68;
-            motion[1] = t71;
-            motion[2] = t74;
-            motion[3] = t105;
-            motion[4] = t109;
-            motion[5] = t112;
-            motion[6] = t113;
-            motion[7] = t115;
-            motion[8] = t118;
-            motion[9] = t119;
-            motion[10] = t120;
-            motion[11] = t121;
-            motion[12] = t271;
-            motion[13] = t153;
-            motion[14] = t154;
-            motion[15] = t155;
-            motion[16] = t156;
-            motion[17] = t157;
-            motion[18] = t272;
-            motion[19] = t212;
-            motion[20] = t213;
-            motion[21] = t177;
-            motion[22] = t180;
-            motion[23] = t182;
-            motion[24] = t215;
-            motion[25] = t140;
-            motion[26] = t141;
-            motion[27] = t125;
-            motion[28] = t126;
-            motion[29] = t127;
-            motion[30] = t216;
-            motion[31] = t149;
-            motion[32] = t150;
-            motion[33] = t143;
-            motion[34] = t144;
-            motion[35] = t145;
-            start[7] = t215;
-            start[8] = t140;
-            start[9] = t141;
-            start[10] = t125;
-            start[11] = t126;
-            start[12] = t127;
-            start[13] = t216;
-            start[14] = t149;
-            start[15] = t150;
-            start[16] = t143;
-            start[17] = t144;
-            start[18] = t145;
-            start[19] = t47;
-            start[20] = t28;
-            start[21] = t24;
-            start[22] = t54;
-            start[23] = t48;
-            start[24] = t59;
-            start[25] = t42;
-            start[26] = t38;
-            start[27] = t53;
-            start[28] = t55;
-            start[29] = t63;
-            start[30] = t62;
-            start[31] = t57;
-            start[32] = t60;
-            start[33] = t58;
-            start[34] = t61;
-            start[35] = t64;
-            start[36] = t80;
-            inertia[15] = t220;
-            inertia[16] = t223;
-            inertia[17] = t225;
-            inertia[18] = t273;
-            inertia[19] = t274;
-            inertia[20] = t275;
-            inertia[21] = t257;
-            inertia[22] = t259;
-            inertia[23] = t261;
-            inertia[24] = t263;
-            inertia[25] = t276;
-            inertia[26] = t277;
-            inertia[27] = t278;
-            inertia[28] = t267;
-            inertia[29] = t268;
-            inertia[30] = t269;
-            inertia[31] = t270;
-        }
-        ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
+    (void)k, (void)start, (void)inertia;
+    {
+        const gic_real t1 = R(0.21526024724178433) * m0[5] + (R(-0.1394133303209898) * m0[4] + R(0.9665541626242249) * m0[3]);
+        const gic_real t2 = R(0.021117699999999906) * m0[8] + (R(0.4527638) * m0[7] + R(-0.095082) * m0[6]);
+        const gic_real t3 = m0[1] + t2;
+        const gic_real t4 = R(6.938893903907228e-18) * m1[8] + (R(0.49375935710120966) * m1[7] + R(-0.035559999999999994) * m1[6]);
+        const gic_real t5 = m1[1] + t4;
+        const gic_real t6 = t3 - t5;
+        const gic_real t7 = R(0.21526024724178433) * m0[8] + (R(-0.1394133303209898) * m0[7] + R(0.9665541626242249) * m0[6]);
+        const gic_real t8 = R(0.021117699999999906) * m0[5] + (R(0.4527638) * m0[4] + R(-0.095082) * m0[3]);
+        const gic_real t9 = m0[0] + t8;
+        const gic_real t10 = R(6.938893903907228e-18) * m1[5] + (R(0.49375935710120966) * m1[4] + R(-0.035559999999999994) * m1[3]);
+        const gic_real t11 = m1[0] + t10;
+        const gic_real t12 = t9 - t11;
+        const gic_real t13 = t1 * t6 - t7 * t12;
+        const gic_real t14 = R(0.21526024724178433) * m0[11] + (R(-0.1394133303209898) * m0[10] + R(0.9665541626242249) * m0[9]);
+        const gic_real t15 = R(0.021117699999999906) * m0[11] + (R(0.4527638) * m0[10] + R(-0.095082) * m0[9]);
+        const gic_real t16 = m0[2] + t15;
+        const gic_real t17 = R(6.938893903907228e-18) * m1[11] + (R(0.49375935710120966) * m1[10] + R(-0.035559999999999994) * m1[9]);
+        const gic_real t18 = m1[2] + t17;
+        const gic_real t19 = t16 - t18;
+        const gic_real t20 = t14 * t12 - t1 * t19;
+        const gic_real t21 = t7 * t19 - t14 * t6;
+        const gic_real t22 = R(1.0) / (t13 * t13 + (t20 * t20 + t21 * t21));
+        const gic_real t23 = t14 * t19 + (t7 * t6 + t1 * t12);
+        const gic_real t24 = R(4.311654514671526e-08) + t23;
+        const gic_real t25 = t19 * t19 + (t6 * t6 + t12 * t12);
+        const gic_real t26 = R(0.5) * (R(0.11663675059700003) + t25 - R(0.07115456010869));
+        const gic_real t27 = t22 * (t24 * t25 - t23 * t26);
+        const gic_real t28 = t26 * (t14 * t14 + (t7 * t7 + t1 * t1));
+        const gic_real t29 = t22 * (t28 - t23 * t24);
+        const gic_real t30 = t22 * (R(0.11663675059700003) - t24 * t27 - t26 * t29);
+        if (!(t30 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
-            if (step > self->head.largest_step)
-                self->head.largest_step = step;
-            ++self->head.newton_count;
-            for (i = 0; i < 7; ++i)
-                start[i] = q[i];
-            return GIC_OK;
-        }
-        before = step;
+        const gic_real t31 = R(-0.1587710000000001) * m0[11] + (R(0.448437) * m0[10] + R(-0.250317) * m0[9]);
+        const gic_real t32 = m0[2] + t31;
+        const gic_real t33 = t32 - t18;
+        const gic_real t34 = GIC_SQRT(t30);
+        const gic_real t35 = t14 * t27 + t19 * t29 - t13 * t34;
+        const gic_real t36 = R(-0.1587710000000001) * m0[8] + (R(0.448437) * m0[7] + R(-0.250317) * m0[6]);
+        const gic_real t37 = m0[1] + t36;
+        const gic_real t38 = t37 - t5;
+        const gic_real t39 = t7 * t27 + t6 * t29 - t20 * t34;
+        const gic_real t40 = R(-0.1587710000000001) * m0[5] + (R(0.448437) * m0[4] + R(-0.250317) * m0[3]);
+        const gic_real t41 = m0[0] + t40;
+        const gic_real t42 = t41 - t11;
+        const gic_real t43 = t1 * t27 + t12 * t29 - t21 * t34;
+        const gic_real t44 = t33 * t35 + (t38 * t39 + t42 * t43);
+        const gic_real t45 = R(8.573627050492615) * t44;
+        const gic_real t46 = t33 - t35 * t45;
+        const gic_real t47 = t38 - t39 * t45;
+        const gic_real t48 = t42 - t43 * t45;
+        const gic_real t49 = R(1.0) / (t46 * t46 + (t47 * t47 + t48 * t48));
+        const gic_real t50 = R(0.031228051737320007) + (t33 * t33 + (t38 * t38 + t42 * t42));
+        const gic_real t51 = R(0.5) * (t50 - R(0.14941089924212003)) - R(0.29106179871846666) * t44;
+        const gic_real t52 = t49 * t51;
+        const gic_real t53 = R(8.573627050492615) * (t49 * (R(0.021346939557573212) - t51 * t52));
+        if (!(t53 > R(0.0)))
+            return GIC_ERROR_NEWTON;
+        const gic_real t54 = GIC_SQRT(t53);
+        const gic_real t55 = t47 * t52 - (t35 * t48 - t43 * t46) * t54;
+        const gic_real t56 = t55 + t39 * R(0.29106179871846666);
+        const gic_real t57 = t46 * t52 - (t43 * t47 - t39 * t48) * t54;
+        const gic_real t58 = t57 + t35 * R(0.29106179871846666);
+        const gic_real t59 = t18 + t58;
+        const gic_real t60 = t59 - t32;
+        const gic_real t61 = t5 + t56;
+        const gic_real t62 = t61 - t37;
+        const gic_real t63 = t56 * t60 - t58 * t62;
+        if (!(GIC_FABS(t63) > R(4.304353877485568e-09)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t64 = t5 + t39;
+        const gic_real t65 = t64 - t3;
+        const gic_real t66 = t11 + t43;
+        const gic_real t67 = t66 - t9;
+        const gic_real t68 = t48 * t52 - (t39 * t46 - t35 * t47) * t54;
+        const gic_real t69 = t68 + t43 * R(0.29106179871846666);
+        const gic_real t70 = t11 + t69;
+        const gic_real t71 = t70 - t41;
+        const gic_real t72 = t69 * t62 - t56 * t71;
+        const gic_real t73 = t18 + t35;
+        const gic_real t74 = t73 - t16;
+        const gic_real t75 = R(1.0) / t63;
+        const gic_real t76 = (t39 * t74 - t35 * t65) * t75;
+        const gic_real t77 = t43 * t65 - t39 * t67 - t72 * t76;
+        if (!(GIC_FABS(t77) > R(1.2633210609740421e-08)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t78 = t58 * t71 - t69 * t60;
+        const gic_real t79 = (t14 * t39 - t7 * t35) * t75;
+        const gic_real t80 = t35 * t67 - t43 * t74 - t78 * t76;
+        const gic_real t81 = R(1.0) / t77;
+        const gic_real t82 = (t7 * t43 - t1 * t39 - t72 * t79) * t81;
+        const gic_real t83 = t1 * t35 - t14 * t43 - t78 * t79 - t80 * t82;
+        if (!(GIC_FABS(t83) > R(3.2601841366889306e-08)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t84 = t39 * t57 - t35 * t55;
+        const gic_real t85 = t84 * R(-7.5372227832688194) + (t68 * R(-6.332169372123424) + t43 * R(-0.1498258474327685));
+        const gic_real t86 = t84 * R(-18.07838873614245) + (t68 * R(2.588574822512031) + t43 * R(-0.608667505195622));
+        const gic_real t87 = t84 * R(-4.242021150632485) + (t68 * R(0.21916659821076587) + t43 * R(2.8601928491017183));
+        const gic_real t88 = t35 * t68 - t43 * t57;
+        const gic_real t89 = t88 * R(-7.5372227832688194) + (t55 * R(-6.332169372123424) + t39 * R(-0.1498258474327685));
+        const gic_real t90 = t88 * R(-18.07838873614245) + (t55 * R(2.588574822512031) + t39 * R(-0.608667505195622));
+        const gic_real t91 = t88 * R(-4.242021150632485) + (t55 * R(0.21916659821076587) + t39 * R(2.8601928491017183));
+        const gic_real t92 = t43 * t55 - t39 * t68;
+        const gic_real t93 = t92 * R(-7.5372227832688194) + (t57 * R(-6.332169372123424) + t35 * R(-0.1498258474327685));
+        const gic_real t94 = t92 * R(-18.07838873614245) + (t57 * R(2.588574822512031) + t35 * R(-0.608667505195622));
+        const gic_real t95 = t92 * R(-4.242021150632485) + (t57 * R(0.21916659821076587) + t35 * R(2.8601928491017183));
+        const gic_real t96 = m0[24] * (t31 * t62 - t36 * t60) + m0[25] * (t40 * t60 - t31 * t71);
+        const gic_real t97 = t96 + m0[26] * (t36 * t71 - t40 * t62) + m0[27] * (t41 - t70);
+        const gic_real t98 = t97 + m0[28] * (t37 - t61) + m0[29] * (t32 - t59);
+        const gic_real t99 = m1[33] - (m1[32] * t4 - m1[31] * t17);
+        const gic_real t100 = m1[34] - (m1[30] * t17 - m1[32] * t10);
+        const gic_real t101 = m1[35] - (m1[31] * t10 - m1[30] * t4);
+        const gic_real t102 = t98 + t71 * t99 + t62 * t100 + t60 * t101;
+        const gic_real t103 = m0[24] * (t15 * t65 - t2 * t74) + m0[25] * (t8 * t74 - t15 * t67);
+        const gic_real t104 = t103 + m0[26] * (t2 * t67 - t8 * t65) + m0[27] * (t9 - t66);
+        const gic_real t105 = t104 + m0[28] * (t3 - t64) + m0[29] * (t16 - t73);
+        const gic_real t106 = t105 + t67 * t99 + t65 * t100 + t74 * t101;
+        const gic_real t107 = t76 * t102 - t106;
+        const gic_real t108 = R(1.0) / t83;
+        const gic_real t109 = t15 * t7 - t2 * t14 + (t7 * t74 - t14 * t65);
+        const gic_real t110 = t8 * t14 - t15 * t1 + (t14 * t67 - t1 * t74);
+        const gic_real t111 = t2 * t1 - t8 * t7 + (t1 * t65 - t7 * t67);
+        const gic_real t112 = m0[24] * t109 + m0[25] * t110 + m0[26] * t111 - m0[27] * t1;
+        const gic_real t113 = m0[29] * t14 - (t112 - m0[28] * t7) - t1 * t99;
+        const gic_real t114 = t113 - t7 * t100 - t14 * t101 + t79 * t102;
+        const gic_real t115 = t108 * (t114 - t82 * t107);
+        const gic_real t116 = t81 * (t107 - t80 * t115);
+        const gic_real t117 = t75 * (t102 + t72 * t116 + t78 * t115);
+        const gic_real t118 = m1[27] - (m1[26] * t4 - m1[25] * t17);
+        const gic_real t119 = m1[28] - (m1[24] * t17 - m1[26] * t10);
+        const gic_real t120 = m1[29] - (m1[25] * t10 - m1[24] * t4);
+        const gic_real t121 = t71 * t118 + t62 * t119 + t60 * t120;
+        const gic_real t122 = t76 * t121 - (t67 * t118 + t65 * t119 + t74 * t120);
+        const gic_real t123 = t79 * t121 - (t1 * t118 + t7 * t119 + t14 * t120);
+        const gic_real t124 = t108 * (t123 - t82 * t122);
+        const gic_real t125 = t81 * (t122 - t80 * t124);
+        const gic_real t126 = t75 * (t121 + t72 * t125 + t78 * t124);
+        const gic_real t127 = rate[0] * t117 + rate[1] * t126;
+        const gic_real t128 = rate[0] * t115 + rate[1] * t124;
+        const gic_real t129 = rate[0] * t116 + rate[1] * t125;
+        const gic_real t130 = rate[0] * t99 + rate[1] * t118;
+        const gic_real t131 = rate[0] * t100 + rate[1] * t119;
+        const gic_real t132 = rate[0] * t101 + rate[1] * t120;
+        const gic_real t133 = t69 * t128 + t56 * t127;
+        const gic_real t134 = m0[12] * t36 - m0[13] * t40;
+        const gic_real t135 = t132 - t133 - (m0[17] + t134);
+        const gic_real t136 = t58 * t127 + t69 * t129;
+        const gic_real t137 = m0[14] * t40 - m0[12] * t31;
+        const gic_real t138 = t131 + t136 - (m0[16] + t137);
+        const gic_real t139 = t58 * t128 - t56 * t129;
+        const gic_real t140 = m0[13] * t31 - m0[14] * t36;
+        const gic_real t141 = t130 + t139 - (m0[15] + t140);
+        const gic_real t142 = m0[14] * t140 - m0[12] * t134 + (m0[20] * t40 - m0[18] * t31);
+        const gic_real t143 = t62 * (t129 * t139 - t127 * t133 - (m0[22] + t142));
+        const gic_real t144 = m0[13] * t134 - m0[14] * t137 + (m0[19] * t31 - m0[20] * t36);
+        const gic_real t145 = t71 * (m0[21] + t144 + (t129 * t136 + t128 * t133));
+        const gic_real t146 = m0[12] * t137 - m0[13] * t140 + (m0[18] * t36 - m0[19] * t40);
+        const gic_real t147 = t60 * (m0[23] + t146 + (t128 * t139 + t127 * t136));
+        const gic_real t148 = t135 * t135 + (t138 * t138 + t141 * t141) + (t143 - t145 - t147);
+        const gic_real t149 = m1[12] * t4 - m1[13] * t10;
+        const gic_real t150 = m1[14] * t10 - m1[12] * t17;
+        const gic_real t151 = m1[13] * t149 - m1[14] * t150 + (m1[19] * t17 - m1[20] * t4);
+        const gic_real t152 = m1[21] + t151;
+        const gic_real t153 = m1[13] * t17 - m1[14] * t4;
+        const gic_real t154 = m1[14] * t153 - m1[12] * t149 + (m1[20] * t10 - m1[18] * t17);
+        const gic_real t155 = m1[22] + t154;
+        const gic_real t156 = m1[12] * t150 - m1[13] * t153 + (m1[18] * t4 - m1[19] * t10);
+        const gic_real t157 = m1[23] + t156;
+        const gic_real t158 = t148 + t152 * t71 + t155 * t62 + t157 * t60;
+        const gic_real t159 = t43 * t128 + t39 * t127;
+        const gic_real t160 = m0[12] * t2 - m0[13] * t8;
+        const gic_real t161 = t132 - t159 - (m0[17] + t160);
+        const gic_real t162 = t35 * t127 + t43 * t129;
+        const gic_real t163 = m0[14] * t8 - m0[12] * t15;
+        const gic_real t164 = t131 + t162 - (m0[16] + t163);
+        const gic_real t165 = t35 * t128 - t39 * t129;
+        const gic_real t166 = m0[13] * t15 - m0[14] * t2;
+        const gic_real t167 = t130 + t165 - (m0[15] + t166);
+        const gic_real t168 = m0[14] * t166 - m0[12] * t160 + (m0[20] * t8 - m0[18] * t15);
+        const gic_real t169 = t129 * t165 - t127 * t159 - (m0[22] + t168);
+        const gic_real t170 = m0[13] * t160 - m0[14] * t163 + (m0[19] * t15 - m0[20] * t2);
+        const gic_real t171 = m0[21] + t170 + (t129 * t162 + t128 * t159);
+        const gic_real t172 = m0[12] * t163 - m0[13] * t166 + (m0[18] * t2 - m0[19] * t8);
+        const gic_real t173 = m0[23] + t172 + (t128 * t165 + t127 * t162);
+        const gic_real t174 = t161 * t161 + (t164 * t164 + t167 * t167) + (t65 * t169 - t67 * t171 - t74 * t173);
+        const gic_real t175 = t174 + t152 * t67 + t155 * t65 + t157 * t74;
+        const gic_real t176 = t76 * t158 - t175;
+        const gic_real t177 = m0[12] * t7 - m0[13] * t1;
+        const gic_real t178 = m0[14] * t1 - m0[12] * t14;
+        const gic_real t179 = m0[13] * t14 - m0[14] * t7;
+        const gic_real t180 = t177 * t161 + (t178 * t164 + t179 * t167);
+        const gic_real t181 = m0[12] * t178 - m0[13] * t179 + (m0[18] * t7 - m0[19] * t1);
+        const gic_real t182 = m0[14] * t179 - m0[12] * t177 + (m0[20] * t1 - m0[18] * t14);
+        const gic_real t183 = m0[13] * t177 - m0[14] * t178 + (m0[19] * t14 - m0[20] * t7);
+        const gic_real t184 = t181 * t74 + (t182 * t65 + t183 * t67) + (t7 * t169 - t1 * t171 - t14 * t173);
+        const gic_real t185 = t180 + t180 + t184 + t152 * t1 + t155 * t7;
+        const gic_real t186 = t79 * t158 - (t185 + t157 * t14) - t82 * t176;
+        const gic_real t187 = t108 * t186;
+        const gic_real t188 = t81 * (t176 - t80 * t187);
+        const gic_real t189 = t75 * (t158 + t72 * t188 + t78 * t187);
+        const gic_real t190 = t95 * R(0.09182100000000004) + (t94 * R(0.08910630000000008) + t93 * R(-0.004825999999999997));
+        const gic_real t191 = t91 * R(0.09182100000000004) + (t90 * R(0.08910630000000008) + t89 * R(-0.004825999999999997));
+        const gic_real t192 = t99 + (t115 * t190 - t116 * t191);
+        const gic_real t193 = R(90.555) * t192;
+        const gic_real t194 = t87 * R(0.09182100000000004) + (t86 * R(0.08910630000000008) + t85 * R(-0.004825999999999997));
+        const gic_real t195 = t100 + (t117 * t190 + t116 * t194);
+        const gic_real t196 = R(90.555) * t195;
+        const gic_real t197 = t101 - (t115 * t194 + t117 * t191);
+        const gic_real t198 = R(90.555) * t197;
+        const gic_real t199 = t86 * R(2.8083995);
+        const gic_real t200 = t85 * R(0.12192999999999987);
+        const gic_real t201 = t94 * t199 + t93 * t200;
+        const gic_real t202 = t90 * t199 + t89 * t200;
+        const gic_real t203 = R(4.7728205) + (t86 * t199 + t85 * t200);
+        const gic_real t204 = t116 * t201 + (t115 * t202 - t117 * t203);
+        const gic_real t205 = t5 + t191;
+        const gic_real t206 = t18 + t190;
+        const gic_real t207 = t90 * R(2.8083995);
+        const gic_real t208 = t89 * R(0.12192999999999987);
+        const gic_real t209 = t94 * t207 + t93 * t208;
+        const gic_real t210 = R(4.7728205) + (t90 * t207 + t89 * t208);
+        const gic_real t211 = t116 * t209 + (t115 * t210 - t117 * t202);
+        const gic_real t212 = t11 + t194;
+        const gic_real t213 = R(4.7728205) + (t94 * (t94 * R(2.8083995)) + t93 * (t93 * R(0.12192999999999987)));
+        const gic_real t214 = t116 * t213 + (t115 * t209 - t117 * t201);
+        const gic_real t215 = t129 * t201 + (t128 * t202 - t127 * t203);
+        const gic_real t216 = t129 * t209 + (t128 * t210 - t127 * t202);
+        const gic_real t217 = t188 * t213 + (t187 * t209 - t189 * t201) - (t128 * t215 + t127 * t216);
+        const gic_real t218 = t129 * t213 + (t128 * t209 - t127 * t201);
+        const gic_real t219 = t188 * t209 + (t187 * t210 - t189 * t202) + (t127 * t218 + t129 * t215);
+        const gic_real t220 = t188 * t201 + (t187 * t202 - t189 * t203) + (t128 * t218 - t129 * t216);
+        const gic_real t221 = t128 * t190 - t129 * t191;
+        const gic_real t222 = t127 * t190 + t129 * t194;
+        const gic_real t223 = t128 * t221 + t127 * t222 + (t187 * t194 + t189 * t191);
+        const gic_real t224 = R(90.555) * (t157 - t223);
+        const gic_real t225 = t128 * t194 + t127 * t191;
+        const gic_real t226 = t129 * t221 - t127 * t225 + (t189 * t190 + t188 * t194);
+        const gic_real t227 = R(90.555) * (t155 + t226);
+        const gic_real t228 = t187 * t190 - t188 * t191 - (t129 * t222 + t128 * t225);
+        const gic_real t229 = R(90.555) * (t152 + t228);
+        const gic_real t230 = t116 * t217 + (t115 * t219 - t117 * t220) + (t224 * t197 + (t227 * t195 + t229 * t192));
+        const gic_real t231 = t118 + (t124 * t190 - t125 * t191);
+        const gic_real t232 = R(90.555) * t231;
+        const gic_real t233 = t119 + (t126 * t190 + t125 * t194);
+        const gic_real t234 = R(90.555) * t233;
+        const gic_real t235 = t120 - (t124 * t194 + t126 * t191);
+        const gic_real t236 = R(90.555) * t235;
+        const gic_real t237 = t125 * t201 + (t124 * t202 - t126 * t203);
+        const gic_real t238 = t125 * t209 + (t124 * t210 - t126 * t202);
+        const gic_real t239 = t125 * t213 + (t124 * t209 - t126 * t201);
+        const gic_real t240 = t125 * t217 + (t124 * t219 - t126 * t220) + (t224 * t235 + (t227 * t233 + t229 * t231));
+        const gic_real t241 = t116 * t214 + (t115 * t211 - t117 * t204) + (t197 * t198 + (t195 * t196 + t192 * t193));
+        const gic_real t242 = t116 * t239 + (t115 * t238 - t117 * t237) + (t197 * t236 + (t195 * t234 + t192 * t232));
+        const gic_real t243 = t125 * t239 + (t124 * t238 - t126 * t237) + (t235 * t236 + (t233 * t234 + t231 * t232));
+        const gic_real t244 = -t127;
+        const gic_real t245 = -t189;
+        const gic_real t246 = -t117;
+        const gic_real t247 = -t126;
+        const gic_real t248 = t204 + (t205 * t198 - t206 * t196);
+        const gic_real t249 = t211 + (t206 * t193 - t212 * t198);
+        const gic_real t250 = t214 + (t212 * t196 - t205 * t193);
+        const gic_real t251 = t237 + (t205 * t236 - t206 * t234);
+        const gic_real t252 = t238 + (t206 * t232 - t212 * t236);
+        const gic_real t253 = t239 + (t212 * t234 - t205 * t232);
+        motion[0] = t11;
+        motion[1] = t5;
+        motion[2] = t18;
+        motion[3] = t85;
+        motion[4] = t86;
+        motion[5] = t87;
+        motion[6] = t89;
+        motion[7] = t90;
+        motion[8] = t91;
+        motion[9] = t93;
+        motion[10] = t94;
+        motion[11] = t95;
+        motion[12] = t244;
+        motion[13] = t128;
+        motion[14] = t129;
+        motion[15] = t130;
+        motion[16] = t131;
+        motion[17] = t132;
+        motion[18] = t245;
+        motion[19] = t187;
+        motion[20] = t188;
+        motion[21] = t152;
+        motion[22] = t155;
+        motion[23] = t157;
+        motion[24] = t246;
+        motion[25] = t115;
+        motion[26] = t116;
+        motion[27] = t99;
+        motion[28] = t100;
+        motion[29] = t101;
+        motion[30] = t247;
+        motion[31] = t124;
+        motion[32] = t125;
+        motion[33] = t118;
+        motion[34] = t119;
+        motion[35] = t120;
+        inertia[15] = t193;
+        inertia[16] = t196;
+        inertia[17] = t198;
+        inertia[18] = t248;
+        inertia[19] = t249;
+        inertia[20] = t250;
+        inertia[21] = t230;
+        inertia[22] = t232;
+        inertia[23] = t234;
+        inertia[24] = t236;
+        inertia[25] = t251;
+        inertia[26] = t252;
+        inertia[27] = t253;
+        inertia[28] = t240;
+        inertia[29] = t241;
+        inertia[30] = t242;
+        inertia[31] = t243;
     }
-    return GIC_ERROR_NEWTON;
+    ++self->head.newton_count;
+    return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset at the pose q, relative to its size. */
+/* Largest constraint residual of such a subset, relative to its size. */
 static GIC_COLD gic_real quarter_car_residual_wheel(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT q)
+    const gic_real *GIC_RESTRICT motion)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const m1 = links->known[1]; /* arm */
@@ -1503,55 +884,34 @@ static GIC_COLD gic_real quarter_car_residual_wheel(const gic_real *GIC_RESTRICT
     {
         const gic_real t1 = m1[0] + (R(6.938893903907228e-18) * m1[5] + (R(0.49375935710120966) * m1[4] + R(-0.035559999999999994) * m1[3]));
         const gic_real t2 = m1[1] + (R(6.938893903907228e-18) * m1[8] + (R(0.49375935710120966) * m1[7] + R(-0.035559999999999994) * m1[6]));
-        const gic_real t3 = GIC_MAX(GIC_FABS((q[0] - t1) * R(2.928075656552032)), GIC_FABS((q[1] - t2) * R(2.928075656552032)));
+        const gic_real t3 = GIC_MAX(GIC_FABS((motion[0] - t1) * R(2.928075656552032)), GIC_FABS((motion[1] - t2) * R(2.928075656552032)));
         const gic_real t4 = m1[2] + (R(6.938893903907228e-18) * m1[11] + (R(0.49375935710120966) * m1[10] + R(-0.035559999999999994) * m1[9]));
-        const gic_real t5 = q[4] + q[4];
-        const gic_real t6 = q[4] * t5;
-        const gic_real t7 = q[5] + q[5];
-        const gic_real t8 = q[5] * t7;
-        const gic_real t9 = R(1.0) - (t6 + t8);
-        const gic_real t10 = q[6] * t7;
-        const gic_real t11 = q[3] * t5;
-        const gic_real t12 = t10 + t11;
-        const gic_real t13 = q[6] + q[6];
-        const gic_real t14 = q[4] * t13;
-        const gic_real t15 = q[3] * t7;
-        const gic_real t16 = t14 - t15;
-        const gic_real t17 = q[2] + (R(0.10177780000000003) * t9 + (R(0.03459480000000004) * t12 + R(-0.1402588) * t16));
-        const gic_real t18 = m0[2] + (R(-0.1587710000000001) * m0[11] + (R(0.448437) * m0[10] + R(-0.250317) * m0[9]));
-        const gic_real t19 = t17 - t18;
-        const gic_real t20 = t10 - t11;
-        const gic_real t21 = q[6] * t13;
-        const gic_real t22 = R(1.0) - (t6 + t21);
-        const gic_real t23 = q[5] * t5;
-        const gic_real t24 = q[3] * t13;
-        const gic_real t25 = t23 + t24;
-        const gic_real t26 = q[1] + (R(0.10177780000000003) * t20 + (R(0.03459480000000004) * t22 + R(-0.1402588) * t25));
-        const gic_real t27 = m0[1] + (R(-0.1587710000000001) * m0[8] + (R(0.448437) * m0[7] + R(-0.250317) * m0[6]));
-        const gic_real t28 = t26 - t27;
-        const gic_real t29 = t14 + t15;
-        const gic_real t30 = t23 - t24;
-        const gic_real t31 = R(1.0) - (t8 + t21);
-        const gic_real t32 = q[0] + (R(0.10177780000000003) * t29 + (R(0.03459480000000004) * t30 + R(-0.1402588) * t31));
-        const gic_real t33 = m0[0] + (R(-0.1587710000000001) * m0[5] + (R(0.448437) * m0[4] + R(-0.250317) * m0[3]));
-        const gic_real t34 = t32 - t33;
-        const gic_real t35 = t19 * t19 + (t28 * t28 + t34 * t34) - R(0.14941089924212003);
-        const gic_real t36 = GIC_MAX(GIC_MAX(t3, GIC_FABS((q[2] - t4) * R(2.928075656552032))), GIC_FABS(t35 * R(3.9285226675160785)));
-        const gic_real t37 = q[2] + (R(0.33360360000000006) * t9 + (R(-0.07099299999999997) * t12 + R(-0.017475199999999996) * t16));
-        const gic_real t38 = m0[2] + (R(0.021117699999999906) * m0[11] + (R(0.4527638) * m0[10] + R(-0.095082) * m0[9]));
-        const gic_real t39 = t37 - t38;
-        const gic_real t40 = q[1] + (R(0.33360360000000006) * t20 + (R(-0.07099299999999997) * t22 + R(-0.017475199999999996) * t25));
-        const gic_real t41 = m0[1] + (R(0.021117699999999906) * m0[8] + (R(0.4527638) * m0[7] + R(-0.095082) * m0[6]));
-        const gic_real t42 = t40 - t41;
-        const gic_real t43 = q[0] + (R(0.33360360000000006) * t29 + (R(-0.07099299999999997) * t30 + R(-0.017475199999999996) * t31));
-        const gic_real t44 = m0[0] + (R(0.021117699999999906) * m0[5] + (R(0.4527638) * m0[4] + R(-0.095082) * m0[3]));
-        const gic_real t45 = t43 - t44;
-        const gic_real t46 = t39 * t39 + (t42 * t42 + t45 * t45) - R(0.07115456010869);
-        const gic_real t47 = t39 * (R(0.21526024724178433) * m0[11] + (R(-0.1394133303209898) * m0[10] + R(0.9665541626242249) * m0[9]));
-        const gic_real t48 = t42 * (R(0.21526024724178433) * m0[8] + (R(-0.1394133303209898) * m0[7] + R(0.9665541626242249) * m0[6]));
-        const gic_real t49 = t45 * (R(0.21526024724178433) * m0[5] + (R(-0.1394133303209898) * m0[4] + R(0.9665541626242249) * m0[3]));
-        const gic_real t50 = GIC_MAX(GIC_MAX(t36, GIC_FABS(t46 * R(5.571891251504319))), GIC_FABS((t47 + (t48 + t49) - R(4.311654514671526e-08)) * R(3.029396354366955)));
-        worst = t50;
+        const gic_real t5 = motion[2] + (R(0.10177780000000003) * motion[11] + (R(0.03459480000000004) * motion[10] + R(-0.1402588) * motion[9]));
+        const gic_real t6 = m0[2] + (R(-0.1587710000000001) * m0[11] + (R(0.448437) * m0[10] + R(-0.250317) * m0[9]));
+        const gic_real t7 = t5 - t6;
+        const gic_real t8 = motion[1] + (R(0.10177780000000003) * motion[8] + (R(0.03459480000000004) * motion[7] + R(-0.1402588) * motion[6]));
+        const gic_real t9 = m0[1] + (R(-0.1587710000000001) * m0[8] + (R(0.448437) * m0[7] + R(-0.250317) * m0[6]));
+        const gic_real t10 = t8 - t9;
+        const gic_real t11 = motion[0] + (R(0.10177780000000003) * motion[5] + (R(0.03459480000000004) * motion[4] + R(-0.1402588) * motion[3]));
+        const gic_real t12 = m0[0] + (R(-0.1587710000000001) * m0[5] + (R(0.448437) * m0[4] + R(-0.250317) * m0[3]));
+        const gic_real t13 = t11 - t12;
+        const gic_real t14 = t7 * t7 + (t10 * t10 + t13 * t13) - R(0.14941089924212003);
+        const gic_real t15 = GIC_MAX(GIC_MAX(t3, GIC_FABS((motion[2] - t4) * R(2.928075656552032))), GIC_FABS(t14 * R(3.9285226675160785)));
+        const gic_real t16 = motion[2] + (R(0.33360360000000006) * motion[11] + (R(-0.07099299999999997) * motion[10] + R(-0.017475199999999996) * motion[9]));
+        const gic_real t17 = m0[2] + (R(0.021117699999999906) * m0[11] + (R(0.4527638) * m0[10] + R(-0.095082) * m0[9]));
+        const gic_real t18 = t16 - t17;
+        const gic_real t19 = motion[1] + (R(0.33360360000000006) * motion[8] + (R(-0.07099299999999997) * motion[7] + R(-0.017475199999999996) * motion[6]));
+        const gic_real t20 = m0[1] + (R(0.021117699999999906) * m0[8] + (R(0.4527638) * m0[7] + R(-0.095082) * m0[6]));
+        const gic_real t21 = t19 - t20;
+        const gic_real t22 = motion[0] + (R(0.33360360000000006) * motion[5] + (R(-0.07099299999999997) * motion[4] + R(-0.017475199999999996) * motion[3]));
+        const gic_real t23 = m0[0] + (R(0.021117699999999906) * m0[5] + (R(0.4527638) * m0[4] + R(-0.095082) * m0[3]));
+        const gic_real t24 = t22 - t23;
+        const gic_real t25 = t18 * t18 + (t21 * t21 + t24 * t24) - R(0.07115456010869);
+        const gic_real t26 = (R(0.21526024724178433) * m0[11] + (R(-0.1394133303209898) * m0[10] + R(0.9665541626242249) * m0[9])) * t18;
+        const gic_real t27 = (R(0.21526024724178433) * m0[8] + (R(-0.1394133303209898) * m0[7] + R(0.9665541626242249) * m0[6])) * t21;
+        const gic_real t28 = (R(0.21526024724178433) * m0[5] + (R(-0.1394133303209898) * m0[4] + R(0.9665541626242249) * m0[3])) * t24;
+        const gic_real t29 = GIC_MAX(GIC_MAX(t15, GIC_FABS(t25 * R(5.571891251504317))), GIC_FABS((t26 + (t27 + t28) - R(4.311654514671526e-08)) * R(3.029396354366955)));
+        worst = t29;
     }
     return worst;
 }
@@ -1577,8 +937,7 @@ static int quarter_car_recover_piece(quarter_car *self, quarter_car_links *links
     /* stage 1: carriage */
     links->x[0] = start[0]; /* bounce */
     links->rate[0] = xd[0];
-    links->change[0] = start[0] - old[0];
-    status = quarter_car_solve_carriage(self, quarter_car_k_carriage[0], links, old + 2, start + 2, self->motion + 0, self->inertia + 0);
+    status = quarter_car_solve_carriage(self, quarter_car_k_carriage[0], links, start + 2, self->motion + 0, self->inertia + 0);
     if (status != GIC_OK) {
         self->head.subset = 0;
         return status;
@@ -1587,11 +946,9 @@ static int quarter_car_recover_piece(quarter_car *self, quarter_car_links *links
     links->known[0] = self->motion + 0; /* carriage */
     links->x[0] = start[1]; /* spring */
     links->rate[0] = xd[1];
-    links->change[0] = start[1] - old[1];
     links->x[1] = start[0]; /* bounce */
     links->rate[1] = xd[0];
-    links->change[1] = start[0] - old[0];
-    status = quarter_car_solve_arm(self, quarter_car_k_arm[0], links, old + 21, start + 21, self->motion + 30, self->inertia + 23);
+    status = quarter_car_solve_arm(self, quarter_car_k_arm[0], links, start + 2, self->motion + 30, self->inertia + 23);
     if (status != GIC_OK) {
         self->head.subset = 1;
         return status;
@@ -1601,11 +958,9 @@ static int quarter_car_recover_piece(quarter_car *self, quarter_car_links *links
     links->known[1] = self->motion + 30; /* arm */
     links->x[0] = start[0]; /* bounce */
     links->rate[0] = xd[0];
-    links->change[0] = start[0] - old[0];
     links->x[1] = start[1]; /* spring */
     links->rate[1] = xd[1];
-    links->change[1] = start[1] - old[1];
-    status = quarter_car_solve_wheel(self, quarter_car_k_wheel[0], links, old + 52, start + 52, self->motion + 66, self->inertia + 55);
+    status = quarter_car_solve_wheel(self, quarter_car_k_wheel[0], links, start + 2, self->motion + 66, self->inertia + 55);
     if (status != GIC_OK) {
         self->head.subset = 2;
         return status;
@@ -1747,8 +1102,8 @@ static int quarter_car_measure(const quarter_car *self, gic_real time, const gic
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    const gic_real *const s = self->start[self->head.flip], *const lambda = self->multiplier;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)s, (void)rate, (void)out;
+    const gic_real *const lambda = self->multiplier;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)out;
     (void)lambda;
     {
         const gic_real t1 = m[71] * R(0.09182100000000004);
@@ -1882,30 +1237,105 @@ static int quarter_car_measure(const quarter_car *self, gic_real time, const gic
 
 static void quarter_car_place(const quarter_car *self, const gic_real *y, const gic_real *e, gic_real *pose)
 {
-    const gic_real *const m = self->motion, *const s = self->start[self->head.flip];
-    (void)y, (void)e, (void)m, (void)s, (void)pose;
+    const gic_real *const m = self->motion;
+    (void)y, (void)e, (void)m, (void)pose;
     {
-        const gic_real t1 = m[66] + (m[71] * R(0.09182100000000004) + (m[70] * R(0.08910630000000008) + m[69] * R(-0.004825999999999997)));
-        const gic_real t2 = m[67] + (m[74] * R(0.09182100000000004) + (m[73] * R(0.08910630000000008) + m[72] * R(-0.004825999999999997)));
-        const gic_real t3 = m[68] + (m[77] * R(0.09182100000000004) + (m[76] * R(0.08910630000000008) + m[75] * R(-0.004825999999999997)));
-        const gic_real t4 = m[0];
-        const gic_real t5 = m[1];
-        const gic_real t6 = m[2];
-        const gic_real t7 = (s[5] > GIC_R(0) ? s[5] : -s[5]);
-        const gic_real t8 = (s[5] > GIC_R(0) ? s[6] : -s[6]);
-        const gic_real t9 = (s[5] > GIC_R(0) ? s[7] : -s[7]);
-        const gic_real t10 = (s[5] > GIC_R(0) ? s[8] : -s[8]);
-        const gic_real t11 = m[30] + (m[35] * R(3.0379110359107786e-06) + m[34] * R(0.24689200985615367));
-        const gic_real t12 = m[31] + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
-        const gic_real t13 = m[32] + (m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367));
-        const gic_real t14 = (s[24] > GIC_R(0) ? s[24] : -s[24]);
-        const gic_real t15 = (s[24] > GIC_R(0) ? s[25] : -s[25]);
-        const gic_real t16 = (s[24] > GIC_R(0) ? s[26] : -s[26]);
-        const gic_real t17 = (s[24] > GIC_R(0) ? s[27] : -s[27]);
-        const gic_real t18 = (s[55] > GIC_R(0) ? s[55] : -s[55]);
-        const gic_real t19 = (s[55] > GIC_R(0) ? s[56] : -s[56]);
-        const gic_real t20 = (s[55] > GIC_R(0) ? s[57] : -s[57]);
-        const gic_real t21 = (s[55] > GIC_R(0) ? s[58] : -s[58]);
+        const gic_real t1 = R(1.0) + (m[11] - (m[3] + m[7]));
+        const gic_real t2 = R(1.0) + (m[7] - (m[3] + m[11]));
+        const gic_real t3 = m[7] + m[11];
+        const gic_real t4 = R(1.0) + (m[3] - t3);
+        const gic_real t5 = R(1.0) + (m[3] + t3);
+        const gic_real t6 = GIC_MAX(t4, t5);
+        const gic_real t7 = GIC_MAX(t2, t6);
+        const gic_real t8 = t1 - t7;
+        const gic_real t9 = m[6] - m[4];
+        const gic_real t10 = t2 - t6;
+        const gic_real t11 = m[5] - m[9];
+        const gic_real t12 = t4 - t5;
+        const gic_real t13 = m[10] - m[8];
+        const gic_real t14 = (t8 > GIC_R(0) ? t9 : (t10 > GIC_R(0) ? t11 : (t12 > GIC_R(0) ? t13 : t5)));
+        const gic_real t15 = R(0.5) / GIC_SQRT(GIC_MAX(t1, t7));
+        const gic_real t16 = t14 * t15;
+        const gic_real t17 = m[5] + m[9];
+        const gic_real t18 = m[4] + m[6];
+        const gic_real t19 = (t8 > GIC_R(0) ? t17 : (t10 > GIC_R(0) ? t18 : (t12 > GIC_R(0) ? t4 : t13)));
+        const gic_real t20 = t19 * t15;
+        const gic_real t21 = m[8] + m[10];
+        const gic_real t22 = (t8 > GIC_R(0) ? t21 : (t10 > GIC_R(0) ? t2 : (t12 > GIC_R(0) ? t18 : t11)));
+        const gic_real t23 = t22 * t15;
+        const gic_real t24 = (t8 > GIC_R(0) ? t1 : (t10 > GIC_R(0) ? t21 : (t12 > GIC_R(0) ? t17 : t9)));
+        const gic_real t25 = t24 * t15;
+        const gic_real t26 = R(1.0) + (m[41] - (m[33] + m[37]));
+        const gic_real t27 = R(1.0) + (m[37] - (m[33] + m[41]));
+        const gic_real t28 = m[37] + m[41];
+        const gic_real t29 = R(1.0) + (m[33] - t28);
+        const gic_real t30 = R(1.0) + (m[33] + t28);
+        const gic_real t31 = GIC_MAX(t29, t30);
+        const gic_real t32 = GIC_MAX(t27, t31);
+        const gic_real t33 = t26 - t32;
+        const gic_real t34 = m[36] - m[34];
+        const gic_real t35 = t27 - t31;
+        const gic_real t36 = m[35] - m[39];
+        const gic_real t37 = t29 - t30;
+        const gic_real t38 = m[40] - m[38];
+        const gic_real t39 = (t33 > GIC_R(0) ? t34 : (t35 > GIC_R(0) ? t36 : (t37 > GIC_R(0) ? t38 : t30)));
+        const gic_real t40 = R(0.5) / GIC_SQRT(GIC_MAX(t26, t32));
+        const gic_real t41 = t39 * t40;
+        const gic_real t42 = m[35] + m[39];
+        const gic_real t43 = m[34] + m[36];
+        const gic_real t44 = (t33 > GIC_R(0) ? t42 : (t35 > GIC_R(0) ? t43 : (t37 > GIC_R(0) ? t29 : t38)));
+        const gic_real t45 = t44 * t40;
+        const gic_real t46 = m[38] + m[40];
+        const gic_real t47 = (t33 > GIC_R(0) ? t46 : (t35 > GIC_R(0) ? t27 : (t37 > GIC_R(0) ? t43 : t36)));
+        const gic_real t48 = t47 * t40;
+        const gic_real t49 = (t33 > GIC_R(0) ? t26 : (t35 > GIC_R(0) ? t46 : (t37 > GIC_R(0) ? t42 : t34)));
+        const gic_real t50 = t49 * t40;
+        const gic_real t51 = m[66] + (m[71] * R(0.09182100000000004) + (m[70] * R(0.08910630000000008) + m[69] * R(-0.004825999999999997)));
+        const gic_real t52 = m[67] + (m[74] * R(0.09182100000000004) + (m[73] * R(0.08910630000000008) + m[72] * R(-0.004825999999999997)));
+        const gic_real t53 = m[68] + (m[77] * R(0.09182100000000004) + (m[76] * R(0.08910630000000008) + m[75] * R(-0.004825999999999997)));
+        const gic_real t54 = R(1.0) + (m[77] - (m[69] + m[73]));
+        const gic_real t55 = R(1.0) + (m[73] - (m[69] + m[77]));
+        const gic_real t56 = m[73] + m[77];
+        const gic_real t57 = R(1.0) + (m[69] - t56);
+        const gic_real t58 = R(1.0) + (m[69] + t56);
+        const gic_real t59 = GIC_MAX(t57, t58);
+        const gic_real t60 = GIC_MAX(t55, t59);
+        const gic_real t61 = t54 - t60;
+        const gic_real t62 = m[72] - m[70];
+        const gic_real t63 = t55 - t59;
+        const gic_real t64 = m[71] - m[75];
+        const gic_real t65 = t57 - t58;
+        const gic_real t66 = m[76] - m[74];
+        const gic_real t67 = (t61 > GIC_R(0) ? t62 : (t63 > GIC_R(0) ? t64 : (t65 > GIC_R(0) ? t66 : t58)));
+        const gic_real t68 = R(0.5) / GIC_SQRT(GIC_MAX(t54, t60));
+        const gic_real t69 = t67 * t68;
+        const gic_real t70 = m[71] + m[75];
+        const gic_real t71 = m[70] + m[72];
+        const gic_real t72 = (t61 > GIC_R(0) ? t70 : (t63 > GIC_R(0) ? t71 : (t65 > GIC_R(0) ? t57 : t66)));
+        const gic_real t73 = t72 * t68;
+        const gic_real t74 = m[74] + m[76];
+        const gic_real t75 = (t61 > GIC_R(0) ? t74 : (t63 > GIC_R(0) ? t55 : (t65 > GIC_R(0) ? t71 : t64)));
+        const gic_real t76 = t75 * t68;
+        const gic_real t77 = (t61 > GIC_R(0) ? t54 : (t63 > GIC_R(0) ? t74 : (t65 > GIC_R(0) ? t70 : t62)));
+        const gic_real t78 = t77 * t68;
+        const gic_real t79 = m[0];
+        const gic_real t80 = m[1];
+        const gic_real t81 = m[2];
+        const gic_real t82 = (t16 > GIC_R(0) ? t16 : -t16);
+        const gic_real t83 = (t16 > GIC_R(0) ? t20 : -t20);
+        const gic_real t84 = (t16 > GIC_R(0) ? t23 : -t23);
+        const gic_real t85 = (t16 > GIC_R(0) ? t25 : -t25);
+        const gic_real t86 = m[30] + (m[35] * R(3.0379110359107786e-06) + m[34] * R(0.24689200985615367));
+        const gic_real t87 = m[31] + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
+        const gic_real t88 = m[32] + (m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367));
+        const gic_real t89 = (t41 > GIC_R(0) ? t41 : -t41);
+        const gic_real t90 = (t41 > GIC_R(0) ? t45 : -t45);
+        const gic_real t91 = (t41 > GIC_R(0) ? t48 : -t48);
+        const gic_real t92 = (t41 > GIC_R(0) ? t50 : -t50);
+        const gic_real t93 = (t69 > GIC_R(0) ? t69 : -t69);
+        const gic_real t94 = (t69 > GIC_R(0) ? t73 : -t73);
+        const gic_real t95 = (t69 > GIC_R(0) ? t76 : -t76);
+        const gic_real t96 = (t69 > GIC_R(0) ? t78 : -t78);
         pose[0] = R(0.0);
         pose[1] = R(0.0);
         pose[2] = R(0.0);
@@ -1913,27 +1343,27 @@ static void quarter_car_place(const quarter_car *self, const gic_real *y, const 
         pose[4] = R(0.0);
         pose[5] = R(0.0);
         pose[6] = R(0.0);
-        pose[7] = t4;
-        pose[8] = t5;
-        pose[9] = t6;
-        pose[10] = t7;
-        pose[11] = t8;
-        pose[12] = t9;
-        pose[13] = t10;
-        pose[14] = t11;
-        pose[15] = t12;
-        pose[16] = t13;
-        pose[17] = t14;
-        pose[18] = t15;
-        pose[19] = t16;
-        pose[20] = t17;
-        pose[21] = t1;
-        pose[22] = t2;
-        pose[23] = t3;
-        pose[24] = t18;
-        pose[25] = t19;
-        pose[26] = t20;
-        pose[27] = t21;
+        pose[7] = t79;
+        pose[8] = t80;
+        pose[9] = t81;
+        pose[10] = t82;
+        pose[11] = t83;
+        pose[12] = t84;
+        pose[13] = t85;
+        pose[14] = t86;
+        pose[15] = t87;
+        pose[16] = t88;
+        pose[17] = t89;
+        pose[18] = t90;
+        pose[19] = t91;
+        pose[20] = t92;
+        pose[21] = t51;
+        pose[22] = t52;
+        pose[23] = t53;
+        pose[24] = t93;
+        pose[25] = t94;
+        pose[26] = t95;
+        pose[27] = t96;
     }
 }
 
@@ -2114,14 +1544,12 @@ static const char *const quarter_car_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
 static const struct {
     int place;
     gic_real q[7];
 } quarter_car_design[] = {
-    {2, {R(0.0), R(0.0), R(0.687), R(1.0), R(0.0), R(0.0), R(0.0)}}, /* carriage */
-    {21, {R(0.0), R(0.30708600000000014), R(0.474), R(0.9927157047340742), R(-0.1204804115793527), R(0.0), R(0.0)}}, /* arm */
-    {52, {R(-0.03556), R(0.786511), R(0.35589), R(1.0), R(0.0), R(0.0), R(0.0)}}, /* wheel */
+    {0, {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}}
 };
 
 static const gic_real quarter_car_initial[QUARTER_CAR_STATE_ROOM] = {
@@ -2160,7 +1588,7 @@ int quarter_car_setup_with(quarter_car *self, const gic_real *parameter)
     /* from the design poses alone, then on to the initial values of the coordinates */
     for (i = 0; i < QUARTER_CAR_COORDINATES; ++i)
         self->start[0][i] = self->x[i] = quarter_car_coordinate_design[i];
-    for (body = 0; body < QUARTER_CAR_BODIES - 1; ++body)
+    for (body = 0; body < QUARTER_CAR_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][quarter_car_design[body].place + i] = quarter_car_design[body].q[i];
     status = quarter_car_orient(self, self->state, e, turn);
@@ -2509,18 +1937,18 @@ static GIC_COLD gic_real quarter_car_residual(const quarter_car *self)
     (void)links;
     (void)one;
     links.x[0] = start[0];
-    one = quarter_car_residual_carriage(quarter_car_k_carriage[0], &links, start + 2);
+    one = quarter_car_residual_carriage(quarter_car_k_carriage[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);
     links.known[0] = self->motion + 0;
     links.x[0] = start[1];
     links.x[1] = start[0];
-    one = quarter_car_residual_arm(quarter_car_k_arm[0], &links, start + 21);
+    one = quarter_car_residual_arm(quarter_car_k_arm[0], &links, self->motion + 30);
     largest = GIC_MAX(largest, one);
     links.known[0] = self->motion + 0;
     links.known[1] = self->motion + 30;
     links.x[0] = start[0];
     links.x[1] = start[1];
-    one = quarter_car_residual_wheel(quarter_car_k_wheel[0], &links, start + 52);
+    one = quarter_car_residual_wheel(quarter_car_k_wheel[0], &links, self->motion + 66);
     largest = GIC_MAX(largest, one);
     return largest;
 }

@@ -37,14 +37,14 @@
  *         subsets        3
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'carriage' (1 times)                  113       134       3      0         0
- *   subset 'arm' (1 times)                       482       583       3      0         0
- *   subset 'wheel' (1 times)                     625       711       3      0         0
- *   forces and equations of motion                48        43       2      0         1
- *   all together                                1268      1471      11      0         1
- *   outputs, when asked for                      127       188       0      0         1
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
+ *   subset 'arm' (1 times, closed form)                      330       439       4      1         0
+ *   subset 'wheel' (1 times, closed form)                    452       553       5      2         0
+ *   forces and equations of motion                            48        43       2      0         1
+ *   all together                                             831      1035      11      3         1
+ *   outputs, when asked for                                  127       188       0      0         1
  */
 #ifndef QUARTER_CAR_H
 #define QUARTER_CAR_H
@@ -74,6 +74,7 @@ enum {
     QUARTER_CAR_UNKNOWNS = 2,
     QUARTER_CAR_SUBSETS = 3,
     QUARTER_CAR_BODIES = 4,
+    QUARTER_CAR_FOLLOWED = 0,
     QUARTER_CAR_WHEELS = 1,
     QUARTER_CAR_TWIST = 0,
     QUARTER_CAR_STATE_ROOM = 4,
@@ -84,7 +85,7 @@ enum {
     QUARTER_CAR_DISCRETE_ROOM = 1,
     QUARTER_CAR_COORDINATE_ROOM = 2,
     QUARTER_CAR_UNKNOWN_ROOM = 2,
-    QUARTER_CAR_START_ROOM = 89,
+    QUARTER_CAR_START_ROOM = 2,
     QUARTER_CAR_MOTION_ROOM = 102,
     QUARTER_CAR_INERTIA_ROOM = 87,
     QUARTER_CAR_MULTIPLIER_ROOM = 1,

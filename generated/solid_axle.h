@@ -55,15 +55,15 @@
  *         subsets        6, 7
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      137       164       2      0         0
- *   subset 'lca_f_l' (2 times)                   291       362       3      0         0
- *   subset 'axle' (1 times)                      658       737       6      0         0
- *   subset 'wheel_f_l' (2 times)                 534       606       3      0         0
- *   forces and equations of motion               714       671       9      0         4
- *   all together                                3159      3508      29      0         4
- *   outputs, when asked for                      610       703       0      0        10
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
+ *   subset 'lca_f_l' (2 times, closed form)                   68       109       1      1         0
+ *   subset 'axle' (1 times)                                  658       737       6      0         0
+ *   subset 'wheel_f_l' (2 times, closed form)                380       470       5      2         0
+ *   forces and equations of motion                           714       671       9      0         4
+ *   all together                                            2283      2591      27      6         4
+ *   outputs, when asked for                                  610       703       0      0        10
  */
 #ifndef SOLID_AXLE_H
 #define SOLID_AXLE_H
@@ -93,6 +93,7 @@ enum {
     SOLID_AXLE_UNKNOWNS = 11,
     SOLID_AXLE_SUBSETS = 7,
     SOLID_AXLE_BODIES = 7,
+    SOLID_AXLE_FOLLOWED = 1,
     SOLID_AXLE_WHEELS = 4,
     SOLID_AXLE_TWIST = 12,
     SOLID_AXLE_STATE_ROOM = 23,
@@ -103,7 +104,7 @@ enum {
     SOLID_AXLE_DISCRETE_ROOM = 1,
     SOLID_AXLE_COORDINATE_ROOM = 5,
     SOLID_AXLE_UNKNOWN_ROOM = 11,
-    SOLID_AXLE_START_ROOM = 189,
+    SOLID_AXLE_START_ROOM = 57,
     SOLID_AXLE_MOTION_ROOM = 198,
     SOLID_AXLE_INERTIA_ROOM = 165,
     SOLID_AXLE_MULTIPLIER_ROOM = 1,

@@ -58,15 +58,15 @@
  *         subsets        5, 6
  *
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
- * Operations of one right-hand side, one Newton correction with old factors and one with new:
- *                                                add  multiply  divide   root  function
- *   subset 'rack' (1 times)                      137       164       2      0         0
- *   subset 'lca_f_l' (2 times)                   254       341       3      0         4
- *   subset 'wheel_f_l' (2 times)                 534       606       3      0         0
- *   subset 'lca_f_l_2' (2 times)                 279       359       3      0         4
- *   forces and equations of motion               894       835      15      4         4
- *   all together                                3165      3611      35      4        20
- *   outputs, when asked for                      795       926       4      4        13
+ * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
+ *                                                            add  multiply  divide   root  function
+ *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
+ *   subset 'lca_f_l' (2 times, closed form)                   60       115       2      1         2
+ *   subset 'wheel_f_l' (2 times, closed form)                380       470       5      2         0
+ *   subset 'lca_f_l_2' (2 times, closed form)                 75       120       2      1         2
+ *   forces and equations of motion                           894       835      15      4         4
+ *   all together                                            1939      2270      33     12        12
+ *   outputs, when asked for                                  795       926       4      4        13
  */
 #ifndef TRAILING_ARM_H
 #define TRAILING_ARM_H
@@ -96,6 +96,7 @@ enum {
     TRAILING_ARM_UNKNOWNS = 11,
     TRAILING_ARM_SUBSETS = 8,
     TRAILING_ARM_BODIES = 8,
+    TRAILING_ARM_FOLLOWED = 0,
     TRAILING_ARM_WHEELS = 4,
     TRAILING_ARM_TWIST = 12,
     TRAILING_ARM_STATE_ROOM = 23,
@@ -106,7 +107,7 @@ enum {
     TRAILING_ARM_DISCRETE_ROOM = 1,
     TRAILING_ARM_COORDINATE_ROOM = 5,
     TRAILING_ARM_UNKNOWN_ROOM = 11,
-    TRAILING_ARM_START_ROOM = 171,
+    TRAILING_ARM_START_ROOM = 5,
     TRAILING_ARM_MOTION_ROOM = 222,
     TRAILING_ARM_INERTIA_ROOM = 179,
     TRAILING_ARM_MULTIPLIER_ROOM = 1,

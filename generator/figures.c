@@ -44,8 +44,8 @@ const Figures *figures_new(Pool *pool, const Formulation *f)
     count_add(&figures->loads, block_count_above_loads(f->dynamics), -1);
     for (int c = 0; c < classes; ++c) {
         const Formula *formula = f->plan->formula[c];
-        figures->class[c] =
-            (ClassFigures){block_count(&formula->predict), block_count(&formula->chord), block_count(&formula->solve)};
+        figures->class[c] = (ClassFigures){formula->closed, block_count(&formula->predict),
+                                           block_count(&formula->chord), block_count(&formula->solve)};
     }
     if (f->wheels)
         wheel_figures(pool, figures, f->wheels, f->model->powertrain);
@@ -67,7 +67,7 @@ Count figures_subset(const Figures *figures, int class, int chords, int passes)
     const ClassFigures *one = &figures->class[class];
     Count sum = one->predict;
     count_add(&sum, one->chord, chords);
-    count_add(&sum, one->solve, passes);
+    count_add(&sum, one->solve, one->closed ? 1 : passes);
     return sum;
 }
 

@@ -43,7 +43,7 @@ static const char *capital(Pool *pool, const char *s)
 
 void count_line(Text *out, const char *what, Count c)
 {
-    text_print(out, " *   %-40.40s %7d %9d %7d %6d %9d\n", what, c.add, c.multiply, c.divide, c.root, c.function);
+    text_print(out, " *   %-52.52s %7d %9d %7d %6d %9d\n", what, c.add, c.multiply, c.divide, c.root, c.function);
 }
 
 static void write_counts(Generation *g, Text *out)
@@ -54,11 +54,15 @@ static void write_counts(Generation *g, Text *out)
         g->plan->solve == SOLVE_AUGMENTED
             ? " * Equations of motion in the augmented form (Serban and Haug 2000, eq. 16), bodies eliminated first.\n"
             : " * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).\n");
-    text_print(out, " * Operations of one right-hand side, one Newton correction with old factors and one with new:\n");
-    text_print(out, " *   %-40s %7s %9s %7s %6s %9s\n", "", "add", "multiply", "divide", "root", "function");
+    text_print(
+        out,
+        " * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:\n");
+    text_print(out, " *   %-52s %7s %9s %7s %6s %9s\n", "", "add", "multiply", "divide", "root", "function");
     for (int c = 0; c < g->sequence->classes; ++c) {
         const Class *class = &g->sequence->class[c];
-        count_line(out, pool_print(g->pool, "subset '%s' (%d times)", class->name, class->members),
+        count_line(out,
+                   pool_print(g->pool, "subset '%s' (%d times%s)", class->name, class->members,
+                              g->plan->formula[c]->closed ? ", closed form" : ""),
                    figures_subset(figures, c, 1, 1));
     }
     count_line(out, "forces and equations of motion", figures->dynamics);

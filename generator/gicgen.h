@@ -739,6 +739,7 @@ void template_expand(Pool *pool, Text *out, const char *templates, const char *n
 
 /* Operations of one subset's recovery, once each. */
 typedef struct ClassFigures {
+    bool closed; /* `solve` is all, once */
     Count predict, chord, solve;
 } ClassFigures;
 

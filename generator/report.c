@@ -181,9 +181,11 @@ static void operations(const Report *r, Text *out)
                "of|block|#subsets|#add|#multiply|#divide|#root|#function|#all");
     for (int c = 0; c < r->sequence->classes; ++c) {
         const Class *class = &r->sequence->class[c];
-        count_row(out, class->name, "predict", class->members, f->class[c].predict);
-        count_row(out, class->name, "chord", class->members, f->class[c].chord);
-        count_row(out, class->name, "solve", class->members, f->class[c].solve);
+        if (!f->class[c].closed) {
+            count_row(out, class->name, "predict", class->members, f->class[c].predict);
+            count_row(out, class->name, "chord", class->members, f->class[c].chord);
+        }
+        count_row(out, class->name, f->class[c].closed ? "closed form" : "solve", class->members, f->class[c].solve);
         if (f->reacting[c])
             count_row(out, class->name, "react", f->reacting[c], f->react[c]);
     }

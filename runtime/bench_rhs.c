@@ -278,14 +278,19 @@ static void time_subject(const Course *course, Subject *subject, int repetition)
 static const Figures *figures_of(const Bench *bench, Solve solve)
 {
     const Sequence *sequence = sequence_find(bench->pool, bench->model);
-    return figures_new(bench->pool,
-                       formulate(bench->pool, model_assemble(bench->pool, bench->model, sequence), sequence, solve, RECOVERY_AUTO));
+    return figures_new(bench->pool, formulate(bench->pool, model_assemble(bench->pool, bench->model, sequence),
+                                              sequence, solve, bench->options.recovery));
 }
 
-/* Corrections with old factors that a subset usually takes; the last one is with new ones. */
-static int usual_chords(const Subject *subject)
+/* Corrections with old factors that a subset without a closed form takes on average; the last one is with new ones. */
+static double average_chords(const Subject *subject, const Figures *figures)
 {
-    return (int)fmax(0, round(subject->corrections) - 1);
+    int subsets = 0, followed = 0;
+    for (int c = 0; c < figures->sequence->classes; ++c) {
+        subsets += figures->sequence->class[c].members;
+        followed += figures->class[c].closed ? 0 : figures->sequence->class[c].members;
+    }
+    return followed ? fmax(0, subject->corrections * subsets / followed - 1) : 0;
 }
 
 static void operations_row(Pool *pool, Sheet *table, const char *what, Count count)
@@ -317,7 +322,8 @@ static void operations_table(const Course *course, const Figures *const figures[
     operations_row(pool, table, "all (reduced)", figures_rhs(reduced, chords, 1));
     table->note = pool_print(pool,
                              "Recovery with %d correction%s by the last call's factors and one by new ones, which is "
-                             "what these states take. Force laws give the applied forces and what they do along the "
+                             "what these states take, where there is no closed form. Force laws give the applied "
+                             "forces and what they do along the "
                              "coordinates, from the motion of the bodies.",
                              chords, chords == 1 ? "" : "s");
 }
@@ -332,7 +338,7 @@ static double work_of(Count count)
 static double rhs_work(const Subject *subject, const Figures *figures)
 {
     const double one = work_of(figures_rhs(figures, 0, 1)), two = work_of(figures_rhs(figures, 1, 1));
-    return one + fmax(0, subject->corrections - 1) * (two - one);
+    return one + average_chords(subject, figures) * (two - one);
 }
 
 /* What the work would take at the rates of the limit, s: one number at a time; in lanes. */
@@ -440,7 +446,7 @@ void bench_rhs(const Bench *bench)
                 "loop in each repetition, with one number at a time and with as many as it takes.",
                 course.stretches, bench->scene ? "scene" : "run that follows setting up", CALLS, bench->repetitions,
                 build_flags);
-    operations_table(&course, figures, usual_chords(course.subject));
+    operations_table(&course, figures, (int)round(average_chords(course.subject, figures[SOLVE_REDUCED])));
     time_table(&course, "rhs", "Time of a right-hand side", figures, false);
     if (tires)
         time_table(&course, "rhs_fast", "Time of a fast step's rates", figures, true);

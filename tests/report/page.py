@@ -141,7 +141,7 @@ def check_operations(page, code, header):
     bound = {name: int(value) for name, value in re.findall(r"#define GIC_(CHORDS|PASSES|PIECES) (\d+)", code)}
     members = {}
     for row in page.rows_of("operations"):
-        if row[1] == "predict":
+        if row[1] in ("predict", "closed form"):
             members[row[0]] = int(row[2])
     told = {(row[0], row[1]): [int(word) for word in row[3:]] for row in page.rows_of("operations")}
     calls = functions(code)[f"{NAME}_recover_piece"]
@@ -149,13 +149,16 @@ def check_operations(page, code, header):
     for name, count in members.items():
         same(f"members of {name}", count, len(re.findall(rf"= {NAME}_solve_{name}\(", calls)))
         # a subset's function holds them in this order
-        predict, chord, solve = [operations(block) for block in blocks(body[f"{NAME}_solve_{name}"])]
-        for block, found in (("predict", predict), ("chord", chord), ("solve", solve)):
+        parts = [operations(block) for block in blocks(body[f"{NAME}_solve_{name}"])]
+        closed = "GIC_PASSES" not in body[f"{NAME}_solve_{name}"]
+        for block, found in zip(["closed form"] if closed else ["predict", "chord", "solve"], parts, strict=True):
             same(f"operations of {name}, {block}", told[name, block], found + [sum(found)])
+        predict, chord, solve = [[0] * 5] * 2 + parts if closed else parts
         usual = total(usual, scaled(total(predict, chord, solve), count))
-        once = total(predict, scaled(chord, bound["CHORDS"]), scaled(solve, bound["PASSES"]))
+        once = total(predict, scaled(chord, bound["CHORDS"]), scaled(solve, 1 if closed else bound["PASSES"]))
         worst = total(worst, scaled(once, count))
-        line = re.search(rf"subset '{name}' \((\d+) times\) +([\d ]+)", header)
+        way = ", closed form" if closed else ""
+        line = re.search(rf"subset '{name}' \((\d+) times{way}\) +([\d ]+)", header)
         same(f"header's count of {name}", [int(line.group(1))] + [int(word) for word in line.group(2).split()],
              [count] + total(predict, chord, solve))
     same("classes", sorted(members), sorted(re.findall(rf"^static int {NAME}_solve_(\w+)\(", code, re.M)))
