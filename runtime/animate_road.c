@@ -76,6 +76,29 @@ static bool is_plain(const double z[CORNERS])
     return true;
 }
 
+/* Friction in hundredths at a tile's corners. Returns whether it is the same at all. */
+static bool sample_friction(const gic_road *road, Tile tile, double size, double f[CORNERS])
+{
+    bool same = true;
+    for (int k = 0; k < CORNERS; ++k) {
+        f[k] = 100;
+        if (road->friction)
+            f[k] = round(100 * road->friction(road, 0, 0, ((double)tile.i + (double)(k % (CELLS + 1)) / CELLS) * size,
+                                              ((double)tile.j + (double)(k / (CELLS + 1)) / CELLS) * size));
+        same = same && f[k] == f[0];
+    }
+    return same;
+}
+
+/* At all corners, or once where it is the same. */
+static void print_friction(Text *out, Tile tile, const double f[CORNERS], bool same)
+{
+    text_print(out, "%s[%ld,%ld", out->size ? ",\n" : "", tile.i, tile.j);
+    for (int k = 0; k < (same ? 1 : CORNERS); ++k)
+        text_print(out, ",%.0f", f[k]);
+    text_print(out, "]");
+}
+
 /* Row by row as differences, of a row's first to the row before; every `step`-th corner. */
 static void print_tile(Text *out, Tile tile, const double z[CORNERS], int step)
 {
@@ -91,7 +114,8 @@ static void print_tile(Text *out, Tile tile, const double z[CORNERS], int step)
 void road_tiles(Text *out, const gic_road *road, double size, const double *way, int count)
 {
     const double reach = 4 * size, unit = pow(10, floor(log10(size)) - 4);
-    double side = pow(2, round(log2(size)) - 1), z[CORNERS];
+    double side = pow(2, round(log2(size)) - 1), z[CORNERS], f[CORNERS];
+    Text friction = {.pool = out->pool};
     Tile *tile;
     int tiles, printed = 0;
     while (!(tile = find_tiles(out->pool, side, reach, way, count, &tiles)))
@@ -100,7 +124,11 @@ void road_tiles(Text *out, const gic_road *road, double size, const double *way,
     for (int k = 0; k < tiles; ++k)
         if (sample(road, tile[k], side, unit, z)) {
             text_print(out, printed++ ? ",\n" : "\n");
-            print_tile(out, tile[k], z, is_plain(z) ? CELLS : 1);
+            const bool same = sample_friction(road, tile[k], side, f);
+            const int step = same && is_plain(z) ? CELLS : 1;
+            print_tile(out, tile[k], z, step);
+            if (!same || f[0] != 100)
+                print_friction(&friction, tile[k], f, same);
         }
-    text_print(out, "]}");
+    text_print(out, "],\"friction\":[%s]}", friction.size ? friction.s : "");
 }

@@ -73,6 +73,19 @@ check 'wheels with tires turn by their spin, arrows have all three components' \
 run -q --engine gcp1 "$tires" "$work/tires.scene" -o "$work/gcp1.csv" --animate "$work/gcp1.html"
 check 'they do with another engine' page tires "$work/gcp1.html" "$work/gcp1.csv" 0.05 0.03 0.3175
 
+# ice and glue
+cat >"$work/ice.scene" <<'END'
+gicscene: 1
+duration: 1
+step: 0.005
+initial: {speed: 8}
+road:
+  type: flat
+  friction: {value: 1, patches: [{x: [3, 9], y: [-2, 0.3], value: 0.1, fade: 0.5}, {x: [6, 7], y: [0, 1], value: 1.6, fade: 0.3}]}
+END
+run "$model" "$work/ice.scene" --animate "$work/ice.html"
+check 'friction of the road is that of the scene' page friction "$work/ice.html" "$work/ice.scene"
+
 # names that HTML means something by; a long run of something small on a fixed base, made larger by a parameter
 cat >"$work/odd.veh" <<'END'
 gicgen: 1

@@ -162,6 +162,35 @@ def check_road(page, scene):
             sys.exit('no road at x = %g' % x)
 
 
+def check_friction(page, scene):
+    """Friction at all corners of tiles against the formula of SCENE.md section 3.4, half of a hundredth."""
+    road, said = read_run(page)['road'], yaml.safe_load(open(scene))['road']['friction']
+    told = {(i, j): f for i, j, *f in road['friction']}
+
+    def smooth(s):
+        s = min(max(s, 0), 1)
+        return s * s * (3 - 2 * s)
+
+    def friction(x, y):
+        mu = said['value']
+        for p in said['patches']:
+            share = 1
+            for at, (low, high) in ((x, p['x']), (y, p['y'])):
+                share *= smooth((at - low) / p['fade'] + .5) * smooth((high - at) / p['fade'] + .5)
+            mu += share * (p['value'] - mu)
+        return mu
+
+    patched = 0
+    for i, j, *_ in road['tiles']:
+        f, n = told.get((i, j), [100]), road['cells'] + 1
+        patched += len(f) > 1
+        for k in range(n * n):
+            x, y = (i + k % n / (n - 1)) * road['tile'], (j + k // n / (n - 1)) * road['tile']
+            close('friction at %g, %g' % (x, y), (f[k] if len(f) > 1 else f[0]) / 100, friction(x, y), 0.0051)
+    if not 0 < patched < len(road['tiles']) / 2:
+        sys.exit('%d of %d tiles are patched' % (patched, len(road['tiles'])))
+
+
 def check_same(page, other, units):
     """Two pages with the same motion, to some units of each channel."""
     a, b = read_run(page), read_run(other)
@@ -178,6 +207,8 @@ def main():
         check_motion(*words)
     elif check == 'tires':
         check_tires(words[0], words[1], *map(float, words[2:]))
+    elif check == 'friction':
+        check_friction(*words)
     elif check == 'road':
         check_road(*words)
     elif check == 'same':
