@@ -81,7 +81,9 @@ step: 0.005
 initial: {speed: 8}
 road:
   type: flat
-  friction: {value: 1, patches: [{x: [3, 9], y: [-2, 0.3], value: 0.1, fade: 0.5}, {x: [6, 7], y: [0, 1], value: 1.6, fade: 0.3}]}
+  friction:
+    value: 1
+    patches: [{x: [3, 9], y: [-2, 0.3], value: 0.1, fade: 0.5}, {x: [6, 7], y: [0, 1], value: 1.6, fade: 0.3}]
 END
 run "$model" "$work/ice.scene" --animate "$work/ice.html"
 check 'friction of the road is that of the scene' page friction "$work/ice.html" "$work/ice.scene"

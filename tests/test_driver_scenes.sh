@@ -76,7 +76,8 @@ change 's/points: .*/points: [[0, 0], [2e5, 0]]}/' 8:20 'longer than'
 change 's/points: .*/file: nowhere.csv}/' 8:18 'nowhere.csv'
 printf 'x,z\n1,2\n3,4\n' >"$work/path.csv"
 sed 's/points: .*/file: path.csv}/' "$work/good.scene" >"$work/file.scene"
-if ! "$gicrun" "$work/car.veh" "$work/file.scene" 2>"$work/err" && grep -q 'path.csv:1:1: error: .*columns x and y' "$work/err"; then
+if ! "$gicrun" "$work/car.veh" "$work/file.scene" 2>"$work/err" &&
+    grep -q 'path.csv:1:1: error: .*columns x and y' "$work/err"; then
     passed=$((passed + 1))
 else
     failed=$((failed + 1))

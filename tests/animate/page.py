@@ -96,8 +96,8 @@ def unit(a):
 
 def check_tires(page, results, slope_x, slope_y, width):
     """Wheels with tires on a plane, a frame a row: they turn by their spin less what their carriers turn (trapezoids
-    both, and poses rounded to 1e-5: 5e-3 rad in all), and arrows are the forces of outputs along the axes of the contact
-    (axes to 2e-5 of at most 30 kN)."""
+    both, and poses rounded to 1e-5: 5e-3 rad in all), and arrows are the forces of outputs along the axes of the
+    contact (axes to 2e-5 of at most 30 kN)."""
     run, rows = read_run(page), read_csv(results)
     if run['frames'] != len(rows['time']):
         sys.exit('%d frames' % run['frames'])
