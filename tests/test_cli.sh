@@ -60,6 +60,8 @@ run 2 "$model" --solve
 says err "an argument is missing after: --solve"
 run 2 "$model" --solve quickly
 says err "--solve takes reduced or augmented, not: quickly"
+run 2 "$model" --recovery quickly
+says err "--recovery takes auto, newton or closed, not: quickly"
 run 1 missing.veh
 says err "missing.veh: error: can't open"
 run 1 "$root/models"

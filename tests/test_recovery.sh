@@ -1,0 +1,58 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_recovery.sh GICGEN GICRUN STATES REFERENCE AGREE: which subsets have a closed form, and that it leads to where
+# Newton's iteration and the independent reference in quad precision are. The latter within 5e-13, as in
+# test_accelerations.sh.
+gicgen=$1
+gicrun=$2
+states=$3
+reference=$4
+agree=$5
+root=$(cd "$(dirname "$0")/.." && pwd)
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+passed=0
+failed=0
+
+check() {
+    if [ "$2" = "$3" ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAIL $1: expected '$2', found '$3'"
+    fi
+}
+
+# classes MODEL WAY: those whose poses have a closed form
+classes() {
+    "$gicgen" --recovery "$2" "$1" -o - | sed -n "s/^ \*   subset '\([^']*\)' ([0-9]* times, closed form).*/\1/p" |
+        tr '\n' ' '
+}
+
+models=$root/models
+check hmmwv "rack lca_f_l wheel_f_l wheel_r_l " "$(classes "$models/hmmwv.veh" auto)"
+check hmmwv14 "rack lca_f_l uca_f_l_wheel_f_l uca_r_l_wheel_r_l " "$(classes "$models/hmmwv14.veh" auto)"
+check "five links" "rack lca_f_l wheel_f_l " "$(classes "$models/five_link.veh" closed)"
+check "quarter car" "carriage arm wheel " "$(classes "$models/quarter_car.veh" auto)"
+check "Newton's iteration alone" "" "$(classes "$models/hmmwv.veh" newton)"
+# names mean nothing: the same with others
+sed 's/wheel/corner/g; s/lca/limb/g; s/rack/slide/g' "$models/quarter_car.veh" | sed 's/^corners:/wheels:/; s/type: corner/type: wheel/;
+    s/corner: /wheel: /' >"$work/renamed.veh"
+check "other names" "carriage arm corner " "$(classes "$work/renamed.veh" auto)"
+
+for name in hmmwv14 five_link trailing_arm; do
+    "$gicgen" --dump-model "$models/$name.veh" >"$work/dump" &&
+        "$states" "$work/dump" --count 40 --seed 7 -o "$work/states" &&
+        "$reference" "$work/dump" "$work/states" -o "$work/accelerations"
+    for way in newton closed; do
+        "$gicrun" --recovery $way --engine tape --eval "$work/states" "$models/$name.veh" -o "$work/$way" &&
+            "$agree" "$work/dump" "$work/accelerations" "$work/$way" --tolerance 5e-13 >"$work/log"
+        check "$name $way" 0 $?
+    done
+    # two ways, or the option would do nothing
+    cmp -s "$work/newton" "$work/closed"
+    check "$name: two ways" 1 $?
+done
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
