@@ -70,10 +70,10 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (4 times, closed form)                   68       109       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                380       470       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                295       386       4      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                378       470       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                294       386       4      1         0
  *   forces and equations of motion                           760       659      11      0         4
- *   all together                                            2397      2832      33     10         4
+ *   all together                                            2391      2832      33     10         4
  *   outputs, when asked for                                  765       910       0      0         7
  */
 #ifndef HMMWV_H

@@ -72,10 +72,10 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (4 times, closed form)                   68       109       1      1         0
- *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        599       717       6      2         0
- *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        477       575       6      2         0
+ *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        597       717       6      2         0
+ *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        475       575       6      2         0
  *   forces and equations of motion                           964       859      15      4         4
- *   all together                                            3403      3904      43     16         4
+ *   all together                                            3395      3904      43     16         4
  *   outputs, when asked for                                 1132      1370       4      4        19
  */
 #include "hmmwv14.h"
@@ -529,9 +529,9 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t12 = k[5] * t10 - t11 * R(-0.02731899434646525);
         const gic_real t13 = R(-0.02731899434646525) * t10 + k[5] * t11;
         const gic_real t14 = t12 * t12 + t13 * t13;
-        const gic_real t15 = R(0.07540059435979997) + (t3 * t3 + (t6 * t6 + t9 * t9));
+        const gic_real t15 = t3 * t3 + (t6 * t6 + t9 * t9) + R(-0.04123615623720006);
         const gic_real t16 = R(0.06516162806573093) * (R(0.21526024724178433) * t3 + (k[6] * t6 + R(0.9665541626242249) * t9));
-        const gic_real t17 = R(0.5) * (t15 - R(0.11663675059700003)) - t16;
+        const gic_real t17 = R(0.5) * t15 - t16;
         const gic_real t18 = t14 - t17 * t17;
         if (!(t18 > R(0.0)))
             return GIC_ERROR_NEWTON;
@@ -563,8 +563,8 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t44 = t34 - t31 * t42;
         const gic_real t45 = t40 - t37 * t42;
         const gic_real t46 = R(1.0) / (t43 * t43 + (t44 * t44 + t45 * t45));
-        const gic_real t47 = R(0.07996779748344002) + (t27 * t27 + (t34 * t34 + t40 * t40));
-        const gic_real t48 = R(0.5) * (t47 - R(0.14941089924212003)) - R(0.7089382012815334) * t41;
+        const gic_real t47 = t27 * t27 + (t34 * t34 + t40 * t40) + R(-0.06944310175868001);
+        const gic_real t48 = R(0.5) * t47 - R(0.7089382012815334) * t41;
         const gic_real t49 = t46 * t48;
         const gic_real t50 = R(8.573627050492615) * (t46 * (R(0.021346939557573212) - t48 * t49));
         if (!(t50 > R(0.0)))
@@ -1105,9 +1105,9 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t12 = k[5] * t10 - t11 * R(-0.007278092027209733);
         const gic_real t13 = R(-0.007278092027209733) * t10 + k[5] * t11;
         const gic_real t14 = t12 * t12 + t13 * t13;
-        const gic_real t15 = R(0.09581203418200003) + (t3 * t3 + (t6 * t6 + t9 * t9));
+        const gic_real t15 = t3 * t3 + (t6 * t6 + t9 * t9) + R(-0.020790651966999946);
         const gic_real t16 = R(-0.17747212962088843) * (R(0.014080507566174662) * t3 + (k[6] * t6 + R(0.9999005718370345) * t9));
-        const gic_real t17 = R(0.5) * (t15 - R(0.11660268614899998)) - t16;
+        const gic_real t17 = R(0.5) * t15 - t16;
         const gic_real t18 = t14 - t17 * t17;
         if (!(t18 > R(0.0)))
             return GIC_ERROR_NEWTON;
@@ -1133,16 +1133,16 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t38 = t30 - t29 * t36;
         const gic_real t39 = t34 - t33 * t36;
         const gic_real t40 = R(1.0) / (t37 * t37 + (t38 * t38 + t39 * t39));
-        const gic_real t41 = R(0.08000067225639998) + (t25 * t25 + (t30 * t30 + t34 * t34));
-        const gic_real t42 = R(0.5) * (t41 - R(0.1714924505628)) - R(0.7092920680207613) * t35;
+        const gic_real t41 = t25 * t25 + (t30 * t30 + t34 * t34) + R(-0.09149177830640001);
+        const gic_real t42 = R(0.5) * t41 - R(0.7092920680207613) * t35;
         const gic_real t43 = t40 * t42;
         const gic_real t44 = R(8.576131760139356) * (t40 * (R(0.02133841614514436) - t42 * t43));
         if (!(t44 > R(0.0)))
             return GIC_ERROR_NEWTON;
         const gic_real t45 = t24 - t2;
-        if (!(GIC_FABS(t45) > R(3.3640475456795205e-08)))
+        if (!(GIC_FABS(t45) > R(3.36404754567952e-08)))
             return GIC_ERROR_SINGULAR;
-        if (!(GIC_FABS(t26) > R(3.3640475456795205e-08)))
+        if (!(GIC_FABS(t26) > R(3.36404754567952e-08)))
             return GIC_ERROR_SINGULAR;
         const gic_real t46 = t23 + t27 * k[13];
         const gic_real t47 = t46 * k[14] - t27 * R(-0.01408190770438876);

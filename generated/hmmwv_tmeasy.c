@@ -70,14 +70,14 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (4 times, closed form)                   68       109       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                380       470       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                295       386       4      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                378       470       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                294       386       4      1         0
  *   forces and equations of motion                           608       510       8      0         0
  *   motion of the wheels                                     225       231       0      0         0
  *   drives and brakes                                          0         2       0      0         0
  *   wheel 'tire_f_l' (4 times)                               160       246      33     14         5
  *   a fast step: all wheels                                  640       986     132     56        20
- *   all together                                            3110      3900     162     66        20
+ *   all together                                            3104      3900     162     66        20
  *   outputs, when asked for                                 1053      1211       0      0         7
  */
 #include "hmmwv_tmeasy.h"
@@ -517,7 +517,7 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t14 = R(0.21526024724178433) * t10 + (k[2] * t3 + R(0.9665541626242249) * t6);
         const gic_real t15 = R(4.3116545195287515e-08) + t14;
         const gic_real t16 = t10 * t10 + (t3 * t3 + t6 * t6);
-        const gic_real t17 = R(0.5) * (R(0.11663675059700003) + t16 - R(0.07115456010869));
+        const gic_real t17 = R(0.5) * (t16 + R(0.04548219048831004));
         const gic_real t18 = t13 * (t15 * t16 - t14 * t17);
         const gic_real t19 = t13 * (t17 - t14 * t15);
         const gic_real t20 = t13 * (R(0.11663675059700003) - t15 * t18 - t17 * t19);
@@ -542,8 +542,8 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t37 = t28 - t29 * t35;
         const gic_real t38 = t32 - t33 * t35;
         const gic_real t39 = R(1.0) / (t36 * t36 + (t37 * t37 + t38 * t38));
-        const gic_real t40 = R(0.031228051737320014) + (t23 * t23 + (t28 * t28 + t32 * t32));
-        const gic_real t41 = R(0.5) * (t40 - R(0.14941089924212003)) - R(0.2910617987184667) * t34;
+        const gic_real t40 = t23 * t23 + (t28 * t28 + t32 * t32) + R(-0.11818284750480001);
+        const gic_real t41 = R(0.5) * t40 - R(0.2910617987184667) * t34;
         const gic_real t42 = t39 * t41;
         const gic_real t43 = R(8.573627050492615) * (t39 * (R(0.021346939557573212) - t41 * t42));
         if (!(t43 > R(0.0)))
@@ -901,8 +901,8 @@ static int hmmwv_tmeasy_solve_wheel_r_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t18 = k[4] * t13 - R(0.33401) * t17;
         const gic_real t19 = R(0.33401) * t13 + k[4] * t17;
         const gic_real t20 = t18 * t18 + t19 * t19;
-        const gic_real t21 = R(0.11660268614899998) + (t4 * t4 + (t8 * t8 + t12 * t12));
-        const gic_real t22 = R(0.5) * (t21 - R(0.095812034182));
+        const gic_real t21 = t4 * t4 + (t8 * t8 + t12 * t12) + R(0.020790651966999973);
+        const gic_real t22 = R(0.5) * t21;
         const gic_real t23 = t20 - t22 * t22;
         if (!(t23 > R(0.0)))
             return GIC_ERROR_NEWTON;
@@ -946,7 +946,7 @@ static int hmmwv_tmeasy_solve_wheel_r_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t57 = R(1.0) / t39;
         const gic_real t58 = (t45 * t52 - t51 * t46 - t34 * t53) * t57;
         const gic_real t59 = t44 * t46 - t45 * t47 - t50 * t53 - t56 * t58;
-        if (!(GIC_FABS(t59) > R(8.650478159472871e-09)))
+        if (!(GIC_FABS(t59) > R(8.650478159472867e-09)))
             return GIC_ERROR_SINGULAR;
         const gic_real t60 = t16 * t42 + t9 * t43;
         const gic_real t61 = t9 * t42 - t16 * t43;

@@ -41,9 +41,9 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
  *   subset 'arm' (1 times, closed form)                      330       439       4      1         0
- *   subset 'wheel' (1 times, closed form)                    452       553       5      2         0
+ *   subset 'wheel' (1 times, closed form)                    450       553       5      2         0
  *   forces and equations of motion                            48        43       2      0         1
- *   all together                                             831      1035      11      3         1
+ *   all together                                             829      1035      11      3         1
  *   outputs, when asked for                                  127       188       0      0         1
  */
 #include "quarter_car.h"
@@ -577,7 +577,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t23 = t14 * t19 + (t7 * t6 + t1 * t12);
         const gic_real t24 = R(4.311654514671526e-08) + t23;
         const gic_real t25 = t19 * t19 + (t6 * t6 + t12 * t12);
-        const gic_real t26 = R(0.5) * (R(0.11663675059700003) + t25 - R(0.07115456010869));
+        const gic_real t26 = R(0.5) * (t25 + R(0.04548219048831004));
         const gic_real t27 = t22 * (t24 * t25 - t23 * t26);
         const gic_real t28 = t26 * (t14 * t14 + (t7 * t7 + t1 * t1));
         const gic_real t29 = t22 * (t28 - t23 * t24);
@@ -603,8 +603,8 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t47 = t38 - t39 * t45;
         const gic_real t48 = t42 - t43 * t45;
         const gic_real t49 = R(1.0) / (t46 * t46 + (t47 * t47 + t48 * t48));
-        const gic_real t50 = R(0.031228051737320007) + (t33 * t33 + (t38 * t38 + t42 * t42));
-        const gic_real t51 = R(0.5) * (t50 - R(0.14941089924212003)) - R(0.29106179871846666) * t44;
+        const gic_real t50 = t33 * t33 + (t38 * t38 + t42 * t42) + R(-0.11818284750480003);
+        const gic_real t51 = R(0.5) * t50 - R(0.29106179871846666) * t44;
         const gic_real t52 = t49 * t51;
         const gic_real t53 = R(8.573627050492615) * (t49 * (R(0.021346939557573212) - t51 * t52));
         if (!(t53 > R(0.0)))

@@ -60,9 +60,9 @@
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (2 times, closed form)                   68       109       1      1         0
  *   subset 'axle' (1 times)                                  658       737       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                380       470       5      2         0
+ *   subset 'wheel_f_l' (2 times, closed form)                378       470       5      2         0
  *   forces and equations of motion                           714       671       9      0         4
- *   all together                                            2283      2591      27      6         4
+ *   all together                                            2279      2591      27      6         4
  *   outputs, when asked for                                  610       703       0      0        10
  */
 #include "solid_axle.h"
@@ -1206,7 +1206,7 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t14 = R(0.21526024724178433) * t10 + (k[2] * t3 + R(0.9665541626242249) * t6);
         const gic_real t15 = R(4.3116545195287515e-08) + t14;
         const gic_real t16 = t10 * t10 + (t3 * t3 + t6 * t6);
-        const gic_real t17 = R(0.5) * (R(0.11663675059700003) + t16 - R(0.07115456010869));
+        const gic_real t17 = R(0.5) * (t16 + R(0.04548219048831004));
         const gic_real t18 = t13 * (t15 * t16 - t14 * t17);
         const gic_real t19 = t13 * (t17 - t14 * t15);
         const gic_real t20 = t13 * (R(0.11663675059700003) - t15 * t18 - t17 * t19);
@@ -1231,8 +1231,8 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t37 = t28 - t29 * t35;
         const gic_real t38 = t32 - t33 * t35;
         const gic_real t39 = R(1.0) / (t36 * t36 + (t37 * t37 + t38 * t38));
-        const gic_real t40 = R(0.031228051737320014) + (t23 * t23 + (t28 * t28 + t32 * t32));
-        const gic_real t41 = R(0.5) * (t40 - R(0.14941089924212003)) - R(0.2910617987184667) * t34;
+        const gic_real t40 = t23 * t23 + (t28 * t28 + t32 * t32) + R(-0.11818284750480001);
+        const gic_real t41 = R(0.5) * t40 - R(0.2910617987184667) * t34;
         const gic_real t42 = t39 * t41;
         const gic_real t43 = R(8.573627050492615) * (t39 * (R(0.021346939557573212) - t41 * t42));
         if (!(t43 > R(0.0)))

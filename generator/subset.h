@@ -36,12 +36,12 @@ typedef struct Work {
     Motion *known;
     Motion base;
     Ex *x, *rate, *change;
-    double size; /* see Formula */
-    int derived; /* numbers that follow tunable parameters: d[] */
+    double size;    /* see Formula */
+    int derived;    /* numbers that follow tunable parameters: d[] */
     Ex *derived_of; /* [derived][members] their formulas */
-    Row *row;    /* [n] equations with the unknowns at q and at rest */
-    int *row_of; /* [n] connection that a row belongs to */
-    Ex *J;       /* [n][n] Jacobian by the unknown twists */
+    Row *row;       /* [n] equations with the unknowns at q and at rest */
+    int *row_of;    /* [n] connection that a row belongs to */
+    Ex *J;          /* [n][n] Jacobian by the unknown twists */
     int configurations;
     bool *alive; /* [samples] reached the end of its path */
 } Work;

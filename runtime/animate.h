@@ -39,7 +39,8 @@ Shapes shapes_of(Pool *pool, const Model *model, const Scene *scene);
 
 /* ---- animate_road.c: the road along a way ------------------------------------------------------------------------ */
 
-/* JSON: heights of the road, and its friction where it is not 1, in square tiles near `way`, [count][x, y]. size: of the vehicle, m. */
+/* JSON: heights of the road, and its friction where it is not 1, in square tiles near `way`, [count][x, y]. size: of
+ * the vehicle, m. */
 void road_tiles(Text *out, const gic_road *road, double size, const double *way, int count);
 
 #endif

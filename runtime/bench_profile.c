@@ -171,8 +171,8 @@ static void count_table(const Bench *bench)
 {
     Pool *pool = bench->pool;
     const Sequence *sequence = sequence_find(pool, bench->model);
-    const Formulation *f = formulate(pool, model_assemble(pool, bench->model, sequence), sequence,
-                                     bench->options.solve, bench->options.recovery);
+    const Formulation *f = formulate(pool, model_assemble(pool, bench->model, sequence), sequence, bench->options.solve,
+                                     bench->options.recovery);
     Count start = {0}, correction = {0}, solution = {0};
     for (int c = 0; c < f->sequence->classes; ++c)
         for (int i = 0; i < f->sequence->class[c].members; ++i) {

@@ -93,8 +93,8 @@ static Start start_here(const Bench *bench, const Way *way)
     const Scene scene = bench_scene(scene_read(pool, bench->scene_path, model, NULL, 0), setting);
     const Engine *engine = engine_open(pool, way->engine, model, &options);
     gic_head *self = instance_new(pool, engine);
-    const bool stepped =
-        scene_start(engine, &scene, self) == GIC_OK && scene_step(engine, engine->code, &scene, NULL, self, 0) == GIC_OK;
+    const bool stepped = scene_start(engine, &scene, self) == GIC_OK &&
+                         scene_step(engine, engine->code, &scene, NULL, self, 0) == GIC_OK;
     start.cpu = cpu_seconds() - cpu;
     start.elapsed = clock_seconds(CLOCK_MONOTONIC) - elapsed;
     start.compiling = engine->compiling;

@@ -70,8 +70,8 @@ const char *gic_status_text(int status);
 
 /* A road z = h(x, y), world frame, metres; those of gic_road.h, or one of your own. `height` fills out[0] = h,
  * out[1] = dh/dx, out[2] = dh/dy. `friction`: of the road at a place, relative to the one that the tires were measured
- * on; NULL: 1 everywhere. `lane` is the instance's lane index. The rest of a road's data follows this head in the user's
- * own structure. */
+ * on; NULL: 1 everywhere. `lane` is the instance's lane index. The rest of a road's data follows this head in the
+ * user's own structure. */
 typedef struct gic_road {
     void (*height)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
     gic_real (*friction)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y);

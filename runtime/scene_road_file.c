@@ -11,13 +11,15 @@
 
 const CsvTable *scene_file(Pool *pool, const Item *item, const char *what, const char *header)
 {
-    const char *name = doc_word(item, pool_print(pool, "file of a %s", what)), *scene = item->at.source->path, *slash = strrchr(scene, '/');
+    const char *name = doc_word(item, pool_print(pool, "file of a %s", what)), *scene = item->at.source->path,
+               *slash = strrchr(scene, '/');
     const char *path = name;
     struct stat about;
     if (name[0] != '/' && slash)
         path = pool_print(pool, "%.*s%s", (int)(slash + 1 - scene), scene, name);
     if (!name[0] || !strcmp(name, "-"))
-        diag_fail(item->at, "name a file; paths start in the folder of the scene", "'%s' is no file of a %s", name, what);
+        diag_fail(item->at, "name a file; paths start in the folder of the scene", "'%s' is no file of a %s", name,
+                  what);
     if (stat(path, &about) || access(path, R_OK))
         diag_fail(item->at, "paths start in the folder of the scene", "can't read the %s '%s': %s", what, path,
                   strerror(errno));

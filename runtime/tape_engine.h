@@ -12,7 +12,7 @@
 typedef struct TapeClass {
     const Tape *predict, *chord, *solve, *residual, *react;
     const Layout *layout;
-    bool closed; /* `solve` needs no start */
+    bool closed;   /* `solve` needs no start */
     double enough; /* square of a correction that is rounding, relative to the subset's size */
 } TapeClass;
 
@@ -82,8 +82,9 @@ static inline double *tape_start(Instance *self)
     X(y) \
     X(e) \
     X(x) \
-    X(xd) X(u) X(m) X(n) X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) \
-        X(torque) X(hub) X(force) X(grip) X(gear) X(watch) X(choice)
+    X(xd) \
+    X(u) X(m) X(n) X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) X(torque) \
+        X(hub) X(force) X(grip) X(gear) X(watch) X(choice)
 #define CLASS_ENUM(name) CLASS_##name,
 #define WHOLE_ENUM(name) WHOLE_##name,
 enum { CLASS_ARRAYS(CLASS_ENUM) CLASS_KNOWN };
