@@ -25,8 +25,8 @@ check() {
 
 # classes MODEL WAY: those whose poses have a closed form
 classes() {
-    "$gicgen" --recovery "$2" "$1" -o - | sed -n "s/^ \*   subset '\([^']*\)' ([0-9]* times, closed form).*/\1/p" |
-        tr '\n' ' '
+    "$gicgen" --recovery "$2" "$1" -o "$work/code.c" &&
+        sed -n "s/^ \*   subset '\([^']*\)' ([0-9]* times, closed form).*/\1/p" "$work/code.c" | tr '\n' ' '
 }
 
 models=$root/models
@@ -36,9 +36,8 @@ check "five links" "rack lca_f_l wheel_f_l " "$(classes "$models/five_link.veh" 
 check "quarter car" "carriage arm wheel " "$(classes "$models/quarter_car.veh" auto)"
 check "Newton's iteration alone" "" "$(classes "$models/hmmwv.veh" newton)"
 # names mean nothing: the same with others
-sed 's/wheel/corner/g; s/lca/limb/g; s/rack/slide/g' "$models/quarter_car.veh" | sed 's/^corners:/wheels:/; s/type: corner/type: wheel/;
-    s/corner: /wheel: /' >"$work/renamed.veh"
-check "other names" "carriage arm corner " "$(classes "$work/renamed.veh" auto)"
+sed 's/\<arm\>/pen/g; s/\<carriage\>/lca/g' "$models/quarter_car.veh" >"$work/renamed.veh"
+check "other names" "lca pen wheel " "$(classes "$work/renamed.veh" auto)"
 
 for name in hmmwv14 five_link trailing_arm; do
     "$gicgen" --dump-model "$models/$name.veh" >"$work/dump" &&
