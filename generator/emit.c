@@ -12,6 +12,13 @@
 const Style style_readable = {.leaves = 6, .doubles = false, .whole_self_test = true};
 /* For a compiler that keeps no value in a register from one statement to the next, and whose own time counts. */
 const Style style_direct = {.leaves = 30, .doubles = true, .whole_self_test = false};
+/* For vector extensions of C, in which sums and products take numbers beside vectors, and functions do not. */
+const Style style_lanes = {.leaves = 6, .doubles = false, .whole_self_test = false, .lanes = true};
+
+const char *style_real(const Style *style)
+{
+    return style->lanes ? "gic_lane" : "gic_real";
+}
 
 /* Binding strength of a node's text. */
 enum { STRENGTH_SUM = 1, STRENGTH_PRODUCT = 2, STRENGTH_UNARY = 3, STRENGTH_ATOM = 4 };
@@ -121,6 +128,27 @@ static int constant_slot(Emitter *m, Ex e)
     return k->count - 1;
 }
 
+static void write_text(Emitter *m, Text *line, Ex e, int strength);
+
+/* Text of a node where a number of the type of temporaries must stand. */
+static void write_whole(Emitter *m, Text *line, Ex e)
+{
+    bool spread = m->style->lanes && m->dag->node[e].level < LEVEL_VARIABLE;
+    text_print(line, spread ? "LANE(" : "");
+    write_text(m, line, e, 0);
+    text_print(line, spread ? ")" : "");
+}
+
+/* The functions of lanes are called as those of numbers are: LANE_SQRT for GIC_SQRT. */
+static const char *form_text(const Emitter *m, Op op, Text *line)
+{
+    const char *text = op_form[op].text;
+    if (!m->style->lanes || strncmp(text, "GIC_", 4) != 0)
+        return m->style->lanes && op == OP_POSITIVE ? "LANE_POSITIVE(%0, %1, %2)" : text;
+    text_print(line, "LANE");
+    return text + 3;
+}
+
 /* Text of a node within an expression that binds with `strength`. Recursion is as deep as one line's text. */
 static void write_text(Emitter *m, Text *line, Ex e, int strength)
 {
@@ -146,22 +174,26 @@ static void write_text(Emitter *m, Text *line, Ex e, int strength)
         return;
     }
     if (node->op == OP_TABLE) {
-        text_print(line, "gic_table_value(&table[%d], ", (int)node->arg[1]);
-        write_text(m, line, node->arg[0], 0);
+        text_print(line, "%s(&table[%d], ", m->style->lanes ? "LANE_TABLE" : "gic_table_value", (int)node->arg[1]);
+        write_whole(m, line, node->arg[0]);
         text_print(line, ")");
         return;
     }
     int own = strength_of(node);
     if (own < strength)
         text_print(line, "(");
-    for (const char *s = op_form[node->op].text; *s; ++s) {
+    for (const char *s = form_text(m, node->op, line); *s; ++s) {
         if (*s != '%') {
             text_add(line, s, 1);
             continue;
         }
         int which = *++s - '0';
+        if (own == STRENGTH_ATOM) {
+            write_whole(m, line, node->arg[which]);
+            continue;
+        }
         /* the right operand keeps its parentheses: a + (b + c) is not (a + b) + c */
-        int inner = own == STRENGTH_ATOM ? 0 : own == STRENGTH_UNARY ? STRENGTH_ATOM : own + (which == 1);
+        int inner = own == STRENGTH_UNARY ? STRENGTH_ATOM : own + (which == 1);
         write_text(m, line, node->arg[which], inner);
     }
     if (own < strength)
@@ -174,13 +206,18 @@ static void write_statement(Emitter *m, Ex e)
     Text line = {.pool = m->dag->pool};
     int number = m->temporaries + 1;
     if (node->op == OP_ROAD) {
-        text_print(&line, "gic_real road%d[3];\n%*sif (!road_height(self, time, ", number, m->indent, "");
-        write_text(m, &line, node->arg[0], 0);
+        text_print(&line, "%s road%d[3];\n%*s", style_real(m->style), number, m->indent, "");
+        text_print(&line, m->style->lanes ? "NEED(LANE_ROAD(" : "if (!road_height(self, time, ");
+        write_whole(m, &line, node->arg[0]);
         text_print(&line, ", ");
-        write_text(m, &line, node->arg[1], 0);
-        text_print(&line, ", road%d))\n%*sreturn GIC_ERROR_ROAD;", number, m->indent + 4, "");
+        write_whole(m, &line, node->arg[1]);
+        text_print(&line, ", road%d)", number);
+        if (m->style->lanes)
+            text_print(&line, ", GIC_ERROR_ROAD);");
+        else
+            text_print(&line, ")\n%*sreturn GIC_ERROR_ROAD;", m->indent + 4, "");
     } else {
-        text_print(&line, "const gic_real t%d = ", number);
+        text_print(&line, "const %s t%d = ", style_real(m->style), number);
         write_text(m, &line, e, 0);
         text_print(&line, ";");
     }
@@ -217,7 +254,12 @@ static void write_check(Emitter *m, const Check *check)
 {
     Text line = {.pool = m->dag->pool};
     write_temporaries(m, check->value);
-    write_text(m, &line, check->value, 0);
+    write_whole(m, &line, check->value);
+    if (m->style->lanes) {
+        text_print(m->out, check->magnitude ? "%*sNEED(LANE_FABS(%s) > %s, %s);\n" : "%*sNEED(%s > %s, %s);\n",
+                   m->indent, "", line.s, literal_text(m, check->least), check->status);
+        return;
+    }
     text_print(m->out, check->magnitude ? "%*sif (!(GIC_FABS(%s) > %s))\n" : "%*sif (!(%s > %s))\n", m->indent, "",
                line.s, literal_text(m, check->least));
     text_print(m->out, "%*sreturn %s;\n", m->indent + 4, "", check->status);
@@ -256,7 +298,7 @@ void block_emit(Text *out, const Block *block, const Style *style, Constants *co
             write_statement(&m, store->value);
         }
         text_print(&stores, "%*s%s = ", indent, "", store->target);
-        write_text(&m, &stores, store->value, 0);
+        write_whole(&m, &stores, store->value);
         text_print(&stores, ";\n");
     }
     if (stores.s)

@@ -19,8 +19,7 @@ void line(Text *out, int indent, const char *format, ...)
     text_print(out, "%*s%s\n", indent, "", s);
 }
 
-/* A string as a C literal; every second question mark is escaped, so that no trigraph arises. */
-static const char *quoted(Pool *pool, const char *s)
+const char *quoted(Pool *pool, const char *s)
 {
     Text out = {.pool = pool};
     text_print(&out, "\"");
@@ -30,8 +29,7 @@ static const char *quoted(Pool *pool, const char *s)
     return out.s;
 }
 
-/* Capitals, and everything that is no letter or digit an underscore. */
-static const char *capital(Pool *pool, const char *s)
+const char *capital(Pool *pool, const char *s)
 {
     char *out = pool_print(pool, "%s", s);
     for (char *c = out; *c; ++c)
@@ -210,26 +208,28 @@ static bool any_reads(const Block *const *block, int blocks, const char *array)
 static void write_arguments(Generation *g, Text *out, int indent, const Block *const *block, int blocks)
 {
     static const char *const part[] = {"x", "rate", "change", "turn"};
+    const char *real = style_real(g->style);
     if (any_reads(block, blocks, "d"))
-        line(out, indent, "const gic_real *const d = links->derived;");
+        line(out, indent, "const %s *const d = links->derived;", real);
     const Subset *first = &g->sequence->subset[g->sequence->class[g->class].member[0]];
     for (int i = 0; i < first->knowns; ++i)
         if (any_reads(block, blocks, pool_print(g->pool, "m%d", i)))
-            line(out, indent, "const gic_real *const m%d = links->known[%d]; /* %s */", i, i,
+            line(out, indent, "const %s *const m%d = links->known[%d]; /* %s */", real, i, i,
                  g->model->body[first->known[i]].name);
     for (int i = 0; i < 4; ++i)
         if (any_reads(block, blocks, part[i]))
-            line(out, indent, "const gic_real *const %s = links->%s;", part[i], part[i]);
+            line(out, indent, "const %s *const %s = links->%s;", real, part[i], part[i]);
     if (!first->knowns && !first->deps)
         line(out, indent, "(void)links;");
 }
 
-static void insert_class(void *context, const char *name, Text *out, int indent)
+void insert_subset(void *context, const char *name, Text *out, int indent)
 {
     Generation *g = context;
     const Formula *f = g->plan->formula[g->class];
     const Class *class = &g->sequence->class[g->class];
     const Subset *first = &g->sequence->subset[class->member[0]];
+    const char *real = style_real(g->style);
     int numbers = 7 * f->layout.bodies;
     if (!strcmp(name, "comment")) {
         text_print(out, "/* Class '%s': %d unknown%s of ", class->name, 6 * first->bodies,
@@ -251,21 +251,21 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
         const Block *const block[] = {&f->predict, &f->chord, &f->solve};
         write_arguments(g, out, indent, block, 3);
         if (any_reads(block, 3, "s"))
-            line(out, indent, "const gic_real *const s = old + %d; /* unit velocities at the start */",
+            line(out, indent, "const %s *const s = old + %d; /* unit velocities at the start */", real,
                  f->layout.start_S);
         if (any_reads(block, 3, "f"))
-            line(out, indent, "const gic_real *const f = old + %d; /* factors at the start */",
+            line(out, indent, "const %s *const f = old + %d; /* factors at the start */", real,
                  f->layout.start_factors);
         if (!f->closed)
-            line(out, indent, "gic_real q[%d];", numbers);
+            line(out, indent, "%s q[%d];", real, numbers);
     } else if (!strcmp(name, "react arguments")) {
         const Block *const block = &f->react;
         write_arguments(g, out, indent, &block, 1);
         for (int i = 0; i < first->knowns; ++i)
             if (block_reads(block, pool_print(g->pool, "w%d", i)))
-                line(out, indent, "gic_real *const w%d = onto[%d];", i, i);
+                line(out, indent, "%s *const w%d = onto[%d];", real, i, i);
         if (block_reads(block, "f"))
-            line(out, indent, "const gic_real *const f = start + %d;", f->layout.start_factors);
+            line(out, indent, "const %s *const f = start + %d;", real, f->layout.start_factors);
     } else if (!strcmp(name, "residual arguments")) {
         write_arguments(g, out, indent, (const Block *const[]){&f->residual}, 1);
     } else if (!strcmp(name, "enough")) {
@@ -304,7 +304,7 @@ void write_constants(Generation *g, Text *out, const char *name, const Dag *dag,
     line(out, 0, "};\n");
 }
 
-static void write_class_constants(Generation *g, Text *out)
+void write_class_constants(Generation *g, Text *out)
 {
     const Class *class = &g->sequence->class[g->class];
     const char *member[class->members];
@@ -320,12 +320,12 @@ static void write_classes(Generation *g, Text *out)
         Text body = {.pool = g->pool};
         const char *way = g->plan->formula[g->class]->closed ? "closed.c.in" : "subset.c.in";
         template_expand(g->pool, &body, g->templates, way, g->model->name, g->sequence->class[g->class].name,
-                        insert_class, g);
+                        insert_subset, g);
         template_expand(g->pool, &body, g->templates, "residual.c.in", g->model->name,
-                        g->sequence->class[g->class].name, insert_class, g);
+                        g->sequence->class[g->class].name, insert_subset, g);
         if (g->plan->formula[g->class]->react.stores)
             template_expand(g->pool, &body, g->templates, "react.c.in", g->model->name,
-                            g->sequence->class[g->class].name, insert_class, g);
+                            g->sequence->class[g->class].name, insert_subset, g);
         write_class_constants(g, out); /* known now that all blocks are text */
         text_add(out, body.s, body.size);
     }
@@ -335,7 +335,7 @@ static void write_classes(Generation *g, Text *out)
 /* ---- recovery
  * ------------------------------------------------------------------------------------------------------------- */
 
-static int member_of(const Class *class, int subset)
+int class_place(const Class *class, int subset)
 {
     int i = 0;
     while (class->member[i] != subset)
@@ -378,7 +378,7 @@ static void write_calls(Generation *g, Text *out, int indent)
         const char *old = closed ? "" : pool_print(g->pool, "old + %d, ", g->plan->start_offset[s]);
         line(out, indent,
              "status = %s_solve_%s(self, %s_k_%s[%d], links, %sstart + %d, self->motion + %d, self->inertia + %d);",
-             g->model->name, class->name, g->model->name, class->name, member_of(class, s), old,
+             g->model->name, class->name, g->model->name, class->name, class_place(class, s), old,
              g->plan->start_offset[s], g->plan->motion_offset[subset->body[0]], g->plan->inertia_offset[s]);
         line(out, indent, "if (status != GIC_OK) {");
         line(out, indent + 4, "self->head.subset = %d;", s);
@@ -401,7 +401,7 @@ static void write_residuals(Generation *g, Text *out, int indent)
         if (g->plan->formula[subset->class]->derived)
             line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
         line(out, indent, "one = %s_residual_%s(%s_k_%s[%d], &links, self->motion + %d);", g->model->name, class->name,
-             g->model->name, class->name, member_of(class, s), g->plan->motion_offset[subset->body[0]]);
+             g->model->name, class->name, class_place(class, s), g->plan->motion_offset[subset->body[0]]);
         line(out, indent, "largest = GIC_MAX(largest, one);");
     }
 }
@@ -429,7 +429,7 @@ static void write_react_calls(Generation *g, Text *out, int indent)
         if (plan->formula[subset->class]->derived)
             line(out, indent, "links.derived = self->derived + %d;", plan->derived_offset[s]);
         line(out, indent, "%s_react_%s(%s_k_%s[%d], &links, start + %d, self->motion + %d, lambda + %d, onto);",
-             g->model->name, class->name, g->model->name, class->name, member_of(class, s), plan->start_offset[s],
+             g->model->name, class->name, g->model->name, class->name, class_place(class, s), plan->start_offset[s],
              plan->motion_offset[subset->body[0]], plan->multiplier_offset[subset->body[0]]);
     }
 }
@@ -678,7 +678,7 @@ static void insert_derive(void *context, const char *name, Text *out, int indent
     block_emit(out, block, g->style, &none, indent);
 }
 
-static void insert_code(void *context, const char *name, Text *out, int indent)
+void insert_code(void *context, const char *name, Text *out, int indent)
 {
     Generation *g = context;
     Constants none = {0};

@@ -22,11 +22,22 @@ typedef struct Generation {
 void line(Text *out, int indent, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* Elements of an array that would be empty: one. */
 int room(int count);
+/* A string as a C literal; every second question mark is escaped, so that no trigraph arises. */
+const char *quoted(Pool *pool, const char *s);
+/* Capitals, and everything that is no letter or digit an underscore. */
+const char *capital(Pool *pool, const char *s);
 /* The table `name` of a class's constants, a row a member. */
 void write_constants(Generation *g, Text *out, const char *name, const Dag *dag, const Constants *k,
                      const char *const *member);
 /* A line of the table of operations. */
 void count_line(Text *out, const char *what, Count c);
+/* What the insertion points of model.c.in, and of subset.c.in for the class g->class, get; context: the Generation. */
+void insert_code(void *context, const char *name, Text *out, int indent);
+void insert_subset(void *context, const char *name, Text *out, int indent);
+/* The constants of that class that text so far refers to. */
+void write_class_constants(Generation *g, Text *out);
+/* Which member of a class a subset is. */
+int class_place(const Class *class, int subset);
 
 /* generate_wheels.c: nothing where no wheel has a tire, but for the end of the descriptor. */
 void write_wheels(Generation *g, Text *out);          /* functions of the wheels, before the equations of motion */

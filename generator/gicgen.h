@@ -705,9 +705,13 @@ typedef struct Style {
     int leaves;           /* in one expression at most, a function's name counted as one: also bounds its nesting */
     bool doubles;         /* numbers are plain: 0.5; else of either type: R(0.5) */
     bool whole_self_test; /* else it measures constraints alone */
+    bool lanes; /* numbers are vectors with one vehicle a lane: a check that fails concerns its lanes, and goes on */
 } Style;
 
-extern const Style style_readable, style_direct;
+extern const Style style_readable, style_direct, style_lanes;
+
+/* The type of a number. */
+const char *style_real(const Style *style);
 
 /* The statements of a block, each line led by `indent` spaces: temporaries in depth-first order from the results,
  * checks as soon as their values are there, stores at the end (a target may be read before). Constants met on the way
@@ -774,6 +778,19 @@ Count figures_outputs(const Figures *figures);
  * above. */
 void generate(Pool *pool, const Formulation *f, const Style *style, const char *templates, const char *header, Text *c,
               Text *h);
+
+/* ---- batch.c: many vehicles at once ----------------------------------------------------------------------------- */
+
+/* So many vehicles, `lanes` of them in each vector. */
+typedef struct Batch {
+    int vehicles, lanes;
+} Batch;
+
+/* What the model has that can't be done in lanes, NULL: nothing. */
+const char *batch_missing(const Formulation *formulation);
+/* The C for many vehicles, and its header; beside what `generate` makes. */
+void generate_batch(Pool *pool, const Formulation *formulation, const Batch *batch, const char *templates,
+                    const char *header, Text *c, Text *h);
 
 /* ---- measure.c, report.c: the page about it ---------------------------------------------------------------------- */
 

@@ -7,6 +7,9 @@
 
 static const char usage[] =
     "usage: gicgen MODEL.veh [-o FILE.c]      write FILE.c and its header (default: <model>.c here)\n"
+    "       gicgen --batch N MODEL.veh [-o FILE.c]\n"
+    "                                         write code for N vehicles at once (default: <model>_batch.c), to be\n"
+    "                                         compiled beside <model>.c\n"
     "       gicgen --main MODEL.veh           print a C program that calls <model>.h, to start from\n"
     "       gicgen --sequence MODEL.veh       print the computational sequence\n"
     "       gicgen --graph FILE MODEL.veh     draw bodies, joints and stages: FILE.svg (needs Graphviz) or FILE.dot\n"
@@ -18,6 +21,7 @@ static const char usage[] =
     "\n"
     "options:\n"
     "  -o FILE          where to write; FILE.c gets a FILE.h beside it; `-` is standard output\n"
+    "  --lanes W        with --batch: vehicles in one vector, a power of 2 up to 16 (default 4)\n"
     "  --solve FORM     of the equations of motion: reduced (default) or augmented, with all multipliers\n"
     "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
     "  --templates DIR  take templates from DIR instead of the built-in ones\n"
@@ -26,12 +30,13 @@ static const char usage[] =
     "\n"
     "MODEL.veh is described in models/FORMAT.md; `-` reads standard input.\n";
 
-typedef enum Task { TASK_GENERATE, TASK_MAIN, TASK_SEQUENCE, TASK_GRAPH, TASK_REPORT, TASK_DUMP } Task;
+typedef enum Task { TASK_GENERATE, TASK_BATCH, TASK_MAIN, TASK_SEQUENCE, TASK_GRAPH, TASK_REPORT, TASK_DUMP } Task;
 
 typedef struct Options {
     Task task;
     Solve solve;
     Recovery recovery;
+    Batch batch;
     const char *model, *output, *page, *templates; /* page: of --graph or --report */
 } Options;
 
@@ -51,7 +56,7 @@ static const char *argument(int count, char **word, int *i)
 static void set_task(Options *options, Task task)
 {
     if (options->task != TASK_GENERATE)
-        usage_error("only one of --main, --sequence, --graph, --report and --dump-model can be asked for", NULL);
+        usage_error("only one of --batch, --main, --sequence, --graph, --report and --dump-model can be asked for", NULL);
     options->task = task;
 }
 
@@ -65,9 +70,19 @@ static void print_tables(bool schema)
     pool_free(pool);
 }
 
+/* A whole number from 1 on. */
+static int whole_argument(const char *option, const char *word, int most)
+{
+    char *end;
+    long value = strtol(word, &end, 10);
+    if (end == word || *end || value < 1 || value > most)
+        usage_error(option, word);
+    return (int)value;
+}
+
 static Options read_options(int count, char **word)
 {
-    Options options = {.task = TASK_GENERATE};
+    Options options = {.task = TASK_GENERATE, .batch = {.lanes = 4}};
     for (int i = 1; i < count; ++i) {
         const char *w = word[i];
         if (!strcmp(w, "-h") || !strcmp(w, "--help")) {
@@ -81,6 +96,15 @@ static Options read_options(int count, char **word)
             exit(0);
         } else if (!strcmp(w, "-o")) {
             options.output = argument(count, word, &i);
+        } else if (!strcmp(w, "--batch")) {
+            set_task(&options, TASK_BATCH);
+            options.batch.vehicles =
+                whole_argument("--batch takes a number of vehicles up to 65536, not", argument(count, word, &i), 65536);
+        } else if (!strcmp(w, "--lanes")) {
+            static const char remark[] = "--lanes takes 2, 4, 8 or 16, not";
+            options.batch.lanes = whole_argument(remark, argument(count, word, &i), 16);
+            if (options.batch.lanes == 1 || (options.batch.lanes & (options.batch.lanes - 1)))
+                usage_error(remark, word[i]);
         } else if (!strcmp(w, "--solve")) {
             const char *form = argument(count, word, &i);
             options.solve = solve_of(form);
@@ -119,13 +143,22 @@ static Options read_options(int count, char **word)
 static void write_code(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)
 {
     Text c = {.pool = pool}, h = {.pool = pool};
-    const char *path = options->output ? options->output : pool_print(pool, "%s.c", model->name);
+    bool batch = options->task == TASK_BATCH;
+    const char *path = options->output ? options->output
+                                       : pool_print(pool, batch ? "%s_batch.c" : "%s.c", model->name);
     if (strcmp(path, "-") && !path_ends(path, ".c"))
         usage_error("the generated file must end in .c", path);
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
     const Formulation *formulation = formulate(pool, model, sequence, options->solve, options->recovery);
-    generate(pool, formulation, &style_readable, options->templates, strcmp(path, "-") ? name : NULL, &c, &h);
+    name = strcmp(path, "-") ? name : NULL;
+    if (batch && batch_missing(formulation))
+        diag_fail((Place){model->source, 0, 0}, "simulate such a model vehicle by vehicle, in threads of your own",
+                  "code for many vehicles at once can't have %s yet", batch_missing(formulation));
+    if (batch)
+        generate_batch(pool, formulation, &options->batch, options->templates, name, &c, &h);
+    else
+        generate(pool, formulation, &style_readable, options->templates, name, &c, &h);
     if (!strcmp(path, "-")) {
         text_add(&h, c.s, c.size);
         file_write(path, h.s, h.size);
@@ -167,7 +200,8 @@ int main(int count, char **word)
     model = model_assemble(pool, model, sequence);
     Text text = {.pool = pool};
     switch (options.task) {
-    case TASK_GENERATE: write_code(pool, model, sequence, &options); break;
+    case TASK_GENERATE:
+    case TASK_BATCH: write_code(pool, model, sequence, &options); break;
     case TASK_GRAPH: write_graph(pool, model, sequence, &options); break;
     case TASK_REPORT: write_report(pool, model, sequence, &options); break;
     case TASK_MAIN:
