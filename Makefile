@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-#   make                build/gicgen, build/gicrun and build/gicbench
+#   make                build/gicgen, build/gicrun, build/gicsweep and build/gicbench
 #   make demo           the complete HMMWV for 30 s, and one over the paper's road: build/demo/
 #   make bench          engines and integrators, time against error, and the 30 s: build/bench/ (QUICK=1: the short way)
 #   make test           every test
@@ -27,9 +27,10 @@ LIBRARIES := -lyaml -lgsl -lgslcblas -ldmumps_seq -lklu -ltcc -lm -ldl
 models := $(basename $(notdir $(wildcard models/*.veh)))
 generator := $(filter-out generator/main.c generator/embed.c,$(wildcard generator/*.c))
 benchmark := $(wildcard runtime/bench_*.c)
-runtime := $(filter-out runtime/gicrun.c runtime/gicbench.c $(benchmark),$(wildcard runtime/*.c))
+sweep := runtime/gicsweep.c $(wildcard runtime/sweep_*.c)
+runtime := $(filter-out runtime/gicrun.c runtime/gicbench.c $(benchmark) $(sweep),$(wildcard runtime/*.c))
 # gicgen carries what it copies into its output, gicrun what it compiles with it
-embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_runtime.c
+embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_runtime.c runtime/gic_batch.h
 
 generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
@@ -38,12 +39,15 @@ runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicbench
+all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench
 
 $(BUILD)/gicgen: $(BUILD)/generator/main.o $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lm
 
 $(BUILD)/gicrun: $(BUILD)/runtime/gicrun.o $(runtime_objects) $(generator_objects)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
+
+$(BUILD)/gicsweep: $(sweep:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/gicbench: $(BUILD)/runtime/gicbench.o $(benchmark:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_objects)
@@ -211,7 +215,7 @@ deps:
 
 prefix := $(DESTDIR)$(PREFIX)
 share := $(prefix)/share/gicgen
-manuals := generator/gicgen.1 runtime/gicrun.1 runtime/gicbench.1
+manuals := generator/gicgen.1 runtime/gicrun.1 runtime/gicsweep.1 runtime/gicbench.1
 installed_models := $(wildcard models/*.* models/parts/*.* models/roads/*.* models/tires/*.* models/scenes/*.*)
 version = $(shell sed -n 's/^.define GICGEN_VERSION "\(.*\)"/\1/p' generator/gicgen.h)
 # texts that name places
@@ -234,8 +238,8 @@ $(BUILD)/install/libgic_runtime.a: $(core)
 install: all $(BUILD)/install/libgic_runtime.a
 	install -d $(prefix)/bin $(prefix)/include $(prefix)/lib/pkgconfig $(prefix)/share/man/man1 \
 	    $(addprefix $(share)/,$(sort $(dir $(installed_models))))
-	install -m 755 $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicbench $(prefix)/bin
-	install -m 644 runtime/gic_runtime.h runtime/gic_road.h $(prefix)/include
+	install -m 755 $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(prefix)/bin
+	install -m 644 runtime/gic_runtime.h runtime/gic_road.h runtime/gic_batch.h $(prefix)/include
 	install -m 644 $(BUILD)/install/libgic_runtime.a $(prefix)/lib
 	install -m 644 runtime/gic_runtime.c runtime/gic_road.c $(share)
 	for file in $(installed_models); do install -m 644 $$file $(share)/$$file || exit 1; done
@@ -245,7 +249,8 @@ install: all $(BUILD)/install/libgic_runtime.a
 	    install -m 644 $(BUILD)/install/$${page##*/} $(prefix)/share/man/man1 || exit 1; done
 
 uninstall:
-	rm -f $(addprefix $(prefix)/bin/,gicgen gicrun gicbench) $(addprefix $(prefix)/include/,gic_runtime.h gic_road.h) \
+	rm -f $(addprefix $(prefix)/bin/,gicgen gicrun gicsweep gicbench) \
+	    $(addprefix $(prefix)/include/,gic_runtime.h gic_road.h gic_batch.h) \
 	    $(prefix)/lib/libgic_runtime.a $(prefix)/lib/pkgconfig/gicgen.pc \
 	    $(addprefix $(prefix)/share/man/man1/,$(notdir $(manuals)))
 	rm -rf $(share)

@@ -7,6 +7,7 @@
 typedef struct BatchGeneration {
     Generation g; /* first: what generate.c's insertions get */
     const Batch *batch;
+    const char *model_header;
 } BatchGeneration;
 
 static void write_vector(BatchGeneration *b, Text *out, int indent, const char *type)
@@ -184,7 +185,7 @@ static void insert_batch_header(void *context, const char *name, Text *out, int 
     BatchGeneration *b = context;
     const Generation *g = &b->g;
     if (!strcmp(name, "include")) {
-        line(out, indent, "#include \"%s.h\"", g->model->name);
+        line(out, indent, "#include %s", quoted(g->pool, b->model_header));
     } else if (!strcmp(name, "sizes")) {
         line(out, indent, "%s_VEHICLES = %d,", g->upper, b->batch->vehicles);
         line(out, indent, "%s_LANES = %d,", g->upper, b->batch->lanes);
@@ -204,7 +205,7 @@ const char *batch_missing(const Formulation *formulation)
 }
 
 void generate_batch(Pool *pool, const Formulation *formulation, const Batch *batch, const char *templates,
-                    const char *header, Text *c, Text *h)
+                    const char *model_header, const char *header, Text *c, Text *h)
 {
     const char *name = formulation->model->name;
     BatchGeneration b = {
@@ -218,7 +219,8 @@ void generate_batch(Pool *pool, const Formulation *formulation, const Batch *bat
               .header = header,
               .upper = capital(pool, name),
               .constants = pool_alloc(pool, (size_t)(formulation->sequence->classes + 1) * sizeof(Constants))},
-        .batch = batch};
+        .batch = batch,
+        .model_header = model_header};
     template_expand(pool, c, templates, "batch.c.in", name, NULL, insert_batch, &b);
     template_expand(pool, h, templates, "batch.h.in", name, NULL, insert_batch_header, &b);
 }

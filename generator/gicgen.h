@@ -788,9 +788,9 @@ typedef struct Batch {
 
 /* What the model has that can't be done in lanes, NULL: nothing. */
 const char *batch_missing(const Formulation *formulation);
-/* The C for many vehicles, and its header; beside what `generate` makes. */
+/* The C for many vehicles, and its header, which includes `model_header`, that of one vehicle. */
 void generate_batch(Pool *pool, const Formulation *formulation, const Batch *batch, const char *templates,
-                    const char *header, Text *c, Text *h);
+                    const char *model_header, const char *header, Text *c, Text *h);
 
 /* ---- measure.c, report.c: the page about it ---------------------------------------------------------------------- */
 

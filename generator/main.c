@@ -156,7 +156,8 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         diag_fail((Place){model->source, 0, 0}, "simulate such a model vehicle by vehicle, in threads of your own",
                   "code for many vehicles at once can't have %s yet", batch_missing(formulation));
     if (batch)
-        generate_batch(pool, formulation, &options->batch, options->templates, name, &c, &h);
+        generate_batch(pool, formulation, &options->batch, options->templates, pool_print(pool, "%s.h", model->name),
+                       name, &c, &h);
     else
         generate(pool, formulation, &style_readable, options->templates, name, &c, &h);
     if (!strcmp(path, "-")) {

@@ -24,6 +24,7 @@ typedef struct Bench {
     const char *const *starting; /* names of the engines whose start is measured, ended by NULL */
     gic_head **instance;         /* [engines] */
     bool quick;
+    int vehicles; /* of --batch; 0: another benchmark */
     struct Report *report;
 } Bench;
 
@@ -150,6 +151,8 @@ void bench_spin(const Bench *bench);
 void bench_worst(const Bench *bench);
 /* bench_start.c: compilation and the first step; from how many steps on it is worth it. */
 void bench_start(const Bench *bench);
+/* bench_batch.c: many vehicles in lanes against one after another. */
+void bench_batch(const Bench *bench);
 
 /* bench_limit.c: multiply-adds in a second, each one a multiplication and an addition of double numbers. */
 typedef struct Limit {

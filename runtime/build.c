@@ -35,16 +35,6 @@ void folder_remove(Pool *pool, const char *folder)
     rmdir(folder);
 }
 
-/* Model and runtime as source files. */
-static bool put_sources(Pool *pool, const char *folder, const Text *c, const Text *h)
-{
-    bool good = put(pool, folder, "model.c", c->s, c->size) && put(pool, folder, "model.h", h->s, h->size);
-    for (const Embedded *file = embedded; good && file->name; ++file)
-        if (!strncmp(file->name, "gic_runtime.", strlen("gic_runtime.")))
-            good = put(pool, folder, file->name, file->bytes, file->size);
-    return good;
-}
-
 /* What went wrong between the two texts and loaded code, to be told once the folder is gone. */
 typedef struct Failure {
     const char *message, *remedy;
@@ -53,16 +43,36 @@ typedef struct Failure {
 typedef struct Build {
     Pool *pool;
     const char *model; /* its name */
-    Text c, h;
-    const char **words;      /* compiler and options */
-    int count;               /* of words */
-    const char *shelf, *key; /* where objects are kept, NULL: nowhere; and as what */
-    const char *unkept;      /* why the object isn't kept, or NULL */
-    size_t real;             /* bytes of its numbers */
-    const char *copy;        /* where a copy of the object goes, NULL: nowhere */
-    double compiling;        /* s of CPU time that the compiler took, 0: it had nothing to do */
+    Text c, h, batch_c, batch_h; /* the last two empty: one vehicle at a time */
+    const char **words;          /* compiler and options */
+    int count;                   /* of words */
+    const char *shelf, *key;     /* where objects are kept, NULL: nowhere; and as what */
+    const char *unkept;          /* why the object isn't kept, or NULL */
+    size_t real;                 /* bytes of its numbers */
+    const char *copy;            /* where a copy of the object goes, NULL: nowhere */
+    double compiling;            /* s of CPU time that the compiler took, 0: it had nothing to do */
+    const gic_batch_model *batch;
     Failure failure;
 } Build;
+
+static bool is_core(const Embedded *file)
+{
+    return !strncmp(file->name, "gic_", strlen("gic_"));
+}
+
+/* Model and runtime as source files. */
+static bool put_sources(const Build *b, const char *folder)
+{
+    Pool *pool = b->pool;
+    bool good = put(pool, folder, "model.c", b->c.s, b->c.size) && put(pool, folder, "model.h", b->h.s, b->h.size);
+    if (good && b->batch_c.s)
+        good = put(pool, folder, "batch.c", b->batch_c.s, b->batch_c.size) &&
+               put(pool, folder, "batch.h", b->batch_h.s, b->batch_h.size);
+    for (const Embedded *file = embedded; good && file->name; ++file)
+        if (is_core(file))
+            good = put(pool, folder, file->name, file->bytes, file->size);
+    return good;
+}
 
 /* Everything that decides what is in the object. */
 static const char *build_key(Build *b)
@@ -71,8 +81,12 @@ static const char *build_key(Build *b)
     int count = 0;
     *POOL_PUSH(b->pool, text, count) = b->c.s;
     *POOL_PUSH(b->pool, text, count) = b->h.s;
+    if (b->batch_c.s) {
+        *POOL_PUSH(b->pool, text, count) = b->batch_c.s;
+        *POOL_PUSH(b->pool, text, count) = b->batch_h.s;
+    }
     for (const Embedded *file = embedded; file->name; ++file)
-        if (!strncmp(file->name, "gic_runtime.", strlen("gic_runtime.")))
+        if (is_core(file))
             *POOL_PUSH(b->pool, text, count) = file->bytes;
     for (int i = 0; i < b->count; ++i)
         *POOL_PUSH(b->pool, text, count) = b->words[i];
@@ -98,6 +112,7 @@ static const gic_model *load(Build *b, const char *path)
         return NULL;
     }
     const gic_model *code = dlsym(library, pool_print(b->pool, "%s_model", b->model));
+    b->batch = b->batch_c.s ? dlsym(library, pool_print(b->pool, "%s_batch_model", b->model)) : NULL;
     if (code && code->abi_version == GIC_ABI_VERSION && code->real_size == b->real) {
         if (b->copy)
             object_copy(b->pool, path, b->copy);
@@ -113,7 +128,7 @@ static const gic_model *load(Build *b, const char *path)
 static const gic_model *compile(Build *b, const char *folder)
 {
     Pool *pool = b->pool;
-    if (!put_sources(pool, folder, &b->c, &b->h)) {
+    if (!put_sources(b, folder)) {
         b->failure = (Failure){pool_print(pool, "can't write to %s: %s", folder, strerror(errno)),
                                "make room there, or set TMPDIR to another folder"};
         return NULL;
@@ -126,6 +141,8 @@ static const gic_model *compile(Build *b, const char *folder)
     int count = 0;
     for (int i = 0; i < b->count; ++i)
         *POOL_PUSH(pool, argv, count) = pool_print(pool, "%s", b->words[i]);
+    if (b->batch_c.s)
+        *POOL_PUSH(pool, argv, count) = pool_print(pool, "%s/batch.c", folder);
     for (size_t i = 0; i < sizeof ours / sizeof *ours; ++i)
         *POOL_PUSH(pool, argv, count) = ours[i] ? pool_print(pool, "%s", ours[i]) : NULL;
     const double before = cpu_seconds();
@@ -139,11 +156,11 @@ static const gic_model *compile(Build *b, const char *folder)
         return NULL;
     }
     if (status) {
-        fputs(said, stderr);
+        if (!b->batch_c.s)
+            fputs(said, stderr);
         b->failure = (Failure){pool_print(pool,
-                                          "the C compiler '%s' failed on the generated code (status %d); its "
-                                          "messages are above",
-                                          argv[0], status),
+                                          "the C compiler '%s' failed on the generated code (status %d)%s",
+                                          argv[0], status, b->batch_c.s ? "" : "; its messages are above"),
                                "is it a C99 compiler with libc headers (Debian: libc6-dev)? Try another one with --cc, "
                                "or other options"};
         return NULL;
@@ -211,36 +228,79 @@ static size_t object_bytes(const gic_model *code)
     return extent.bytes;
 }
 
-const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options)
+/* Take the object that was kept, or compile. NULL: interrupted, or see failure. */
+static const gic_model *open_code(Build *b)
 {
-    if (!options->compiler[strspn(options->compiler, " \t")])
-        diag_fail(gicrun_place, "name it: --cc gcc, or set CC", "the compiler command is empty");
-    Build b = {.pool = pool, .model = model->name, .c.pool = pool, .h.pool = pool, .copy = options->object};
-    b.real = options->single ? sizeof(float) : sizeof(gic_real);
-    const Sequence *sequence = sequence_find(pool, model);
-    const Formulation *formulation =
-        formulate(pool, model_assemble(pool, model, sequence), sequence, options->solve, options->recovery);
-    generate(pool, formulation, &style_readable, NULL, "model.h", &b.c, &b.h);
-    b.words = compiler_words(pool, options->compiler, options->flags, &b.count);
-
     interrupt_hold();
-    b.shelf = cache_folder(pool, &b.unkept);
-    b.key = build_key(&b);
-    const gic_model *code = b.shelf ? take_kept(&b) : NULL;
+    b->shelf = cache_folder(b->pool, &b->unkept);
+    b->key = build_key(b);
+    const gic_model *code = b->shelf ? take_kept(b) : NULL;
     if (!code)
-        code = compile_privately(&b);
+        code = compile_privately(b);
     interrupt_release();
-    if (!code)
-        diag_fail(gicrun_place, b.failure.remedy, "%s", b.failure.message);
-    if (b.unkept && !options->quiet)
-        fprintf(stderr, "gicrun: note: the compiled model is not kept for the next run: %s\n", b.unkept);
+    return code;
+}
 
+static Engine *engine_of(Pool *pool, const Build *b, const gic_model *code)
+{
     Engine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (Engine){.name = "cc",
                        .code = code,
                        .standard = code->state,
                        .standard_count = code->slow_count + code->fast_count,
-                       .compiling = b.compiling,
+                       .compiling = b->compiling,
                        .bytes = object_bytes(code)};
     return engine;
+}
+
+static Build build_new(Pool *pool, const Formulation *formulation, const EngineOptions *options, const char *flags)
+{
+    Build b = {.pool = pool, .model = formulation->model->name, .copy = options->object};
+    b.real = options->single ? sizeof(float) : sizeof(gic_real);
+    b.c.pool = b.h.pool = b.batch_c.pool = b.batch_h.pool = pool;
+    generate(pool, formulation, &style_readable, NULL, "model.h", &b.c, &b.h);
+    b.words = compiler_words(pool, options->compiler, pool_print(pool, "%s %s", flags, options->flags), &b.count);
+    return b;
+}
+
+static const Formulation *formulation_of(Pool *pool, const Model *model, const EngineOptions *options)
+{
+    const Sequence *sequence = sequence_find(pool, model);
+    return formulate(pool, model_assemble(pool, model, sequence), sequence, options->solve, options->recovery);
+}
+
+static void check_command(const EngineOptions *options)
+{
+    if (!options->compiler[strspn(options->compiler, " \t")])
+        diag_fail(gicrun_place, "name it: --cc gcc, or set CC", "the compiler command is empty");
+}
+
+const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options)
+{
+    check_command(options);
+    Build b = build_new(pool, formulation_of(pool, model, options), options, "");
+    const gic_model *code = open_code(&b);
+    if (!code)
+        diag_fail(gicrun_place, b.failure.remedy, "%s", b.failure.message);
+    if (b.unkept && !options->quiet)
+        fprintf(stderr, "gicrun: note: the compiled model is not kept for the next run: %s\n", b.unkept);
+    return engine_of(pool, &b, code);
+}
+
+const Engine *engine_batch(Pool *pool, const Model *model, const EngineOptions *options, const Batch *batch,
+                           const char *flags, const gic_batch_model **many, const char **why)
+{
+    check_command(options);
+    const Formulation *formulation = formulation_of(pool, model, options);
+    *why = batch_missing(formulation);
+    if (*why) {
+        *why = pool_print(pool, "it can't have %s yet", *why);
+        return NULL;
+    }
+    Build b = build_new(pool, formulation, options, flags);
+    generate_batch(pool, formulation, batch, NULL, "model.h", "batch.h", &b.batch_c, &b.batch_h);
+    const gic_model *code = open_code(&b);
+    *many = b.batch;
+    *why = b.failure.message ? b.failure.message : "interrupted, or not in the object";
+    return code && b.batch ? engine_of(pool, &b, code) : NULL;
 }

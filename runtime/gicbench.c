@@ -11,6 +11,7 @@
 static const char help[] = "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCENE [TURNING_SCENE]\n"
                            "       gicbench --rhs [--quick] [-o FOLDER] MODEL.veh [SCENE]\n"
                            "       gicbench --drive [--quick] [-o FOLDER] MODEL.veh SCENE\n"
+                           "       gicbench --batch N [--quick] [-o FOLDER] MODEL.veh SCENE\n"
                            "\n"
                            "Runs a scene with all engines and integrators and writes a folder: index.html with\n"
                            "tables and pictures, the same as text, a CSV file a table.\n"
@@ -21,6 +22,8 @@ static const char help[] = "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCEN
                            "      --drive          the scene as it stands, with its step and ratio: CPU time, and\n"
                            "                       what of it goes into multibody system, tires and powertrain;\n"
                            "                       as text, with -o also as a folder\n"
+                           "      --batch N        likewise steps of N vehicles in lanes (gicgen --batch), and one\n"
+                           "                       after another\n"
                            "  -o, --output FOLDER  default: gicbench\n"
                            "      --engines NAMES  some engines, separated by commas; the others are compared\n"
                            "                       with the first; default: all\n"
@@ -52,11 +55,12 @@ static const char *const *engine_list(Pool *pool, char *names)
 /* What the command line asks for, and the names of the engines, ended by NULL. */
 static Bench read_command_line(Pool *pool, int count, char **word, const char *const **names)
 {
-    enum { ENGINES = 256, QUICK, RHS, DRIVE, COMPILER, FLAGS, VERSION };
+    enum { ENGINES = 256, QUICK, RHS, DRIVE, BATCH, COMPILER, FLAGS, VERSION };
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},   {"engines", required_argument, NULL, ENGINES},
         {"quick", no_argument, NULL, QUICK},        {"rhs", no_argument, NULL, RHS},
         {"drive", no_argument, NULL, DRIVE},        {"cc", required_argument, NULL, COMPILER},
+        {"batch", required_argument, NULL, BATCH},
         {"cflags", required_argument, NULL, FLAGS}, {"help", no_argument, NULL, 'h'},
         {"version", no_argument, NULL, VERSION},    {NULL, 0, NULL, 0},
     };
@@ -75,6 +79,11 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
             break;
         case RHS: bench.rhs = true; break;
         case DRIVE: bench.drive = true; break;
+        case BATCH:
+            bench.vehicles = atoi(optarg);
+            if (bench.vehicles < 1 || bench.vehicles > 65536)
+                usage_fail("gicbench", "--batch takes a number of vehicles up to 65536, not", optarg);
+            break;
         case COMPILER: bench.options.compiler = optarg; break;
         case FLAGS: bench.options.flags = optarg; break;
         case 'h': fputs(help, stdout); exit(0);
@@ -82,9 +91,9 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
         default: fputs("  remedy: `gicbench -h` shows how\n", stderr); exit(2);
         }
     const int files = count - optind;
-    if (bench.rhs && bench.drive)
-        usage_fail("gicbench", "one of --rhs and --drive, please", NULL);
-    if (bench.drive && files != 2)
+    if (bench.rhs + bench.drive + (bench.vehicles > 0) > 1)
+        usage_fail("gicbench", "one of --rhs, --drive and --batch, please", NULL);
+    if ((bench.drive || bench.vehicles) && files != 2)
         usage_fail("gicbench", "a model and a scene, please", NULL);
     if (bench.rhs && (files < 1 || files > 2))
         usage_fail("gicbench", "a model, please, and perhaps a scene", NULL);
@@ -93,7 +102,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
     bench.model_path = word[optind];
     bench.scene_path = word[optind + 1]; /* or the NULL at the end */
     bench.spin_path = bench.scene_path ? word[optind + 2] : NULL;
-    if (!bench.rhs && !bench.drive && !bench.folder)
+    if (!bench.rhs && !bench.drive && !bench.vehicles && !bench.folder)
         bench.folder = "gicbench";
     return bench;
 }
@@ -161,13 +170,16 @@ static void drive_alone(Bench *bench, const char *const *name)
     report_tell(bench->report, stdout);
 }
 
-/* Right-hand sides alone. */
+/* Right-hand sides alone, or steps in lanes alone. */
 static void evaluate_alone(const Bench *bench)
 {
     if (bench->folder)
         make_folder(bench->folder);
     bench_machine(bench);
-    bench_rhs(bench);
+    if (bench->vehicles)
+        bench_batch(bench);
+    else
+        bench_rhs(bench);
     report_tell(bench->report, stdout);
 }
 
@@ -181,7 +193,7 @@ int main(int count, char **word)
     bench.model = model_read(pool, bench.model_path);
     bench.scene = bench.scene_path ? read_scene(&bench, bench.scene_path) : NULL;
     bench.spin = bench.spin_path ? read_scene(&bench, bench.spin_path) : NULL;
-    if (bench.rhs)
+    if (bench.rhs || bench.vehicles)
         evaluate_alone(&bench);
     else if (bench.drive)
         drive_alone(&bench, name);

@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: MIT
+ * gicsweep: one scene over many values of parameters, inputs and initial states. This file: the command line. */
+#include "cache.h"
+#include "sweep.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char help[] =
+    "usage: gicsweep MODEL.veh SCENE --vary NAME=LOW:HIGH:COUNT ... [-o results.csv]\n"
+    "       gicsweep MODEL.veh SCENE --latin COUNT --vary NAME=LOW:HIGH ... [-o results.csv]\n"
+    "\n"
+    "Runs a scene with all combinations of values, or with COUNT combinations of a Latin\n"
+    "hypercube, several vehicles at once. A row of the results for each run: the varied\n"
+    "values, the status (0: good, else the run ended at `time`), of each output of the scene\n"
+    "the value at the end, the least and the greatest at output times.\n"
+    "\n"
+    "      --vary NAME=LOW:HIGH:COUNT\n"
+    "                     a tunable parameter, an input (constant through the run), a number\n"
+    "                     of the initial state, or `speed`, along the vehicle; where a name\n"
+    "                     has several meanings parameter/NAME, input/NAME, state/NAME. In a\n"
+    "                     grid the last one varies fastest\n"
+    "      --latin COUNT  so many runs: each number takes each of COUNT parts of its range\n"
+    "                     once, in random order\n"
+    "      --seed NUMBER  of the random numbers; the same seed, the same runs; default: 1\n"
+    "  -o, --output FILE  results as CSV; default: sweep.csv. Finished runs are kept in\n"
+    "                     FILE.journal: the same command goes on where it was stopped\n"
+    "      --engine NAME  one run after another, by an engine of gicrun\n"
+    "      --cc COMMAND   C compiler, perhaps with options; default: $CC or cc\n"
+    "      --cflags FLAGS more options for it, behind ours, all in one word\n"
+    "  -q, --quiet        neither progress nor summary\n"
+    "  -h, --help         this text\n"
+    "      --version      version\n"
+    "\n"
+    "Vehicles run in the lanes of vectors and, with OpenMP, in $OMP_NUM_THREADS threads, where\n"
+    "the compiler can do that; else one after another, with the same digits.\n"
+    "Exit status: 0 good, even if runs failed; 1 error in a file; 2 wrong usage.\n";
+
+enum { VEHICLES = 64, LANES = 4 };
+
+typedef struct Options {
+    const char *model, *scene, *results, *engine; /* engine NULL: lanes */
+    EngineOptions code;
+    SweepPlan plan;
+    bool quiet;
+} Options;
+
+static int64_t whole(const char *option, const char *word, int64_t most)
+{
+    char *end;
+    const long long value = strtoll(word, &end, 10);
+    if (end == word || *end || value < 0 || value > most)
+        usage_fail("gicsweep", option, word);
+    return value;
+}
+
+static Options read_command_line(Pool *pool, int count, char **word)
+{
+    enum { VARY = 256, LATIN, SEED, ENGINE, COMPILER, FLAGS, VERSION };
+    static const struct option options[] = {
+        {"vary", required_argument, NULL, VARY},     {"latin", required_argument, NULL, LATIN},
+        {"seed", required_argument, NULL, SEED},     {"output", required_argument, NULL, 'o'},
+        {"engine", required_argument, NULL, ENGINE}, {"cc", required_argument, NULL, COMPILER},
+        {"cflags", required_argument, NULL, FLAGS},  {"quiet", no_argument, NULL, 'q'},
+        {"help", no_argument, NULL, 'h'},            {"version", no_argument, NULL, VERSION},
+        {NULL, 0, NULL, 0},
+    };
+    Options o = {.results = "sweep.csv", .plan.seed = 1, .code = {.compiler = compiler_default(), .flags = ""}};
+    for (int option; (option = getopt_long(count, word, "o:qh", options, NULL)) != -1;)
+        switch (option) {
+        case VARY: vary_read(pool, &o.plan, optarg); break;
+        case LATIN:
+            o.plan.latin = whole("--latin takes a number of runs, not", optarg, SWEEP_RUNS_MOST);
+            if (!o.plan.latin)
+                usage_fail("gicsweep", "--latin takes at least one run, not", optarg);
+            break;
+        case SEED:
+            o.plan.seed = (uint64_t)whole("--seed takes a whole number from 0 on, not", optarg, INT64_MAX);
+            break;
+        case 'o': o.results = optarg; break;
+        case ENGINE:
+            if (!engine_known(optarg))
+                usage_fail("gicsweep", "there is no engine", optarg);
+            o.engine = optarg;
+            break;
+        case COMPILER: o.code.compiler = optarg; break;
+        case FLAGS: o.code.flags = optarg; break;
+        case 'q': o.quiet = o.code.quiet = true; break;
+        case 'h': fputs(help, stdout); exit(0);
+        case VERSION: puts("gicsweep " GICGEN_VERSION); exit(0);
+        default: fputs("  remedy: `gicsweep -h` shows how\n", stderr); exit(2);
+        }
+    if (count - optind != 2)
+        usage_fail("gicsweep", "one model and one scene, please", NULL);
+    if (!o.plan.varied)
+        usage_fail("gicsweep", "nothing is varied: --vary NAME=LOW:HIGH:COUNT", NULL);
+    if (file_is_special(o.results) || !strcmp(o.results, "-"))
+        usage_fail("gicsweep", "results go into a file, so that a stopped sweep can go on, not to", o.results);
+    o.model = word[optind];
+    o.scene = word[optind + 1];
+    return o;
+}
+
+/* What speaks against lanes, NULL: nothing. */
+static const char *against_lanes(const Scene *scene, const Model *model)
+{
+    if (scene->method > GIC_RK4)
+        return "steps of a scene with variable ones are each run's own";
+    if (scene->driver)
+        return "a driver drives one vehicle";
+    if (scene->ratio > 1 && model->fast_states)
+        return "they know no fast steps yet";
+    return NULL;
+}
+
+/* Code for many vehicles, or for one. */
+static const Engine *open_code(Pool *pool, const Options *o, const Model *model, const Scene *scene,
+                               const gic_batch_model **many)
+{
+    static const char *const flags[] = {"-O3 -march=native -fopenmp", "-O3 -march=native"};
+    const Batch batch = {VEHICLES, LANES};
+    const Engine *engine = NULL;
+    const char *why = against_lanes(scene, model);
+    if (o->engine)
+        return engine_open(pool, o->engine, model, &o->code);
+    const bool tried = !why;
+    for (size_t i = 0; tried && !engine && i < sizeof flags / sizeof *flags; ++i)
+        engine = engine_batch(pool, model, &o->code, &batch, flags[i], many, &why);
+    if (engine)
+        return engine;
+    if (!o->quiet)
+        fprintf(stderr, "gicsweep: note: one run after another instead of lanes: %s\n", why);
+    return engine_open(pool, *many || !tried ? "cc" : "tcc", model, &o->code);
+}
+
+/* What decides the results. */
+static const char *sweep_key(Pool *pool, const Sweep *sweep)
+{
+    Text text = {.pool = pool};
+    const SweepPlan *plan = sweep->plan;
+    text_print(&text, "%s %s %s %lld %llu", GICGEN_VERSION, sweep->engine->code->hash, sweep->engine->name,
+               (long long)plan->latin, (unsigned long long)plan->seed);
+    for (int v = 0; v < plan->varied; ++v)
+        text_print(&text, " %s=%.17g:%.17g:%lld", plan->vary[v].name, plan->vary[v].low, plan->vary[v].high,
+                   (long long)plan->vary[v].count);
+    return cache_key(pool, (const char *const[]){text.s, sweep->scene->source->bytes, NULL});
+}
+
+/* The unit of a varied number. */
+static const char *unit_of(const Sweep *sweep, const Vary *vary)
+{
+    switch (vary->kind) {
+    case VARY_PARAMETER: return sweep->engine->code->parameter[vary->index].unit;
+    case VARY_INPUT: return sweep->engine->code->input[vary->index].unit;
+    case VARY_STATE: return sweep->engine->standard[vary->index].unit;
+    default: return "m/s";
+    }
+}
+
+static void write_results(const Sweep *sweep, const char *path)
+{
+    static const char *const part[] = {"end", "min", "max"};
+    Pool *pool = sweep->pool;
+    Csv csv = csv_open(pool, path);
+    csv_name(&csv, "run", NULL);
+    for (int v = 0; v < sweep->plan->varied; ++v)
+        csv_name(&csv, sweep->plan->vary[v].name, unit_of(sweep, &sweep->plan->vary[v]));
+    csv_name(&csv, "status", NULL);
+    csv_name(&csv, "time", "s");
+    for (int c = 0; c < sweep->scene->columns; ++c) {
+        const gic_signal *signal = &sweep->engine->code->output[sweep->scene->column[c]];
+        for (int p = 0; p < 3; ++p)
+            csv_name(&csv, pool_print(pool, "%s.%s", signal->name, part[p]), signal->unit);
+    }
+    csv_end_row(&csv);
+    for (int64_t r = 0; r < sweep->plan->runs; ++r) {
+        fputs(sweep->journal->row[r], csv.file);
+        csv_end_row(&csv);
+    }
+    csv_close(&csv);
+}
+
+static void summary(const Sweep *sweep, int64_t before, double seconds, const char *results)
+{
+    const Journal *journal = sweep->journal;
+    const int64_t done = journal->finished - before;
+    fprintf(stderr, "%s: %lld runs in %s", sweep->engine->code->name, (long long)journal->finished, results);
+    if (before)
+        fprintf(stderr, ", %lld of them from an earlier start", (long long)before);
+    fprintf(stderr, "; %s, %.3g s, %.4g runs/s\n", sweep->many ? "in lanes" : "one after another", seconds,
+            (double)done / fmax(seconds, 1e-9));
+    if (journal->failed)
+        fprintf(stderr, "  %lld failed, the first is run %lld: %s\n", (long long)journal->failed,
+                (long long)journal->first_failed, gic_status_text(journal->first_status));
+}
+
+int main(int count, char **word)
+{
+    Pool *pool = pool_new();
+    Options o = read_command_line(pool, count, word);
+    const Model *model = model_read(pool, o.model);
+    const Scene *scene = scene_read(pool, o.scene, model, NULL, 0);
+    scene = equilibrium_start(pool, model, scene, o.code.solve);
+    Sweep sweep = {.pool = pool, .model = model, .scene = scene, .plan = &o.plan, .quiet = o.quiet};
+    sweep.engine = open_code(pool, &o, model, scene, &sweep.many);
+    plan_close(pool, &o.plan, model, sweep.engine);
+
+    interrupt_hold();
+    Journal journal = journal_open(pool, o.results, sweep_key(pool, &sweep), o.plan.runs);
+    const int64_t before = journal.finished;
+    const double start = clock_seconds(CLOCK_MONOTONIC);
+    sweep.journal = &journal;
+    const bool complete = sweep_run(&sweep);
+    if (!complete) {
+        fprintf(stderr, "gicsweep: interrupted; %lld of %lld runs are kept in %s: the same command goes on\n",
+                (long long)journal.finished, (long long)journal.runs, journal.path);
+        interrupt_release();
+        exit(1);
+    }
+    write_results(&sweep, o.results);
+    journal_remove(&journal);
+    interrupt_release();
+    if (!o.quiet)
+        summary(&sweep, before, clock_seconds(CLOCK_MONOTONIC) - start, o.results);
+    engine_close(sweep.engine);
+    pool_free(pool);
+    return 0;
+}

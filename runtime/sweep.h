@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gicsweep: one scene with many values of parameters, inputs and initial states. Its parts, file by file, in the order
+ * in which they are used; conventions as in gicgen.h. */
+#ifndef SWEEP_H
+#define SWEEP_H
+
+#include "engine.h"
+#include "gicrun.h"
+
+/* ---- sweep_plan.c: which runs there are ------------------------------------------------------------------ */
+
+typedef enum VaryKind { VARY_PARAMETER, VARY_INPUT, VARY_STATE, VARY_SPEED } VaryKind;
+
+/* A number that differs from run to run. */
+typedef struct Vary {
+    const char *name;
+    VaryKind kind;
+    int index; /* among tunable parameters, inputs or numbers of the state */
+    double low, high;
+    int64_t count; /* values of a grid, from low to high; 0: only a range is given */
+} Vary;
+
+/* More rows are no table. */
+enum { SWEEP_RUNS_MOST = 10000000 };
+
+typedef struct SweepPlan {
+    int varied;
+    Vary *vary;
+    int64_t runs;
+    int64_t latin; /* 0: a grid, the last number varies fastest */
+    uint64_t seed;
+    int32_t *place; /* [varied][runs] which of `latin` equal parts of the range */
+    double *share;  /* [varied][runs] where within it */
+} SweepPlan;
+
+/* name=low:high or name=low:high:count; the name is not looked up yet. Mistakes end in a usage error. */
+void vary_read(Pool *pool, SweepPlan *plan, const char *word);
+/* Look names up, count the runs. */
+void plan_close(Pool *pool, SweepPlan *plan, const Model *model, const Engine *engine);
+/* The value of a varied number in a run. */
+double plan_value(const SweepPlan *plan, int varied, int64_t run);
+
+/* ---- sweep_journal.c: what is finished --------------------------------------------------------------------- */
+
+/* Rows of finished runs, each in the file before the next batch begins: a kill loses none of them. */
+typedef struct Journal {
+    Pool *pool;
+    const char *path;
+    int file;
+    int64_t runs, finished, failed;
+    const char **row; /* [runs] text of each row; NULL: not finished */
+    int first_status; /* of the failed run with the lowest number; GIC_OK: none failed */
+    int64_t first_failed;
+} Journal;
+
+/* Open the journal beside `results`: take what an earlier gicsweep with the same key finished, or begin one. */
+Journal journal_open(Pool *pool, const char *results, const char *key, int64_t runs);
+/* Rows [count] of runs, into the file and onto the disk. */
+void journal_add(Journal *journal, const int64_t *run, const int *status, const char *const *row, int count);
+/* The results are there: no more need of it. */
+void journal_remove(Journal *journal);
+
+/* ---- sweep_run.c: the runs ------------------------------------------------------------------------------------ */
+
+typedef struct Sweep {
+    Pool *pool;
+    const Model *model;
+    const Scene *scene;
+    SweepPlan *plan;
+    const Engine *engine;
+    const gic_batch_model *many; /* NULL: one run after another */
+    Journal *journal;
+    bool quiet;
+} Sweep;
+
+/* All runs that are not finished. False: someone asked to stop. */
+bool sweep_run(const Sweep *sweep);
+
+#endif

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT
+ * The journal of a sweep: lines are appended, never changed, and on the disk before more work begins. Its first line
+ * says which sweep it is of; a last line that a kill cut short does not count. */
+#include "sweep.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+static _Noreturn void journal_fail(const Journal *journal, const char *what)
+{
+    diag_fail(gicrun_place, "make room, or choose another place with -o", "can't %s %s: %s", what, journal->path,
+              strerror(errno));
+}
+
+static void append(Journal *journal, const char *bytes, size_t size)
+{
+    while (size) {
+        const ssize_t n = write(journal->file, bytes, size);
+        if (n < 0)
+            journal_fail(journal, "write");
+        bytes += n;
+        size -= (size_t)n;
+    }
+    if (fsync(journal->file) && errno != EINVAL) /* not every file system knows it */
+        journal_fail(journal, "write");
+}
+
+static void note(Journal *journal, int64_t run, int status, const char *row)
+{
+    if (journal->row[run])
+        return;
+    journal->row[run] = row;
+    ++journal->finished;
+    journal->failed += status != GIC_OK;
+    if (status != GIC_OK && (journal->first_status == GIC_OK || run < journal->first_failed)) {
+        journal->first_status = status;
+        journal->first_failed = run;
+    }
+}
+
+/* "run status row"; false: it is no such line. */
+static bool take_line(Journal *journal, const char *line)
+{
+    char *end;
+    const long long run = strtoll(line, &end, 10);
+    if (end == line || *end != ' ' || run < 0 || run >= journal->runs)
+        return false;
+    const char *next = end + 1;
+    const long status = strtol(next, &end, 10);
+    if (end == next || *end != ' ')
+        return false;
+    note(journal, run, (int)status, end + 1);
+    return true;
+}
+
+/* What is in the file: whole lines. */
+static void take(Journal *journal, const char *first)
+{
+    size_t size;
+    const char *bytes = file_read(journal->pool, journal->path, &size);
+    char *text = pool_alloc(journal->pool, size + 1);
+    memcpy(text, bytes, size);
+    if (strncmp(text, first, strlen(first)) != 0)
+        diag_fail(gicrun_place, pool_print(journal->pool, "remove it, or choose another place with -o"),
+                  "%s is of another sweep: another model, scene, range or version", journal->path);
+    size_t good = strlen(first);
+    for (char *end; (end = strchr(text + good, '\n')); good = (size_t)(end + 1 - text)) {
+        *end = 0;
+        if (!take_line(journal, text + good))
+            break;
+    }
+    if (ftruncate(journal->file, (off_t)good))
+        journal_fail(journal, "write");
+}
+
+Journal journal_open(Pool *pool, const char *results, const char *key, int64_t runs)
+{
+    Journal journal = {.pool = pool, .path = pool_print(pool, "%s.journal", results), .runs = runs};
+    const char *first = pool_print(pool, "gicsweep journal %s\n", key);
+    journal.row = pool_alloc(pool, sizeof *journal.row * (size_t)runs);
+    journal.file = open(journal.path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (journal.file < 0)
+        journal_fail(&journal, "open");
+    if (flock(journal.file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
+        diag_fail(gicrun_place, "wait for it, or choose another place with -o", "another gicsweep is writing %s",
+                  journal.path);
+    const off_t size = lseek(journal.file, 0, SEEK_END);
+    if (size < (off_t)strlen(first)) {
+        if (ftruncate(journal.file, 0))
+            journal_fail(&journal, "write");
+        append(&journal, first, strlen(first));
+    } else {
+        take(&journal, first);
+    }
+    return journal;
+}
+
+void journal_add(Journal *journal, const int64_t *run, const int *status, const char *const *row, int count)
+{
+    Text text = {.pool = journal->pool};
+    for (int i = 0; i < count; ++i) {
+        text_print(&text, "%lld %d %s\n", (long long)run[i], status[i], row[i]);
+        note(journal, run[i], status[i], row[i]);
+    }
+    append(journal, text.s, text.size);
+}
+
+void journal_remove(Journal *journal)
+{
+    unlink(journal->path);
+    close(journal->file);
+}

@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: MIT
+ * The runs of a sweep, in batches: side by side in lanes, or one after another. */
+#include "sweep.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { CHUNK = 4096 /* steps between looks at who wants to stop */ };
+
+static const double refresh = 0.1; /* s between lines of progress */
+
+/* End, least and greatest value of an output so far. */
+typedef struct Range {
+    double end, least, greatest;
+} Range;
+
+/* One run of a batch. */
+typedef struct Slot {
+    int64_t run;
+    Scene scene; /* its own; `user` of the instance */
+    int status;
+    double time;  /* until when it went well */
+    Range *range; /* [columns] */
+} Slot;
+
+typedef struct Runner {
+    const Sweep *sweep;
+    int slots, used;
+    Slot *slot;
+    gic_head *one, *copy;
+    void *batch;
+    double begun, looked;
+    int64_t before; /* runs finished by others */
+    bool shown, stopped;
+} Runner;
+
+/* ---- one run ------------------------------------------------------------------------------------------------ */
+
+static void set_input(Pool *pool, const Model *model, Scene *scene, int input, double value)
+{
+    Profile *profile = pool_alloc(pool, sizeof *profile * (size_t)(scene->profiles + 1));
+    int kept = 0;
+    bool driven = false;
+    for (int i = 0; i < model->coordinates; ++i)
+        driven |= model->coordinate[i].driven && model->coordinate[i].input == input;
+    for (int i = 0; i < scene->profiles; ++i)
+        if (scene->profile[i].input != input)
+            profile[kept++] = scene->profile[i];
+    Profile constant = {.input = input, .driven = driven, .count = 1};
+    constant.time = pool_alloc(pool, sizeof(double));
+    constant.value = pool_alloc(pool, sizeof(double));
+    *constant.value = value;
+    profile[kept++] = constant;
+    scene->profile = profile;
+    scene->profiles = kept;
+}
+
+/* The scene of a run. */
+static Scene vary_scene(Pool *pool, const Sweep *sweep, int64_t run)
+{
+    Scene own = *sweep->scene;
+    const size_t parameters = sizeof(double) * (size_t)sweep->model->tunables;
+    own.parameter = pool_alloc(pool, parameters + 1);
+    memcpy(own.parameter, sweep->scene->parameter, parameters);
+    for (int v = 0; v < sweep->plan->varied; ++v) {
+        const Vary *vary = &sweep->plan->vary[v];
+        const double value = plan_value(sweep->plan, v, run);
+        if (vary->kind == VARY_PARAMETER) {
+            own.parameter[vary->index] = value;
+        } else if (vary->kind == VARY_INPUT) {
+            set_input(pool, sweep->model, &own, vary->index, value);
+        } else if (vary->kind == VARY_SPEED) {
+            own.speed = value;
+            own.along = true;
+            scene_along(&own);
+        }
+    }
+    return own;
+}
+
+/* Bring the instance to the beginning of a run. */
+static int begin(const Sweep *sweep, const Slot *slot, gic_head *self)
+{
+    int status = scene_start(sweep->engine, &slot->scene, self);
+    double state[sweep->engine->standard_count + 1];
+    bool changed = false;
+    if (status == GIC_OK)
+        status = engine_look(sweep->engine, self, state, NULL);
+    for (int v = 0; v < sweep->plan->varied; ++v)
+        if (sweep->plan->vary[v].kind == VARY_STATE) {
+            state[sweep->plan->vary[v].index] = plan_value(sweep->plan, v, slot->run);
+            changed = true;
+        }
+    return status == GIC_OK && changed ? engine_enter(sweep->engine, self, state) : status;
+}
+
+static void record(Slot *slot, int column, double value)
+{
+    Range *range = &slot->range[column];
+    const bool first = isnan(range->end);
+    range->end = value;
+    range->least = first ? value : fmin(range->least, value);
+    range->greatest = first ? value : fmax(range->greatest, value);
+}
+
+/* Its row of the results. */
+static const char *row_text(const Sweep *sweep, const Slot *slot)
+{
+    char *bytes = NULL;
+    size_t size = 0;
+    Csv csv = {.file = open_memstream(&bytes, &size)};
+    if (!csv.file)
+        diag_fail(gicrun_place, NULL, "no memory for results");
+    csv_number(&csv, (double)slot->run);
+    for (int v = 0; v < sweep->plan->varied; ++v)
+        csv_number(&csv, plan_value(sweep->plan, v, slot->run));
+    csv_number(&csv, slot->status);
+    csv_time(&csv, slot->time);
+    for (int c = 0; c < sweep->scene->columns; ++c) {
+        csv_number(&csv, slot->range[c].end);
+        csv_number(&csv, slot->range[c].least);
+        csv_number(&csv, slot->range[c].greatest);
+    }
+    fclose(csv.file);
+    const char *text = pool_print(sweep->journal->pool, "%s", bytes);
+    free(bytes);
+    return text;
+}
+
+/* ---- for the person who waits --------------------------------------------------------------------------------- */
+
+static void look_around(Runner *r)
+{
+    const Journal *journal = r->sweep->journal;
+    const double now = clock_seconds(CLOCK_MONOTONIC);
+    if (now - r->looked < refresh)
+        return;
+    r->looked = now;
+    r->stopped = interrupt_arrived();
+    if (r->sweep->quiet || !isatty(STDERR_FILENO))
+        return;
+    fprintf(stderr, "\r%5.1f %%  %lld of %lld runs, %lld failed, %.4g runs/s\x1b[K",
+            100 * (double)journal->finished / (double)journal->runs, (long long)journal->finished,
+            (long long)journal->runs, (long long)journal->failed,
+            (double)(journal->finished - r->before) / fmax(now - r->begun, 1e-9));
+    r->shown = true;
+}
+
+/* ---- batches -------------------------------------------------------------------------------------------------- */
+
+/* Outputs of all slots that go on, at the present time. */
+static void look_at_batch(Runner *r)
+{
+    const Sweep *sweep = r->sweep;
+    const gic_batch_model *many = sweep->many;
+    many->outputs(r->batch);
+    for (int i = 0; i < r->used; ++i) {
+        Slot *slot = &r->slot[i];
+        if (slot->status != GIC_OK)
+            continue;
+        slot->status = many->status(r->batch, i);
+        many->store(r->batch, i, r->one);
+        slot->time = gic_time(r->one);
+        for (int c = 0; c < sweep->scene->columns && slot->status == GIC_OK; ++c)
+            record(slot, c, many->output(r->batch, i, sweep->scene->column[c]));
+    }
+}
+
+static void run_lanes(Runner *r)
+{
+    const Sweep *sweep = r->sweep;
+    const Scene *scene = sweep->scene;
+    sweep->many->setup(r->batch);
+    for (int i = 0; i < r->used; ++i) {
+        r->slot[i].status = begin(sweep, &r->slot[i], r->one);
+        if (r->slot[i].status == GIC_OK)
+            sweep->many->load(r->batch, i, r->one);
+    }
+    look_at_batch(r);
+    for (int64_t k = 0; k < scene->outputs && !r->stopped; ++k) {
+        for (int64_t left = scene->per_output; left > 0 && !r->stopped; left -= CHUNK) {
+            const int32_t steps = left < CHUNK ? (int32_t)left : CHUNK;
+            sweep->many->step(r->batch, scene->step, scene->method, steps);
+            look_around(r);
+        }
+        look_at_batch(r);
+    }
+}
+
+/* The present outputs of the only slot. */
+static void look_at_one(Runner *r)
+{
+    const Sweep *sweep = r->sweep;
+    const gic_model *code = sweep->engine->code;
+    Slot *slot = r->slot;
+    memcpy(r->copy, r->one, code->size); /* looking leaves no trace */
+    slot->time = gic_time(r->one);
+    slot->status = code->outputs(r->copy);
+    const double *output = instance_array(r->copy, code->output_offset);
+    for (int c = 0; c < sweep->scene->columns && slot->status == GIC_OK; ++c)
+        record(slot, c, output[sweep->scene->column[c]]);
+}
+
+static void run_one(Runner *r)
+{
+    const Sweep *sweep = r->sweep;
+    const gic_model *code = sweep->engine->code;
+    Slot *slot = r->slot;
+    const Scene *scene = &slot->scene;
+    Variable *variable =
+        scene->method >= METHOD_ADAMS ? variable_open(code, scene->method, scene->tolerance) : NULL;
+    slot->status = begin(sweep, slot, r->one);
+    if (slot->status == GIC_OK)
+        look_at_one(r);
+    for (int64_t k = 0; k < scene->outputs && slot->status == GIC_OK && !r->stopped; ++k) {
+        const double end = (double)(k + 1) * scene->output_step;
+        int64_t left = scene->per_output;
+        while (slot->status == GIC_OK && !r->stopped && (variable ? gic_time(r->one) < end : left > 0)) {
+            slot->status = scene_step(sweep->engine, code, scene, variable, r->one, end);
+            if (left-- % CHUNK == 0)
+                look_around(r);
+        }
+        slot->time = gic_time(r->one);
+        if (slot->status == GIC_OK)
+            look_at_one(r);
+    }
+    variable_close(variable);
+    look_around(r);
+}
+
+/* The runs that the next batch is of; false: all are finished. */
+static bool fill(Runner *r, Pool *pool, int64_t *next)
+{
+    const Sweep *sweep = r->sweep;
+    for (r->used = 0; r->used < r->slots && *next < sweep->plan->runs; ++*next) {
+        if (sweep->journal->row[*next])
+            continue;
+        Slot *slot = &r->slot[r->used++];
+        slot->run = *next;
+        slot->scene = vary_scene(pool, sweep, *next);
+        slot->time = 0;
+        for (int c = 0; c < sweep->scene->columns; ++c)
+            slot->range[c] = (Range){NAN, NAN, NAN};
+    }
+    return r->used > 0;
+}
+
+static void keep(Runner *r)
+{
+    const char *row[r->slots];
+    int64_t run[r->slots];
+    int status[r->slots];
+    for (int i = 0; i < r->used; ++i) {
+        run[i] = r->slot[i].run;
+        status[i] = r->slot[i].status;
+        row[i] = row_text(r->sweep, &r->slot[i]);
+    }
+    journal_add(r->sweep->journal, run, status, row, r->used);
+}
+
+bool sweep_run(const Sweep *sweep)
+{
+    Pool *pool = sweep->pool;
+    Runner r = {.sweep = sweep, .slots = sweep->many ? sweep->many->vehicles : 1, .before = sweep->journal->finished};
+    r.slot = pool_alloc(pool, sizeof *r.slot * (size_t)r.slots);
+    for (int i = 0; i < r.slots; ++i)
+        r.slot[i].range = pool_alloc(pool, sizeof(Range) * (size_t)(sweep->scene->columns + 1));
+    r.one = instance_new(pool, sweep->engine);
+    r.copy = instance_new(pool, sweep->engine);
+    r.batch = sweep->many ? aligned_alloc(sweep->many->alignment, sweep->many->size) : NULL;
+    if (sweep->many && !r.batch)
+        diag_fail(gicrun_place, NULL, "no memory for %d vehicles", sweep->many->vehicles);
+    r.begun = clock_seconds(CLOCK_MONOTONIC);
+    int64_t next = 0;
+    for (bool more = true; more && !r.stopped;) {
+        Pool *own = pool_new(); /* what a batch of scenes takes is given back */
+        more = fill(&r, own, &next);
+        if (more && sweep->many)
+            run_lanes(&r);
+        else if (more)
+            run_one(&r);
+        if (more && !r.stopped)
+            keep(&r);
+        pool_free(own);
+    }
+    if (r.shown)
+        fputs("\r\x1b[K", stderr);
+    free(r.batch);
+    return !r.stopped;
+}
