@@ -76,11 +76,11 @@ static void write_batch_calls(const Generation *g, Text *out, int indent)
         }
         if (plan->formula[subset->class]->derived)
             line(out, indent, "links->derived = self->derived + %d;", plan->derived_offset[s]);
-        line(out, indent, "good = %s_solve_%s(%s_k_%s[%d], links, old + %d, start + %d,", model, class->name, model,
+        line(out, indent, "%s_solve_%s(work, %s_k_%s[%d], links, old + %d, start + %d,", model, class->name, model,
              class->name, class_place(class, s), plan->start_offset[s], plan->start_offset[s]);
-        line(out, indent + 4, "work->motion + %d, work->inertia + %d, open, status);",
+        line(out, indent + 4, "work->motion + %d, work->inertia + %d);",
              plan->motion_offset[subset->body[0]], plan->inertia_offset[s]);
-        line(out, indent, "open = %s_solved(work, open, good, %d);", model, s);
+        line(out, indent, "%s_solved(work, &before, %d);", model, s);
     }
 }
 
