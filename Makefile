@@ -174,6 +174,20 @@ $(driving:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/%.o $(driven:%=$
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
 
+batched := hmmwv steered quarter_car
+
+$(code)/%_batch.c: $(code)/%.c
+	$(BUILD)/gicgen --batch 8 $(firstword $(wildcard $(code)/$*.veh models/$*.veh)) -o $@
+
+$(BUILD)/tests/test_batch.o: tests/test_batch.c $(batched:%=$(code)/%_batch.c)
+	@mkdir -p $(@D)
+	$(COMPILE) -I$(code) -c -o $@ $<
+
+$(BUILD)/check/test_batch: $(BUILD)/tests/test_batch.o $(batched:%=$(code)/%.o) $(batched:%=$(code)/%_batch.o) \
+    $(BUILD)/runtime/gic_runtime.o
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
+
 test:
 	sh tests/run.sh
 
