@@ -1,0 +1,164 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_sweep.sh GICSWEEP GICRUN: sweeps have the digits of gicrun, run by run; grids and hypercubes have the runs that
+# they should; a killed sweep goes on and ends with the same bytes; without a compiler the same bytes; clear errors.
+gicsweep=$1
+gicrun=$2
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+GICGEN_CACHE=$work/kept
+OMP_NUM_THREADS=2
+export GICGEN_CACHE OMP_NUM_THREADS
+passed=0
+failed=0
+
+# check NAME CONDITION...: the command must succeed
+check() {
+    name=$1
+    shift
+    if "$@"; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAILED: $name"
+        sed 's/^/    /' "$work/err"
+    fi
+}
+
+# says TEXT STATUS COMMAND...: it ends with the status and the text in its message
+says() {
+    text=$1
+    status=$2
+    shift 2
+    "$@" >"$work/out" 2>"$work/err"
+    [ $? -eq "$status" ] && grep -q -- "$text" "$work/err"
+}
+
+# scene DURATION [SPEED [SPRING]] >FILE
+scene() {
+    cat <<XXX
+gicscene: 1
+duration: $1
+step: 0.005
+output_step: 0.05
+initial: {speed: ${2:-5}, coordinates: {spring_f_l: ${3:-0.24}}}
+road: {type: bumps, bumps: [{x: 4, length: 2, height: 0.06, tracks: left}]}
+outputs: [chassis.z, wheel_f_l.z]
+XXX
+}
+
+# the same columns of a run of gicrun, to 15 digits: end, least, greatest of both outputs
+ranges() {
+    awk -F, 'NR > 1 { for (i = 2; i <= 3; ++i) { end[i] = $i; if (NR == 2 || $i + 0 < low[i] + 0) low[i] = $i
+                      if (NR == 2 || $i + 0 > high[i] + 0) high[i] = $i } }
+             END { print end[2] "," low[2] "," high[2] "," end[3] "," low[3] "," high[3] }' "$1"
+}
+
+car=models/hmmwv.veh
+scene 1 >"$work/s.scene"
+
+# ---- a grid: runs and digits
+
+"$gicsweep" -q "$car" "$work/s.scene" --vary speed=4:20:3 --vary spring_f_l=0.23:0.24:2 -o "$work/grid.csv" 2>"$work/err"
+check "a grid" [ $? -eq 0 ]
+check "its header" [ "$(head -1 "$work/grid.csv")" = "run,speed [m/s],spring_f_l [m],status,time [s],\
+chassis.z.end [m],chassis.z.min [m],chassis.z.max [m],wheel_f_l.z.end [m],wheel_f_l.z.min [m],wheel_f_l.z.max [m]" ]
+check "its values" [ "$(sed 1d "$work/grid.csv" | cut -d, -f1-5 | tr '\n' ' ')" = \
+    "0,4,0.23,0,1 1,4,0.24,0,1 2,12,0.23,0,1 3,12,0.24,0,1 4,20,0.23,0,1 5,20,0.24,0,1 " ]
+for run in 0 3 4; do
+    row=$(sed -n "$((run + 2))p" "$work/grid.csv")
+    scene 1 "$(echo "$row" | cut -d, -f2)" "$(echo "$row" | cut -d, -f3)" >"$work/one.scene"
+    "$gicrun" -q "$car" "$work/one.scene" -o "$work/one.csv" 2>"$work/err"
+    check "run $run has gicrun's digits" [ "$(echo "$row" | cut -d, -f6-)" = "$(ranges "$work/one.csv")" ]
+done
+"$gicsweep" --cc /nonexistent "$car" "$work/s.scene" --vary speed=4:20:3 --vary spring_f_l=0.23:0.24:2 \
+    -o "$work/plain.csv" 2>"$work/err"
+check "without a compiler the same bytes" cmp -s "$work/grid.csv" "$work/plain.csv"
+check "which it says" grep -q "note: one run after another instead of lanes: .*/nonexistent" "$work/err"
+check "numbers alone" [ "$(sed 1d "$work/grid.csv" | tr -d '0-9.,e+\n-' | wc -c)" -eq 0 ]
+if [ -x /usr/bin/python3 ] && /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+    check "numpy reads it" /usr/bin/python3 - "$work/grid.csv" <<'XXX'
+import sys
+import numpy
+table = numpy.genfromtxt(sys.argv[1], delimiter=",", names=True)
+assert table.shape == (6,) and not numpy.isnan(table["chassiszmax_m"]).any()
+assert (table["chassiszmin_m"] < table["chassiszmax_m"]).all() and table["speed_ms"][4] == 20
+XXX
+fi
+
+# ---- a Latin hypercube
+
+# latin SEED FILE
+latin() {
+    "$gicsweep" -q "$car" "$work/s.scene" --latin 8 --seed "$1" --vary speed=4:12 --vary spring_f_l=0.23:0.24 -o "$2" \
+        2>"$work/err"
+}
+
+# every eighth of the range from LOW on, WIDTH wide, once
+strata() {
+    sed 1d "$work/latin.csv" | cut -d, -f"$1" |
+        awk -v low="$2" -v width="$3" '{ n[int(($1 - low) / width * 8)]++ } END { for (i = 0; i < 8; ++i) bad += n[i] != 1
+                                                                                 exit bad }'
+}
+latin 1 "$work/latin.csv"
+latin 1 "$work/again.csv"
+latin 2 "$work/other.csv"
+check "one run in each part of the speeds" strata 2 4 8
+check "and of the springs" strata 3 0.23 0.01
+check "the same seed, the same runs" cmp -s "$work/latin.csv" "$work/again.csv"
+check "another seed, other runs" [ "$(cut -d, -f2 "$work/latin.csv")" != "$(cut -d, -f2 "$work/other.csv")" ]
+
+# ---- killed, and going on
+
+scene 6 >"$work/long.scene"
+long() {
+    exec "$gicsweep" "$car" "$work/long.scene" --vary speed=4:6:1000 -o "$1" 2>"$work/err"
+}
+(long "$work/whole.csv")
+(long "$work/killed.csv") &
+sweep=$!
+while kill -0 $sweep 2>/dev/null && [ "$(cat "$work/killed.csv.journal" 2>/dev/null | wc -l)" -lt 100 ]; do sleep 0.02; done
+kill -9 $sweep 2>/dev/null
+wait $sweep 2>/dev/null
+kept=$(($(wc -l <"$work/killed.csv.journal") - 1))
+check "killed on the way" [ ! -e "$work/killed.csv" ]
+printf '999 0 999,half a li' >>"$work/killed.csv.journal" # as a kill in the middle of a write leaves it
+check "only its own sweep goes on" says "is of another sweep" 1 \
+    "$gicsweep" "$car" "$work/long.scene" --vary speed=4:6:1001 -o "$work/killed.csv"
+(long "$work/killed.csv")
+check "no finished run is lost" grep -q "1000 runs in .*, $kept of them from an earlier start" "$work/err"
+check "the same bytes in the end" cmp -s "$work/whole.csv" "$work/killed.csv"
+check "no journal is left" [ ! -e "$work/killed.csv.journal" ]
+
+# ---- runs that fail are rows
+
+"$gicsweep" "$car" "$work/s.scene" --vary spring_f_l=0.24:2:2 -o "$work/fail.csv" 2>"$work/err"
+check "a failed run is no error" [ $? -eq 0 ]
+check "but has a status" [ "$(sed -n 3p "$work/fail.csv" | cut -d, -f3)" -lt 0 ]
+check "and is told of" grep -q "1 failed, the first is run 1: " "$work/err"
+check "the good one is not disturbed" [ "$(sed -n 2p "$work/fail.csv" | cut -d, -f3)" -eq 0 ]
+
+# ---- tires: one after another
+
+sed 's/outputs:.*/outputs: [chassis.z]/; s/^initial:.*//' "$work/s.scene" >"$work/tires.scene"
+"$gicsweep" models/hmmwv_tires.veh "$work/tires.scene" --vary speed=4:5:2 -o "$work/tires.csv" 2>"$work/err"
+check "tires" [ "$(wc -l <"$work/tires.csv")" -eq 3 ]
+check "not yet in lanes" grep -q "note: one run after another instead of lanes: .*tires" "$work/err"
+
+# ---- errors
+
+sweep() {
+    "$gicsweep" "$car" "$work/s.scene" -o "$work/e.csv" "$@"
+}
+check "an unknown name" says "nothing that can be varied is called 'wings'" 1 sweep --vary wings=1:2:3
+check "no range" says "takes name=low:high" 2 sweep --vary speed=1
+check "no count" says "needs a count" 2 sweep --vary speed=1:2
+check "a count too many" says "no count of its own" 2 sweep --latin 4 --vary speed=1:2:3
+check "no count of runs" says "at least one run" 2 sweep --latin 0 --vary speed=1:2
+check "twice" says "given twice" 2 sweep --vary speed=1:2:3 --vary speed=1:2:3
+check "nothing varied" says "nothing is varied" 2 sweep
+check "too many runs" says "ten million" 2 sweep --vary speed=1:2:10000 --vary spring_f_l=0.23:0.24:10000
+check "standard output" says "results go into a file" 2 sweep --vary speed=1:2:2 -o -
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
