@@ -231,7 +231,7 @@ fails() {
 fails 2 'a model and a scene' "$work/soft.veh"
 fails 2 'a model, please' --rhs
 fails 2 'a model and a scene' --drive "$work/soft.veh"
-fails 2 'one of --rhs and --drive' --rhs --drive "$work/soft.veh" "$work/cart.scene"
+fails 2 'one of --rhs, --drive' --rhs --drive "$work/soft.veh" "$work/cart.scene"
 sed 's/^step.*/integrator: adams\noutput_step: 0.01/' "$work/cart.scene" >"$work/variable.scene"
 fails 1 'constant steps' --drive --engines tape "$work/soft.veh" "$work/variable.scene"
 fails 2 "no engine 'fast'" --engines fast "$work/soft.veh" "$work/cart.scene"

@@ -37,11 +37,13 @@ modes() { [ -z "$(find "$there" "$@")" ] || { find "$there" "$@" -printf '%m %p\
 check 'folders may be read by all' modes -type d ! -perm 0755
 check 'programs may be run by all' modes -path "$there/bin/*" ! -perm 0755
 check 'other files may be read by all and run by none' modes -type f ! -path "$there/bin/*" ! -perm 0644
-for file in bin/gicgen bin/gicrun bin/gicbench include/gic_runtime.h include/gic_road.h lib/libgic_runtime.a \
+for file in bin/gicgen bin/gicrun bin/gicsweep bin/gicbench include/gic_runtime.h include/gic_road.h include/gic_batch.h \
+    lib/libgic_runtime.a \
     lib/pkgconfig/gicgen.pc share/gicgen/gic_runtime.c share/gicgen/gic_road.c share/gicgen/models/hmmwv.veh \
     share/gicgen/models/parts/chassis.veh share/gicgen/models/scenes/paper_run.scene \
     share/gicgen/models/roads/field_track.csv share/gicgen/models/tires/hmmwv_pac2002.tir \
-    share/gicgen/models/FORMAT.md share/man/man1/gicgen.1 share/man/man1/gicrun.1 share/man/man1/gicbench.1; do
+    share/gicgen/models/FORMAT.md share/man/man1/gicgen.1 share/man/man1/gicrun.1 \
+    share/man/man1/gicsweep.1 share/man/man1/gicbench.1; do
     check "$file is there" [ -s "$there/$file" ]
 done
 models() { find "$1/models" -type f | wc -l; }
@@ -53,7 +55,7 @@ check 'nothing speaks of the place of collection, and nothing is left to fill in
 
 # options PATTERN: all words - or -- on standard input that look like options, each once
 options() { grep -oE -- '(^|[^[:alnum:]-])--?[[:alpha:]][[:alnum:]-]*' | sed 's/^[^-]*//' | sort -u; }
-for program in gicgen gicrun gicbench; do
+for program in gicgen gicrun gicsweep gicbench; do
     page=$there/share/man/man1/$program.1
     "$there/bin/$program" -h | options >"$work/help"
     # .It Fl o , Fl -output Ar file
