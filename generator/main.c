@@ -56,7 +56,8 @@ static const char *argument(int count, char **word, int *i)
 static void set_task(Options *options, Task task)
 {
     if (options->task != TASK_GENERATE)
-        usage_error("only one of --batch, --main, --sequence, --graph, --report and --dump-model can be asked for", NULL);
+        usage_error("only one of --batch, --main, --sequence, --graph, --report and --dump-model can be asked for",
+                    NULL);
     options->task = task;
 }
 
@@ -144,8 +145,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
 {
     Text c = {.pool = pool}, h = {.pool = pool};
     bool batch = options->task == TASK_BATCH;
-    const char *path = options->output ? options->output
-                                       : pool_print(pool, batch ? "%s_batch.c" : "%s.c", model->name);
+    const char *path = options->output ? options->output : pool_print(pool, batch ? "%s_batch.c" : "%s.c", model->name);
     if (strcmp(path, "-") && !path_ends(path, ".c"))
         usage_error("the generated file must end in .c", path);
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);

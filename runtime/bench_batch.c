@@ -15,12 +15,9 @@ typedef struct Way {
 } Way;
 
 static const Way way[] = {
-    {"one after another, -O2", "", 0},
-    {"one after another, -O3 -march=native", "-O3 -march=native", 0},
-    {"2 lanes", "-O3 -march=native", 2},
-    {"4 lanes", "-O3 -march=native", 4},
-    {"8 lanes", "-O3 -march=native", 8},
-    {"4 lanes, threads", "-O3 -march=native -fopenmp", 4},
+    {"one after another, -O2", "", 0},   {"one after another, -O3 -march=native", "-O3 -march=native", 0},
+    {"2 lanes", "-O3 -march=native", 2}, {"4 lanes", "-O3 -march=native", 4},
+    {"8 lanes", "-O3 -march=native", 8}, {"4 lanes, threads", "-O3 -march=native -fopenmp", 4},
 };
 enum { WAYS = sizeof way / sizeof *way, COMPARED = 1 };
 
@@ -135,11 +132,12 @@ void bench_batch(const Bench *bench)
             }
     const Batched *compared = &all[COMPARED];
     report_heading(bench->report, "Many vehicles at once");
-    report_text(bench->report,
-                "%s, %d vehicles at speeds around the scene's, %d steps of %g s (%s). Time: the best of %d runs, of one "
-                "thread its CPU time, of several the wall clock's. Throughput and the largest difference of a number x "
-                "of the states, relative to 1 + |x|: against the second row. No multiplication is contracted.",
-                bench->model->name, vehicles, STEPS, scene->step, integrator_name(scene->method), runs);
+    report_text(
+        bench->report,
+        "%s, %d vehicles at speeds around the scene's, %d steps of %g s (%s). Time: the best of %d runs, of one "
+        "thread its CPU time, of several the wall clock's. Throughput and the largest difference of a number x "
+        "of the states, relative to 1 + |x|: against the second row. No multiplication is contracted.",
+        bench->model->name, vehicles, STEPS, scene->step, integrator_name(scene->method), runs);
     Sheet *table = report_table(bench->report, "batch", "A step of one vehicle",
                                 "way|time, us|throughput|largest difference of states");
     for (int w = 0; w < WAYS; ++w)

@@ -42,7 +42,7 @@ typedef struct Failure {
 
 typedef struct Build {
     Pool *pool;
-    const char *model; /* its name */
+    const char *model;           /* its name */
     Text c, h, batch_c, batch_h; /* the last two empty: one vehicle at a time */
     const char **words;          /* compiler and options */
     int count;                   /* of words */
@@ -158,8 +158,7 @@ static const gic_model *compile(Build *b, const char *folder)
     if (status) {
         if (!b->batch_c.s)
             fputs(said, stderr);
-        b->failure = (Failure){pool_print(pool,
-                                          "the C compiler '%s' failed on the generated code (status %d)%s",
+        b->failure = (Failure){pool_print(pool, "the C compiler '%s' failed on the generated code (status %d)%s",
                                           argv[0], status, b->batch_c.s ? "" : "; its messages are above"),
                                "is it a C99 compiler with libc headers (Debian: libc6-dev)? Try another one with --cc, "
                                "or other options"};

@@ -120,8 +120,8 @@ const char *compiler_identity(Pool *pool, const char *const *words, int count);
 
 /* build.c: generated code, compiled, or kept from an earlier run, and loaded. */
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
-/* The same for `batch->vehicles` at once, and their descriptor; flags: of the compiler, behind build_flags. NULL: can't be
- * had, *why. */
+/* The same for `batch->vehicles` at once, and their descriptor; flags: of the compiler, behind build_flags. NULL: can't
+ * be had, *why. */
 const Engine *engine_batch(Pool *pool, const Model *model, const EngineOptions *options, const Batch *batch,
                            const char *flags, const gic_batch_model **many, const char **why);
 /* A folder with the files in it, but for those that begin with a dot. */

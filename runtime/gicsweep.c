@@ -8,35 +8,34 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char help[] =
-    "usage: gicsweep MODEL.veh SCENE --vary NAME=LOW:HIGH:COUNT ... [-o results.csv]\n"
-    "       gicsweep MODEL.veh SCENE --latin COUNT --vary NAME=LOW:HIGH ... [-o results.csv]\n"
-    "\n"
-    "Runs a scene with all combinations of values, or with COUNT combinations of a Latin\n"
-    "hypercube, several vehicles at once. A row of the results for each run: the varied\n"
-    "values, the status (0: good, else the run ended at `time`), of each output of the scene\n"
-    "the value at the end, the least and the greatest at output times.\n"
-    "\n"
-    "      --vary NAME=LOW:HIGH:COUNT\n"
-    "                     a tunable parameter, an input (constant through the run), a number\n"
-    "                     of the initial state, or `speed`, along the vehicle; where a name\n"
-    "                     has several meanings parameter/NAME, input/NAME, state/NAME. In a\n"
-    "                     grid the last one varies fastest\n"
-    "      --latin COUNT  so many runs: each number takes each of COUNT parts of its range\n"
-    "                     once, in random order\n"
-    "      --seed NUMBER  of the random numbers; the same seed, the same runs; default: 1\n"
-    "  -o, --output FILE  results as CSV; default: sweep.csv. Finished runs are kept in\n"
-    "                     FILE.journal: the same command goes on where it was stopped\n"
-    "      --engine NAME  one run after another, by an engine of gicrun\n"
-    "      --cc COMMAND   C compiler, perhaps with options; default: $CC or cc\n"
-    "      --cflags FLAGS more options for it, behind ours, all in one word\n"
-    "  -q, --quiet        neither progress nor summary\n"
-    "  -h, --help         this text\n"
-    "      --version      version\n"
-    "\n"
-    "Vehicles run in the lanes of vectors and, with OpenMP, in $OMP_NUM_THREADS threads, where\n"
-    "the compiler can do that; else one after another, with the same digits.\n"
-    "Exit status: 0 good, even if runs failed; 1 error in a file; 2 wrong usage.\n";
+static const char help[] = "usage: gicsweep MODEL.veh SCENE --vary NAME=LOW:HIGH:COUNT ... [-o results.csv]\n"
+                           "       gicsweep MODEL.veh SCENE --latin COUNT --vary NAME=LOW:HIGH ... [-o results.csv]\n"
+                           "\n"
+                           "Runs a scene with all combinations of values, or with COUNT combinations of a Latin\n"
+                           "hypercube, several vehicles at once. A row of the results for each run: the varied\n"
+                           "values, the status (0: good, else the run ended at `time`), of each output of the scene\n"
+                           "the value at the end, the least and the greatest at output times.\n"
+                           "\n"
+                           "      --vary NAME=LOW:HIGH:COUNT\n"
+                           "                     a tunable parameter, an input (constant through the run), a number\n"
+                           "                     of the initial state, or `speed`, along the vehicle; where a name\n"
+                           "                     has several meanings parameter/NAME, input/NAME, state/NAME. In a\n"
+                           "                     grid the last one varies fastest\n"
+                           "      --latin COUNT  so many runs: each number takes each of COUNT parts of its range\n"
+                           "                     once, in random order\n"
+                           "      --seed NUMBER  of the random numbers; the same seed, the same runs; default: 1\n"
+                           "  -o, --output FILE  results as CSV; default: sweep.csv. Finished runs are kept in\n"
+                           "                     FILE.journal: the same command goes on where it was stopped\n"
+                           "      --engine NAME  one run after another, by an engine of gicrun\n"
+                           "      --cc COMMAND   C compiler, perhaps with options; default: $CC or cc\n"
+                           "      --cflags FLAGS more options for it, behind ours, all in one word\n"
+                           "  -q, --quiet        neither progress nor summary\n"
+                           "  -h, --help         this text\n"
+                           "      --version      version\n"
+                           "\n"
+                           "Vehicles run in the lanes of vectors and, with OpenMP, in $OMP_NUM_THREADS threads, where\n"
+                           "the compiler can do that; else one after another, with the same digits.\n"
+                           "Exit status: 0 good, even if runs failed; 1 error in a file; 2 wrong usage.\n";
 
 enum { VEHICLES = 64, LANES = 4 };
 
@@ -60,11 +59,16 @@ static Options read_command_line(Pool *pool, int count, char **word)
 {
     enum { VARY = 256, LATIN, SEED, ENGINE, COMPILER, FLAGS, VERSION };
     static const struct option options[] = {
-        {"vary", required_argument, NULL, VARY},     {"latin", required_argument, NULL, LATIN},
-        {"seed", required_argument, NULL, SEED},     {"output", required_argument, NULL, 'o'},
-        {"engine", required_argument, NULL, ENGINE}, {"cc", required_argument, NULL, COMPILER},
-        {"cflags", required_argument, NULL, FLAGS},  {"quiet", no_argument, NULL, 'q'},
-        {"help", no_argument, NULL, 'h'},            {"version", no_argument, NULL, VERSION},
+        {"vary", required_argument, NULL, VARY},
+        {"latin", required_argument, NULL, LATIN},
+        {"seed", required_argument, NULL, SEED},
+        {"output", required_argument, NULL, 'o'},
+        {"engine", required_argument, NULL, ENGINE},
+        {"cc", required_argument, NULL, COMPILER},
+        {"cflags", required_argument, NULL, FLAGS},
+        {"quiet", no_argument, NULL, 'q'},
+        {"help", no_argument, NULL, 'h'},
+        {"version", no_argument, NULL, VERSION},
         {NULL, 0, NULL, 0},
     };
     Options o = {.results = "sweep.csv", .plan.seed = 1, .code = {.compiler = compiler_default(), .flags = ""}};

@@ -76,8 +76,9 @@ static void look_up(Pool *pool, Vary *vary, const Model *model, const Engine *en
                   "'%s' is the name of more than one thing in this model", vary->name);
     if (!found)
         diag_fail(gicrun_place,
-                  pool_print(pool, "the parameter must be `tunable: true` in %s; inputs and states have the names in "
-                                   "the header that gicgen writes; `speed` is a vehicle's",
+                  pool_print(pool,
+                             "the parameter must be `tunable: true` in %s; inputs and states have the names in "
+                             "the header that gicgen writes; `speed` is a vehicle's",
                              model->source->path),
                   "nothing that can be varied is called '%s'", vary->name);
 }

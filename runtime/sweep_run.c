@@ -209,8 +209,7 @@ static void run_one(Runner *r)
     const gic_model *code = sweep->engine->code;
     Slot *slot = r->slot;
     const Scene *scene = &slot->scene;
-    Variable *variable =
-        scene->method >= METHOD_ADAMS ? variable_open(code, scene->method, scene->tolerance) : NULL;
+    Variable *variable = scene->method >= METHOD_ADAMS ? variable_open(code, scene->method, scene->tolerance) : NULL;
     slot->status = begin(sweep, slot, r->one);
     if (slot->status == GIC_OK)
         look_at_one(r);

@@ -107,8 +107,8 @@ static void test_failures(void **state)
     for (int32_t i = 0; i < HMMWV_VEHICLES; ++i)
         hmmwv_batch_load(&batch, i, &car[i]);
     assert_int_equal(hmmwv_batch_step(&batch, 0.005, GIC_AB3, 300), HMMWV_VEHICLES - 4);
-    const int expected[HMMWV_VEHICLES] = {[1] = GIC_ERROR_INPUT, [2] = GIC_ERROR_NEWTON, [3] = GIC_ERROR_ROAD,
-                                          [5] = GIC_ERROR_ORIENTATION};
+    const int expected[HMMWV_VEHICLES] = {
+        [1] = GIC_ERROR_INPUT, [2] = GIC_ERROR_NEWTON, [3] = GIC_ERROR_ROAD, [5] = GIC_ERROR_ORIENTATION};
     for (int32_t i = 0; i < HMMWV_VEHICLES; ++i) {
         steps(&car[i], 300, GIC_AB3);
         if (expected[i] == GIC_ERROR_NEWTON)

@@ -217,6 +217,12 @@ check 'parts are positive and together about a step' awk -F, '
     END {exit bad || n != 2}' "$work/drive/drive.csv"
 drive "$work/soft.veh" "$work/cart.scene"
 check 'a model without wheels: multibody alone' grep -q '^tape .* 0 *0 *[-0-9.e]* *0$' "$work/out"
+# ---- in lanes
+
+"$gicbench" --batch 8 --quick "$work/soft.veh" "$work/cart.scene" >"$work/out" 2>"$work/err"
+check 'vehicles in lanes' [ $? -eq 0 ]
+check 'all ways have times, and the same states' awk '/^way / {on = 1; next} on && NF {++n; if (!($(NF - 2) > 0 && $NF == 0)) bad = 1}
+    END {exit bad || n < 5}' "$work/out"
 
 # fails STATUS TEXT ARGUMENT...
 fails() {
@@ -234,6 +240,7 @@ fails 2 'a model and a scene' --drive "$work/soft.veh"
 fails 2 'one of --rhs, --drive' --rhs --drive "$work/soft.veh" "$work/cart.scene"
 sed 's/^step.*/integrator: adams\noutput_step: 0.01/' "$work/cart.scene" >"$work/variable.scene"
 fails 1 'constant steps' --drive --engines tape "$work/soft.veh" "$work/variable.scene"
+fails 2 'number of vehicles' --batch x "$work/soft.veh" "$work/cart.scene"
 fails 2 "no engine 'fast'" --engines fast "$work/soft.veh" "$work/cart.scene"
 fails 2 'at least one name' --engines '' "$work/soft.veh" "$work/cart.scene"
 fails 1 "can't make the folder" -o "$work/no/page" "$work/soft.veh" "$work/cart.scene"

@@ -62,6 +62,12 @@ run 2 "$model" --solve quickly
 says err "--solve takes reduced or augmented, not: quickly"
 run 2 "$model" --recovery quickly
 says err "--recovery takes auto, newton or closed, not: quickly"
+run 2 --batch 0 "$model"
+says err "--batch takes a number of vehicles up to 65536, not: 0"
+run 2 --batch 8 --lanes 3 "$model"
+says err "--lanes takes 2, 4, 8 or 16, not: 3"
+run 1 --batch 8 "$root/models/hmmwv_tires.veh"
+says err "can't have wheels with tires yet"
 run 1 missing.veh
 says err "missing.veh: error: can't open"
 run 1 "$root/models"
