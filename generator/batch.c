@@ -34,7 +34,7 @@ static void insert_batch_class(void *context, const char *name, Text *out, int i
         return;
     }
     line(out, indent, "enum { %s_Q = %d, %s_START = %d, %s_MOTION = %d, %s_INERTIA = %d };", class, 7 * layout->bodies,
-         class, layout->start_size, class, layout->bodies * layout->motion_size, class, layout->inertia_size);
+         class, layout->start_size, class, layout->bodies * layout->motion_size, class, room(layout->inertia_size));
     line(out, indent, "struct {");
     line(out, indent + 4, "gic_lane q[%s_Q], start[%s_START], motion[%s_MOTION], inertia[%s_INERTIA];", class, class,
          class, class);

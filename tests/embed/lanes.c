@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: MIT
+ * Vehicles of any model (BATCH: its descriptor) with parameters and initial states of their own, in lanes and one by
+ * one: prints for how many state, outputs and status are the same to the last bit, and how many there are. */
+#include "gic_batch.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STEPS = 100, MOST = 100 };
+
+extern const gic_batch_model BATCH;
+
+static gic_real *array(void *self, size_t offset)
+{
+    return (gic_real *)(void *)((char *)self + offset);
+}
+
+/* The i-th: parameters greater by i thousandths, a vehicle faster by i m/s, other coordinates moved by i mm or mrad. */
+static int begin(const gic_model *model, void *car, int i)
+{
+    gic_real parameter[MOST];
+    int status = model->setup(car);
+    gic_real *const state = array(car, model->state_offset);
+    for (int k = 0; k < model->parameter_count; ++k)
+        parameter[k] = array(car, model->parameter_offset)[k] * (1 + GIC_R(0.001) * (gic_real)i);
+    if (model->parameter_count && status == GIC_OK)
+        status = model->setup_with(car, parameter);
+    if (model->free_base)
+        state[model->slow_count / 2 + 1] += (gic_real)(3 + i);
+    for (int k = 0; k < model->slow_count / 2 && !model->free_base; ++k)
+        state[k] += GIC_R(0.001) * (gic_real)i;
+    return status;
+}
+
+int main(void)
+{
+    const gic_model *const model = BATCH.model;
+    const size_t numbers = sizeof(gic_real) * (size_t)model->slow_count;
+    void *const batch = aligned_alloc(BATCH.alignment, BATCH.size), *const copy = calloc(1, model->size);
+    char *const car = calloc((size_t)BATCH.vehicles, model->size);
+    int states = 0, outputs = 0, statuses = 0;
+    if (!batch || !copy || !car || model->parameter_count > MOST || BATCH.setup(batch) != GIC_OK)
+        return 1;
+    for (int i = 0; i < BATCH.vehicles; ++i) {
+        if (begin(model, car + (size_t)i * model->size, i) != GIC_OK)
+            return 1;
+        BATCH.load(batch, i, car + (size_t)i * model->size);
+    }
+    BATCH.step(batch, GIC_R(0.001), GIC_AB3, STEPS);
+    for (int i = 0; i < BATCH.vehicles; ++i) {
+        void *const one = car + (size_t)i * model->size;
+        int status = GIC_OK;
+        for (int k = 0; k < STEPS && status == GIC_OK; ++k)
+            status = gic_step(model, one, GIC_R(0.001), GIC_AB3);
+        BATCH.store(batch, i, copy);
+        states += !memcmp(array(one, model->state_offset), array(copy, model->state_offset), numbers);
+        statuses += BATCH.status(batch, i) == status;
+    }
+    BATCH.outputs(batch);
+    for (int i = 0; i < BATCH.vehicles; ++i) {
+        void *const one = car + (size_t)i * model->size;
+        int same = model->outputs(one) == GIC_OK;
+        for (int k = 0; k < model->output_count; ++k)
+            same = same && array(one, model->output_offset)[k] == BATCH.output(batch, i, k);
+        outputs += same;
+    }
+    printf("%d %d %d of %d\n", states, outputs, statuses, BATCH.vehicles);
+    free(batch), free(copy), free(car);
+    return 0;
+}

@@ -1,0 +1,71 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_lanes.sh GICGEN: of every model that gicgen --batch does not refuse, vehicles in lanes have the bits of the code
+# for one vehicle: states, outputs, status; with lanes of any width, either number type, gcc and clang, threads, as C++.
+gicgen=$(realpath "$1")
+root=$(cd "$(dirname "$0")/.." && pwd)
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+passed=0
+failed=0
+
+check() {
+    if [ "$1" -eq 0 ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAIL $2"
+    fi
+}
+
+cp "$root"/runtime/gic_runtime.[ch] "$root/runtime/gic_batch.h" "$root/tests/embed/lanes.c" "$work/"
+# reactions are refused; what else tuned geometry moves is not
+sed "s|\.\./\.\./models|$root/models|; /type: reaction/d" "$root/tests/tuning/car.veh" >"$work/car.veh"
+cd "$work" || exit 1
+
+# agrees MODEL.veh OPTIONS COMPILER...: eight vehicles have the same bits
+agrees() {
+    file=$1
+    options=$2
+    shift 2
+    name=$(sed -n 's/^model: *//p' "$file")
+    # shellcheck disable=SC2086  # a list of words
+    "$gicgen" $options "$file" -o "$name.c" && "$gicgen" --batch 8 $options "$file" &&
+        "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -ffp-contract=off -DBATCH="${name}_batch_model" -I. \
+            lanes.c "$name.c" "${name}_batch.c" gic_runtime.c -lm -o lanes && [ "$(./lanes)" = '8 8 8 of 8' ]
+    check $? "$file $options: $* $(./lanes)"
+}
+
+for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" car.veh; do
+    if "$gicgen" --batch 8 "$model" -o - >out 2>err; then
+        agrees "$model" '' gcc -std=c11 -O0
+    else
+        grep -q "error: code for many vehicles at once can't have wheels with tires yet" err
+        check $? "$model: $(cat err)"
+    fi
+done
+
+hmmwv=$root/models/hmmwv.veh
+agrees "$hmmwv" '--lanes 2' gcc -std=c11 -O2
+agrees "$hmmwv" '--lanes 8' gcc -std=c11 -O2 -DGIC_FLOAT -Wdouble-promotion
+agrees "$hmmwv" '--lanes 16' clang -std=c11 -O1
+agrees "$hmmwv" '--solve augmented' clang -std=c11 -O1 -DGIC_FLOAT
+agrees "$hmmwv" '' gcc -std=c11 -O1 -fopenmp
+for how in 'g++ -std=c++11' 'clang++ -std=c++11 -DGIC_FLOAT'; do
+    $how -x c++ -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -O1 -I. -c hmmwv_batch.c -o x.o
+    check $? "$how hmmwv_batch.c"
+done
+"$gicgen" --batch 8 "$hmmwv" -o again.c && sed 's/again.h/hmmwv_batch.h/' again.c | cmp - hmmwv_batch.c
+check $? "the same input gives other bytes"
+
+# code of another model is noticed
+"$gicgen" "$root/models/quarter_car.veh" -o quarter_car.c
+sed 's/^gravity:.*/gravity: [0, 0, -1.62]/' "$root/models/quarter_car.veh" >moon.veh
+"$gicgen" --batch 8 moon.veh -o quarter_car_batch.c &&
+    gcc -std=c11 -DBATCH=quarter_car_batch_model -I. lanes.c quarter_car.c quarter_car_batch.c gic_runtime.c -lm -o lanes
+./lanes
+[ $? -eq 1 ]
+check $? "lanes of one model and vehicles of another"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
