@@ -46,8 +46,9 @@ static void write_batch_classes(BatchGeneration *b, Text *out)
     Generation *g = &b->g;
     for (g->class = 0; g->class < g->sequence->classes; ++g->class) {
         Text body = {.pool = g->pool};
-        template_expand(g->pool, &body, g->templates, "batch_subset.c.in", g->model->name,
-                        g->sequence->class[g->class].name, insert_batch_class, b);
+        const char *way = g->plan->formula[g->class]->closed ? "batch_closed.c.in" : "batch_subset.c.in";
+        template_expand(g->pool, &body, g->templates, way, g->model->name, g->sequence->class[g->class].name,
+                        insert_batch_class, b);
         write_class_constants(g, out); /* known now that all blocks are text */
         text_add(out, body.s, body.size);
     }
@@ -64,6 +65,8 @@ static void write_batch_calls(const Generation *g, Text *out, int indent)
         if (subset->class < 0)
             continue;
         const Class *class = &sequence->class[subset->class];
+        const bool closed = plan->formula[subset->class]->closed;
+        const char *old = closed ? "" : pool_print(g->pool, "old + %d, ", plan->start_offset[s]);
         line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
         for (int i = 0; i < subset->knowns; ++i)
             line(out, indent, "links->known[%d] = work->motion + %d; /* %s */", i,
@@ -72,12 +75,13 @@ static void write_batch_calls(const Generation *g, Text *out, int indent)
             line(out, indent, "links->x[%d] = start[%d]; /* %s */", j, subset->dep[j],
                  g->model->coordinate[subset->dep[j]].name);
             line(out, indent, "links->rate[%d] = xd[%d];", j, subset->dep[j]);
-            line(out, indent, "links->change[%d] = start[%d] - old[%d];", j, subset->dep[j], subset->dep[j]);
+            if (!closed)
+                line(out, indent, "links->change[%d] = start[%d] - old[%d];", j, subset->dep[j], subset->dep[j]);
         }
         if (plan->formula[subset->class]->derived)
             line(out, indent, "links->derived = self->derived + %d;", plan->derived_offset[s]);
-        line(out, indent, "%s_solve_%s(work, %s_k_%s[%d], links, old + %d, start + %d,", model, class->name, model,
-             class->name, class_place(class, s), plan->start_offset[s], plan->start_offset[s]);
+        line(out, indent, "%s_solve_%s(work, %s_k_%s[%d], links, %sstart + %d,", model, class->name, model, class->name,
+             class_place(class, s), old, plan->start_offset[s]);
         line(out, indent + 4, "work->motion + %d, work->inertia + %d);", plan->motion_offset[subset->body[0]],
              plan->inertia_offset[s]);
         line(out, indent, "%s_solved(work, &before, %d);", model, s);

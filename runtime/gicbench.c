@@ -57,12 +57,17 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
 {
     enum { ENGINES = 256, QUICK, RHS, DRIVE, BATCH, COMPILER, FLAGS, VERSION };
     static const struct option options[] = {
-        {"output", required_argument, NULL, 'o'},   {"engines", required_argument, NULL, ENGINES},
-        {"quick", no_argument, NULL, QUICK},        {"rhs", no_argument, NULL, RHS},
-        {"drive", no_argument, NULL, DRIVE},        {"cc", required_argument, NULL, COMPILER},
+        {"output", required_argument, NULL, 'o'},
+        {"engines", required_argument, NULL, ENGINES},
+        {"quick", no_argument, NULL, QUICK},
+        {"rhs", no_argument, NULL, RHS},
+        {"drive", no_argument, NULL, DRIVE},
+        {"cc", required_argument, NULL, COMPILER},
         {"batch", required_argument, NULL, BATCH},
-        {"cflags", required_argument, NULL, FLAGS}, {"help", no_argument, NULL, 'h'},
-        {"version", no_argument, NULL, VERSION},    {NULL, 0, NULL, 0},
+        {"cflags", required_argument, NULL, FLAGS},
+        {"help", no_argument, NULL, 'h'},
+        {"version", no_argument, NULL, VERSION},
+        {NULL, 0, NULL, 0},
     };
     Bench bench = {.pool = pool, .repetitions = 9};
     bench.options.compiler = compiler_default();
