@@ -42,11 +42,11 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'K1' (1 times, closed form)                        20        56       2      1         2
+ *   subset 'K1' (1 times, closed form)                        21        57       2      1         2
  *   subset 'K2_K3' (1 times)                                 686       863       6      0         0
  *   subset 'K5_K4' (2 times)                                 736       921       6      0         0
  *   forces and equations of motion                            28        28       2      1         0
- *   all together                                            2206      2789      22      2         2
+ *   all together                                            2207      2790      22      2         2
  *   outputs, when asked for                                  241       405       0      1        18
  */
 #include "andrews.h"
@@ -152,6 +152,8 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
         const gic_real t6 = t3 * t3 + t5 * t5;
         if (!(t6 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t6 - t6 * R(0.0001) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t7 = R(1.0) / t6;
         const gic_real t8 = GIC_SQRT(t6);
         const gic_real t9 = t7 * (t5 * t8);

@@ -71,11 +71,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   68       109       1      1         0
- *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        597       717       6      2         0
- *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        475       575       6      2         0
+ *   subset 'lca_f_l' (4 times, closed form)                   69       109       1      1         0
+ *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        599       719       6      2         0
+ *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        477       577       6      2         0
  *   forces and equations of motion                           964       859      15      4         4
- *   all together                                            3395      3904      43     16         4
+ *   all together                                            3407      3912      43     16         4
  *   outputs, when asked for                                 1132      1370       4      4        19
  */
 #ifndef HMMWV14_H

@@ -69,11 +69,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   68       109       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                378       470       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                294       386       4      1         0
+ *   subset 'lca_f_l' (4 times, closed form)                   69       109       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                380       472       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                295       387       4      1         0
  *   forces and equations of motion                           984       859      15      4        24
- *   all together                                            2615      3032      37     14        24
+ *   all together                                            2625      3038      37     14        24
  *   outputs, when asked for                                  889      1010       4      4        27
  */
 #include "hmmwv_full.h"
@@ -266,42 +266,42 @@ static GIC_COLD gic_real hmmwv_full_residual_rack(const gic_real *GIC_RESTRICT k
     return worst;
 }
 
-static const gic_real hmmwv_full_k_lca_f_l[4][27] = {
+static const gic_real hmmwv_full_k_lca_f_l[4][28] = {
     { /* lca_f_l */
-        R(0.1582643473416399), R(0.004637870464427621), R(0.038649583990999964), R(-0.05607209753299996),
-        R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428), R(10.049655409199131),
-        R(-10.049655409199131), R(0.19748500000000002), R(0.307086), R(0.509778),
-        R(51.57660077184113), R(209.3566321652691), R(-209.35663216526908), R(51.576600771841136),
-        R(-51.57660077184113), R(209.35663216526908), R(3.0379110359107786e-06), R(0.24689200985615367),
-        R(1.688965), R(40.476046225), R(0.01121887479261392), R(0.2403881036540444),
-        R(0.09720579999999998), R(1.792978), R(7.892375927523102),
+        R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
+        R(-0.05607209753299996), R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428),
+        R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(0.307086),
+        R(0.509778), R(51.57660077184113), R(209.3566321652691), R(-209.35663216526908),
+        R(51.576600771841136), R(-51.57660077184113), R(209.35663216526908), R(3.0379110359107786e-06),
+        R(0.24689200985615367), R(1.688965), R(40.476046225), R(0.01121887479261392),
+        R(0.2403881036540444), R(0.09720579999999998), R(1.792978), R(7.892375927523102),
     },
     { /* lca_f_r */
-        R(0.1582643473416399), R(0.004637870464427621), R(0.038649583990999964), R(-0.05607209753299996),
-        R(0.038649583990999964), R(-0.05607209753299996), R(-50.90547521989428), R(10.049655409199131),
-        R(-10.049655409199131), R(0.19748500000000002), R(-0.307086), R(-0.509778),
-        R(-51.57660077184113), R(209.3566321652691), R(-209.35663216526908), R(-51.576600771841136),
-        R(51.57660077184113), R(209.35663216526908), R(3.0379110359107786e-06), R(-0.24689200985615367),
-        R(1.688965), R(40.476046225), R(0.01121887479261392), R(-0.2403881036540444),
-        R(0.09720579999999998), R(1.792978), R(7.892375927523102),
+        R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
+        R(-0.05607209753299996), R(0.038649583990999964), R(-0.05607209753299996), R(-50.90547521989428),
+        R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(-0.307086),
+        R(-0.509778), R(-51.57660077184113), R(209.3566321652691), R(-209.35663216526908),
+        R(-51.576600771841136), R(51.57660077184113), R(209.35663216526908), R(3.0379110359107786e-06),
+        R(-0.24689200985615367), R(1.688965), R(40.476046225), R(0.01121887479261392),
+        R(-0.2403881036540444), R(0.09720579999999998), R(1.792978), R(7.892375927523102),
     },
     { /* lca_r_l */
-        R(0.18179218931811988), R(0.006000421990375402), R(0.03396250304259998), R(-0.06962018656579994),
-        R(-0.03396250304259998), R(0.06962018656579994), R(39.34606605646901), R(7.767620356494952),
-        R(-7.767620356494952), R(0.2564892), R(0.307086), R(0.5015738),
-        R(39.86479513590535), R(161.81677595488463), R(-161.8167759548846), R(39.864795135905354),
-        R(-39.86479513590535), R(161.8167759548846), R(-3.0379110358344508e-06), R(0.246867347245056),
-        R(-1.688965), R(-40.476046225), R(0.011218874792613923), R(0.24038810365404442),
-        R(-0.09720579999999998), R(-1.792978), R(6.355965194292886),
+        R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
+        R(-0.06962018656579994), R(-0.03396250304259998), R(0.06962018656579994), R(39.34606605646901),
+        R(7.767620356494952), R(-7.767620356494952), R(0.2564892), R(0.307086),
+        R(0.5015738), R(39.86479513590535), R(161.81677595488463), R(-161.8167759548846),
+        R(39.864795135905354), R(-39.86479513590535), R(161.8167759548846), R(-3.0379110358344508e-06),
+        R(0.246867347245056), R(-1.688965), R(-40.476046225), R(0.011218874792613923),
+        R(0.24038810365404442), R(-0.09720579999999998), R(-1.792978), R(6.355965194292886),
     },
     { /* lca_r_r */
-        R(0.18179218931811988), R(0.006000421990375402), R(0.03396250304259998), R(-0.06962018656579994),
-        R(0.03396250304259998), R(-0.06962018656579994), R(-39.34606605646901), R(7.767620356494952),
-        R(-7.767620356494952), R(0.2564892), R(-0.307086), R(-0.5015738),
-        R(-39.86479513590535), R(161.81677595488463), R(-161.8167759548846), R(-39.864795135905354),
-        R(39.86479513590535), R(161.8167759548846), R(-3.0379110358344508e-06), R(-0.246867347245056),
-        R(-1.688965), R(-40.476046225), R(0.011218874792613923), R(-0.24038810365404442),
-        R(-0.09720579999999998), R(-1.792978), R(6.355965194292886),
+        R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
+        R(-0.06962018656579994), R(0.03396250304259998), R(-0.06962018656579994), R(-39.34606605646901),
+        R(7.767620356494952), R(-7.767620356494952), R(0.2564892), R(-0.307086),
+        R(-0.5015738), R(-39.86479513590535), R(161.81677595488463), R(-161.8167759548846),
+        R(-39.864795135905354), R(39.86479513590535), R(161.8167759548846), R(-3.0379110358344508e-06),
+        R(-0.246867347245056), R(-1.688965), R(-40.476046225), R(0.011218874792613923),
+        R(-0.24038810365404442), R(-0.09720579999999998), R(-1.792978), R(6.355965194292886),
     },
 };
 
@@ -320,20 +320,22 @@ static int hmmwv_full_solve_lca_f_l(hmmwv_full *self, const gic_real *GIC_RESTRI
         const gic_real t2 = k[1] - t1 * t1;
         if (!(t2 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t2 - k[2] > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t3 = GIC_SQRT(t2);
-        const gic_real t4 = k[2] * t1 - t3 * k[3];
-        const gic_real t5 = t3 * k[4] + k[5] * t1;
-        const gic_real t6 = t4 * k[6] + t5 * k[7];
-        const gic_real t7 = t4 * k[8] + t5 * k[6];
-        const gic_real t8 = t7 - k[9];
-        const gic_real t9 = k[10] + t6 - k[11];
+        const gic_real t4 = k[3] * t1 - t3 * k[4];
+        const gic_real t5 = t3 * k[5] + k[6] * t1;
+        const gic_real t6 = t4 * k[7] + t5 * k[8];
+        const gic_real t7 = t4 * k[9] + t5 * k[7];
+        const gic_real t8 = t7 - k[10];
+        const gic_real t9 = k[11] + t6 - k[12];
         const gic_real t10 = t6 * t8 - t7 * t9;
         if (!(GIC_FABS(t10) > R(7.681214843839653e-09)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t11 = t5 * k[12] + t4 * k[13];
-        const gic_real t12 = t5 * k[14] + t4 * k[15];
-        const gic_real t13 = t5 * k[13] + t4 * k[16];
-        const gic_real t14 = t5 * k[15] + t4 * k[17];
+        const gic_real t11 = t5 * k[13] + t4 * k[14];
+        const gic_real t12 = t5 * k[15] + t4 * k[16];
+        const gic_real t13 = t5 * k[14] + t4 * k[17];
+        const gic_real t14 = t5 * k[16] + t4 * k[18];
         const gic_real t15 = R(1.0) / t10;
         const gic_real t16 = x[0] * t15;
         const gic_real t17 = rate[0] * t16;
@@ -341,10 +343,10 @@ static int hmmwv_full_solve_lca_f_l(hmmwv_full *self, const gic_real *GIC_RESTRI
         const gic_real t19 = t7 * t17;
         const gic_real t20 = t18 * t18 + t19 * t19 - (t8 * (t17 * t19) + t9 * (t17 * t18));
         const gic_real t21 = t15 * (rate[0] * rate[0] - t20);
-        const gic_real t22 = t12 * k[18] + t11 * k[19];
-        const gic_real t23 = k[10] + t22;
+        const gic_real t22 = t12 * k[19] + t11 * k[20];
+        const gic_real t23 = k[11] + t22;
         const gic_real t24 = R(23.965) * t23;
-        const gic_real t25 = t14 * k[18] + t13 * k[19];
+        const gic_real t25 = t14 * k[19] + t13 * k[20];
         const gic_real t26 = R(23.965) * t25;
         const gic_real t27 = t23 * t24;
         const gic_real t28 = t25 * t26;
@@ -353,9 +355,9 @@ static int hmmwv_full_solve_lca_f_l(hmmwv_full *self, const gic_real *GIC_RESTRI
         const gic_real t31 = R(0.4469) + t14 * (t14 * R(0.4469));
         const gic_real t32 = t14 * t29;
         const gic_real t33 = t17 * t22;
-        const gic_real t34 = t33 + (t33 + (turn[0] * t23 - k[20] * turn[1]));
+        const gic_real t34 = t33 + (t33 + (turn[0] * t23 - k[21] * turn[1]));
         const gic_real t35 = t17 * t25;
-        const gic_real t36 = k[20] * turn[2] - turn[0] * t25 - t35 - t35;
+        const gic_real t36 = k[21] * turn[2] - turn[0] * t25 - t35 - t35;
         const gic_real t37 = R(23.965) * (turn[1] * t34 - turn[2] * t36);
         const gic_real t38 = turn[1] * t25 - turn[2] * t23;
         const gic_real t39 = turn[2] * t38 - turn[0] * t34 - t17 * t33 - t21 * t25;
@@ -379,20 +381,20 @@ static int hmmwv_full_solve_lca_f_l(hmmwv_full *self, const gic_real *GIC_RESTRI
         const gic_real t57 = R(0.4469) + (t27 + t28);
         const gic_real t58 = t30 + (R(68.36262541240713) + t28);
         const gic_real t59 = t31 + (R(68.36262541240713) + t27);
-        const gic_real t60 = -(t23 * k[21]);
-        const gic_real t61 = -(t25 * k[21]);
+        const gic_real t60 = -(t23 * k[22]);
+        const gic_real t61 = -(t25 * k[22]);
         const gic_real t62 = t32 - t25 * t24;
         const gic_real t63 = t45 + (t23 * t42 - t25 * t40);
-        const gic_real t64 = t50 + (t25 * t37 - k[21] * t41);
-        const gic_real t65 = t51 + (k[21] * t39 - t23 * t37);
+        const gic_real t64 = t50 + (t25 * t37 - k[22] * t41);
+        const gic_real t65 = t51 + (k[22] * t39 - t23 * t37);
         const gic_real t66 = -t53;
         const gic_real t67 = t56 + (t25 * t53 + t23 * t55);
-        const gic_real t68 = -(k[21] * t54);
-        const gic_real t69 = -(k[21] * t52);
+        const gic_real t68 = -(k[22] * t54);
+        const gic_real t69 = -(k[22] * t52);
         const gic_real t70 = t16 * t45 + (t42 * t54 - t40 * t52);
         const gic_real t71 = t16 * t56 + (t54 * t55 + t52 * t53);
-        motion[0] = k[20];
-        motion[1] = k[10];
+        motion[0] = k[21];
+        motion[1] = k[11];
         motion[2] = R(0.0);
         motion[3] = R(0.9999999999999998);
         motion[4] = R(0.0);
@@ -421,7 +423,7 @@ static int hmmwv_full_solve_lca_f_l(hmmwv_full *self, const gic_real *GIC_RESTRI
         motion[27] = R(0.0);
         motion[28] = R(0.0);
         motion[29] = R(0.0);
-        inertia[0] = k[21];
+        inertia[0] = k[22];
         inertia[1] = t24;
         inertia[2] = t26;
         inertia[3] = t57;
@@ -457,16 +459,16 @@ static GIC_COLD gic_real hmmwv_full_residual_lca_f_l(const gic_real *GIC_RESTRIC
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_FABS((motion[0] - k[20]) * R(3.852963219305647)), GIC_FABS((motion[1] - k[10]) * R(3.852963219305647)));
+        const gic_real t1 = GIC_MAX(GIC_FABS((motion[0] - k[21]) * R(3.852963219305647)), GIC_FABS((motion[1] - k[11]) * R(3.852963219305647)));
         const gic_real t2 = GIC_MAX(GIC_MAX(t1, GIC_FABS(motion[2] * R(3.852963219305647))), GIC_FABS(R(0.9999999999999998) * motion[6]));
-        const gic_real t3 = motion[2] + (k[22] * motion[11] + (k[23] * motion[10] + k[24] * motion[9]));
-        const gic_real t4 = t3 - k[9];
-        const gic_real t5 = motion[1] + (k[22] * motion[8] + (k[23] * motion[7] + k[24] * motion[6]));
-        const gic_real t6 = t5 - k[11];
-        const gic_real t7 = motion[0] + (k[22] * motion[5] + (k[23] * motion[4] + k[24] * motion[3]));
-        const gic_real t8 = t7 - k[25];
+        const gic_real t3 = motion[2] + (k[23] * motion[11] + (k[24] * motion[10] + k[25] * motion[9]));
+        const gic_real t4 = t3 - k[10];
+        const gic_real t5 = motion[1] + (k[23] * motion[8] + (k[24] * motion[7] + k[25] * motion[6]));
+        const gic_real t6 = t5 - k[12];
+        const gic_real t7 = motion[0] + (k[23] * motion[5] + (k[24] * motion[4] + k[25] * motion[3]));
+        const gic_real t8 = t7 - k[26];
         const gic_real t9 = t4 * t4 + (t6 * t6 + t8 * t8) - x[0] * x[0];
-        const gic_real t10 = GIC_MAX(GIC_MAX(t2, GIC_FABS(R(0.9999999999999998) * motion[9])), GIC_FABS(t9 * k[26]));
+        const gic_real t10 = GIC_MAX(GIC_MAX(t2, GIC_FABS(R(0.9999999999999998) * motion[9])), GIC_FABS(t9 * k[27]));
         worst = t10;
     }
     return worst;
@@ -519,6 +521,8 @@ static int hmmwv_full_solve_wheel_f_l(hmmwv_full *self, const gic_real *GIC_REST
         const gic_real t20 = t13 * (R(0.11663675059700003) - t15 * t18 - t17 * t19);
         if (!(t20 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t20 - t13 * R(1.1663675059700003e-05) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t21 = k[3] * m0[10];
         const gic_real t22 = m0[2] + t21;
         const gic_real t23 = t22 - t9;
@@ -544,6 +548,8 @@ static int hmmwv_full_solve_wheel_f_l(hmmwv_full *self, const gic_real *GIC_REST
         const gic_real t43 = R(8.573627050492615) * (t39 * (R(0.021346939557573212) - t41 * t42));
         if (!(t43 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t43 - t39 * R(1.8302069843604057e-05) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t44 = k[4] * GIC_SQRT(t43);
         const gic_real t45 = t37 * t42 + (t25 * t38 - t33 * t36) * t44;
         const gic_real t46 = t45 + t29 * R(0.2910617987184667);
@@ -902,6 +908,8 @@ static int hmmwv_full_solve_wheel_r_l(hmmwv_full *self, const gic_real *GIC_REST
         const gic_real t23 = t20 - t22 * t22;
         if (!(t23 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t23 - t20 * R(0.0001) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t24 = R(0.9999999999999998) * m0[3];
         const gic_real t25 = t24 * t15;
         const gic_real t26 = R(0.9999999999999998) * m0[6];

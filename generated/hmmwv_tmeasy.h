@@ -69,15 +69,15 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   68       109       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                378       470       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                294       386       4      1         0
+ *   subset 'lca_f_l' (4 times, closed form)                   69       109       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                380       472       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                295       387       4      1         0
  *   forces and equations of motion                           608       510       8      0         0
  *   motion of the wheels                                     225       231       0      0         0
  *   drives and brakes                                          0         2       0      0         0
  *   wheel 'tire_f_l' (4 times)                               160       246      33     14         5
  *   a fast step: all wheels                                  640       986     132     56        20
- *   all together                                            3104      3900     162     66        20
+ *   all together                                            3114      3906     162     66        20
  *   outputs, when asked for                                 1053      1211       0      0         7
  */
 #ifndef HMMWV_TMEASY_H

@@ -22,9 +22,9 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'rod' (1 times, closed form)                       14        40       2      1         2
+ *   subset 'rod' (1 times, closed form)                       15        41       2      1         2
  *   forces and equations of motion                             2         3       1      0         0
- *   all together                                              16        43       3      1         2
+ *   all together                                              17        44       3      1         2
  *   outputs, when asked for                                   39        59       0      0         0
  */
 #include "pendulum.h"
@@ -127,6 +127,8 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t3 = t1 * t1 + t2 * t2;
         if (!(t3 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t3 - t3 * R(0.0001) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t4 = R(1.0) / t3;
         const gic_real t5 = GIC_SQRT(t3);
         const gic_real t6 = t4 * (t2 * t5);

@@ -40,10 +40,10 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
- *   subset 'arm' (1 times, closed form)                      330       439       4      1         0
- *   subset 'wheel' (1 times, closed form)                    450       553       5      2         0
+ *   subset 'arm' (1 times, closed form)                      331       440       4      1         0
+ *   subset 'wheel' (1 times, closed form)                    452       555       5      2         0
  *   forces and equations of motion                            48        43       2      0         1
- *   all together                                             829      1035      11      3         1
+ *   all together                                             832      1038      11      3         1
  *   outputs, when asked for                                  127       188       0      0         1
  */
 #include "quarter_car.h"
@@ -244,6 +244,8 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         const gic_real t24 = t20 - t23 * t23;
         if (!(t24 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t24 - t20 * R(0.0001) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t25 = m0[3] * m0[7];
         const gic_real t26 = m0[4] * m0[6];
         const gic_real t27 = t25 - t26;
@@ -584,6 +586,8 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t30 = t22 * (R(0.11663675059700003) - t24 * t27 - t26 * t29);
         if (!(t30 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t30 - t22 * R(1.1663675059700003e-05) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t31 = R(-0.1587710000000001) * m0[11] + (R(0.448437) * m0[10] + R(-0.250317) * m0[9]);
         const gic_real t32 = m0[2] + t31;
         const gic_real t33 = t32 - t18;
@@ -609,6 +613,8 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t53 = R(8.573627050492615) * (t49 * (R(0.021346939557573212) - t51 * t52));
         if (!(t53 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t53 - t49 * R(1.8302069843604057e-05) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t54 = GIC_SQRT(t53);
         const gic_real t55 = t47 * t52 - (t35 * t48 - t43 * t46) * t54;
         const gic_real t56 = t55 + t39 * R(0.29106179871846666);

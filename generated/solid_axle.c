@@ -58,11 +58,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   68       109       1      1         0
+ *   subset 'lca_f_l' (2 times, closed form)                   69       109       1      1         0
  *   subset 'axle' (1 times)                                  658       737       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                378       470       5      2         0
+ *   subset 'wheel_f_l' (2 times, closed form)                380       472       5      2         0
  *   forces and equations of motion                           714       671       9      0         4
- *   all together                                            2279      2591      27      6         4
+ *   all together                                            2285      2595      27      6         4
  *   outputs, when asked for                                  610       703       0      0        10
  */
 #include "solid_axle.h"
@@ -283,6 +283,8 @@ static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRI
         const gic_real t2 = R(0.004637870464427621) - t1 * t1;
         if (!(t2 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t2 - R(4.6378704644276215e-07) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t3 = GIC_SQRT(t2);
         const gic_real t4 = R(0.038649583990999964) * t1 - t3 * R(-0.05607209753299996);
         const gic_real t5 = t3 * k[0] + k[1] * t1;
@@ -1212,6 +1214,8 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t20 = t13 * (R(0.11663675059700003) - t15 * t18 - t17 * t19);
         if (!(t20 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t20 - t13 * R(1.1663675059700003e-05) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t21 = k[3] * m0[10];
         const gic_real t22 = m0[2] + t21;
         const gic_real t23 = t22 - t9;
@@ -1237,6 +1241,8 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t43 = R(8.573627050492615) * (t39 * (R(0.021346939557573212) - t41 * t42));
         if (!(t43 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t43 - t39 * R(1.8302069843604057e-05) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t44 = k[4] * GIC_SQRT(t43);
         const gic_real t45 = t37 * t42 + (t25 * t38 - t33 * t36) * t44;
         const gic_real t46 = t45 + t29 * R(0.2910617987184667);

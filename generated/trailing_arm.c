@@ -61,11 +61,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   60       115       2      1         2
- *   subset 'wheel_f_l' (2 times, closed form)                378       470       5      2         0
- *   subset 'lca_f_l_2' (2 times, closed form)                 75       120       2      1         2
+ *   subset 'lca_f_l' (2 times, closed form)                   61       116       2      1         2
+ *   subset 'wheel_f_l' (2 times, closed form)                380       472       5      2         0
+ *   subset 'lca_f_l_2' (2 times, closed form)                 76       121       2      1         2
  *   forces and equations of motion                           894       835      15      4         4
- *   all together                                            1935      2270      33     12        12
+ *   all together                                            1943      2278      33     12        12
  *   outputs, when asked for                                  795       926       4      4        13
  */
 #include "trailing_arm.h"
@@ -287,6 +287,8 @@ static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RE
         const gic_real t5 = t2 * t2 + t4 * t4;
         if (!(t5 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t5 - t5 * R(0.0001) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t6 = R(1.0) / t5;
         const gic_real t7 = k[1] * GIC_SQRT(t5);
         const gic_real t8 = t6 * (t4 * t7);
@@ -488,6 +490,8 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t20 = t13 * (R(0.11663675059700003) - t15 * t18 - t17 * t19);
         if (!(t20 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t20 - t13 * R(1.1663675059700003e-05) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t21 = k[3] * m0[10];
         const gic_real t22 = m0[2] + t21;
         const gic_real t23 = t22 - t9;
@@ -513,6 +517,8 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t43 = R(8.573627050492615) * (t39 * (R(0.021346939557573212) - t41 * t42));
         if (!(t43 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t43 - t39 * R(1.8302069843604057e-05) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t44 = k[4] * GIC_SQRT(t43);
         const gic_real t45 = t37 * t42 + (t25 * t38 - t33 * t36) * t44;
         const gic_real t46 = t45 + t29 * R(0.2910617987184667);
@@ -854,6 +860,8 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
         const gic_real t4 = t2 * t2 + t3 * t3;
         if (!(t4 > R(0.0)))
             return GIC_ERROR_NEWTON;
+        if (!(t4 - t4 * R(0.0001) > R(0.0)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t5 = R(1.0) / t4;
         const gic_real t6 = k[0] * GIC_SQRT(t4);
         const gic_real t7 = t5 * (t3 * t6);

@@ -86,13 +86,20 @@ static void combine(Dag *dag, int count, const Ex *s, const Ex *const *a, Ex out
     memcpy(out, sum, sizeof sum);
 }
 
-/* The root of `square` with the sign that `probe` has at the design; beyond reach the square is negative. */
-static Ex branch_root(Closed *z, Ex square, Ex probe)
+/* Where both solutions are nearer to each other than this, as the sine of the angle to where they meet, coordinates
+ * stop being independent, and a step can not tell whether a motion passes on or turns back. */
+static const double meeting = 0.01;
+
+/* The root of `square` with the sign that `probe` has at the design; beyond reach the square is negative. whole: what
+ * the square is where the two solutions are opposite. */
+static Ex branch_root(Closed *z, Ex square, Ex whole, Ex probe)
 {
     double sign[z->w->class->members];
     for (int i = 0; i < z->w->class->members; ++i)
         sign[i] = ex_value(z->dag, probe, i * z->w->configurations) < 0 ? -1 : 1;
     block_check(z->block, square, false, 0, "GIC_ERROR_NEWTON");
+    Ex least = ex_mul(z->dag, ex_literal(z->dag, meeting * meeting), whole);
+    block_check(z->block, ex_sub(z->dag, square, least), false, 0, "GIC_ERROR_SINGULAR");
     return ex_mul(z->dag, ex_constant(z->dag, sign), ex_sqrt(z->dag, square));
 }
 
@@ -115,7 +122,7 @@ static bool meet(Closed *z, const Ex v1[3], Ex k1, const Ex v2[3], Ex k2, Ex squ
     Ex along1 = ex_mul(dag, ex_sub(dag, ex_mul(dag, k1, g22), ex_mul(dag, k2, g12)), inverse);
     Ex along2 = ex_mul(dag, ex_sub(dag, ex_mul(dag, k2, g11), ex_mul(dag, k1, g12)), inverse);
     Ex rest = ex_sub(dag, ex_sub(dag, square, ex_mul(dag, along1, k1)), ex_mul(dag, along2, k2));
-    Ex across = branch_root(z, ex_mul(dag, rest, inverse), ex_dot(dag, n, followed));
+    Ex across = branch_root(z, ex_mul(dag, rest, inverse), ex_mul(dag, square, inverse), ex_dot(dag, n, followed));
     combine(dag, 3, (Ex[]){along1, along2, across}, (const Ex *[]){v1, v2, n}, out);
     return true;
 }
@@ -402,7 +409,7 @@ static bool turn_triad(Closed *z, int body, const Projection *p)
         return false;
     followed_vector(z, body, p->b, followed);
     ex_cross(dag, t[0], p->v, probe);
-    Ex root = branch_root(z, ex_sub(dag, square, ex_mul(dag, k, k)), ex_dot(dag, probe, followed));
+    Ex root = branch_root(z, ex_sub(dag, square, ex_mul(dag, k, k)), square, ex_dot(dag, probe, followed));
     Ex inverse = ex_div(dag, ex_literal(dag, 1), square);
     Ex c = ex_mul(dag, ex_sub(dag, ex_mul(dag, a, k), ex_mul(dag, b, root)), inverse);
     Ex s = ex_mul(dag, ex_add(dag, ex_mul(dag, b, k), ex_mul(dag, a, root)), inverse);
@@ -479,7 +486,8 @@ static bool turn_arm(Closed *z, int body, const Projection *p)
     Ex beside = ex_mul(dag, k, inverse);
     Ex rest = ex_mul(dag, ex_sub(dag, square2, ex_mul(dag, k, beside)), inverse);
     followed_vector(z, body, p->b, followed);
-    Ex root = branch_root(z, ex_mul(dag, rest, ex_div(dag, one, square1)), ex_dot(dag, n, followed));
+    Ex scale = ex_div(dag, one, square1), most = ex_mul(dag, ex_mul(dag, square2, inverse), scale);
+    Ex root = branch_root(z, ex_mul(dag, rest, scale), most, ex_dot(dag, n, followed));
     combine(dag, 2, (Ex[]){beside, root}, (const Ex *[]){level, n}, y);
     turn_pair(z, body, arm, image, across, y);
     combine(dag, 2, (Ex[]){share, one}, (const Ex *[]){image, y}, whole);
