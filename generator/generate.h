@@ -22,6 +22,8 @@ typedef struct Generation {
 void line(Text *out, int indent, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* Elements of an array that would be empty: one. */
 int room(int count);
+/* Numbers in the state, fast ones too. */
+int states(const Generation *g);
 /* A string as a C literal; every second question mark is escaped, so that no trigraph arises. */
 const char *quoted(Pool *pool, const char *s);
 /* Capitals, and everything that is no letter or digit an underscore. */
@@ -38,6 +40,9 @@ void insert_subset(void *context, const char *name, Text *out, int indent);
 void write_class_constants(Generation *g, Text *out);
 /* Which member of a class a subset is. */
 int class_place(const Class *class, int subset);
+
+/* generate_tables.c: what the descriptor points to. */
+void write_tables(Generation *g, Text *out);
 
 /* generate_wheels.c: nothing where no wheel has a tire, but for the end of the descriptor. */
 void write_wheels(Generation *g, Text *out);          /* functions of the wheels, before the equations of motion */

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # test_accelerations.sh GICGEN GICRUN STATES REFERENCE AGREE: accelerations, poses, reactions of all joints, drive
 # forces, all that wheels tell, rates of fast states, energies and power of generated code against the independent
-# reference in quad precision, at ROWS (default 100; four times that with tires) random states of every model, of a cart with every
-# kind of force law and of the HMMWV with a driven rack, with the equations of motion in either form; constraint
+# reference in quad precision, at ROWS (default 100; four times that with tires) random states of every model, of a cart
+# with every kind of force law and of the HMMWV with a driven rack, with the equations of motion in either form; constraint
 # residuals at the same states. Each form within half of 1e-12 of the reference: so they agree with each other to 1e-12.
 # With tires within 2e-12, for tires are stiff: at some states they make 1e-12 of the last digit of a pose, whichever way
 # that is found. Once more on waves with a patch of little friction, where 100 m from the origin heights of a road whose
