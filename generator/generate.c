@@ -481,7 +481,7 @@ static void write_initial(Generation *g, Text *out, int indent)
         line(out, indent, "R(0.0)");
 }
 
-/* ---- tuning, tables of the model, insertion points ---------------------------------------------------------------- */
+/* ---- tuning, tables of the model, insertion points ----------------------------------------------------------- */
 
 /* Has a geometric parameter changed since set-up? */
 static void write_tuned(Generation *g, Text *out, int indent)
