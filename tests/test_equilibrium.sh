@@ -7,31 +7,7 @@ gicgen=$1
 gicrun=$2
 reference=$3
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-# check NAME CONDITION...: the command must succeed
-check() {
-    name=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        sed 's/^/    /' "$work/out" "$work/err"
-    fi
-}
-
-run() {
-    "$gicrun" "$@" >"$work/out" 2>"$work/err"
-    status=$?
-}
-exits() { [ "$status" -eq "$1" ]; }
-prints() { grep -q -- "$1" "$work/out"; }
-says() { grep -q -- "$1" "$work/err"; }
+. "$root/tests/checking.sh"
 silent() { ! [ -s "$work/err" ]; }
 # scene LINE...: a scene with them
 scene() { printf 'gicscene: 1\nduration: 1\nstep: 0.005\nintegrator: rk4\noutput_step: 0.1\n'; printf '%s\n' "$@"; }
