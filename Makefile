@@ -4,6 +4,7 @@
 #   make demo           the complete HMMWV for 30 s, and one over the paper's road: build/demo/
 #   make bench          engines and integrators, time against error, and the 30 s: build/bench/ (QUICK=1: the short way)
 #   make test           every test
+#   make stress         attacks on everything, for an hour or so: build/stress/table.md (STRESS=short: a minute)
 #   make generated      generated/*.c and *.h from models/*.veh, and models/veh.schema.json
 #   make debug          the same programs with the sanitizers, in build/debug/
 #   make deps           install the packages that all of this needs (Debian)
@@ -35,7 +36,7 @@ embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_ru
 generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 
-.PHONY: all test test-programs list-tests demo bench generated debug deps install uninstall clean
+.PHONY: all test test-programs list-tests stress demo bench generated debug deps install uninstall clean
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -80,9 +81,10 @@ $(BUILD)/%.o: %.c
 tested := $(BUILD)/check/tested.a
 reference := $(patsubst %.c,$(BUILD)/%.o,$(filter-out tests/reference/main.c,$(wildcard tests/reference/*.c)))
 programs := $(basename $(notdir $(wildcard tests/*.c)))
+attacking := $(basename $(notdir $(wildcard tests/stress/*.c)))
 variants := test_runtime_float test_runtime_fast test_dual_float test_road_float test_road_fast
 
-test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) reference)
+test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) $(attacking) reference)
 
 # an archive, for a test takes what it tests and no more
 $(tested): $(generator_objects) $(runtime_objects)
@@ -137,6 +139,12 @@ $(BUILD)/check/test_road_float $(BUILD)/check/test_road_fast: tests/test_road.c 
 $(addprefix $(BUILD)/check/,$(variants)):
 	@mkdir -p $(@D)
 	$(COMPILE) $(VARIANT) -MF $@.d -o $@ $(filter %.c,$^) $(LDFLAGS) -lcmocka -lm
+
+# ---- attacks of `make stress`: tests/stress/*.c are tools of tests/stress/*.sh
+
+$(attacking:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/stress/%.o $(tested)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 # ---- tests that drive generated code: of the models, and of variants of the HMMWV
 
@@ -193,6 +201,9 @@ test:
 
 list-tests:
 	@echo $(filter test_%,$(programs) $(variants))
+
+stress: test-programs
+	BUILD=$(BUILD) sh tests/stress/run.sh
 
 # ---- what people ask for
 

@@ -4,19 +4,12 @@
 # The last line is `N passed, N failed`; the exit status is 0 when none failed.
 #
 # A test is either tests/test_NAME.c, a cmocka program, or tests/test_NAME.sh, a script that prints `N passed, N failed`
-# at its end. A script's first line of comment names the programs that it wants as arguments in capitals:
-# `# test_dump.sh GICGEN COMPARE_DUMP: ...` is called with the paths of gicgen and of compare_dump.
+# at its end. A script's first line of comment names the programs that it wants as arguments: tests/paths.sh.
 cd "$(dirname "$0")/.." || exit 1
 sh tests/install.sh test || exit 1
 build=${BUILD:-build}
+. tests/paths.sh
 make --no-print-directory -s -j2 WERROR=-Werror BUILD="$build" test-programs || exit 1
-
-# paths NAME...: of programs, which are ours or the tests'
-paths() {
-    for program in $(echo "$*" | tr '[:upper:]' '[:lower:]'); do
-        if [ -x "$build/$program" ]; then echo "$build/$program"; else echo "$build/check/$program"; fi
-    done
-}
 
 # names of all tests, programs before scripts: what the scripts use should have been tested before
 tests() {
@@ -28,7 +21,7 @@ tests() {
 run() {
     if [ -f "tests/$1.sh" ]; then
         # shellcheck disable=SC2046  # one argument a path
-        sh "tests/$1.sh" $(paths "$(sed -n "s/^# $1\.sh\([A-Z_ ]*\):.*/\1/p" "tests/$1.sh")")
+        sh "tests/$1.sh" $(paths "tests/$1.sh")
     else
         "$build/check/$1"
     fi >"$log" 2>&1
