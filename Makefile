@@ -35,6 +35,9 @@ embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_ru
 
 generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
+# what gicgen reads scenes with
+scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_outputs scene_road \
+    scene_road_file driver spline csv descriptor process gic_runtime gic_road)
 
 .PHONY: all test test-programs list-tests stress demo bench generated debug deps install uninstall clean
 .DELETE_ON_ERROR:
@@ -42,7 +45,7 @@ runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 
 all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench
 
-$(BUILD)/gicgen: $(BUILD)/generator/main.o $(generator_objects)
+$(BUILD)/gicgen: $(BUILD)/generator/main.o $(scene_objects) $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lm
 
 $(BUILD)/gicrun: $(BUILD)/runtime/gicrun.o $(runtime_objects) $(generator_objects)

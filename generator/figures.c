@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Operations of the emitted code, counted where it is made: for the comment in front of it and for the report. */
-#include "gicgen.h"
+#include "narrow.h"
 
 void count_add(Count *sum, Count more, int times)
 {
@@ -36,6 +36,7 @@ const Figures *figures_new(Pool *pool, const Formulation *f)
     Figures *figures = pool_alloc(pool, sizeof *figures);
     *figures = (Figures){.sequence = f->sequence,
                          .class = pool_alloc(pool, (size_t)(classes + 1) * sizeof *figures->class),
+                         .times = pool_alloc(pool, (size_t)(classes + 1) * sizeof(int)),
                          .react = pool_alloc(pool, (size_t)(classes + 1) * sizeof(Count)),
                          .reacting = pool_alloc(pool, (size_t)(classes + 1) * sizeof(int)),
                          .dynamics = block_count(f->dynamics),
@@ -47,6 +48,9 @@ const Figures *figures_new(Pool *pool, const Formulation *f)
         figures->class[c] = (ClassFigures){formula->closed, block_count(&formula->predict),
                                            block_count(&formula->chord), block_count(&formula->solve)};
     }
+    for (int s = 0; s < f->sequence->subsets; ++s)
+        if (f->sequence->subset[s].class >= 0)
+            figures->times[f->sequence->subset[s].class] += !narrowing_steady(f->narrowing, s);
     if (f->wheels)
         wheel_figures(pool, figures, f->wheels, f->model->powertrain);
     if (!formulation_reacts(f))
@@ -76,7 +80,7 @@ Count figures_recovery(const Figures *figures, int chords, int passes)
     const Sequence *sequence = figures->sequence;
     Count sum = {0};
     for (int c = 0; c < sequence->classes; ++c)
-        count_add(&sum, figures_subset(figures, c, chords, passes), sequence->class[c].members);
+        count_add(&sum, figures_subset(figures, c, chords, passes), figures->times[c]);
     return sum;
 }
 

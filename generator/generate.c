@@ -59,7 +59,7 @@ static void write_counts(Generation *g, Text *out)
     for (int c = 0; c < g->sequence->classes; ++c) {
         const Class *class = &g->sequence->class[c];
         count_line(out,
-                   pool_print(g->pool, "subset '%s' (%d times%s)", class->name, class->members,
+                   pool_print(g->pool, "subset '%s' (%d times%s)", class->name, figures->times[c],
                               g->plan->formula[c]->closed ? ", closed form" : ""),
                    figures_subset(figures, c, 1, 1));
     }
@@ -84,6 +84,7 @@ static void write_banner(Generation *g, Text *out)
         text_print(out, " *%s%.*s\n", end > s ? " " : "", (int)(end - s), s);
     }
     text_print(out, " *\n");
+    write_narrowing(g, out);
     write_counts(g, out);
     text_print(out, " */\n");
 }
@@ -146,7 +147,7 @@ static void write_sizes(Generation *g, Text *out, int indent)
                 {"MOTION_ROOM", room(plan->motion_size)},
                 {"INERTIA_ROOM", room(plan->inertia_size)},
                 {"MULTIPLIER_ROOM", room(plan->multipliers)},
-                {"CONDITIONS", model->tuning ? model->tuning->conditions : 0},
+                {"CONDITIONS", conditions(g)},
                 {"DERIVED", plan->derived->count},
                 {"PIECES", model->tuning && model->tuning->assembles ? ASSEMBLY_PIECES : 1},
                 {"KNOWN_ROOM", room(g->formulation->known_most)},
@@ -209,6 +210,7 @@ static void write_arguments(Generation *g, Text *out, int indent, const Block *c
 {
     static const char *const part[] = {"x", "rate", "change", "turn"};
     const char *real = style_real(g->style);
+    const size_t before = out->size;
     if (any_reads(block, blocks, "d"))
         line(out, indent, "const %s *const d = links->derived;", real);
     const Subset *first = &g->sequence->subset[g->sequence->class[g->class].member[0]];
@@ -219,7 +221,7 @@ static void write_arguments(Generation *g, Text *out, int indent, const Block *c
     for (int i = 0; i < 4; ++i)
         if (any_reads(block, blocks, part[i]))
             line(out, indent, "const %s *const %s = links->%s;", real, part[i], part[i]);
-    if (!first->knowns && !first->deps)
+    if (out->size == before)
         line(out, indent, "(void)links;");
 }
 
@@ -359,6 +361,10 @@ static void write_calls(Generation *g, Text *out, int indent)
             continue;
         const Class *class = &sequence->class[subset->class];
         const bool closed = g->plan->formula[subset->class]->closed;
+        const bool steady = narrowing_steady(g->formulation->narrowing, s);
+        if (steady)
+            line(out, indent, "if (links->cold) { /* nothing about it changes later */");
+        indent += steady ? 4 : 0;
         text_print(out, "%*s/* stage %d:", indent, "", subset->stage);
         for (int b = 0; b < subset->bodies; ++b)
             text_print(out, " %s", g->model->body[subset->body[b]].name);
@@ -384,6 +390,9 @@ static void write_calls(Generation *g, Text *out, int indent)
         line(out, indent + 4, "self->head.subset = %d;", s);
         line(out, indent + 4, "return status;");
         line(out, indent, "}");
+        indent -= steady ? 4 : 0;
+        if (steady)
+            line(out, indent, "}");
     }
 }
 
@@ -500,7 +509,7 @@ static void write_tuned(Generation *g, Text *out, int indent)
 static void write_lookup(Generation *g, Text *out)
 {
     const Model *model = g->model;
-    if (!model->tables)
+    if (!model->tables || (g->formulation->narrowing && !g->formulation->narrowing->tables))
         return;
     text_print(
         out,
@@ -608,7 +617,7 @@ void insert_code(void *context, const char *name, Text *out, int indent)
     } else if (!strcmp(name, "self-test")) {
         insert_template(g, out, g->style->whole_self_test ? "self_test.c.in" : "self_test_constraints.c.in");
     } else if (!strcmp(name, "road")) {
-        if (g->model->wheels)
+        if (g->model->wheels && (!g->formulation->narrowing || g->formulation->narrowing->road))
             insert_template(g, out, "road.c.in");
     } else if (!strcmp(name, "reactions")) {
         if (formulation_reacts(g->formulation))
@@ -665,6 +674,12 @@ void insert_code(void *context, const char *name, Text *out, int indent)
     } else if (!strcmp(name, "begin")) {
         line(out, indent, "status = %s_%s;", g->model->name,
              g->model->tuning ? "assemble(self, turn)" : "recover(self, turn, 1)");
+    } else if (!strcmp(name, "assumptions")) {
+        write_assumptions(g, out);
+    } else if (!strcmp(name, "assume")) {
+        write_assume(g, out, indent);
+    } else if (!strcmp(name, "condition")) {
+        write_condition(g, out, indent);
     } else if (!strcmp(name, "wheels")) {
         write_wheels(g, out);
     } else if (!strcmp(name, "recover")) {

@@ -4,7 +4,7 @@
 #ifndef GENERATE_H
 #define GENERATE_H
 
-#include "gicgen.h"
+#include "narrow.h"
 
 typedef struct Generation {
     Pool *pool;
@@ -43,6 +43,14 @@ int class_place(const Class *class, int subset);
 
 /* generate_tables.c: what the descriptor points to. */
 void write_tables(Generation *g, Text *out);
+
+/* generate_narrow.c: of code for one scene, nothing of other code but for `condition`. */
+int conditions(const Generation *g);                         /* texts of conditions and assumptions */
+void write_assumption_texts(Generation *g, Text *out);       /* behind those of conditions */
+void write_narrowing(Generation *g, Text *out);              /* for the comment in front */
+void write_assumptions(Generation *g, Text *out);            /* the function that checks them */
+void write_assume(Generation *g, Text *out, int indent);     /* the call of it */
+void write_condition(Generation *g, Text *out, int indent);  /* which text the last status is about */
 
 /* generate_wheels.c: nothing where no wheel has a tire, but for the end of the descriptor. */
 void write_wheels(Generation *g, Text *out);          /* functions of the wheels, before the equations of motion */

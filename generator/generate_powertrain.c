@@ -17,6 +17,9 @@ static void insert_powertrain(void *context, const char *name, Text *out, int in
     } else if (!strcmp(name, "times")) {
         line(out, indent, "const gic_real duration = %s, latency = %s;", emit_number(g->pool, powertrain->duration),
              emit_number(g->pool, powertrain->latency));
+    } else if (!strcmp(name, "unused")) {
+        if (g->formulation->narrowing)
+            line(out, indent, "(void)grip, (void)watch, (void)fast, (void)rate;");
     } else {
         block_emit(out, !strcmp(name, "shift block") ? &wheels->shift : &wheels->drive, g->style, &none, indent);
     }

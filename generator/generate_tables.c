@@ -102,9 +102,9 @@ void write_tables(Generation *g, Text *out)
         if (g->model->parameter[i].tunable)
             line(out, 4, "%d, /* %s */", g->model->parameter[i].geometric, g->model->parameter[i].name);
     close_table(out, g->model->tunables, "0");
-    int conditions = g->model->tuning ? g->model->tuning->conditions : 0;
-    open_table(g, out, "char *const ", "condition_text", conditions);
-    for (int i = 0; i < conditions; ++i)
+    open_table(g, out, "char *const ", "condition_text", conditions(g));
+    for (int i = 0; g->model->tuning && i < g->model->tuning->conditions; ++i)
         line(out, 4, "%s,", quoted(g->pool, g->model->tuning->condition[i].text));
-    close_table(out, conditions, "NULL");
+    write_assumption_texts(g, out);
+    close_table(out, conditions(g), "NULL");
 }

@@ -38,6 +38,9 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
         line(out, indent, "                    * axes of the contact 8 11 14, centre to contact point 17 */");
         line(out, indent, "gic_real force[%d] = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}; /* Fx Fy Mx My Mz */",
              TIRE_FORCES);
+    } else if (!strcmp(name, "unused")) {
+        if (x->g->formulation->narrowing)
+            line(out, indent, "(void)self, (void)time;");
     } else {
         block_emit(out, block, x->g->style, &x->constants, indent);
     }
@@ -87,7 +90,10 @@ static void insert_wheels(void *context, const char *name, Text *out, int indent
     Generation *g = context;
     const Wheels *wheels = g->formulation->wheels;
     Constants none = {0};
-    if (!strcmp(name, "wheel classes"))
+    if (!strcmp(name, "friction")) {
+        if (!g->formulation->narrowing || g->formulation->narrowing->friction)
+            template_expand(g->pool, out, g->templates, "friction.c.in", g->model->name, NULL, insert_wheels, g);
+    } else if (!strcmp(name, "wheel classes"))
         write_classes(g, out);
     else if (!strcmp(name, "powertrain"))
         write_powertrain(g, out);
@@ -112,7 +118,10 @@ void write_wheels(Generation *g, Text *out)
 static void insert_rolling(void *context, const char *name, Text *out, int indent)
 {
     Generation *g = context;
-    (void)name;
+    if (!strcmp(name, "assume")) {
+        write_assume(g, out, indent);
+        return;
+    }
     for (int i = 0; i < g->model->wheels; ++i) {
         const Wheel *wheel = &g->model->wheel[i];
         if (wheel->tire >= 0)

@@ -659,6 +659,9 @@ void body_drawn(const Plan *plan, int body, Ex c[3], double p[4]);
 
 /* ---- formulation.c: all of the above for one model ----------------------------------------------------------- */
 
+/* What is known beforehand, narrow.h. */
+typedef struct Narrowing Narrowing;
+
 typedef struct Formulation {
     const Model *model;
     const Sequence *sequence; /* its classes share pivots */
@@ -669,6 +672,7 @@ typedef struct Formulation {
     const Block *wrenches;           /* of the reduced form */
     const Wheels *wheels;            /* NULL: none has a tire */
     int known_most, dependence_most; /* knowns and deps of a subset, at most */
+    const Narrowing *narrowing;      /* for one scene; NULL: for all */
 } Formulation;
 
 /* From an assembled model. Models that can't be formulated end in diag_fail. */
@@ -750,6 +754,7 @@ typedef struct ClassFigures {
 typedef struct Figures {
     const Sequence *sequence;
     ClassFigures *class; /* [classes] */
+    int *times;          /* [classes] subsets that a right-hand side recovers */
     Count dynamics;
     Count loads;        /* of these, for applied forces alone */
     Count link, torque; /* of wheels with tires: their motion; what drives and brakes them */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * gicgen: the command line. */
-#include "gicgen.h"
+#include "../runtime/gicrun.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +10,8 @@ static const char usage[] =
     "       gicgen --batch N MODEL.veh [-o FILE.c]\n"
     "                                         write code for N vehicles at once (default: <model>_batch.c), to be\n"
     "                                         compiled beside <model>.c\n"
+    "       gicgen --scene FILE.scene MODEL.veh [-o FILE.c]\n"
+    "                                         write code for that scene alone, with nothing that it doesn't need\n"
     "       gicgen --main MODEL.veh           print a C program that calls <model>.h, to start from\n"
     "       gicgen --sequence MODEL.veh       print the computational sequence\n"
     "       gicgen --graph FILE MODEL.veh     draw bodies, joints and stages: FILE.svg (needs Graphviz) or FILE.dot\n"
@@ -24,11 +26,12 @@ static const char usage[] =
     "  --lanes W        with --batch: vehicles in one vector, a power of 2 up to 16 (default 4)\n"
     "  --solve FORM     of the equations of motion: reduced (default) or augmented, with all multipliers\n"
     "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
+    "  --scene FILE     also with --report: what the scene saves, and why\n"
     "  --templates DIR  take templates from DIR instead of the built-in ones\n"
     "  -h, --help       this text\n"
     "  --version        the version\n"
     "\n"
-    "MODEL.veh is described in models/FORMAT.md; `-` reads standard input.\n";
+    "MODEL.veh is described in models/FORMAT.md, FILE.scene in models/SCENE.md; `-` reads standard input.\n";
 
 typedef enum Task { TASK_GENERATE, TASK_BATCH, TASK_MAIN, TASK_SEQUENCE, TASK_GRAPH, TASK_REPORT, TASK_DUMP } Task;
 
@@ -37,7 +40,7 @@ typedef struct Options {
     Solve solve;
     Recovery recovery;
     Batch batch;
-    const char *model, *output, *page, *templates; /* page: of --graph or --report */
+    const char *model, *scene, *output, *page, *templates; /* page: of --graph or --report; scene: NULL: none */
 } Options;
 
 static _Noreturn void usage_error(const char *message, const char *word)
@@ -116,6 +119,8 @@ static Options read_options(int count, char **word)
             options.recovery = recovery_of(way);
             if (options.recovery == RECOVERIES)
                 usage_error("--recovery takes auto, newton or closed, not", way);
+        } else if (!strcmp(w, "--scene")) {
+            options.scene = argument(count, word, &i);
         } else if (!strcmp(w, "--templates")) {
             options.templates = argument(count, word, &i);
         } else if (!strcmp(w, "--main")) {
@@ -137,11 +142,14 @@ static Options read_options(int count, char **word)
     }
     if (!options.model)
         usage_error("no model given", NULL);
+    if (options.scene && options.task != TASK_GENERATE && options.task != TASK_REPORT)
+        usage_error("--scene is for code and --report", NULL);
     return options;
 }
 
 /* FILE.c and FILE.h; the code includes <model>.h, so the names must agree. */
-static void write_code(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)
+static void write_code(Pool *pool, const Model *model, const Sequence *sequence, const Options *options,
+                       const Facts *facts)
 {
     Text c = {.pool = pool}, h = {.pool = pool};
     bool batch = options->task == TASK_BATCH;
@@ -150,7 +158,8 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         usage_error("the generated file must end in .c", path);
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
-    const Formulation *formulation = formulate(pool, model, sequence, options->solve, options->recovery);
+    const Formulation *formulation =
+        formulate_narrow(pool, model, sequence, options->solve, options->recovery, facts);
     name = strcmp(path, "-") ? name : NULL;
     if (batch && batch_missing(formulation))
         diag_fail((Place){model->source, 0, 0}, "simulate such a model vehicle by vehicle, in threads of your own",
@@ -181,12 +190,14 @@ static void write_graph(Pool *pool, const Model *model, const Sequence *sequence
         usage_error("the picture's name must end in .svg or .dot", options->page);
 }
 
-static void write_report(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)
+static void write_report(Pool *pool, const Model *model, const Sequence *sequence, const Options *options,
+                         const Facts *facts)
 {
     Text c = {.pool = pool}, h = {.pool = pool}, page = {.pool = pool};
     if (strcmp(options->page, "-") && !path_ends(options->page, ".html"))
         usage_error("the report's name must end in .html", options->page);
-    const Formulation *formulation = formulate(pool, model, sequence, options->solve, options->recovery);
+    const Formulation *formulation =
+        formulate_narrow(pool, model, sequence, options->solve, options->recovery, facts);
     generate(pool, formulation, &style_readable, options->templates, NULL, &c, &h);
     report_print(&page, options->page, options->templates, formulation, &c, &h);
     file_write(options->page, page.s, page.size);
@@ -197,14 +208,17 @@ int main(int count, char **word)
     Options options = read_options(count, word);
     Pool *pool = pool_new();
     const Model *model = model_read(pool, options.model);
+    const Facts *facts = NULL;
+    if (options.scene)
+        facts = scene_facts(pool, model, scene_read(pool, options.scene, model, NULL, 0), options.scene, false);
     const Sequence *sequence = sequence_find(pool, model);
     model = model_assemble(pool, model, sequence);
     Text text = {.pool = pool};
     switch (options.task) {
     case TASK_GENERATE:
-    case TASK_BATCH: write_code(pool, model, sequence, &options); break;
+    case TASK_BATCH: write_code(pool, model, sequence, &options, facts); break;
     case TASK_GRAPH: write_graph(pool, model, sequence, &options); break;
-    case TASK_REPORT: write_report(pool, model, sequence, &options); break;
+    case TASK_REPORT: write_report(pool, model, sequence, &options, facts); break;
     case TASK_MAIN:
     case TASK_SEQUENCE:
     case TASK_DUMP:

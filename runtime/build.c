@@ -240,11 +240,12 @@ static const gic_model *open_code(Build *b)
     return code;
 }
 
-static Engine *engine_of(Pool *pool, const Build *b, const gic_model *code)
+static Engine *engine_of(Pool *pool, const Build *b, const EngineOptions *options, const gic_model *code)
 {
     Engine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (Engine){.name = "cc",
                        .code = code,
+                       .facts = options->facts,
                        .standard = code->state,
                        .standard_count = code->slow_count + code->fast_count,
                        .compiling = b->compiling,
@@ -265,7 +266,8 @@ static Build build_new(Pool *pool, const Formulation *formulation, const EngineO
 static const Formulation *formulation_of(Pool *pool, const Model *model, const EngineOptions *options)
 {
     const Sequence *sequence = sequence_find(pool, model);
-    return formulate(pool, model_assemble(pool, model, sequence), sequence, options->solve, options->recovery);
+    return formulate_narrow(pool, model_assemble(pool, model, sequence), sequence, options->solve, options->recovery,
+                            options->facts);
 }
 
 static void check_command(const EngineOptions *options)
@@ -283,7 +285,7 @@ const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *opt
         diag_fail(gicrun_place, b.failure.remedy, "%s", b.failure.message);
     if (b.unkept && !options->quiet)
         fprintf(stderr, "gicrun: note: the compiled model is not kept for the next run: %s\n", b.unkept);
-    return engine_of(pool, &b, code);
+    return engine_of(pool, &b, options, code);
 }
 
 const Engine *engine_batch(Pool *pool, const Model *model, const EngineOptions *options, const Batch *batch,
@@ -301,5 +303,5 @@ const Engine *engine_batch(Pool *pool, const Model *model, const EngineOptions *
     const gic_model *code = open_code(&b);
     *many = b.batch;
     *why = b.failure.message ? b.failure.message : "interrupted, or not in the object";
-    return code && b.batch ? engine_of(pool, &b, code) : NULL;
+    return code && b.batch ? engine_of(pool, &b, options, code) : NULL;
 }

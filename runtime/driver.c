@@ -167,6 +167,14 @@ void driver_look(Driver *driver, double time, const Sight *sight)
     driver->next = (double)++driver->looks * driver->period;
 }
 
+void driver_moves(const Driver *driver, bool *fixed)
+{
+    if (driver->accelerator >= 0)
+        fixed[driver->accelerator] = fixed[driver->brake] = false;
+    for (int k = 0; driver->steering >= 0 && k < (driver->driven ? 3 : 1); ++k)
+        fixed[driver->steering + k] = false;
+}
+
 void driver_inputs(const Driver *driver, double time, double *input)
 {
     double out[3];

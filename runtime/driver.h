@@ -57,6 +57,8 @@ bool driver_is_due(const Driver *driver, double time);
 double driver_next_kink(const Driver *driver, double time);
 /* Decide on new movements. */
 void driver_look(Driver *driver, double time, const Sight *sight);
+/* Clear the marks of the inputs that it moves. */
+void driver_moves(const Driver *driver, bool *fixed);
 /* Write what it commands into input[]. */
 void driver_inputs(const Driver *driver, double time, double *input);
 

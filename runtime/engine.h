@@ -5,7 +5,7 @@
 #ifndef ENGINE_H
 #define ENGINE_H
 
-#include "../generator/gicgen.h"
+#include "../generator/narrow.h"
 #include "gic_batch.h"
 
 #include <time.h>
@@ -49,6 +49,7 @@ typedef struct Engine {
      * states only: fast ones are the same everywhere. NULL: it is the state. */
     int (*enter)(gic_head *self, const double *standard);
     void (*leave)(const gic_head *self, double *standard, double *rate);
+    const Facts *facts;     /* that the code rests on; NULL: none */
     Background *background; /* NULL: `code` is all there will be */
     double compiling;       /* s of CPU time that a compiler took to make the code; 0: none had to */
     size_t bytes;           /* of memory that the code and its constants take; 0: interpreted, or not known */
@@ -68,6 +69,7 @@ typedef struct EngineOptions {
     const char *flags;    /* more options, behind ours */
     const char *object;   /* path where a compiled object is left too; NULL: nowhere */
     bool single;          /* the flags make the code single precision; its numbers are the caller's business */
+    const Facts *facts;   /* generated code for one scene; NULL: for all. Interpreted engines know no facts */
     bool quiet;           /* no notes */
 } EngineOptions;
 

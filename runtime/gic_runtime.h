@@ -53,13 +53,14 @@ typedef double gic_real;
     X(GIC_ERROR_ROAD, -9, "the road has no finite height under a wheel") \
     X(GIC_ERROR_ABI, -10, "generated code and runtime have different versions or number types") \
     X(GIC_ERROR_GEOMETRY, -11, "a parameter makes the geometry impossible") \
-    X(GIC_ERROR_TUNED, -12, "a geometric parameter is not the one that the geometry is for: set up with it")
+    X(GIC_ERROR_TUNED, -12, "a geometric parameter is not the one that the geometry is for: set up with it") \
+    X(GIC_ERROR_ASSUMPTION, -13, "what code for one scene takes for granted does not hold")
 
 typedef enum gic_status {
 #define GIC_STATUS_ENUM(name, code, text) name = code,
     GIC_STATUS_LIST(GIC_STATUS_ENUM)
 #undef GIC_STATUS_ENUM
-        GIC_STATUS_LAST = -12
+        GIC_STATUS_LAST = -13
 } gic_status;
 
 /* What a status means, in one line; never NULL. */
@@ -96,7 +97,7 @@ typedef struct gic_head {
     int32_t flip;         /* which of the two Newton starts is the last good one */
     int32_t status;       /* of the last call */
     int32_t subset;       /* that the status is about, -1: none; see the descriptor's subset_name */
-    int32_t condition;    /* that GIC_ERROR_GEOMETRY is about, -1: none; see the descriptor's condition_text */
+    int32_t condition;    /* that GIC_ERROR_GEOMETRY or _ASSUMPTION is about, -1: none; the descriptor's condition_text */
     int64_t rhs_count;    /* right-hand sides evaluated */
     int64_t fast_count;   /* rates of the fast states alone evaluated, by gic_step_dual */
     int64_t newton_count; /* subset solutions, and the corrections they took in total */
@@ -146,7 +147,7 @@ typedef struct gic_model {
     const int32_t
         *parameter_geometric; /* 1: acts at set-up only, points, axes, masses and so on depend on it; 0: at once */
     int32_t condition_count;
-    const char *const *condition_text; /* what geometric parameters must not violate */
+    const char *const *condition_text; /* what geometric parameters must not violate; what code for one scene assumes */
     /* the functions; `self` is the instance, `parameter` has parameter_count numbers */
     int (*setup)(void *self);
     int (*setup_with)(void *self, const gic_real *parameter);

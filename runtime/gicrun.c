@@ -41,6 +41,8 @@ static const char help[] = "usage: gicrun MODEL.veh SCENE [-o results.csv] [--pl
                            "      --solve FORM   of the equations of motion: reduced (default) or augmented\n"
                            "      --recovery WAY of dependent coordinates: newton; closed, in closed form wherever there\n"
                            "                     is one; auto (default), whichever takes fewer operations\n"
+                           "      --general      generated code as for any scene; without it a run has code for its scene\n"
+                           "                     alone, which leaves out what that doesn't need\n"
                            "      --cc COMMAND   C compiler of cc and auto, perhaps with options; default: $CC or cc\n"
                            "      --cflags FLAGS more options for it, behind ours, all in one word\n"
                            "  -q, --quiet        neither progress nor summary\n"
@@ -85,6 +87,7 @@ static Request read_command_line(int count, char **word)
         ENGINE,
         SOLVE,
         RECOVERY,
+        GENERAL,
         COMPILER,
         FLAGS,
         INTEGRATOR,
@@ -103,6 +106,7 @@ static Request read_command_line(int count, char **word)
         {"engine", required_argument, NULL, ENGINE},
         {"solve", required_argument, NULL, SOLVE},
         {"recovery", required_argument, NULL, RECOVERY},
+        {"general", no_argument, NULL, GENERAL},
         {"cc", required_argument, NULL, COMPILER},
         {"cflags", required_argument, NULL, FLAGS},
         {"quiet", no_argument, NULL, 'q'},
@@ -132,6 +136,7 @@ static Request read_command_line(int count, char **word)
             if (request.recovery == RECOVERIES)
                 usage_fail("gicrun", "--recovery takes auto, newton or closed, not", optarg);
             break;
+        case GENERAL: request.general = true; break;
         case COMPILER: request.compiler = optarg; break;
         case FLAGS: request.flags = optarg; break;
         case 'q': request.quiet = true; break;
@@ -186,19 +191,27 @@ int main(int count, char **word)
     const Model *model = model_read(pool, request.model);
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
+    const bool runs = !request.states && !request.rests && !request.modes;
+    if (runs)
+        scene = equilibrium_start(pool, model, scene, request.solve);
+    const bool drawn = request.picture;
     const Engine *engine = engine_open(
         pool, request.engine, model,
         &(EngineOptions){.solve = request.solve,
                          .recovery = request.recovery,
                          .compiler = request.compiler,
                          .flags = request.flags,
+                         /* a page shows whatever outputs tell */
+                         .facts = runs && !request.general && !request.page
+                                      ? scene_facts(pool, model, scene, request.scene, drawn)
+                                      : NULL,
                          .quiet = request.quiet});
     if (request.states)
         evaluate(pool, engine, scene, &request);
     else if (request.rests || request.modes)
         analyse(pool, model, scene, engine, &request);
     else
-        simulate(pool, engine, equilibrium_start(pool, model, scene, request.solve),
+        simulate(pool, engine, scene_narrow(pool, scene, model, engine),
                  request.page ? animation_new(pool, model, scene, request.scene) : NULL, &request);
     engine_close(engine);
     pool_free(pool);

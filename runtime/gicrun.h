@@ -26,6 +26,7 @@ typedef struct Request {
     const char *flags;      /* more options of the compiler */
     const char *integrator; /* instead of the scene's, or NULL */
     double tolerance;       /* instead of the scene's, or 0 */
+    bool general; /* code for any scene */
     bool quiet;
 } Request;
 
@@ -91,6 +92,7 @@ typedef struct Scene {
      * columns of the results; curves over time of the picture; its panels of one over another, x and y. */
     const gic_signal *signal;
     int *column, *curve, (*panel)[2];
+    bool plotted; /* does the scene say what is drawn? */
 } Scene;
 
 /* Read a scene for a model. Any mistake ends in diag_fail. integrator: instead of the scene's, or NULL; tolerance: the
@@ -114,8 +116,10 @@ void scene_inputs(void *user, int32_t lane, double time, double *input);
 double scene_next_kink(const Scene *scene, double time);
 /* scene_outputs.c: columns, curves and panels of a scene. */
 void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene *scene);
-/* The present value of signal[i], of an instance whose outputs are computed. */
-double scene_value(const gic_model *code, gic_head *self, int i);
+/* scene_facts.c: what is known about a run of the scene beforehand. path: of the scene; drawn: is there a picture? */
+const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, const char *path, bool drawn);
+/* The same scene for the engine's code: where that rests on facts, with signals of its outputs, and its road. */
+const Scene *scene_narrow(Pool *pool, const Scene *scene, const Model *model, const Engine *engine);
 /* scene_driver.c: the driver of a `driver:` item; step: s, 0 where steps vary. */
 Driver *driver_read(Pool *pool, const Item *item, const Model *model, double step);
 /* scene_road.c: the road a `road:` item describes. */
@@ -205,6 +209,8 @@ void animation_write(Animation *animation, const char *path);
 
 /* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
 int scene_start(const Engine *engine, const Scene *scene, gic_head *self);
+/* The present value of signal[i] of a scene, of an instance whose outputs are computed. */
+double scene_value(const gic_model *code, gic_head *self, int i);
 /* Part of that: wheels roll, but for fast states that the scene (NULL: none) gives. Returns a status. */
 int scene_set_fast(const gic_model *model, const Scene *scene, gic_head *self);
 /* One step of a scene, by the engine's code or faster one: a constant one, or where `variable` is given one towards

@@ -55,7 +55,8 @@ static const char *jit_text(Pool *pool, const Model *model, const EngineOptions 
             sources.runtime = file->bytes;
     const Sequence *sequence = sequence_find(pool, model);
     const Formulation *formulation =
-        formulate(pool, model_assemble(pool, model, sequence), sequence, options->solve, options->recovery);
+        formulate_narrow(pool, model_assemble(pool, model, sequence), sequence, options->solve, options->recovery,
+                         options->facts);
     generate(pool, formulation, &style_direct, NULL, NULL, &c, &h);
     template_expand(pool, &text, NULL, "jit.c.in", model->name, NULL, insert, &sources);
     return text.s;
@@ -186,6 +187,7 @@ const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *op
     Engine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (Engine){.name = "tcc",
                        .code = code,
+                       .facts = options->facts,
                        .compiling = cpu_seconds() - before,
                        .bytes = jit->size,
                        .memory = jit,

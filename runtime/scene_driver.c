@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The driver of a scene: models/SCENE.md section 5. */
 #include "driver.h"
+#include "spline.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_spline.h>
 #include <math.h>
 #include <string.h>
 
@@ -37,18 +36,14 @@ static void path_through(Pool *pool, Path *path, const double (*point)[2], int c
         if (i && s[i] - s[i - 1] < 1e-3)
             diag_fail(at, "keep one of the two", "points %d and %d of the path are the same", i, i + 1);
     }
-    const gsl_interp_type *type = count < 3      ? gsl_interp_linear
-                                  : path->closed ? gsl_interp_cspline_periodic
-                                                 : gsl_interp_cspline;
-    gsl_spline *along[2] = {gsl_spline_alloc(type, (size_t)count), gsl_spline_alloc(type, (size_t)count)};
-    gsl_spline_init(along[0], s, x, (size_t)count);
-    gsl_spline_init(along[1], s, y, (size_t)count);
+    const double *bend[2] = {spline_bend(pool, s, x, count, path->closed), spline_bend(pool, s, y, count, path->closed)};
+    int place[2] = {0};
     path_room(pool, path, s[count - 1], at);
-    for (int i = 0; i < path->count; ++i)
-        for (int k = 0; k < 2; ++k)
-            path->point[i][k] = gsl_spline_eval(along[k], fmin(i * path->step, s[count - 1]), NULL);
-    gsl_spline_free(along[0]);
-    gsl_spline_free(along[1]);
+    for (int i = 0; i < path->count; ++i) {
+        const double along = fmin(i * path->step, s[count - 1]);
+        path->point[i][0] = spline_value(s, x, bend[0], count, along, &place[0]);
+        path->point[i][1] = spline_value(s, y, bend[1], count, along, &place[1]);
+    }
 }
 
 static void read_points(Pool *pool, const Item *list, Path *path)

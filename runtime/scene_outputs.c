@@ -116,6 +116,7 @@ void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene 
         add_signals(&names, outputs->value[i], &scene->column, &scene->columns);
     for (int i = 0; !outputs && i < model->output_components; ++i)
         *POOL_PUSH(pool, scene->column, scene->columns) = i;
+    scene->plotted = plot;
     if (plot)
         check_list(plot, "plot");
     for (int i = 0; plot && i < plot->count; ++i)
@@ -125,10 +126,4 @@ void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene 
             add_signals(&names, plot->value[i], &scene->curve, &scene->curves);
     if (!plot)
         default_curves(pool, model, scene);
-}
-
-double scene_value(const gic_model *code, gic_head *self, int i)
-{
-    const bool input = i >= code->output_count;
-    return instance_array(self, input ? code->input_offset : code->output_offset)[input ? i - code->output_count : i];
 }

@@ -79,6 +79,12 @@ int scene_set_fast(const gic_model *model, const Scene *scene, gic_head *self)
 
 /* ---- output times --------------------------------------------------------------------------------------- */
 
+double scene_value(const gic_model *code, gic_head *self, int i)
+{
+    const bool input = i >= code->output_count;
+    return instance_array(self, input ? code->input_offset : code->output_offset)[input ? i - code->output_count : i];
+}
+
 static void write_header(Run *run)
 {
     csv_name(&run->csv, "time", "s");

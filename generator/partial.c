@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT
+ * Partial evaluation of blocks: their graphs made anew, with numbers or other inputs in place of some inputs. The rules
+ * of construction of expr.c do the rest. */
+#include "narrow.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- what is given ------------------------------------------------------------------------------------------------ */
+
+static Given *slot_of(const Givens *givens, const char *name)
+{
+    uint64_t hash = 0xcbf29ce484222325u; /* FNV-1a */
+    for (const char *s = name; *s; ++s)
+        hash = (hash ^ (unsigned char)*s) * 0x100000001b3u;
+    uint64_t i = hash;
+    while (givens->given[i & (uint64_t)(givens->room - 1)].name &&
+           strcmp(givens->given[i & (uint64_t)(givens->room - 1)].name, name))
+        ++i;
+    return &givens->given[i & (uint64_t)(givens->room - 1)];
+}
+
+Givens *givens_new(Pool *pool)
+{
+    Givens *givens = pool_alloc(pool, sizeof *givens);
+    givens->pool = pool;
+    givens->room = 64;
+    givens->given = pool_alloc(pool, (size_t)givens->room * sizeof *givens->given);
+    return givens;
+}
+
+static void put(Givens *givens, Given given)
+{
+    if (2 * (givens->count + 1) > givens->room) {
+        const Givens old = *givens;
+        givens->room *= 2;
+        givens->given = pool_alloc(givens->pool, (size_t)givens->room * sizeof *givens->given);
+        for (int i = 0; i < old.room; ++i)
+            if (old.given[i].name)
+                *slot_of(givens, old.given[i].name) = old.given[i];
+    }
+    Given *slot = slot_of(givens, given.name);
+    givens->count += !slot->name;
+    *slot = given;
+}
+
+void givens_number(Givens *givens, double value, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    const char *name = pool_vprint(givens->pool, format, args);
+    va_end(args);
+    double *one = pool_alloc(givens->pool, sizeof *one);
+    *one = value;
+    put(givens, (Given){.name = name, .value = one});
+}
+
+void givens_numbers(Givens *givens, const double *value, const char *name)
+{
+    put(givens, (Given){.name = name, .value = value});
+}
+
+void givens_other(Givens *givens, const char *name, const char *other, bool negative)
+{
+    put(givens, (Given){.name = name, .other = other, .negative = negative});
+}
+
+const Given *givens_find(const Givens *givens, const char *name)
+{
+    const Given *slot = slot_of(givens, name);
+    return slot->name ? slot : NULL;
+}
+
+/* ---- nodes ---------------------------------------------------------------------------------------------------------- */
+
+static const int op_arity[OP_COUNT] = {
+#define OP_ARITY(name, arity, text, counted) arity,
+    OP_LIST(OP_ARITY)
+#undef OP_ARITY
+};
+
+Partial partial_new(Pool *pool, const Dag *from, const Givens *givens, const Plane *plane, const Model *model)
+{
+    return (Partial){.from = from,
+                     .to = dag_new(pool, from->members, from->samples),
+                     .givens = givens,
+                     .plane = plane,
+                     .table = model->table,
+                     .made = pool_alloc(pool, (size_t)from->nodes * sizeof(Ex))};
+}
+
+static Ex of(const Partial *p, Ex e)
+{
+    return p->made[e] - 1;
+}
+
+static Ex make_input(Partial *p, Ex e)
+{
+    const Dag *from = p->from;
+    const Node *node = &from->node[e];
+    const Given *given = givens_find(p->givens, node->name);
+    const double *sample = from->value + (size_t)e * (size_t)from->samples;
+    if (!given)
+        return ex_input(p->to, node->name, sample);
+    if (given->value)
+        return ex_constant(p->to, given->value);
+    double own[from->samples];
+    for (int s = 0; s < from->samples; ++s)
+        own[s] = given->negative ? -sample[s] : sample[s];
+    const Ex other = ex_input(p->to, given->other, own);
+    return given->negative ? ex_neg(p->to, other) : other;
+}
+
+static Ex make_constant(Partial *p, Ex e)
+{
+    const int members = p->from->members, each = p->from->samples / members;
+    double value[members];
+    for (int i = 0; i < members; ++i)
+        value[i] = ex_value(p->from, e, i * each);
+    return ex_constant(p->to, value);
+}
+
+/* Height or slope of a plane at the place that the node `road` of the old graph is about. */
+static Ex make_road_part(Partial *p, Ex road, Ex part)
+{
+    Dag *to = p->to;
+    if (!p->plane)
+        return ex_op(to, OP_ROAD_PART, of(p, road), part, 0);
+    Ex height = ex_literal(to, p->plane->height);
+    for (int i = 0; i < 2; ++i)
+        height = ex_add(to, height, ex_mul(to, ex_literal(to, p->plane->slope[i]), of(p, p->from->node[road].arg[i])));
+    return part ? ex_literal(to, p->plane->slope[part - 1]) : height;
+}
+
+static Ex make_table(Partial *p, Ex x, Ex index)
+{
+    if (p->to->node[x].op == OP_LITERAL)
+        return ex_literal(p->to, table_value(&p->table[index], ex_value(p->to, x, 0)));
+    return ex_op(p->to, OP_TABLE, x, index, 0);
+}
+
+static Ex make_positive(Dag *to, Ex condition, Ex yes, Ex no)
+{
+    if (to->node[condition].op == OP_LITERAL)
+        return ex_value(to, condition, 0) > 0 ? yes : no;
+    return yes == no ? yes : ex_op(to, OP_POSITIVE, condition, yes, no);
+}
+
+/* A node whose arguments are made. */
+static Ex make_node(Partial *p, Ex e)
+{
+    const Node *node = &p->from->node[e];
+    Dag *to = p->to;
+    Ex arg[3] = {0};
+    if (node->op == OP_INPUT)
+        return make_input(p, e);
+    if (node->level < LEVEL_VARIABLE)
+        return make_constant(p, e);
+    if (node->op == OP_ROAD_PART)
+        return make_road_part(p, node->arg[0], node->arg[1]);
+    for (int i = 0; i < op_arity[node->op]; ++i)
+        arg[i] = of(p, node->arg[i]);
+    switch (node->op) {
+    case OP_NEG: return ex_neg(to, arg[0]);
+    case OP_ADD: return ex_add(to, arg[0], arg[1]);
+    case OP_SUB: return ex_sub(to, arg[0], arg[1]);
+    case OP_MUL: return ex_mul(to, arg[0], arg[1]);
+    case OP_DIV: return ex_div(to, arg[0], arg[1]);
+    case OP_ABS: return ex_op(to, OP_ABS, to->node[arg[0]].op == OP_NEG ? to->node[arg[0]].arg[0] : arg[0], 0, 0);
+    case OP_POW: return ex_pow(to, arg[0], arg[1]);
+    case OP_POSITIVE: return make_positive(to, arg[0], arg[1], arg[2]);
+    case OP_TABLE: return make_table(p, arg[0], node->arg[1]);
+    case OP_FRICTION: return p->plane ? ex_literal(to, p->plane->friction) : ex_op(to, OP_FRICTION, arg[0], arg[1], 0);
+    case OP_ROAD: return p->plane ? 0 : ex_op(to, OP_ROAD, arg[0], arg[1], 0);
+    default: return ex_op(to, (Op)node->op, arg[0], arg[1], arg[2]);
+    }
+}
+
+/* ---- blocks --------------------------------------------------------------------------------------------------------- */
+
+static bool holds(const Dag *dag, Ex value, const Check *check)
+{
+    bool good = dag->node[value].level < LEVEL_VARIABLE;
+    for (int s = 0; good && s < dag->samples; ++s) {
+        const double x = ex_value(dag, value, s);
+        good = (check->magnitude ? fabs(x) : x) > check->least;
+    }
+    return good;
+}
+
+static Ex *roots_of(const Block *block, int *count)
+{
+    Ex *root = pool_alloc(block->dag->pool, (size_t)(block->stores + block->checks + block->loads + 1) * sizeof *root);
+    *count = 0;
+    for (int i = 0; i < block->stores; ++i)
+        root[(*count)++] = block->store[i].value;
+    for (int i = 0; i < block->checks; ++i)
+        root[(*count)++] = block->check[i].value;
+    for (int i = 0; i < block->loads; ++i)
+        root[(*count)++] = block->load[i];
+    return root;
+}
+
+Block partial_block(Partial *p, const Block *block)
+{
+    Block out = {.dag = p->to};
+    int roots;
+    const Ex *root = roots_of(block, &roots);
+    const bool *needed = dag_needed(p->from, root, roots);
+    for (Ex e = 0; e < (Ex)p->from->nodes; ++e) /* arguments have smaller numbers */
+        if (needed[e] && !p->made[e])
+            p->made[e] = make_node(p, e) + 1;
+    for (int i = 0; i < block->checks; ++i) {
+        const Check *check = &block->check[i];
+        if (!holds(p->to, of(p, check->value), check))
+            block_check(&out, of(p, check->value), check->magnitude, check->least, check->status);
+    }
+    for (int i = 0; i < block->stores; ++i)
+        block_store(&out, of(p, block->store[i].value), "%s", block->store[i].target);
+    for (int i = 0; i < block->loads; ++i)
+        block_loads(&out, (const Ex[]){of(p, block->load[i])}, 1);
+    return out;
+}
+
+bool block_uses(const Block *block, Op op)
+{
+    int roots;
+    const Ex *root = roots_of(block, &roots);
+    const bool *needed = dag_needed(block->dag, root, roots);
+    for (int e = 0; e < block->dag->nodes; ++e)
+        if (needed[e] && block->dag->node[e].op == op)
+            return true;
+    return false;
+}

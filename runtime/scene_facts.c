@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT
+ * What a scene says beforehand about its whole run: the facts that code for it alone may rest on. */
+#include "driver.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- outputs ---------------------------------------------------------------------------------------------------- */
+
+/* The output that signal i is a component of, -1: an input. */
+static int output_of(const Model *model, int signal)
+{
+    for (int i = 0, at = 0; i < model->outputs; at += model->output[i++].count)
+        if (signal < at + model->output[i].count)
+            return i;
+    return -1;
+}
+
+static void want(const Model *model, bool *wanted, const int *signal, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        const int output = output_of(model, signal[i]);
+        if (output >= 0)
+            wanted[output] = true;
+    }
+}
+
+static const bool *wanted_outputs(Pool *pool, const Model *model, const Scene *scene, bool drawn)
+{
+    bool *wanted = pool_alloc(pool, (size_t)model->outputs + 1);
+    want(model, wanted, scene->column, scene->columns);
+    if (drawn || scene->plotted) {
+        want(model, wanted, scene->curve, scene->curves);
+        want(model, wanted, scene->panels ? scene->panel[0] : NULL, 2 * scene->panels);
+    }
+    return wanted;
+}
+
+/* ---- inputs ------------------------------------------------------------------------------------------------------- */
+
+static bool stands_still(const Profile *profile)
+{
+    for (int i = 1; i < profile->count; ++i)
+        if (profile->value[i] != profile->value[0])
+            return false;
+    return profile->count || profile->amplitude == 0;
+}
+
+static void fix_inputs(Pool *pool, const Model *model, const Scene *scene, Facts *facts)
+{
+    bool *fixed = pool_alloc(pool, (size_t)model->inputs + 1);
+    double *value = pool_alloc(pool, ((size_t)model->inputs + 1) * sizeof *value);
+    for (int i = 0; i < model->inputs; ++i) {
+        fixed[i] = true;
+        value[i] = model->input[i].initial;
+    }
+    for (int i = 0; i < scene->profiles; ++i) {
+        const Profile *profile = &scene->profile[i];
+        double at[3];
+        profile_at(profile, 0, at);
+        for (int k = 0; k < (profile->driven ? 3 : 1); ++k) {
+            fixed[profile->input + k] = stands_still(profile);
+            value[profile->input + k] = at[k];
+        }
+    }
+    if (scene->driver)
+        driver_moves(scene->driver, fixed);
+    facts->fixed = fixed;
+    facts->input = value;
+}
+
+/* ---- powertrain --------------------------------------------------------------------------------------------------- */
+
+/* Is it made of numbers, parameters and inputs that stand still? */
+static bool law_is_fixed(const Law *law, const Facts *facts)
+{
+    if (law->op == LAW_INPUT)
+        return facts->fixed[law->index];
+    bool fixed = law->op == LAW_NUMBER || law->op == LAW_PARAMETER || law->op == LAW_CALL || law->op == LAW_TABLE;
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        fixed = fixed && law_is_fixed(law->arg[i], facts);
+    return fixed;
+}
+
+/* In neutral at the start, with a selector that stays there (models/POWERTRAIN.md section 4). */
+static bool stays_neutral(Pool *pool, const Model *model, const Scene *scene, const Facts *facts)
+{
+    const double engaging = 0.5;
+    const Law *selector = model->powertrain ? model->powertrain->selector : NULL;
+    if (!selector || scene->gear || !law_is_fixed(selector, facts))
+        return false;
+    Model now = *model;
+    now.input = pool_alloc(pool, ((size_t)model->inputs + 1) * sizeof *now.input);
+    now.parameter = pool_alloc(pool, ((size_t)model->parameters + 1) * sizeof *now.parameter);
+    for (int i = 0; i < model->inputs; ++i) {
+        now.input[i] = model->input[i];
+        now.input[i].initial = facts->input[i];
+    }
+    for (int i = 0; i < model->parameters; ++i) {
+        now.parameter[i] = model->parameter[i];
+        if (now.parameter[i].tunable)
+            now.parameter[i].value = scene->parameter[now.parameter[i].index];
+    }
+    return fabs(law_number(selector, &now)) <= engaging;
+}
+
+/* ---- road ----------------------------------------------------------------------------------------------------------- */
+
+/* NULL: it is no plane with the same friction everywhere. */
+static const Plane *plane_of(Pool *pool, const gic_road *road)
+{
+    Plane *plane = pool_alloc(pool, sizeof *plane);
+    plane->friction = 1;
+    if (road && road->height == gic_patched_height) {
+        const gic_road_patched *patched = (const gic_road_patched *)road;
+        if (patched->count)
+            return NULL;
+        plane->friction = patched->value;
+        road = patched->under;
+    } else if (road && road->friction) {
+        return NULL;
+    }
+    if (road && road->height != gic_plane_height)
+        return NULL;
+    if (road) {
+        const gic_road_plane *flat = (const gic_road_plane *)road;
+        plane->height = flat->z0;
+        plane->slope[0] = flat->sx;
+        plane->slope[1] = flat->sy;
+    }
+    return plane;
+}
+
+const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, const char *path, bool drawn)
+{
+    Facts *facts = pool_alloc(pool, sizeof *facts);
+    const char *slash = strrchr(path, '/');
+    facts->scene = slash ? slash + 1 : path;
+    facts->wanted = wanted_outputs(pool, model, scene, drawn);
+    facts->parameter = scene->parameter;
+    facts->idle = true; /* scenes have nothing that could use one */
+    facts->plane = plane_of(pool, scene->road);
+    fix_inputs(pool, model, scene, facts);
+    facts->neutral = stays_neutral(pool, model, scene, facts);
+    return facts;
+}
+
+/* ---- the scene, for such code ----------------------------------------------------------------------------------------- */
+
+/* -1: the code does not have it, for nobody asks for it. */
+static int signal_place(const Scene *scene, int i, const gic_model *code, int outputs)
+{
+    for (int place = 0; i < outputs && place < code->output_count; ++place)
+        if (!strcmp(code->output[place].name, scene->signal[i].name))
+            return place;
+    return i < outputs ? -1 : code->output_count + i - outputs;
+}
+
+static void narrow_list(Pool *pool, const Scene *scene, const gic_model *code, int outputs, int **list, int *count)
+{
+    int *kept = pool_alloc(pool, sizeof *kept * (size_t)(*count + 1)), places = 0;
+    for (int i = 0; i < *count; ++i) {
+        kept[places] = signal_place(scene, (*list)[i], code, outputs);
+        places += kept[places] >= 0;
+    }
+    *list = kept;
+    *count = places;
+}
+
+const Scene *scene_narrow(Pool *pool, const Scene *scene, const Model *model, const Engine *engine)
+{
+    const gic_model *code = engine->code;
+    if (!engine->facts)
+        return scene;
+    Scene *narrow = pool_alloc(pool, sizeof *narrow);
+    gic_signal *signal = pool_alloc(pool, sizeof *signal * (size_t)(code->output_count + code->input_count + 1));
+    *narrow = *scene;
+    memcpy(signal, code->output, sizeof *signal * (size_t)code->output_count);
+    memcpy(signal + code->output_count, scene->signal + model->output_components,
+           sizeof *signal * (size_t)model->inputs);
+    narrow->signal = signal;
+    narrow_list(pool, scene, code, model->output_components, &narrow->column, &narrow->columns);
+    narrow_list(pool, scene, code, model->output_components, &narrow->curve, &narrow->curves);
+    int *axis = scene->panels ? scene->panel[0] : NULL, axes = 2 * scene->panels;
+    narrow_list(pool, scene, code, model->output_components, &axis, &axes);
+    narrow->panel = (int(*)[2])axis;
+    narrow->panels = axes / 2; /* all of them, or none */
+    if (engine->facts->plane) /* part of the code */
+        narrow->road = NULL;
+    return narrow;
+}
