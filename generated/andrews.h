@@ -43,11 +43,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'K1' (1 times, closed form)                        21        57       2      1         2
- *   subset 'K2_K3' (1 times)                                 686       863       6      0         0
- *   subset 'K5_K4' (2 times)                                 736       921       6      0         0
- *   forces and equations of motion                            28        28       2      1         0
- *   all together                                            2207      2790      22      2         2
- *   outputs, when asked for                                  241       405       0      1        18
+ *   subset 'K2_K3' (1 times)                                 596       783       6      0         0
+ *   subset 'K5_K4' (2 times)                                 722       915       6      0         0
+ *   forces and equations of motion                            24        25       2      1         0
+ *   all together                                            2085      2695      22      2         2
+ *   outputs, when asked for                                  201       361       0      1        18
  */
 #ifndef ANDREWS_H
 #define ANDREWS_H

@@ -65,10 +65,10 @@
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (2 times, closed form)                   69       109       1      1         0
  *   subset 'wheel_r_l' (2 times)                             594       673       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                380       472       5      2         0
- *   forces and equations of motion                           720       665      11      0         4
- *   all together                                            2821      3198      35      6         4
- *   outputs, when asked for                                  681       796       0      0        13
+ *   subset 'wheel_f_l' (2 times, closed form)                306       406       5      2         0
+ *   forces and equations of motion                           703       657      11      0         4
+ *   all together                                            2656      3058      35      6         4
+ *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
 #define FIVE_LINK_H

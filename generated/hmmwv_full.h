@@ -70,11 +70,11 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (4 times, closed form)                   69       109       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                380       472       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                295       387       4      1         0
- *   forces and equations of motion                           984       859      15      4        24
- *   all together                                            2625      3038      37     14        24
- *   outputs, when asked for                                  889      1010       4      4        27
+ *   subset 'wheel_f_l' (2 times, closed form)                306       406       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                103       163       3      1         0
+ *   forces and equations of motion                           821       715      14      4        24
+ *   all together                                            1930      2314      34     14        24
+ *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H
 #define HMMWV_FULL_H

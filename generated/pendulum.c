@@ -25,7 +25,7 @@
  *   subset 'rod' (1 times, closed form)                       15        41       2      1         2
  *   forces and equations of motion                             2         3       1      0         0
  *   all together                                              17        44       3      1         2
- *   outputs, when asked for                                   39        59       0      0         0
+ *   outputs, when asked for                                    2        12       0      0         0
  */
 #include "pendulum.h"
 
@@ -155,42 +155,16 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t25 = t21 + (t19 * t20 + t17 * t18);
         const gic_real t26 = t10 * (t16 * R(0.25)) + t22;
         const gic_real t27 = t10 * t21 + (t20 * t20 + t18 * t18);
-        motion[0] = R(0.0);
-        motion[1] = R(0.0);
-        motion[2] = R(0.0);
         motion[3] = t7;
-        motion[4] = R(0.0);
         motion[5] = t23;
-        motion[6] = R(0.0);
-        motion[7] = R(1.0);
-        motion[8] = R(0.0);
         motion[9] = t6;
-        motion[10] = R(0.0);
         motion[11] = t7;
-        motion[12] = R(0.0);
         motion[13] = t11;
-        motion[14] = R(0.0);
-        motion[15] = R(0.0);
-        motion[16] = R(0.0);
-        motion[17] = R(0.0);
-        motion[18] = R(0.0);
         motion[19] = t16;
-        motion[20] = R(0.0);
-        motion[21] = R(0.0);
-        motion[22] = R(0.0);
-        motion[23] = R(0.0);
-        motion[24] = R(0.0);
         motion[25] = t10;
-        motion[26] = R(0.0);
-        motion[27] = R(0.0);
-        motion[28] = R(0.0);
-        motion[29] = R(0.0);
         inertia[15] = t18;
-        inertia[16] = R(0.0);
         inertia[17] = t24;
-        inertia[18] = R(0.0);
         inertia[19] = t25;
-        inertia[20] = R(0.0);
         inertia[21] = t26;
         inertia[22] = t27;
     }
@@ -206,10 +180,9 @@ static GIC_COLD gic_real pendulum_residual_rod(const gic_real *GIC_RESTRICT k, c
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_FABS(motion[0]), GIC_FABS(motion[1])), GIC_FABS(motion[2])), GIC_FABS(-motion[4]));
-        const gic_real t2 = GIC_FABS(GIC_COS(x[0]) * motion[9] - GIC_SIN(x[0]) * motion[3]);
-        const gic_real t3 = GIC_MAX(GIC_MAX(t1, GIC_FABS(-motion[10])), t2);
-        worst = t3;
+        const gic_real t1 = GIC_FABS(GIC_COS(x[0]) * motion[9] - GIC_SIN(x[0]) * motion[3]);
+        const gic_real t2 = GIC_MAX(R(0.0), t1);
+        worst = t2;
     }
     return worst;
 }
@@ -337,49 +310,29 @@ static int pendulum_measure(const pendulum *self, gic_real time, const gic_real 
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)out;
     (void)lambda;
     {
-        const gic_real t1 = m[11] * (m[11] * R(0.25)) + (m[10] * (m[10] * R(0.25)) + m[9] * (m[9] * R(0.25)));
-        const gic_real t2 = m[8] * R(0.25);
-        const gic_real t3 = m[7] * R(0.25);
-        const gic_real t4 = m[6] * R(0.25);
-        const gic_real t5 = m[11] * t2 + (m[10] * t3 + m[9] * t4);
-        const gic_real t6 = m[5] * R(0.25);
-        const gic_real t7 = m[4] * R(0.25);
-        const gic_real t8 = m[3] * R(0.25);
-        const gic_real t9 = m[11] * t6 + (m[10] * t7 + m[9] * t8);
-        const gic_real t10 = m[14] * (m[14] * t1 + (m[13] * t5 + m[12] * t9));
-        const gic_real t11 = m[13] * (m[8] * t2 + (m[7] * t3 + m[6] * t4));
-        const gic_real t12 = m[8] * t6 + (m[7] * t7 + m[6] * t8);
-        const gic_real t13 = m[12] * (m[5] * t6 + (m[4] * t7 + m[3] * t8));
-        const gic_real t14 = m[13] * (m[14] * t5 + (t11 + m[12] * t12)) + m[12] * (m[14] * t9 + (m[13] * t12 + t13));
-        const gic_real t15 = m[6] * R(-0.5);
-        const gic_real t16 = m[3] * R(-0.5);
-        const gic_real t17 = m[17] + (m[12] * t15 - m[13] * t16);
-        const gic_real t18 = m[9] * R(-0.5);
-        const gic_real t19 = m[16] + (m[14] * t16 - m[12] * t18);
-        const gic_real t20 = m[15] + (m[13] * t18 - m[14] * t15);
-        const gic_real t21 = t10 + t14 + (t17 * t17 + (t19 * t19 + t20 * t20));
-        const gic_real t22 = m[0] - m[3];
-        const gic_real t23 = m[1] - m[6];
-        const gic_real t24 = m[2] - m[9];
-        const gic_real t25 = m[15] + (m[6] * m[14] - m[9] * m[13]);
-        const gic_real t26 = m[16] + (m[9] * m[12] - m[3] * m[14]);
-        const gic_real t27 = m[17] + (m[3] * m[13] - m[6] * m[12]);
-        const gic_real t28 = x[0];
-        const gic_real t29 = xd[0];
-        const gic_real t30 = rate[1];
-        const gic_real t31 = R(0.5) * t21;
-        const gic_real t32 = -(R(-9.81) * (m[2] + t18));
-        out[0] = t22;
-        out[1] = t23;
-        out[2] = t24;
-        out[3] = t25;
-        out[4] = t26;
-        out[5] = t27;
-        out[6] = t28;
-        out[7] = t29;
-        out[8] = t30;
-        out[9] = t31;
-        out[10] = t32;
+        const gic_real t1 = m[13] * (m[3] * R(-0.5));
+        const gic_real t2 = m[13] * (m[9] * R(-0.5));
+        const gic_real t3 = m[13] * (m[13] * R(0.25)) + (t1 * t1 + t2 * t2);
+        const gic_real t4 = -m[3];
+        const gic_real t5 = -m[9];
+        const gic_real t6 = -(m[9] * m[13]);
+        const gic_real t7 = m[3] * m[13];
+        const gic_real t8 = x[0];
+        const gic_real t9 = xd[0];
+        const gic_real t10 = rate[1];
+        const gic_real t11 = R(0.5) * t3;
+        const gic_real t12 = -(m[9] * R(4.905));
+        out[0] = t4;
+        out[1] = R(0.0);
+        out[2] = t5;
+        out[3] = t6;
+        out[4] = R(0.0);
+        out[5] = t7;
+        out[6] = t8;
+        out[7] = t9;
+        out[8] = t10;
+        out[9] = t11;
+        out[10] = t12;
         out[11] = R(0.0);
     }
     return GIC_OK;
@@ -390,38 +343,31 @@ static void pendulum_place(const pendulum *self, const gic_real *y, const gic_re
     const gic_real *const m = self->motion;
     (void)y, (void)e, (void)m, (void)pose;
     {
-        const gic_real t1 = R(1.0) + (m[11] - (m[3] + m[7]));
-        const gic_real t2 = R(1.0) + (m[7] - (m[3] + m[11]));
-        const gic_real t3 = m[7] + m[11];
+        const gic_real t1 = R(1.0) + (m[11] - (R(1.0) + m[3]));
+        const gic_real t2 = R(1.0) + (R(1.0) - (m[3] + m[11]));
+        const gic_real t3 = R(1.0) + m[11];
         const gic_real t4 = R(1.0) + (m[3] - t3);
         const gic_real t5 = R(1.0) + (m[3] + t3);
         const gic_real t6 = GIC_MAX(t4, t5);
         const gic_real t7 = GIC_MAX(t2, t6);
         const gic_real t8 = t1 - t7;
-        const gic_real t9 = m[6] - m[4];
-        const gic_real t10 = t2 - t6;
-        const gic_real t11 = m[5] - m[9];
-        const gic_real t12 = t4 - t5;
-        const gic_real t13 = m[10] - m[8];
-        const gic_real t14 = (t8 > GIC_R(0) ? t9 : (t10 > GIC_R(0) ? t11 : (t12 > GIC_R(0) ? t13 : t5)));
-        const gic_real t15 = R(0.5) / GIC_SQRT(GIC_MAX(t1, t7));
-        const gic_real t16 = t14 * t15;
-        const gic_real t17 = m[5] + m[9];
-        const gic_real t18 = m[4] + m[6];
-        const gic_real t19 = (t8 > GIC_R(0) ? t17 : (t10 > GIC_R(0) ? t18 : (t12 > GIC_R(0) ? t4 : t13)));
-        const gic_real t20 = t19 * t15;
-        const gic_real t21 = m[8] + m[10];
-        const gic_real t22 = (t8 > GIC_R(0) ? t21 : (t10 > GIC_R(0) ? t2 : (t12 > GIC_R(0) ? t18 : t11)));
-        const gic_real t23 = t22 * t15;
-        const gic_real t24 = (t8 > GIC_R(0) ? t1 : (t10 > GIC_R(0) ? t21 : (t12 > GIC_R(0) ? t17 : t9)));
-        const gic_real t25 = t24 * t15;
-        const gic_real t26 = m[0];
-        const gic_real t27 = m[1];
-        const gic_real t28 = m[2];
-        const gic_real t29 = (t16 > GIC_R(0) ? t16 : -t16);
-        const gic_real t30 = (t16 > GIC_R(0) ? t20 : -t20);
-        const gic_real t31 = (t16 > GIC_R(0) ? t23 : -t23);
-        const gic_real t32 = (t16 > GIC_R(0) ? t25 : -t25);
+        const gic_real t9 = t2 - t6;
+        const gic_real t10 = m[5] - m[9];
+        const gic_real t11 = t4 - t5;
+        const gic_real t12 = (t8 > GIC_R(0) ? R(0.0) : (t9 > GIC_R(0) ? t10 : (t11 > GIC_R(0) ? R(0.0) : t5)));
+        const gic_real t13 = R(0.5) / GIC_SQRT(GIC_MAX(t1, t7));
+        const gic_real t14 = t12 * t13;
+        const gic_real t15 = m[5] + m[9];
+        const gic_real t16 = (t8 > GIC_R(0) ? t15 : (t9 > GIC_R(0) ? R(0.0) : (t11 > GIC_R(0) ? t4 : R(0.0))));
+        const gic_real t17 = t16 * t13;
+        const gic_real t18 = (t8 > GIC_R(0) ? R(0.0) : (t9 > GIC_R(0) ? t2 : (t11 > GIC_R(0) ? R(0.0) : t10)));
+        const gic_real t19 = t18 * t13;
+        const gic_real t20 = (t8 > GIC_R(0) ? t1 : (t9 > GIC_R(0) ? R(0.0) : (t11 > GIC_R(0) ? t15 : R(0.0))));
+        const gic_real t21 = t20 * t13;
+        const gic_real t22 = (t14 > GIC_R(0) ? t14 : -t14);
+        const gic_real t23 = (t14 > GIC_R(0) ? t17 : -t17);
+        const gic_real t24 = (t14 > GIC_R(0) ? t19 : -t19);
+        const gic_real t25 = (t14 > GIC_R(0) ? t21 : -t21);
         pose[0] = R(0.0);
         pose[1] = R(0.0);
         pose[2] = R(0.0);
@@ -429,13 +375,13 @@ static void pendulum_place(const pendulum *self, const gic_real *y, const gic_re
         pose[4] = R(0.0);
         pose[5] = R(0.0);
         pose[6] = R(0.0);
-        pose[7] = t26;
-        pose[8] = t27;
-        pose[9] = t28;
-        pose[10] = t29;
-        pose[11] = t30;
-        pose[12] = t31;
-        pose[13] = t32;
+        pose[7] = R(0.0);
+        pose[8] = R(0.0);
+        pose[9] = R(0.0);
+        pose[10] = t22;
+        pose[11] = t23;
+        pose[12] = t24;
+        pose[13] = t25;
     }
 }
 
@@ -699,43 +645,13 @@ static GIC_COLD int pendulum_inverse(const pendulum *self, gic_real time, const 
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = m[3] * R(-0.5);
-        const gic_real t2 = m[9] * R(-0.5);
-        const gic_real t3 = m[14] * t1 - m[12] * t2;
-        const gic_real t4 = m[6] * R(-0.5);
-        const gic_real t5 = m[13] * t2 - m[14] * t4;
-        const gic_real t6 = m[12] * t3 - m[13] * t5 + (m[18] * t4 - m[19] * t1);
-        const gic_real t7 = R(9.81) + (m[23] + t6) + acc[0] * (m[29] + (m[24] * t4 - m[25] * t1));
-        const gic_real t8 = m[12] * t4 - m[13] * t1;
-        const gic_real t9 = m[14] * t5 - m[12] * t8 + (m[20] * t1 - m[18] * t2);
-        const gic_real t10 = m[22] + t9 + acc[0] * (m[28] + (m[26] * t1 - m[24] * t2));
-        const gic_real t11 = m[13] * t8 - m[14] * t3 + (m[19] * t2 - m[20] * t4);
-        const gic_real t12 = m[21] + t11 + acc[0] * (m[27] + (m[25] * t2 - m[26] * t4));
-        const gic_real t13 = m[8] * R(0.25);
-        const gic_real t14 = m[7] * R(0.25);
-        const gic_real t15 = m[6] * R(0.25);
-        const gic_real t16 = m[11] * t13 + (m[10] * t14 + m[9] * t15);
-        const gic_real t17 = m[8] * t13 + (m[7] * t14 + m[6] * t15);
-        const gic_real t18 = m[5] * R(0.25);
-        const gic_real t19 = m[4] * R(0.25);
-        const gic_real t20 = m[3] * R(0.25);
-        const gic_real t21 = m[8] * t18 + (m[7] * t19 + m[6] * t20);
-        const gic_real t22 = m[14] * t16 + (m[13] * t17 + m[12] * t21);
-        const gic_real t23 = m[11] * t18 + (m[10] * t19 + m[9] * t20);
-        const gic_real t24 = m[5] * t18 + (m[4] * t19 + m[3] * t20);
-        const gic_real t25 = m[14] * t23 + (m[13] * t21 + m[12] * t24);
-        const gic_real t26 = m[11] * (m[11] * R(0.25)) + (m[10] * (m[10] * R(0.25)) + m[9] * (m[9] * R(0.25)));
-        const gic_real t27 = m[20] + m[26] * acc[0];
-        const gic_real t28 = m[19] + m[25] * acc[0];
-        const gic_real t29 = m[18] + m[24] * acc[0];
-        const gic_real t30 = m[12] * t22 - m[13] * t25 + (t26 * t27 + (t16 * t28 + t23 * t29));
-        const gic_real t31 = m[14] * t26 + (m[13] * t16 + m[12] * t23);
-        const gic_real t32 = m[14] * t25 - m[12] * t31 + (t16 * t27 + (t17 * t28 + t21 * t29));
-        const gic_real t33 = m[13] * t31 - m[14] * t22 + (t23 * t27 + (t21 * t28 + t24 * t29));
-        const gic_real t34 = m[25] * (t32 + (t2 * t12 - t1 * t7)) + m[24] * (t33 + (t4 * t7 - t2 * t10));
-        const gic_real t35 = m[26] * (t30 + (t1 * t10 - t4 * t12)) + t34;
-        const gic_real t36 = m[29] * t7 + (m[28] * t10 + m[27] * t12) + t35;
-        tau[0] = t36;
+        const gic_real t1 = m[9] * R(-0.5);
+        const gic_real t2 = m[3] * R(-0.5);
+        const gic_real t3 = m[19] * t1 - m[13] * (m[13] * t2) + acc[0] * (m[25] * t1);
+        const gic_real t4 = R(9.81) - (m[13] * (m[13] * t1) + m[19] * t2) - acc[0] * (m[25] * t2);
+        const gic_real t5 = R(0.25) * (m[19] + m[25] * acc[0]) + (t1 * t3 - t2 * t4);
+        const gic_real t6 = m[25] * t5;
+        tau[0] = t6;
     }
     return GIC_OK;
 }
@@ -749,44 +665,21 @@ static GIC_COLD int pendulum_energy(const pendulum *self, gic_real time, const g
     const gic_real *const rate = self->rate;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
     {
-        const gic_real t1 = m[6] * R(-0.5);
-        const gic_real t2 = m[3] * R(-0.5);
-        const gic_real t3 = m[12] * t1 - m[13] * t2;
-        const gic_real t4 = m[9] * R(-0.5);
-        const gic_real t5 = m[14] * t2 - m[12] * t4;
-        const gic_real t6 = m[13] * t4 - m[14] * t1;
-        const gic_real t7 = m[12] * t5 - m[13] * t6 + (m[18] * t1 - m[19] * t2);
-        const gic_real t8 = R(9.81) + (m[23] + t7) + rate[1] * (m[29] + (m[24] * t1 - m[25] * t2));
-        const gic_real t9 = m[14] * t6 - m[12] * t3 + (m[20] * t2 - m[18] * t4);
-        const gic_real t10 = m[22] + t9 + rate[1] * (m[28] + (m[26] * t2 - m[24] * t4));
-        const gic_real t11 = m[13] * t3 - m[14] * t5 + (m[19] * t4 - m[20] * t1);
-        const gic_real t12 = m[21] + t11 + rate[1] * (m[27] + (m[25] * t4 - m[26] * t1));
-        const gic_real t13 = (m[17] + t3) * t8 + ((m[16] + t5) * t10 + (m[15] + t6) * t12);
-        const gic_real t14 = m[11] * (m[11] * R(0.25)) + (m[10] * (m[10] * R(0.25)) + m[9] * (m[9] * R(0.25)));
-        const gic_real t15 = m[20] + m[26] * rate[1];
-        const gic_real t16 = m[8] * R(0.25);
-        const gic_real t17 = m[7] * R(0.25);
-        const gic_real t18 = m[6] * R(0.25);
-        const gic_real t19 = m[11] * t16 + (m[10] * t17 + m[9] * t18);
-        const gic_real t20 = m[19] + m[25] * rate[1];
-        const gic_real t21 = m[5] * R(0.25);
-        const gic_real t22 = m[4] * R(0.25);
-        const gic_real t23 = m[3] * R(0.25);
-        const gic_real t24 = m[11] * t21 + (m[10] * t22 + m[9] * t23);
-        const gic_real t25 = m[18] + m[24] * rate[1];
-        const gic_real t26 = m[14] * (t14 * t15 + (t19 * t20 + t24 * t25));
-        const gic_real t27 = (m[8] * t16 + (m[7] * t17 + m[6] * t18)) * t20;
-        const gic_real t28 = m[8] * t21 + (m[7] * t22 + m[6] * t23);
-        const gic_real t29 = (m[5] * t21 + (m[4] * t22 + m[3] * t23)) * t25;
-        const gic_real t30 = m[13] * (t19 * t15 + (t27 + t28 * t25)) + m[12] * (t24 * t15 + (t28 * t20 + t29));
-        const gic_real t31 = t26 + t30;
-        const gic_real t32 = t13 + t31;
-        const gic_real t33 = GIC_FABS(t31) + GIC_FABS(t13);
-        const gic_real t34 = rate[1];
-        energy[0] = t32;
+        const gic_real t1 = m[9] * R(-0.5);
+        const gic_real t2 = m[13] * t1;
+        const gic_real t3 = m[3] * R(-0.5);
+        const gic_real t4 = m[13] * t3;
+        const gic_real t5 = m[19] * t1 - m[13] * t4 + rate[1] * (m[25] * t1);
+        const gic_real t6 = R(9.81) - (m[13] * t2 + m[19] * t3) - rate[1] * (m[25] * t3);
+        const gic_real t7 = t2 * t5 - t4 * t6;
+        const gic_real t8 = m[13] * (R(0.25) * (m[19] + m[25] * rate[1]));
+        const gic_real t9 = t7 + t8;
+        const gic_real t10 = GIC_FABS(t8) + GIC_FABS(t7);
+        const gic_real t11 = rate[1];
+        energy[0] = t9;
         energy[1] = R(0.0);
-        energy[2] = t33;
-        acc[0] = t34;
+        energy[2] = t10;
+        acc[0] = t11;
     }
     return GIC_OK;
 }

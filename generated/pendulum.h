@@ -25,7 +25,7 @@
  *   subset 'rod' (1 times, closed form)                       15        41       2      1         2
  *   forces and equations of motion                             2         3       1      0         0
  *   all together                                              17        44       3      1         2
- *   outputs, when asked for                                   39        59       0      0         0
+ *   outputs, when asked for                                    2        12       0      0         0
  */
 #ifndef PENDULUM_H
 #define PENDULUM_H

@@ -40,11 +40,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
- *   subset 'arm' (1 times, closed form)                      331       440       4      1         0
- *   subset 'wheel' (1 times, closed form)                    452       555       5      2         0
- *   forces and equations of motion                            48        43       2      0         1
- *   all together                                             832      1038      11      3         1
- *   outputs, when asked for                                  127       188       0      0         1
+ *   subset 'arm' (1 times, closed form)                       43        68       2      1         0
+ *   subset 'wheel' (1 times, closed form)                    232       319       5      2         0
+ *   forces and equations of motion                            39        38       1      0         1
+ *   all together                                             315       425       8      3         1
+ *   outputs, when asked for                                   72        99       0      0         1
  */
 #ifndef QUARTER_CAR_H
 #define QUARTER_CAR_H

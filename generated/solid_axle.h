@@ -60,10 +60,10 @@
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (2 times, closed form)                   69       109       1      1         0
  *   subset 'axle' (1 times)                                  658       737       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                380       472       5      2         0
- *   forces and equations of motion                           714       671       9      0         4
- *   all together                                            2285      2595      27      6         4
- *   outputs, when asked for                                  610       703       0      0        10
+ *   subset 'wheel_f_l' (2 times, closed form)                306       406       5      2         0
+ *   forces and equations of motion                           697       663       9      0         4
+ *   all together                                            2120      2455      27      6         4
+ *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
 #define SOLID_AXLE_H

@@ -54,6 +54,17 @@ Count block_count_above_loads(const Block *block)
     return dag_count_above(block->dag, root, roots, block->load, block->loads);
 }
 
+void block_inputs(const Block *block, void (*visit)(void *context, const char *name), void *context)
+{
+    int roots;
+    const Dag *dag = block->dag;
+    const Ex *root = block_roots(block, &roots);
+    const bool *needed = dag_needed(dag, root, roots);
+    for (int e = 0; e < dag->nodes; ++e)
+        if (needed[e] && dag->node[e].op == OP_INPUT)
+            visit(context, dag->node[e].name);
+}
+
 bool block_reads(const Block *block, const char *array)
 {
     int roots;

@@ -15,10 +15,28 @@ typedef struct Composite {
     Ex *M;                        /* [coordinates][coordinates] upper triangle */
 } Composite;
 
-static void add_all(Dag *dag, Ex *sum, int offset, int count)
+/* Add up numbers of the subsets' inertias. */
+typedef struct Summation {
+    const Whole *whole;
+    bool settled; /* those that are the same in every configuration, or those in memory */
+} Summation;
+
+static void add_all(const Summation *now, Ex *sum, int subset, int offset, int count)
 {
-    for (int i = 0; i < count; ++i)
-        sum[i] = ex_add(dag, sum[i], ex_input(dag, pool_print(dag->pool, "n[%d]", offset + i), NULL));
+    const Plan *plan = now->whole->plan;
+    Dag *dag = now->whole->dag;
+    const int class = plan->sequence->subset[subset].class;
+    const Formula *formula = plan->formula[class];
+    for (int i = offset; i < offset + count; ++i) {
+        Ex e = formula->inertia[i];
+        if (formula_settled(formula, e) != now->settled)
+            continue;
+        if (now->settled)
+            e = ex_literal(dag, formula_value(formula, e, class_place(&plan->sequence->class[class], subset)));
+        else
+            e = ex_input(dag, pool_print(dag->pool, "n[%d]", plan->inertia_offset[subset] + i), NULL);
+        sum[i - offset] = ex_add(dag, sum[i - offset], e);
+    }
 }
 
 /* The base body's own part: a rigid body at rest in its own frame. */
@@ -56,36 +74,40 @@ static void add_base(Whole *whole, Composite *c)
     ex_add3(dag, c->moment, moment, c->moment);
 }
 
-static Composite compose(Whole *whole)
+static void add_subset(const Summation *now, Composite *c, int s)
 {
-    const Model *model = whole->model;
-    const Sequence *sequence = whole->plan->sequence;
-    Dag *dag = whole->dag;
-    size_t p = (size_t)model->coordinates;
-    Composite c = {.coupling = pool_alloc(dag->pool, (p + 1) * sizeof *c.coupling),
-                   .M = pool_alloc(dag->pool, (p * p + 1) * sizeof *c.M)};
-    for (int s = 0; s < sequence->subsets; ++s) {
-        const Subset *subset = &sequence->subset[s];
-        if (subset->class < 0)
-            continue;
-        int at = whole->plan->inertia_offset[s];
-        if (model->free_base) {
-            add_all(dag, c.first, at + INERTIA_FIRST, 3);
-            add_all(dag, c.second, at + INERTIA_SECOND, 6);
-            add_all(dag, c.force, at + INERTIA_FORCE, 3);
-            add_all(dag, c.moment, at + INERTIA_MOMENT, 3);
-        }
-        for (int j = 0; j < subset->deps; ++j) {
-            add_all(dag, c.coupling[subset->dep[j]], at + INERTIA_COORDINATE + 7 * j, 7);
-            for (int k = j; k < subset->deps; ++k) {
-                int row = subset->dep[j], column = subset->dep[k];
-                if (row > column)
-                    row = subset->dep[k], column = subset->dep[j];
-                add_all(dag, &c.M[row * model->coordinates + column], at + inertia_mass(subset->deps, j, k), 1);
-            }
+    const Model *model = now->whole->model;
+    const Subset *subset = &now->whole->plan->sequence->subset[s];
+    if (model->free_base) {
+        add_all(now, c->first, s, INERTIA_FIRST, 3);
+        add_all(now, c->second, s, INERTIA_SECOND, 6);
+        add_all(now, c->force, s, INERTIA_FORCE, 3);
+        add_all(now, c->moment, s, INERTIA_MOMENT, 3);
+    }
+    for (int j = 0; j < subset->deps; ++j) {
+        add_all(now, c->coupling[subset->dep[j]], s, INERTIA_COORDINATE + 7 * j, 7);
+        for (int k = j; k < subset->deps; ++k) {
+            int row = subset->dep[j], column = subset->dep[k];
+            if (row > column)
+                row = subset->dep[k], column = subset->dep[j];
+            add_all(now, &c->M[row * model->coordinates + column], s, inertia_mass(subset->deps, j, k), 1);
         }
     }
-    if (model->free_base)
+}
+
+static Composite compose(Whole *whole)
+{
+    const Sequence *sequence = whole->plan->sequence;
+    Dag *dag = whole->dag;
+    size_t p = (size_t)whole->model->coordinates;
+    Composite c = {.coupling = pool_alloc(dag->pool, (p + 1) * sizeof *c.coupling),
+                   .M = pool_alloc(dag->pool, (p * p + 1) * sizeof *c.M)};
+    /* constants come together */
+    for (int settled = 1; settled >= 0; --settled)
+        for (int s = 0; s < sequence->subsets; ++s)
+            if (sequence->subset[s].class >= 0)
+                add_subset(&(Summation){whole, settled}, &c, s);
+    if (whole->model->free_base)
         add_base(whole, &c);
     return c;
 }

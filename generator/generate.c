@@ -337,14 +337,6 @@ static void write_classes(Generation *g, Text *out)
 /* ---- recovery
  * ------------------------------------------------------------------------------------------------------------- */
 
-int class_place(const Class *class, int subset)
-{
-    int i = 0;
-    while (class->member[i] != subset)
-        ++i;
-    return i;
-}
-
 static void write_knowns(Generation *g, Text *out, int indent, const Subset *subset)
 {
     for (int i = 0; i < subset->knowns; ++i)

@@ -39,7 +39,6 @@ void insert_subset(void *context, const char *name, Text *out, int indent);
 /* The constants of that class that text so far refers to. */
 void write_class_constants(Generation *g, Text *out);
 /* Which member of a class a subset is. */
-int class_place(const Class *class, int subset);
 
 /* generate_tables.c: what the descriptor points to. */
 void write_tables(Generation *g, Text *out);

@@ -51,6 +51,9 @@ typedef struct Sequence {
 const Sequence *sequence_find(Pool *pool, const Model *model);
 /* Stages, subsets, unknowns, equations, joints, classes as a table for people. */
 void sequence_print(Text *out, const Model *model, const Sequence *sequence);
+/* Which member of a class a subset is, which body of a subset a body. */
+int class_place(const Class *class, int subset);
+int subset_place(const Subset *subset, int body);
 /* Graphviz source of the weighted graph with its stages (the paper's Figs. 2 and 3). */
 void graph_draw(Text *out, const Model *model, const Sequence *sequence);
 
@@ -283,6 +286,8 @@ enum {
 void motion_base(Dag *dag, Motion *motion);
 /* A motion read from memory at the C expression `array` ("m0"), numbers from `offset` on. */
 void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int deps);
+/* The number at a place in memory. */
+Ex *motion_number(Motion *motion, int place);
 /* The same at rest: position and rotation alone. */
 void motion_input_pose(Dag *dag, Motion *motion, const char *array, int offset);
 
@@ -377,6 +382,8 @@ void block_loads(Block *block, const Ex *load, int count);
 Count block_count(const Block *block);
 /* Of these operations those that are left where its loads are given. */
 Count block_count_above_loads(const Block *block);
+/* All inputs that it reads, by name. */
+void block_inputs(const Block *block, void (*visit)(void *context, const char *name), void *context);
 /* Does it read an input `array[...]`? */
 bool block_reads(const Block *block, const char *array);
 
@@ -424,6 +431,8 @@ typedef struct Formula {
     double size;     /* largest distance between points of a subset, m */
     double distance; /* largest of its reference points from the base's origin at the design, relative to size */
     bool closed;     /* poses in closed form, by `solve` alone: predict and chord are empty, nothing is remembered */
+    Motion *motion;  /* [bodies] what `solve` finds */
+    Ex *inertia;     /* [inertia_size] likewise */
     Block predict;   /* q from the start and `change`; reach: squared relative size of that move */
     Block chord;     /* one correction of q with the start's factors; step: its squared relative size */
     Block solve;     /* factors, S, last correction, motion and inertia */
@@ -438,6 +447,10 @@ typedef struct Formula {
  * a class of their own: *sequence is replaced by one that says so. Singular subsets end in diag_fail. */
 Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **sequence, const double (*origin)[3],
                             Sampling *sampling, Solve solve, Recovery recovery);
+/* settled.c: is a number of the motions or inertias the same in every configuration, and which one for a member? Such
+ * numbers are not in memory. */
+bool formula_settled(const Formula *f, Ex e);
+double formula_value(const Formula *f, Ex e, int member);
 /* Reference points of all bodies [bodies][3], body frames: where a joint to something known sits. */
 double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3];
 

@@ -141,16 +141,14 @@ static void add_body_inertia(Work *w, int b, const Motion *m, const Ex turn[3], 
     }
 }
 
-void subset_inertia(Work *w, const Layout *layout, const Motion *motion, Block *block)
+Ex *subset_inertia(Work *w, const Layout *layout, const Motion *motion)
 {
     Dag *dag = w->dag;
     bool free_base = w->model->free_base;
-    Ex turn[3] = {0}, *sum = pool_alloc(w->pool, (size_t)layout->inertia_size * sizeof *sum);
+    Ex turn[3] = {0}, *sum = pool_alloc(w->pool, (size_t)(layout->inertia_size + 1) * sizeof *sum);
     for (int i = 0; free_base && i < 3; ++i)
         turn[i] = ex_input(dag, pool_print(w->pool, "turn[%d]", i), NULL);
     for (int b = 0; b < w->first->bodies; ++b)
         add_body_inertia(w, b, &motion[b], turn, sum);
-    /* a fixed base has no equations of its own */
-    for (int i = free_base ? 0 : INERTIA_COORDINATE; i < layout->inertia_size; ++i)
-        block_store(block, sum[i], "inertia[%d]", i);
+    return sum;
 }

@@ -35,6 +35,18 @@ void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int d
     read_numbers(dag, array, offset + MOTION_S, 6 * deps, motion->S);
 }
 
+Ex *motion_number(Motion *motion, int place)
+{
+    Ex *const part[] = {motion->c, motion->A, motion->omega, motion->velocity, motion->alpha, motion->acceleration};
+    static const int first[] = {MOTION_C, MOTION_A, MOTION_OMEGA, MOTION_VELOCITY, MOTION_ALPHA, MOTION_ACCELERATION};
+    int i = sizeof first / sizeof *first - 1;
+    if (place >= MOTION_S)
+        return motion->S + (place - MOTION_S);
+    while (first[i] > place)
+        --i;
+    return part[i] + (place - first[i]);
+}
+
 /* Rate and bias of a vector that turns with the body: omega x arm, alpha x arm + omega x (omega x arm). */
 static void turn(Dag *dag, const Motion *motion, Vector *vector)
 {

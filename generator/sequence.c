@@ -10,9 +10,9 @@ typedef struct Finder {
     Pool *pool;
     const Model *model;
     Sequence *sequence;
-    int *place;   /* [bodies] of the current subset: vertex of a body */
+    int *place;    /* [bodies] of the current subset: vertex of a body */
     int *position; /* [coordinates] of the current subset: index in dep */
-    int *sharing; /* [coordinates] how many knowns of the current subset depend on it */
+    int *sharing;  /* [coordinates] how many knowns of the current subset depend on it */
 } Finder;
 
 static int *ints(Pool *pool, int count, int value)
@@ -126,10 +126,10 @@ typedef enum VertexKind { VERTEX_BODY, VERTEX_KNOWN, VERTEX_JOINT, VERTEX_COORDI
 
 typedef struct Vertex {
     VertexKind kind;
-    int rank;        /* of its kind, a first order that people understand: smallest first */
-    int index;       /* in the model */
-    int id;          /* position before sorting; ends refer to it */
-    int end[2];      /* joint, coordinate: vertices, or -1: the base */
+    int rank;   /* of its kind, a first order that people understand: smallest first */
+    int index;  /* in the model */
+    int id;     /* position before sorting; ends refer to it */
+    int end[2]; /* joint, coordinate: vertices, or -1: the base */
     uint64_t colour, next;
 } Vertex;
 
@@ -446,12 +446,34 @@ static void classes_fill(Finder *finder, Signature *signature, int count)
         sequence->class[i].name = class_name(finder, i);
 }
 
+static int index_of(const int *list, int what)
+{
+    int i = 0;
+    while (list[i] != what)
+        ++i;
+    return i;
+}
+
+int class_place(const Class *class, int subset)
+{
+    return index_of(class->member, subset);
+}
+
+int subset_place(const Subset *subset, int body)
+{
+    return index_of(subset->body, body);
+}
+
 const Sequence *sequence_find(Pool *pool, const Model *model)
 {
     Graph *graph = graph_new(pool, model);
     int *component = ints(pool, model->bodies, 0);
     Sequence *sequence = pool_alloc(pool, sizeof *sequence);
-    Finder finder = {pool, model, sequence, ints(pool, model->bodies, -1), ints(pool, model->coordinates, -1),
+    Finder finder = {pool,
+                     model,
+                     sequence,
+                     ints(pool, model->bodies, -1),
+                     ints(pool, model->coordinates, -1),
                      ints(pool, model->coordinates, 0)};
     graph_match(graph);
     int count = graph_components(graph, component);

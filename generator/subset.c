@@ -544,12 +544,18 @@ static Formula *formula_new(Work *w, bool closed)
 }
 
 /* The equations with the poses that were found, as residual and multipliers need them: [n]. */
-static Row *rows_from_memory(Work *w, const Layout *layout)
+static Row *rows_from_memory(Work *w, const Formula *formula)
 {
     Row *row = pool_alloc(w->pool, (size_t)w->n * sizeof *row);
     Motion *found = pool_alloc(w->pool, (size_t)w->first->bodies * sizeof *found);
-    for (int b = 0; b < w->first->bodies; ++b)
-        motion_input_pose(w->dag, &found[b], "motion", b * layout->motion_size);
+    for (int b = 0; b < w->first->bodies; ++b) {
+        motion_input_pose(w->dag, &found[b], "motion", b * formula->layout.motion_size);
+        for (int i = 0; i < MOTION_OMEGA; ++i) {
+            const Ex e = *motion_number(&formula->motion[b], i);
+            if (formula_settled(formula, e))
+                *motion_number(&found[b], i) = e;
+        }
+    }
     make_rows(w, found, row, w->row_of);
     return row;
 }
@@ -562,7 +568,9 @@ static void finish(Work *w, Formula *formula, Solve solve, const Factors *factor
     Factors *remembered = factors_from_memory(w, factors, stored, &count);
     Layout *layout = &formula->layout;
     *layout = make_layout(w, count, solve, formula->closed);
-    const Row *row = rows_from_memory(w, layout);
+    formula->motion = pool_alloc(w->pool, (size_t)layout->bodies * sizeof *motion);
+    memcpy(formula->motion, motion, (size_t)layout->bodies * sizeof *motion);
+    const Row *row = rows_from_memory(w, formula);
     make_residual(w, formula, row);
     if (solve == SOLVE_REDUCED)
         subset_react(w, remembered, row, &formula->react);
@@ -576,7 +584,10 @@ static void finish(Work *w, Formula *formula, Solve solve, const Factors *factor
     for (int i = 0; i < count; ++i)
         block_store(&formula->solve, stored[i], "start[%d]", layout->start_factors + i);
     if (solve == SOLVE_REDUCED)
-        subset_inertia(w, layout, motion, &formula->solve);
+        formula->inertia = subset_inertia(w, layout, motion);
+    /* a fixed base has no equations of its own */
+    for (int i = w->model->free_base ? 0 : INERTIA_COORDINATE; i < layout->inertia_size; ++i)
+        block_store(&formula->solve, formula->inertia[i], "inertia[%d]", i);
     if (!formula->closed)
         make_step(w, remembered, &formula->chord, pool_alloc(w->pool, (size_t)(7 * layout->bodies) * sizeof(Ex)));
     formula->derived = w->derived;
@@ -638,8 +649,23 @@ static int recovery_cost(const Formula *formula)
     return cost;
 }
 
-static Formula *formulate_class(Work *w, Solve solve, Recovery recovery)
+/* The knowns as the classes made so far leave them. */
+static void settle_knowns(Work *w, Formula *const *formula)
 {
+    for (int i = 0; i < w->first->knowns; ++i) {
+        const Subset *own = &w->sequence->subset[w->sequence->body_subset[w->first->known[i]]];
+        motion_input(w->dag, &w->known[i], pool_print(w->pool, "m%d", i), 0, own->deps);
+        subset_settle(w, formula, i, &w->known[i]);
+        order_by_deps(w, i);
+    }
+    make_rows(w, w->pose, w->row, w->row_of);
+    memset(w->J, 0, (size_t)(w->n * w->n) * sizeof *w->J);
+    make_jacobian(w, w->row, w->row_of, w->J);
+}
+
+static Formula *formulate_class(Work *w, Formula *const *made, Solve solve, Recovery recovery)
+{
+    settle_knowns(w, made);
     Formula *closed = recovery == RECOVERY_NEWTON ? NULL : formulate_closed(w, solve);
     if (closed && recovery == RECOVERY_CLOSED)
         return closed;
@@ -752,8 +778,12 @@ Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **seq
     if (any)
         follow_all(split, work, sampling);
     subsets_scan(pool, model, split, work, sampling);
-    for (int c = 0; c < split->classes; ++c)
-        formula[c] = formulate_class(work[c], solve, recovery);
+    for (int s = 0; s < split->subsets; ++s) {
+        int c = split->subset[s].class;
+        if (c >= 0 && !formula[c])
+            formula[c] = formulate_class(work[c], formula, solve, recovery);
+    }
+    subsets_forget(pool, model, split, formula);
     *sequence = split;
     return formula;
 }

@@ -88,12 +88,18 @@ int subset_index(const Work *w, int subset);
 /* How an end of a connection moves, the unknowns moving as given. */
 const Motion *subset_motion(const Work *w, const Motion *unknown, End end);
 
+/* settled.c: put constants of the class in place of those numbers of a known's motion, in the order of its own deps, that
+ * are the same in every configuration. formula: [classes] those made so far, or NULL. */
+void subset_settle(Work *w, Formula *const *formula, int known, Motion *motion);
+/* Store no numbers any more that nobody reads because they are settled. formula: [classes] all. */
+void subsets_forget(Pool *pool, const Model *model, const Sequence *sequence, Formula *const *formula);
+
 /* closed.c: where geometry gives the poses (c and A) of the unknowns step by step: fill them, with images of the
  * vectors found on the way and checks that they are within reach, and return true. */
 bool subset_closed(Work *w, Motion *pose, Block *block);
 
-/* inertia.c: store what the bodies, moving as given, add to the equations of motion. */
-void subset_inertia(Work *w, const Layout *layout, const Motion *motion, Block *block);
+/* inertia.c: what the bodies, moving as given, add to the equations of motion: [inertia_size]. */
+Ex *subset_inertia(Work *w, const Layout *layout, const Motion *motion);
 
 /* react.c: the class's block `react`. factors, row [n]: those that the last solution left in memory. */
 void subset_react(Work *w, const Factors *factors, const Row *row, Block *block);

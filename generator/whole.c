@@ -113,6 +113,22 @@ bool plan_follows(const Plan *plan, int subset)
     return class >= 0 && !plan->formula[class]->closed;
 }
 
+/* The motion of a body in memory, but for what is the same in every configuration. */
+static void body_motion(Whole *whole, int body)
+{
+    const Plan *plan = whole->plan;
+    const Subset *subset = whole_subset(whole, body);
+    const Formula *formula = plan->formula[subset->class];
+    const int member = class_place(&plan->sequence->class[subset->class], plan -> sequence -> body_subset[body]);
+    Motion *motion = &whole->motion[body];
+    motion_input(whole->dag, motion, "m", plan->motion_offset[body], subset->deps);
+    for (int i = 0; i < formula->layout.motion_size; ++i) {
+        const Ex found = *motion_number(&formula->motion[subset_place(subset, body)], i);
+        if (formula_settled(formula, found))
+            *motion_number(motion, i) = ex_literal(whole->dag, formula_value(formula, found, member));
+    }
+}
+
 Whole *whole_new(Pool *pool, const Plan *plan)
 {
     const Model *model = plan->model;
@@ -126,7 +142,7 @@ Whole *whole_new(Pool *pool, const Plan *plan)
                      .xd = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof(Ex))};
     motion_base(dag, &whole->motion[BODY_BASE]);
     for (int b = 1; b < model->bodies; ++b)
-        motion_input(dag, &whole->motion[b], "m", plan->motion_offset[b], whole_subset(whole, b)->deps);
+        body_motion(whole, b);
     for (int i = 0; i < model->coordinates; ++i) {
         whole->x[i] = indexed(whole, "x", i);
         whole->xd[i] = indexed(whole, "xd", i);
