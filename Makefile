@@ -7,6 +7,7 @@
 #   make stress         attacks on everything, for an hour or so: build/stress/table.md (STRESS=short: a minute)
 #   make generated      generated/*.c and *.h from models/*.veh, and models/veh.schema.json
 #   make debug          the same programs with the sanitizers, in build/debug/
+#   make fuzz           build/fuzz/check/fuzz, the readers under clang's libFuzzer (tests/fuzz/fuzz.c)
 #   make deps           install the packages that all of this needs (Debian)
 #   make install        into $(DESTDIR)$(PREFIX): programs, runtime core, models, manuals; make uninstall removes them
 #   make clean
@@ -39,7 +40,7 @@ runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_outputs scene_road \
     scene_road_file driver spline csv descriptor process gic_runtime gic_road)
 
-.PHONY: all test test-programs list-tests stress demo bench generated debug deps install uninstall clean
+.PHONY: all test test-programs list-tests stress demo bench generated debug fuzz deps install uninstall clean
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -119,6 +120,13 @@ $(BUILD)/check/random_vehicle: $(patsubst %.c,$(BUILD)/%.o,tests/random_vehicle.
     tests/reference/support.c)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
+# libFuzzer calls it; sanitizers see the ends of blocks from static libraries too
+wrapped := exit malloc calloc realloc free strdup pool_alloc pool_grow file_read
+$(BUILD)/check/fuzz: $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/fuzz/*.c)) $(tested)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) -fsanitize=fuzzer $(LDFLAGS) $(wrapped:%=-Wl,--wrap=%) -o $@ $^ \
+	    -l:libyaml.a -l:libgsl.a -l:libgslcblas.a $(LIBRARIES)
 
 $(BUILD)/check/deny_exec: $(BUILD)/tests/deny_exec.o
 	@mkdir -p $(@D)
@@ -235,6 +243,10 @@ generated: $(BUILD)/gicgen
 debug:
 	$(MAKE) BUILD=$(BUILD)/debug \
 	    CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
+
+fuzz:
+	$(MAKE) BUILD=$(BUILD)/fuzz WARNINGS= CC=clang CFLAGS="-O1 -g -fsanitize=address,undefined,fuzzer-no-link \
+	    -fno-sanitize-recover=all -fno-omit-frame-pointer" $(BUILD)/fuzz/check/fuzz
 
 deps:
 	sh tests/install.sh test

@@ -62,9 +62,7 @@ static void print_clean(const char *s)
     }
 }
 
-/* The source line of `at`, or a window of a long one, and a caret below the column. Tabs are repeated before the
- * caret, so that it stands right whatever their width. */
-static void print_line(Place at)
+const char *diag_line(Place at)
 {
     const char *s = at.source->bytes, *end = s + at.source->size;
     for (int line = 1; line < at.line && s < end;) {
@@ -72,6 +70,14 @@ static void print_line(Place at)
         line += size > 0;
         s += size ? size : 1;
     }
+    return s;
+}
+
+/* The source line of `at`, or a window of a long one, and a caret below the column. Tabs are repeated before the
+ * caret, so that it stands right whatever their width. */
+static void print_line(Place at)
+{
+    const char *s = diag_line(at), *end = at.source->bytes + at.source->size;
     int first = at.column > WINDOW ? at.column - WINDOW_LEAD : 1;
     Text caret = {.pool = pool_new()};
     fputs(first > 1 ? "  ..." : "  ", stderr);

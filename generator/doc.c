@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * YAML into a tree that knows its places, and checked access to it. An alias shares the tree of its anchor, so a
- * document never becomes larger than its file. */
+ * document never becomes larger than its file; whoever walks over it meets no more than a few values a byte. */
 #include "gicgen.h"
 
 #include <math.h>
@@ -8,13 +8,14 @@
 #include <string.h>
 #include <yaml.h>
 
-enum { NESTING = 64, REMEDY = 1000 };
+enum { NESTING = 64, REMEDY = 1000, ANCHORS_MOST = 1000 /* each alias looks through them */ };
 
 typedef struct Anchor {
     const char *name;
     Item *item;
-    bool open;  /* still being read: an alias to it would be a cycle */
-    int height; /* levels of nesting below it */
+    bool open;    /* still being read: an alias to it would be a cycle */
+    int height;   /* levels of nesting below it */
+    size_t items; /* in it; while it is open those before it */
 } Anchor;
 
 typedef struct Loader {
@@ -23,6 +24,7 @@ typedef struct Loader {
     yaml_parser_t parser;
     Anchor *anchor;
     int anchors;
+    size_t items; /* so far, as if aliases were written out */
 } Loader;
 
 static Place place(const Loader *loader, yaml_mark_t mark)
@@ -70,8 +72,10 @@ static int anchor_open(Loader *loader, const yaml_char_t *name, Item *item)
 {
     if (!name)
         return -1;
+    if (loader->anchors == ANCHORS_MOST)
+        diag_fail(item->at, "write values out", "more than %d anchors in one file", ANCHORS_MOST);
     Anchor *anchor = POOL_PUSH(loader->pool, loader->anchor, loader->anchors);
-    *anchor = (Anchor){copy(loader, name, strlen((const char *)name)), item, true, 0};
+    *anchor = (Anchor){copy(loader, name, strlen((const char *)name)), item, true, 0, loader->items};
     return loader->anchors - 1;
 }
 
@@ -81,6 +85,7 @@ static void anchor_close(Loader *loader, int index, int height)
         return;
     loader->anchor[index].open = false;
     loader->anchor[index].height = height;
+    loader->anchor[index].items = loader->items - loader->anchor[index].items + 1;
 }
 
 static void check_tag(Place at, const yaml_char_t *tag)
@@ -105,6 +110,9 @@ static Item *alias(Loader *loader, const char *name, Place at, int depth, int *h
         if (anchor->open)
             diag_fail(at, "write the value out", "alias '*%s' stands inside the value it names", name);
         check_depth(at, depth + anchor->height);
+        loader->items += anchor->items;
+        if (loader->items > 1000 + 2 * loader->source->size)
+            diag_fail(at, "use fewer aliases of large values", "with its aliases written out the file is too large");
         *height = anchor->height;
         return anchor->item;
     }
@@ -112,8 +120,9 @@ static Item *alias(Loader *loader, const char *name, Place at, int depth, int *h
     for (int i = 0; i < loader->anchors; ++i)
         names[i] = loader->anchor[i].name;
     const char *nearest = diag_nearest(name, names, loader->anchors);
-    diag_fail(at, nearest ? pool_print(loader->pool, "did you mean '*%s'?", nearest)
-                          : "put the anchor `&name` before the value, above this line",
+    diag_fail(at,
+              nearest ? pool_print(loader->pool, "did you mean '*%s'?", nearest)
+                      : "put the anchor `&name` before the value, above this line",
               "alias '*%s' has no anchor", name);
 }
 
@@ -151,8 +160,7 @@ static void check_duplicates(Loader *loader, const Item *map)
     qsort(sorted, (size_t)map->count, sizeof *sorted, compare_keys);
     const Item *first = NULL, *second = NULL;
     for (int i = 1; i < map->count; ++i)
-        if (!strcmp(sorted[i]->text, sorted[i - 1]->text)
-            && (!second || sorted[i]->at.line < second->at.line)) {
+        if (!strcmp(sorted[i]->text, sorted[i - 1]->text) && (!second || sorted[i]->at.line < second->at.line)) {
             first = sorted[i - 1];
             second = sorted[i];
         }
@@ -206,6 +214,8 @@ static Item *map(Loader *loader, const yaml_event_t *start, Place at, int depth,
         if (!key->quoted && !strcmp(key->text, "<<"))
             diag_fail(key->at, "write the keys out, or alias a whole value: `key: *name`",
                       "merging with `<<` is not part of the format");
+        if (keys == KEYS_MOST)
+            diag_fail(key->at, "take some away", "a map with more than %d keys", KEYS_MOST);
         next(loader, &event);
         Item *value = node(loader, &event, depth + 1, &below);
         *POOL_PUSH(loader->pool, item->key, keys) = key;
@@ -223,19 +233,13 @@ static Item *node(Loader *loader, yaml_event_t *event, int depth, int *height)
 {
     Place at = place(loader, event->start_mark);
     check_depth(at, depth);
+    loader->items += event->type != YAML_ALIAS_EVENT;
     Item *item;
     switch (event->type) {
-    case YAML_ALIAS_EVENT:
-        item = alias(loader, (const char *)event->data.alias.anchor, at, depth, height);
-        break;
-    case YAML_SEQUENCE_START_EVENT:
-        item = list(loader, event, at, depth, height);
-        break;
-    case YAML_MAPPING_START_EVENT:
-        item = map(loader, event, at, depth, height);
-        break;
-    default:
-        item = scalar(loader, event, at);
+    case YAML_ALIAS_EVENT: item = alias(loader, (const char *)event->data.alias.anchor, at, depth, height); break;
+    case YAML_SEQUENCE_START_EVENT: item = list(loader, event, at, depth, height); break;
+    case YAML_MAPPING_START_EVENT: item = map(loader, event, at, depth, height); break;
+    default: item = scalar(loader, event, at);
     }
     yaml_event_delete(event);
     return item;
@@ -245,7 +249,7 @@ const Item *doc_read(Pool *pool, const char *path)
 {
     Source *source = pool_alloc(pool, sizeof *source);
     source->path = path;
-    source->bytes = file_read(pool, path, &source->size);
+    source->bytes = file_read(pool, path, TEXT_MOST, &source->size);
     if (source->size >= 3 && !memcmp(source->bytes, "\xef\xbb\xbf", 3)) { /* byte order mark: not a column */
         source->bytes += 3;
         source->size -= 3;
@@ -325,6 +329,11 @@ static bool is_decimal(const char *s)
     return n > 0 && !s[n];
 }
 
+bool doc_is_decimal(const Item *item)
+{
+    return is_decimal(item->text);
+}
+
 /* What to write instead of `s`, which is not a number, at least not one of the format. */
 static void number_remedy(const char *s, char remedy[REMEDY])
 {
@@ -340,8 +349,8 @@ static void number_remedy(const char *s, char remedy[REMEDY])
     const char *digits = s + (s[0] == '-' || s[0] == '+');
     if (fixed)
         snprintf(remedy, REMEDY, strchr(s, ',') ? "the decimal point is a point: write %s" : "write %s", other);
-    else if (strpbrk(s, "iInN") && (strstr(s, "inf") || strstr(s, "Inf") || strstr(s, "INF") || strstr(s, "nan")
-                                    || strstr(s, "NaN") || strstr(s, "NAN")))
+    else if (strpbrk(s, "iInN") && (strstr(s, "inf") || strstr(s, "Inf") || strstr(s, "INF") || strstr(s, "nan") ||
+                                    strstr(s, "NaN") || strstr(s, "NAN")))
         snprintf(remedy, REMEDY, "numbers are finite: write a decimal number such as 1.5 or -2e-3");
     else if (digits[0] == '0' && digits[1] && strchr("xXoObB", digits[1]))
         snprintf(remedy, REMEDY, "write it in decimal, such as 1.5 or -2e-3");

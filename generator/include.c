@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { FORMAT_VERSION = 1, DEPTH = 16 /* of files that include files */ };
+enum { FORMAT_VERSION = 1, DEPTH = 16 /* of files that include files */, PARTS_MOST = 1000 /* of one model */ };
 
 enum { PART_FILE, PART_AT, PART_PREFIX, PART_KEYS };
 
@@ -26,9 +26,16 @@ static const char *const part_about[PART_KEYS] = {
 
 const Section part_section = {part_key, PART_KEYS, NULL, 0, NULL, NULL, part_about};
 
+/* What reading a model has taken so far: files that include one twice double what they take with each level. */
+typedef struct Taken {
+    int parts;
+    size_t bytes;
+} Taken;
+
 /* A file being read, and the one that includes it. */
 typedef struct Open {
     const struct Open *from;
+    Taken *taken;
     const char *path;
     struct stat identity; /* the same file may have many paths */
     int depth;
@@ -61,6 +68,8 @@ static Item *map_new(Pool *pool, Place at)
 static void add(Pool *pool, Item *map, Item *key, Item *value)
 {
     int keys = map->count;
+    if (keys == KEYS_MOST)
+        diag_fail(key->at, "take some away", "with included files this is a map with more than %d keys", KEYS_MOST);
     *POOL_PUSH(pool, map->key, keys) = key;
     *POOL_PUSH(pool, map->value, map->count) = value;
 }
@@ -155,13 +164,15 @@ const char *path_check(Pool *pool, const Item *item, const char *file, const cha
                   strerror(errno));
     if (S_ISDIR(identity->st_mode))
         diag_fail(item->at, "name a file in it", "can't %s '%s': it is a folder", use, path);
+    if (!S_ISREG(identity->st_mode)) /* a pipe may never begin, a device never end */
+        diag_fail(item->at, "name a file", "can't %s '%s': it is a device or a pipe", use, path);
     return path;
 }
 
 /* Refuse what can't be read, and what is being read already. */
 static Open part_open(Pool *pool, const Item *item, const char *name, const Open *from)
 {
-    Open open = {.from = from, .depth = from->depth + 1};
+    Open open = {.from = from, .taken = from->taken, .depth = from->depth + 1};
     open.path = path_check(pool, item, from->path, name, "include", &open.identity);
     Text chain = {.pool = pool};
     text_print(&chain, "%s", open.path);
@@ -174,6 +185,9 @@ static Open part_open(Pool *pool, const Item *item, const char *name, const Open
     }
     if (open.depth > DEPTH)
         diag_fail(item->at, "include the files from one place", "files include files more than %d levels deep", DEPTH);
+    if (++open.taken->parts > PARTS_MOST)
+        diag_fail(item->at, "write some of them as one file", "the model includes files more than %d times",
+                  PARTS_MOST);
     return open;
 }
 
@@ -201,6 +215,10 @@ static const Item *part_read(Pool *pool, const Item *item, const Open *from)
 static const Item *file_read_whole(Pool *pool, const Open *open)
 {
     const Item *file = doc_read(pool, open->path);
+    open->taken->bytes += file->at.source->size;
+    if (open->taken->bytes > TEXT_MOST)
+        diag_fail((Place){file->at.source, 0, 0}, "include less",
+                  "the model has more than %d MB with all files that it includes", TEXT_MOST >> 20);
     version_check(file);
     const Item *include = doc_find(file, "include");
     if (!include)
@@ -217,7 +235,7 @@ static const Item *file_read_whole(Pool *pool, const Open *open)
 
 const Item *file_included(Pool *pool, const char *path)
 {
-    Open open = {.path = path};
+    Open open = {.path = path, .taken = &(Taken){0}};
     if (strcmp(path, "-"))
         stat(path, &open.identity); /* a path that can't be read: doc_read says so */
     return file_read_whole(pool, &open);

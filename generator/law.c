@@ -9,7 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEPTH_MOST = 100, NAME_ROOM = 64 };
+enum {
+    DEPTH_MOST = 100,  /* of nesting, which the parser's recursion follows */
+    SIZE_MOST = 10000, /* of a formula, which walks over the tree follow: a parameter may stand for many others */
+    NAME_ROOM = 64
+};
 
 typedef struct Parser {
     Pool *pool;
@@ -45,11 +49,8 @@ static _Noreturn void fail(Parser *p, const char *where, const char *remedy, con
     Place at = p->item->at;
     const Source *source = at.source;
     size_t length = strlen(p->item->text);
-    const char *line = source->bytes;
-    for (int i = 1; i < at.line; ++i)
-        line += strcspn(line, "\n") + 1;
-    const char *start = line + at.column - 1 + p->item->quoted;
-    if (start + length <= source->bytes + source->size && !memcmp(start, p->item->text, length))
+    const char *start = diag_line(at) + at.column - 1 + p->item->quoted, *end = source->bytes + source->size;
+    if (start <= end && length <= (size_t)(end - start) && !memcmp(start, p->item->text, length))
         at.column += p->item->quoted + (int)(where - p->item->text);
     diag_fail(at, remedy, "%s: %s", p->what, message);
 }
@@ -79,18 +80,27 @@ static void expect(Parser *p, const char *token)
              *p->s ? " before " : " at the end", *p->s ? pool_print(p->pool, "'%.12s'", p->s) : "");
 }
 
-static const Law *number(Parser *p, double value)
+static const Law *node(Parser *p, Law node)
 {
     Law *law = pool_alloc(p->pool, sizeof *law);
-    *law = (Law){.op = LAW_NUMBER, .number = value};
+    ++node.size;
+    for (int i = 0; i < 3 && node.arg[i]; ++i)
+        node.size += node.arg[i]->size;
+    if (node.size > SIZE_MOST)
+        fail(p, p->s, "split it into several force elements, or leave out `tunable: true`",
+             "the formula has more than %d operations and numbers, with those of its parameters", SIZE_MOST);
+    *law = node;
     return law;
+}
+
+static const Law *number(Parser *p, double value)
+{
+    return node(p, (Law){.op = LAW_NUMBER, .number = value});
 }
 
 static const Law *call(Parser *p, Op op, const char *name, const Law *a, const Law *b, const Law *c)
 {
-    Law *law = pool_alloc(p->pool, sizeof *law);
-    *law = (Law){.op = LAW_CALL, .call = op, .arg = {a, b, c}, .name = name};
-    return law;
+    return node(p, (Law){.op = LAW_CALL, .call = op, .arg = {a, b, c}, .name = name});
 }
 
 static const Law *parse_or(Parser *p);
@@ -115,9 +125,8 @@ static const Law *truth(Parser *p, const Law *t, bool yes)
 
 static const Law *reference(Parser *p, LawOp op, int index, const char *name)
 {
-    Law *law = pool_alloc(p->pool, sizeof *law);
-    *law = (Law){.op = op, .index = index, .name = name};
-    return law;
+    const Law *stands = op == LAW_PARAMETER ? p->names->model->parameter[index].law : NULL;
+    return node(p, (Law){.op = op, .index = index, .name = name, .size = stands ? stands->size : 0});
 }
 
 static int coordinate_named(const Model *model, const char *name)
@@ -212,9 +221,7 @@ static const Law *parse_call(Parser *p, const char *where, const char *name)
             if (count != 1)
                 fail(p, where, "a table is a function of one number", "table '%s' takes 1 argument, not %d", name,
                      count);
-            Law *law = pool_alloc(p->pool, sizeof *law);
-            *law = (Law){.op = LAW_TABLE, .index = i, .arg = {arg[0]}, .name = model->table[i].name};
-            return law;
+            return node(p, (Law){.op = LAW_TABLE, .index = i, .arg = {arg[0]}, .name = model->table[i].name});
         }
     const char **known = NULL;
     int names = 0;

@@ -27,6 +27,7 @@ typedef struct Law {
     int index;
     const struct Law *arg[3];
     const char *name; /* as written, for the dump */
+    int size;         /* nodes in it, those that its parameters are made of counted where they stand */
 } Law;
 
 /* What the names in a formula mean. */

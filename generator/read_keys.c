@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NAME_LENGTH = 40 };
+enum { NAME_LENGTH = 40, SOME_MOST = 1000 /* bodies, and parameters, which every formula looks through */ };
 
 /* What to write, for remedies. */
 const char *const kind_example[KEY_KINDS] = {
@@ -138,6 +138,10 @@ Entry *section_entries(Reader *reader, const Item *map, const char *thing, int *
     if (map->kind != ITEM_MAP)
         diag_fail(map->at, "write `name: {...}` for each one, or {} for none",
                   "a map is wanted here, with a name for each %s", thing);
+    const int most = strcmp(thing, "body") && strcmp(thing, "parameter") ? map->count : SOME_MOST;
+    if (map->count > most)
+        diag_fail(map->key[most]->at, "take some away", "this %s is one more than the %d that a model may have", thing,
+                  most);
     Entry *entry = pool_alloc(reader->pool, sizeof *entry * (size_t)(map->count + 1));
     for (int i = 0; i < map->count; ++i) {
         const Item *key = map->key[i];
@@ -148,17 +152,23 @@ Entry *section_entries(Reader *reader, const Item *map, const char *thing, int *
     return entry;
 }
 
+static const char *name_at(const void *first, size_t stride, int i)
+{
+    return *(const char *const *)(const void *)((const char *)first + (size_t)i * stride);
+}
+
 /* `word` must be one of the names that `count` structures of `stride` bytes begin with; returns its index. */
 static int find(Reader *reader, const Item *item, const char *what, const char *thing, const void *first, int count,
                 size_t stride)
 {
     const char *word = doc_word(item, what);
+    for (int i = 0; i < count; ++i)
+        if (!strcmp(name_at(first, stride, i), word))
+            return i;
     const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(count + 1));
     Text list = {.pool = reader->pool};
     for (int i = 0; i < count; ++i) {
-        name[i] = *(const char *const *)(const void *)((const char *)first + (size_t)i * stride);
-        if (!strcmp(name[i], word))
-            return i;
+        name[i] = name_at(first, stride, i);
         text_print(&list, "%s%s", i ? ", " : "", name[i]);
     }
     const char *nearest = diag_nearest(word, name, count);
@@ -195,7 +205,9 @@ static void find_bodies(Reader *reader, const Item *item, const char *what, bool
 
 bool mentions_parameter(const Reader *reader, const Item *item)
 {
-    for (int i = 0; item->kind == ITEM_SCALAR && i < reader->model->parameters; ++i) {
+    if (item->kind != ITEM_SCALAR || doc_is_decimal(item))
+        return false;
+    for (int i = 0; i < reader->model->parameters; ++i) {
         const char *name = reader->model->parameter[i].name;
         size_t length = strlen(name);
         for (const char *s = item->text; (s = strstr(s, name)); s += length) {

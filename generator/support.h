@@ -63,8 +63,15 @@ void file_write(const char *path, const char *bytes, size_t size);
 bool file_is_special(const char *path);
 /* Does a path end so, with something before it? */
 bool path_ends(const char *path, const char *end);
-/* All bytes of a file ("-": standard input), terminated. Exits with a message when it can't be read. */
-char *file_read(Pool *pool, const char *path, size_t *size);
+enum {
+    TEXT_MOST = 4 << 20,   /* bytes of a model with all that it includes, of a scene, of a tire: for people to write */
+    KEYS_MOST = 10000,     /* of one map, which is looked through from its beginning */
+    TABLE_MOST = 512 << 20 /* bytes of tables and other files that programs write */
+};
+
+/* All bytes of a file ("-": standard input), terminated. Exits with a message when it can't be read, or has more than
+ * `most` bytes: devices and pipes may never end. */
+char *file_read(Pool *pool, const char *path, size_t most, size_t *size);
 
 /* ---- diag.c: messages for people ---------------------------------------------------------------- */
 
@@ -87,6 +94,8 @@ typedef struct Source {
 _Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* The same as a warning; returns. */
 void diag_warn(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The line of a place, to its end and on. */
+const char *diag_line(Place at);
 /* The place of a byte of a source: its line, and its column in characters (UTF-8). */
 Place diag_place(const Source *source, size_t offset);
 /* Of `count` words the one most like `word` (edit distance), or NULL when none is near. */
@@ -113,6 +122,9 @@ typedef struct Item {
 const Item *doc_read(Pool *pool, const char *path);
 /* Value of a key of a map, or NULL. */
 const Item *doc_find(const Item *map, const char *key);
+
+/* Does a scalar look like a decimal number? */
+bool doc_is_decimal(const Item *item);
 
 /* Checked access for readers of `.veh` and scene files; each ends in diag_fail naming what was expected. `what` names
  * the thing in messages ("mass of body 'chassis'"). */

@@ -10,7 +10,7 @@
 static const char *template_text(Pool *pool, const char *templates, const char *name, size_t *size)
 {
     if (templates)
-        return file_read(pool, pool_print(pool, "%s/%s", templates, name), size);
+        return file_read(pool, pool_print(pool, "%s/%s", templates, name), TEXT_MOST, size);
     for (const Embedded *file = embedded; file->name; ++file)
         if (!strcmp(file->name, name)) {
             *size = file->size;

@@ -618,9 +618,7 @@ void tir_read(const Reader *reader, const Item *item, const char *what, Tire *ti
     struct stat identity;
     *tir = (Tir){.pool = reader->pool, .what = what};
     tir->source.path = path_check(reader->pool, item, item->at.source->path, doc_word(item, what), "read", &identity);
-    if (!S_ISREG(identity.st_mode))
-        diag_fail(item->at, "name a .tir file", "can't read '%s': it is no file", tir->source.path);
-    tir->source.bytes = file_read(reader->pool, tir->source.path, &tir->source.size);
+    tir->source.bytes = file_read(reader->pool, tir->source.path, TEXT_MOST, &tir->source.size);
     lines_read(tir);
     numbers_read(tir);
     format_check(tir);

@@ -249,7 +249,7 @@ void file_write(const char *path, const char *bytes, size_t size)
     free(temporary);
 }
 
-char *file_read(Pool *pool, const char *path, size_t *size)
+char *file_read(Pool *pool, const char *path, size_t most, size_t *size)
 {
     bool standard = !strcmp(path, "-");
     FILE *file = standard ? stdin : fopen(path, "rb");
@@ -257,10 +257,16 @@ char *file_read(Pool *pool, const char *path, size_t *size)
         file_fail(path, "can't open");
     Text text = {.pool = pool};
     char buffer[1 << 14];
-    for (size_t n; (n = fread(buffer, 1, sizeof buffer, file)) > 0;)
+    for (size_t n; text.size <= most && (n = fread(buffer, 1, sizeof buffer, file)) > 0;)
         text_add(&text, buffer, n);
     if (ferror(file))
         file_fail(path, "can't read");
+    if (text.size > most) {
+        fprintf(stderr, "%s: error: larger than the %zu MB that are read of such a file\n"
+                        "  remedy: is it the file that was meant?\n",
+                path, most >> 20);
+        exit(1);
+    }
     if (!standard)
         fclose(file);
     text_add(&text, "", 0);

@@ -98,7 +98,7 @@ static const char *build_key(Build *b)
 static void object_copy(Pool *pool, const char *from, const char *to)
 {
     size_t size;
-    const char *bytes = file_read(pool, from, &size);
+    const char *bytes = file_read(pool, from, TABLE_MOST, &size);
     file_write(to, bytes, size);
 }
 

@@ -99,6 +99,8 @@ void csv_close(Csv *csv)
 
 /* ---- reading -------------------------------------------------------------------------------------------- */
 
+enum { COLUMNS_MOST = 10000 };
+
 /* A cell's text between separators, without the blanks around it. */
 typedef struct Cell {
     const char *from, *to;
@@ -174,11 +176,13 @@ static void read_header(Pool *pool, CsvTable *table, const char *header, const c
     int places = 0;
     for (Cell c; next_cell(&s, end, &c);) {
         const char *name = column_name(pool, table->source, c, header);
+        if (table->columns == COLUMNS_MOST)
+            diag_fail(cell_place(table->source, &c), "remove some of them", "more than %d columns", COLUMNS_MOST);
         for (int i = 0; i < table->columns; ++i)
             if (!strcmp(table->name[i], name))
                 diag_fail(cell_place(table->source, &c), "remove one of them", "column '%s' is here twice", name);
         *POOL_PUSH(pool, table->name, table->columns) = name;
-        *POOL_PUSH(pool, table->at, places) = cell_place(table->source, &c);
+        *POOL_PUSH(pool, table->at, places) = (size_t)(c.from - table->source->bytes);
     }
 }
 
@@ -203,7 +207,7 @@ const CsvTable *csv_read(Pool *pool, const char *path, const char *header)
 {
     Source *source = pool_alloc(pool, sizeof *source);
     source->path = path;
-    source->bytes = file_read(pool, path, &source->size);
+    source->bytes = file_read(pool, path, TABLE_MOST, &source->size);
     if (source->size >= 3 && !memcmp(source->bytes, "\xef\xbb\xbf", 3)) { /* byte order mark */
         source->bytes += 3;
         source->size -= 3;
@@ -234,4 +238,9 @@ const CsvTable *csv_read(Pool *pool, const char *path, const char *header)
 Place csv_place(const CsvTable *table, int row)
 {
     return diag_place(table->source, table->line[row]);
+}
+
+Place csv_name_place(const CsvTable *table, int column)
+{
+    return diag_place(table->source, table->at[column]);
 }

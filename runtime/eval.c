@@ -57,7 +57,8 @@ static Columns find_columns(Pool *pool, const Engine *engine, const CsvTable *ta
             ++i;
         const char *nearest = diag_nearest(table->name[k], name, numbers);
         if (i == numbers)
-            diag_fail(table->at[k], nearest ? pool_print(pool, "did you mean '%s'?", nearest) : "remove the column",
+            diag_fail(csv_name_place(table, k),
+                      nearest ? pool_print(pool, "did you mean '%s'?", nearest) : "remove the column",
                       "the model has no state, input or tunable parameter '%s'", table->name[k]);
         columns.column[i] = k;
     }
@@ -66,7 +67,7 @@ static Columns find_columns(Pool *pool, const Engine *engine, const CsvTable *ta
         if (columns.column[i] < 0 && is_needed(engine, i))
             text_print(&missing, "%s%s", missing.size ? ", " : "add ", name[i]);
     if (missing.size)
-        diag_fail(table->at[0], missing.s, "columns are missing");
+        diag_fail(csv_name_place(table, 0), missing.s, "columns are missing");
     return columns;
 }
 

@@ -167,7 +167,7 @@ typedef struct CsvTable {
     const Source *source;
     int columns, rows;
     const char **name;
-    Place *at;     /* of the names */
+    size_t *at;    /* where the names begin in the source */
     double *value; /* [rows][columns] */
     size_t *line;  /* [rows] where each begins in the source */
 } CsvTable;
@@ -175,6 +175,7 @@ typedef struct CsvTable {
 /* header: the first line that messages suggest. */
 const CsvTable *csv_read(Pool *pool, const char *path, const char *header);
 Place csv_place(const CsvTable *table, int row);
+Place csv_name_place(const CsvTable *table, int column);
 
 /* ---- plot.c --------------------------------------------------------------------------------------------- */
 

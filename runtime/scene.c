@@ -117,10 +117,11 @@ static void read_integrator(Reader *reader, const Item *root, const char *integr
                   integrator_name(scene->method));
 }
 
+static const double most_steps = 1e12; /* of a run; a double counts further, but nobody waits for so many */
+
 /* How many constant steps make an output step. */
 static void count_steps(Reader *reader, const Item *step, const Item *output)
 {
-    const double most_steps = 1e12;
     Scene *scene = reader->scene;
     if (scene->duration / scene->step > most_steps)
         diag_fail(step->at, "a longer step or a shorter duration", "the run would take more than %g steps", most_steps);
@@ -156,12 +157,15 @@ static void read_time(Reader *reader, const Item *root)
     scene->duration = scene_positive(duration, "duration");
     scene->step = step ? scene_positive(step, "step") : 0;
     scene->output_step = output ? scene_positive(output, "output_step") : scene->step;
-    if (constant)
-        count_steps(reader, step, output);
+    if (!(scene->duration / scene->output_step <= most_steps))
+        diag_fail(duration->at, "a longer output_step or a shorter duration",
+                  "the run would have more than %g output times", most_steps);
     scene->outputs = (int64_t)floor(scene->duration / scene->output_step * (1 + 1e-12) + 1e-9);
     if (!scene->outputs)
         diag_fail(duration->at, "a longer duration, or a shorter step or output_step",
                   "the scene ends before the first output at %.15g s", scene->output_step);
+    if (constant)
+        count_steps(reader, step, output);
 }
 
 /* ---- the initial state ---------------------------------------------------------------------------------- */

@@ -36,9 +36,9 @@ static void path_through(Pool *pool, Path *path, const double (*point)[2], int c
         if (i && s[i] - s[i - 1] < 1e-3)
             diag_fail(at, "keep one of the two", "points %d and %d of the path are the same", i, i + 1);
     }
+    path_room(pool, path, s[count - 1], at); /* refuses what is infinite */
     const double *bend[2] = {spline_bend(pool, s, x, count, path->closed), spline_bend(pool, s, y, count, path->closed)};
     int place[2] = {0};
-    path_room(pool, path, s[count - 1], at);
     for (int i = 0; i < path->count; ++i) {
         const double along = fmin(i * path->step, s[count - 1]);
         path->point[i][0] = spline_value(s, x, bend[0], count, along, &place[0]);

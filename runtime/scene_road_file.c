@@ -25,6 +25,8 @@ const CsvTable *scene_file(Pool *pool, const Item *item, const char *what, const
                   strerror(errno));
     if (S_ISDIR(about.st_mode))
         diag_fail(item->at, "name a file in it", "can't read the %s '%s': it is a folder", what, path);
+    if (!S_ISREG(about.st_mode))
+        diag_fail(item->at, "name a file", "can't read the %s '%s': it is a device or a pipe", what, path);
     return csv_read(pool, path, header);
 }
 
@@ -36,7 +38,7 @@ static void check_columns(Pool *pool, const CsvTable *table, const char *const *
         while (k < count && strcmp(known[k], table->name[i]))
             ++k;
         if (k == count)
-            diag_fail(table->at[i], pool_print(pool, "the columns are %s", header),
+            diag_fail(csv_name_place(table, i), pool_print(pool, "the columns are %s", header),
                       "the file of a road has no column '%s'", table->name[i]);
     }
 }
@@ -55,7 +57,8 @@ static double *column_need(Pool *pool, const CsvTable *table, const char *name, 
 {
     const int column = column_find(table, name);
     if (column < 0)
-        diag_fail(table->at[0], pool_print(pool, "the columns are %s", header), "the column '%s' is missing", name);
+        diag_fail(csv_name_place(table, 0), pool_print(pool, "the columns are %s", header),
+                  "the column '%s' is missing", name);
     double *out = pool_alloc(pool, sizeof *out * (size_t)(table->rows + 1));
     for (int i = 0; i < table->rows; ++i)
         out[i] = table->value[i * table->columns + column];
@@ -71,7 +74,7 @@ const gic_road *table_file_read(Pool *pool, const Item *item)
     check_columns(pool, table, columns, 4, header);
     const int shared = column_find(table, "height");
     if (shared >= 0 && table->columns > 2)
-        diag_fail(table->at[shared], "give height for both tracks, or left and right",
+        diag_fail(csv_name_place(table, shared), "give height for both tracks, or left and right",
                   "the file has height beside left or right");
     const double *x = column_need(pool, table, "x", header);
     road->left = column_need(pool, table, shared >= 0 ? "height" : "left", header);
@@ -149,6 +152,10 @@ const gic_road *grid_file_read(Pool *pool, const Item *item)
                             .nx = nx,
                             .ny = ny,
                             .height = height};
+    const double least = 1e-9, most = 1e9; /* m between nodes that numbers still tell apart */
+    if (!(road->dx >= least && road->dy >= least && road->dx <= most && road->dy <= most))
+        diag_fail(whole, "give x and y in metres", "nodes of the height field are %g m apart along x, %g m along y",
+                  road->dx, road->dy);
     for (int i = 0; i < table->rows; ++i) {
         /* a grid rounded to some digits is one */
         const double x = road->x0 + i % nx * road->dx, y = road->y0 + i / nx * road->dy, share = 1e-3;

@@ -61,7 +61,7 @@ static bool take_line(Journal *journal, const char *line)
 static void take(Journal *journal, const char *first)
 {
     size_t size;
-    const char *bytes = file_read(journal->pool, journal->path, &size);
+    const char *bytes = file_read(journal->pool, journal->path, SIZE_MAX, &size);
     char *text = pool_alloc(journal->pool, size + 1);
     memcpy(text, bytes, size);
     if (strncmp(text, first, strlen(first)) != 0)

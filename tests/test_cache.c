@@ -78,7 +78,7 @@ static void test_kept_is_found(void **state)
     const char *path = cache_find(f->pool, folder, "one");
     assert_non_null(path);
     size_t size;
-    const char *bytes = file_read(f->pool, path, &size);
+    const char *bytes = file_read(f->pool, path, TEXT_MOST, &size);
     assert_true(size > 1000 && bytes[0] == 'x' && bytes[999] == 'x');
     assert_null(cache_find(f->pool, folder, "two"));
     assert_false(cache_keep(f->pool, folder, "two", "/nonexistent/object", CACHE_MOST));
@@ -93,7 +93,7 @@ static void test_damage(void **state)
     assert_true(cache_keep(f->pool, folder, "one", f->object, CACHE_MOST));
     const char *path = cache_find(f->pool, folder, "one");
     size_t size;
-    char *bytes = file_read(f->pool, path, &size);
+    char *bytes = file_read(f->pool, path, TEXT_MOST, &size);
     for (size_t kept = 0; kept < size; ++kept) {
         file_write(path, bytes, kept);
         assert_null(cache_find(f->pool, folder, "one"));

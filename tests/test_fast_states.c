@@ -315,7 +315,7 @@ static void test_evaluate(void **unused)
         const char *path = write_temporary(bench.pool, "");
         evaluate(bench.pool, &bench.engine, NULL, &(Request){.states = states, .results = path});
         size_t size;
-        const char *results = file_read(bench.pool, path, &size);
+        const char *results = file_read(bench.pool, path, TEXT_MOST, &size);
         assert_true(cell(results, "a.x [m/s^2]") == 10);
         assert_true(cell(results, "lift.acceleration [m/s^2]") == 18);
         assert_true(cell(results, "left.spin.rate [rad/s^2]") == 0);
