@@ -161,7 +161,7 @@ $(attacking:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/stress/%.o $(t
 
 code := $(BUILD)/check/code
 driven := hmmwv hmmwv_tires quarter_car pendulum steered undamped glider
-driving := test_motion test_instance test_rolling test_threads
+driving := test_motion test_instance test_rolling test_keeping test_threads
 
 # the rack moved by inputs
 steered := s/^  rack: *{type: translation,/& driven: true,/; s/^  energy: .*/&\n  drive: {type: drive_force, coordinate: rack}/

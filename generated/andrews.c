@@ -124,6 +124,7 @@ typedef struct andrews_links {
     const gic_real *known[ANDREWS_KNOWN_ROOM];
     gic_real x[ANDREWS_DEPENDENCE_ROOM], rate[ANDREWS_DEPENDENCE_ROOM], change[ANDREWS_DEPENDENCE_ROOM], turn[3];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
+    int again, same[ANDREWS_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
 } andrews_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
@@ -428,6 +429,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
                 return GIC_ERROR_NEWTON;
             if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
+            ++self->head.late_count;
         }
     }
     for (i = 0; i < GIC_PASSES; ++i) {
@@ -906,6 +908,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             return GIC_OK;
         }
         before = step;
+        ++self->head.late_count;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -1166,6 +1169,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
                 return GIC_ERROR_NEWTON;
             if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
+            ++self->head.late_count;
         }
     }
     for (i = 0; i < GIC_PASSES; ++i) {
@@ -1703,6 +1707,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             return GIC_OK;
         }
         before = step;
+        ++self->head.late_count;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -1759,12 +1764,16 @@ static int andrews_recover_piece(andrews *self, andrews_links *links, const gic_
     (void)xd;
     (void)status;
     /* stage 1: K1 */
-    links->x[0] = start[0]; /* beta */
-    links->rate[0] = xd[0];
-    status = andrews_solve_K1(self, andrews_k_K1[0], links, start + 1, self->motion + 0, self->inertia + 0);
-    if (status != GIC_OK) {
-        self->head.subset = 0;
-        return status;
+    if (links->again && links->same[0]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[0]; /* beta */
+        links->rate[0] = xd[0];
+        status = andrews_solve_K1(self, andrews_k_K1[0], links, start + 1, self->motion + 0, self->inertia + 0);
+        if (status != GIC_OK) {
+            self->head.subset = 0;
+            return status;
+        }
     }
     /* stage 2: K2 K3 */
     links->known[0] = self->motion + 0; /* K1 */
@@ -1804,9 +1813,14 @@ static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
 {
     andrews_links links;
     const gic_real *const from = self->start[self->head.flip];
-    gic_real first[ANDREWS_COORDINATE_ROOM];
+    gic_real *const at = self->recovered_at, first[ANDREWS_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
+    links.again = self->recovered && !memcmp(at + 2 * ANDREWS_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 0;
+    for (i = 0; links.again && i < ANDREWS_COORDINATES; ++i)
+        links.same[i] = !memcmp(&at[i], &self->x[i], sizeof *at) &&
+            !memcmp(&at[ANDREWS_COORDINATE_ROOM + i], &self->xd[i], sizeof *at);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     for (i = 0; i < ANDREWS_COORDINATES; ++i) {
@@ -1828,6 +1842,10 @@ static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
             return status;
         self->head.flip = 1 - self->head.flip;
     }
+    memcpy(at, self->x, sizeof self->x);
+    memcpy(at + ANDREWS_COORDINATE_ROOM, self->xd, sizeof self->xd);
+    memcpy(at + 2 * ANDREWS_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 1;
     return GIC_OK;
 }
 

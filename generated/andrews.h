@@ -54,8 +54,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "andrews.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "andrews.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -64,7 +64,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    ANDREWS_ABI = 3,
+    ANDREWS_ABI = 4,
     ANDREWS_FREE_BASE = 0,
     ANDREWS_STATES = 2,
     ANDREWS_SLOW = 2,
@@ -76,6 +76,7 @@ enum {
     ANDREWS_COORDINATES = 1,
     ANDREWS_UNKNOWNS = 1,
     ANDREWS_SUBSETS = 4,
+    ANDREWS_SOLUTIONS = 4,
     ANDREWS_BODIES = 8,
     ANDREWS_FOLLOWED = 6,
     ANDREWS_WHEELS = 0,
@@ -164,11 +165,13 @@ typedef struct andrews {
     gic_real port[ANDREWS_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[ANDREWS_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[ANDREWS_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * ANDREWS_STATE_ROOM];
+    gic_real history[GIC_HISTORY(ANDREWS_STATE_ROOM, ANDREWS_STATES - ANDREWS_SLOW)];
     gic_real scratch[GIC_SCRATCH(ANDREWS_STATE_ROOM, ANDREWS_INPUT_ROOM)];
     gic_real x[ANDREWS_COORDINATE_ROOM], xd[ANDREWS_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][ANDREWS_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[ANDREWS_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * ANDREWS_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[ANDREWS_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[ANDREWS_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } andrews;

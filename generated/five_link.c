@@ -145,6 +145,7 @@ typedef struct five_link_links {
     const gic_real *known[FIVE_LINK_KNOWN_ROOM];
     gic_real x[FIVE_LINK_DEPENDENCE_ROOM], rate[FIVE_LINK_DEPENDENCE_ROOM], change[FIVE_LINK_DEPENDENCE_ROOM], turn[3];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
+    int again, same[FIVE_LINK_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
 } five_link_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
@@ -548,6 +549,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
                 return GIC_ERROR_NEWTON;
             if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
+            ++self->head.late_count;
         }
     }
     for (i = 0; i < GIC_PASSES; ++i) {
@@ -985,6 +987,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             return GIC_OK;
         }
         before = step;
+        ++self->head.late_count;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -1408,28 +1411,40 @@ static int five_link_recover_piece(five_link *self, five_link_links *links, cons
     (void)xd;
     (void)status;
     /* stage 2: rack */
-    links->x[0] = start[4]; /* rack */
-    links->rate[0] = xd[4];
-    status = five_link_solve_rack(self, five_link_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
-    if (status != GIC_OK) {
-        self->head.subset = 1;
-        return status;
+    if (links->again && links->same[4]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[4]; /* rack */
+        links->rate[0] = xd[4];
+        status = five_link_solve_rack(self, five_link_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
+        if (status != GIC_OK) {
+            self->head.subset = 1;
+            return status;
+        }
     }
     /* stage 2: lca_f_l */
-    links->x[0] = start[0]; /* spring_f_l */
-    links->rate[0] = xd[0];
-    status = five_link_solve_lca_f_l(self, five_link_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
-    if (status != GIC_OK) {
-        self->head.subset = 2;
-        return status;
+    if (links->again && links->same[0]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[0]; /* spring_f_l */
+        links->rate[0] = xd[0];
+        status = five_link_solve_lca_f_l(self, five_link_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
+        if (status != GIC_OK) {
+            self->head.subset = 2;
+            return status;
+        }
     }
     /* stage 2: lca_f_r */
-    links->x[0] = start[1]; /* spring_f_r */
-    links->rate[0] = xd[1];
-    status = five_link_solve_lca_f_l(self, five_link_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
-    if (status != GIC_OK) {
-        self->head.subset = 3;
-        return status;
+    if (links->again && links->same[1]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[1]; /* spring_f_r */
+        links->rate[0] = xd[1];
+        status = five_link_solve_lca_f_l(self, five_link_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
+        if (status != GIC_OK) {
+            self->head.subset = 3;
+            return status;
+        }
     }
     /* stage 2: wheel_r_l */
     links->x[0] = start[2]; /* spring_r_l */
@@ -1450,28 +1465,36 @@ static int five_link_recover_piece(five_link *self, five_link_links *links, cons
         return status;
     }
     /* stage 3: wheel_f_l */
-    links->known[0] = self->motion + 0; /* rack */
-    links->known[1] = self->motion + 30; /* lca_f_l */
-    links->x[0] = start[4]; /* rack */
-    links->rate[0] = xd[4];
-    links->x[1] = start[0]; /* spring_f_l */
-    links->rate[1] = xd[0];
-    status = five_link_solve_wheel_f_l(self, five_link_k_wheel_f_l[0], links, start + 97, self->motion + 150, self->inertia + 115);
-    if (status != GIC_OK) {
-        self->head.subset = 6;
-        return status;
+    if (links->again && links->same[4] && links->same[0]) {
+        ++self->head.kept_count;
+    } else {
+        links->known[0] = self->motion + 0; /* rack */
+        links->known[1] = self->motion + 30; /* lca_f_l */
+        links->x[0] = start[4]; /* rack */
+        links->rate[0] = xd[4];
+        links->x[1] = start[0]; /* spring_f_l */
+        links->rate[1] = xd[0];
+        status = five_link_solve_wheel_f_l(self, five_link_k_wheel_f_l[0], links, start + 97, self->motion + 150, self->inertia + 115);
+        if (status != GIC_OK) {
+            self->head.subset = 6;
+            return status;
+        }
     }
     /* stage 3: wheel_f_r */
-    links->known[0] = self->motion + 0; /* rack */
-    links->known[1] = self->motion + 60; /* lca_f_r */
-    links->x[0] = start[4]; /* rack */
-    links->rate[0] = xd[4];
-    links->x[1] = start[1]; /* spring_f_r */
-    links->rate[1] = xd[1];
-    status = five_link_solve_wheel_f_l(self, five_link_k_wheel_f_l[1], links, start + 97, self->motion + 186, self->inertia + 147);
-    if (status != GIC_OK) {
-        self->head.subset = 7;
-        return status;
+    if (links->again && links->same[4] && links->same[1]) {
+        ++self->head.kept_count;
+    } else {
+        links->known[0] = self->motion + 0; /* rack */
+        links->known[1] = self->motion + 60; /* lca_f_r */
+        links->x[0] = start[4]; /* rack */
+        links->rate[0] = xd[4];
+        links->x[1] = start[1]; /* spring_f_r */
+        links->rate[1] = xd[1];
+        status = five_link_solve_wheel_f_l(self, five_link_k_wheel_f_l[1], links, start + 97, self->motion + 186, self->inertia + 147);
+        if (status != GIC_OK) {
+            self->head.subset = 7;
+            return status;
+        }
     }
     return GIC_OK;
 }
@@ -1481,9 +1504,14 @@ static int five_link_recover(five_link *self, const gic_real turn[3], int cold)
 {
     five_link_links links;
     const gic_real *const from = self->start[self->head.flip];
-    gic_real first[FIVE_LINK_COORDINATE_ROOM];
+    gic_real *const at = self->recovered_at, first[FIVE_LINK_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
+    links.again = self->recovered && !memcmp(at + 2 * FIVE_LINK_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 0;
+    for (i = 0; links.again && i < FIVE_LINK_COORDINATES; ++i)
+        links.same[i] = !memcmp(&at[i], &self->x[i], sizeof *at) &&
+            !memcmp(&at[FIVE_LINK_COORDINATE_ROOM + i], &self->xd[i], sizeof *at);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     for (i = 0; i < FIVE_LINK_COORDINATES; ++i) {
@@ -1505,6 +1533,10 @@ static int five_link_recover(five_link *self, const gic_real turn[3], int cold)
             return status;
         self->head.flip = 1 - self->head.flip;
     }
+    memcpy(at, self->x, sizeof self->x);
+    memcpy(at + FIVE_LINK_COORDINATE_ROOM, self->xd, sizeof self->xd);
+    memcpy(at + 2 * FIVE_LINK_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 1;
     return GIC_OK;
 }
 

@@ -75,8 +75,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "five_link.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "five_link.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -85,7 +85,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    FIVE_LINK_ABI = 3,
+    FIVE_LINK_ABI = 4,
     FIVE_LINK_FREE_BASE = 1,
     FIVE_LINK_STATES = 23,
     FIVE_LINK_SLOW = 23,
@@ -97,6 +97,7 @@ enum {
     FIVE_LINK_COORDINATES = 5,
     FIVE_LINK_UNKNOWNS = 11,
     FIVE_LINK_SUBSETS = 8,
+    FIVE_LINK_SOLUTIONS = 7,
     FIVE_LINK_BODIES = 8,
     FIVE_LINK_FOLLOWED = 2,
     FIVE_LINK_WHEELS = 4,
@@ -236,11 +237,13 @@ typedef struct five_link {
     gic_real port[FIVE_LINK_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[FIVE_LINK_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[FIVE_LINK_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * FIVE_LINK_STATE_ROOM];
+    gic_real history[GIC_HISTORY(FIVE_LINK_STATE_ROOM, FIVE_LINK_STATES - FIVE_LINK_SLOW)];
     gic_real scratch[GIC_SCRATCH(FIVE_LINK_STATE_ROOM, FIVE_LINK_INPUT_ROOM)];
     gic_real x[FIVE_LINK_COORDINATE_ROOM], xd[FIVE_LINK_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][FIVE_LINK_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[FIVE_LINK_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * FIVE_LINK_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[FIVE_LINK_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[FIVE_LINK_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } five_link;

@@ -81,8 +81,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "hmmwv.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "hmmwv.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -91,7 +91,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV_ABI = 3,
+    HMMWV_ABI = 4,
     HMMWV_FREE_BASE = 1,
     HMMWV_STATES = 23,
     HMMWV_SLOW = 23,
@@ -103,6 +103,7 @@ enum {
     HMMWV_COORDINATES = 5,
     HMMWV_UNKNOWNS = 11,
     HMMWV_SUBSETS = 10,
+    HMMWV_SOLUTIONS = 9,
     HMMWV_BODIES = 10,
     HMMWV_FOLLOWED = 0,
     HMMWV_WHEELS = 4,
@@ -236,11 +237,13 @@ typedef struct hmmwv {
     gic_real port[HMMWV_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[HMMWV_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * HMMWV_STATE_ROOM];
+    gic_real history[GIC_HISTORY(HMMWV_STATE_ROOM, HMMWV_STATES - HMMWV_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_STATE_ROOM, HMMWV_INPUT_ROOM)];
     gic_real x[HMMWV_COORDINATE_ROOM], xd[HMMWV_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][HMMWV_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * HMMWV_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[HMMWV_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } hmmwv;

@@ -83,8 +83,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "hmmwv14.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "hmmwv14.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -93,7 +93,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV14_ABI = 3,
+    HMMWV14_ABI = 4,
     HMMWV14_FREE_BASE = 1,
     HMMWV14_STATES = 23,
     HMMWV14_SLOW = 23,
@@ -105,6 +105,7 @@ enum {
     HMMWV14_COORDINATES = 5,
     HMMWV14_UNKNOWNS = 11,
     HMMWV14_SUBSETS = 10,
+    HMMWV14_SOLUTIONS = 9,
     HMMWV14_BODIES = 14,
     HMMWV14_FOLLOWED = 0,
     HMMWV14_WHEELS = 4,
@@ -253,11 +254,13 @@ typedef struct hmmwv14 {
     gic_real port[HMMWV14_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV14_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[HMMWV14_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * HMMWV14_STATE_ROOM];
+    gic_real history[GIC_HISTORY(HMMWV14_STATE_ROOM, HMMWV14_STATES - HMMWV14_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV14_STATE_ROOM, HMMWV14_INPUT_ROOM)];
     gic_real x[HMMWV14_COORDINATE_ROOM], xd[HMMWV14_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][HMMWV14_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV14_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * HMMWV14_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[HMMWV14_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV14_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } hmmwv14;

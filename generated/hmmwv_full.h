@@ -81,8 +81,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "hmmwv_full.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "hmmwv_full.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -91,7 +91,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV_FULL_ABI = 3,
+    HMMWV_FULL_ABI = 4,
     HMMWV_FULL_FREE_BASE = 1,
     HMMWV_FULL_STATES = 23,
     HMMWV_FULL_SLOW = 23,
@@ -103,6 +103,7 @@ enum {
     HMMWV_FULL_COORDINATES = 5,
     HMMWV_FULL_UNKNOWNS = 11,
     HMMWV_FULL_SUBSETS = 10,
+    HMMWV_FULL_SOLUTIONS = 9,
     HMMWV_FULL_BODIES = 10,
     HMMWV_FULL_FOLLOWED = 0,
     HMMWV_FULL_WHEELS = 4,
@@ -244,11 +245,13 @@ typedef struct hmmwv_full {
     gic_real port[HMMWV_FULL_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV_FULL_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[HMMWV_FULL_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * HMMWV_FULL_STATE_ROOM];
+    gic_real history[GIC_HISTORY(HMMWV_FULL_STATE_ROOM, HMMWV_FULL_STATES - HMMWV_FULL_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_FULL_STATE_ROOM, HMMWV_FULL_INPUT_ROOM)];
     gic_real x[HMMWV_FULL_COORDINATE_ROOM], xd[HMMWV_FULL_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][HMMWV_FULL_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_FULL_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * HMMWV_FULL_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[HMMWV_FULL_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_FULL_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } hmmwv_full;

@@ -85,8 +85,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "hmmwv_tires.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "hmmwv_tires.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -98,7 +98,7 @@ enum {
     HMMWV_TIRES_ROLLING = 4,
     HMMWV_TIRES_LINKS = 48,
     HMMWV_TIRES_GRIP = 27,
-    HMMWV_TIRES_ABI = 3,
+    HMMWV_TIRES_ABI = 4,
     HMMWV_TIRES_FREE_BASE = 1,
     HMMWV_TIRES_STATES = 37,
     HMMWV_TIRES_SLOW = 21,
@@ -110,6 +110,7 @@ enum {
     HMMWV_TIRES_COORDINATES = 5,
     HMMWV_TIRES_UNKNOWNS = 10,
     HMMWV_TIRES_SUBSETS = 10,
+    HMMWV_TIRES_SOLUTIONS = 9,
     HMMWV_TIRES_BODIES = 10,
     HMMWV_TIRES_FOLLOWED = 0,
     HMMWV_TIRES_WHEELS = 4,
@@ -322,17 +323,17 @@ typedef struct hmmwv_tires {
     gic_real port[HMMWV_TIRES_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV_TIRES_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[HMMWV_TIRES_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * HMMWV_TIRES_STATE_ROOM];
+    gic_real history[GIC_HISTORY(HMMWV_TIRES_STATE_ROOM, HMMWV_TIRES_STATES - HMMWV_TIRES_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_TIRES_STATE_ROOM, HMMWV_TIRES_INPUT_ROOM)];
     gic_real x[HMMWV_TIRES_COORDINATE_ROOM], xd[HMMWV_TIRES_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][HMMWV_TIRES_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_TIRES_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * HMMWV_TIRES_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[HMMWV_TIRES_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_TIRES_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_TIRES_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_TIRES_GRIP * HMMWV_TIRES_ROLLING]; /* what the wheels do, HMMWV_TIRES_GRIP numbers each */
-    gic_real recovered_at[2 * HMMWV_TIRES_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the last recovery */
-    int32_t recovered; /* 1: and it was good */
 } hmmwv_tires;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

@@ -85,8 +85,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "hmmwv_tmeasy.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "hmmwv_tmeasy.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -98,7 +98,7 @@ enum {
     HMMWV_TMEASY_ROLLING = 4,
     HMMWV_TMEASY_LINKS = 48,
     HMMWV_TMEASY_GRIP = 27,
-    HMMWV_TMEASY_ABI = 3,
+    HMMWV_TMEASY_ABI = 4,
     HMMWV_TMEASY_FREE_BASE = 1,
     HMMWV_TMEASY_STATES = 37,
     HMMWV_TMEASY_SLOW = 21,
@@ -110,6 +110,7 @@ enum {
     HMMWV_TMEASY_COORDINATES = 5,
     HMMWV_TMEASY_UNKNOWNS = 10,
     HMMWV_TMEASY_SUBSETS = 10,
+    HMMWV_TMEASY_SOLUTIONS = 9,
     HMMWV_TMEASY_BODIES = 10,
     HMMWV_TMEASY_FOLLOWED = 0,
     HMMWV_TMEASY_WHEELS = 4,
@@ -322,17 +323,17 @@ typedef struct hmmwv_tmeasy {
     gic_real port[HMMWV_TMEASY_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV_TMEASY_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[HMMWV_TMEASY_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * HMMWV_TMEASY_STATE_ROOM];
+    gic_real history[GIC_HISTORY(HMMWV_TMEASY_STATE_ROOM, HMMWV_TMEASY_STATES - HMMWV_TMEASY_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_TMEASY_STATE_ROOM, HMMWV_TMEASY_INPUT_ROOM)];
     gic_real x[HMMWV_TMEASY_COORDINATE_ROOM], xd[HMMWV_TMEASY_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][HMMWV_TMEASY_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_TMEASY_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * HMMWV_TMEASY_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[HMMWV_TMEASY_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_TMEASY_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_TMEASY_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_TMEASY_GRIP * HMMWV_TMEASY_ROLLING]; /* what the wheels do, HMMWV_TMEASY_GRIP numbers each */
-    gic_real recovered_at[2 * HMMWV_TMEASY_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the last recovery */
-    int32_t recovered; /* 1: and it was good */
 } hmmwv_tmeasy;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

@@ -156,6 +156,7 @@ typedef struct hmmwv_vehicle_links {
     const gic_real *known[HMMWV_VEHICLE_KNOWN_ROOM];
     gic_real x[HMMWV_VEHICLE_DEPENDENCE_ROOM], rate[HMMWV_VEHICLE_DEPENDENCE_ROOM], change[HMMWV_VEHICLE_DEPENDENCE_ROOM], turn[3];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
+    int again, same[HMMWV_VEHICLE_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
 } hmmwv_vehicle_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
@@ -968,86 +969,122 @@ static int hmmwv_vehicle_recover_piece(hmmwv_vehicle *self, hmmwv_vehicle_links 
     (void)xd;
     (void)status;
     /* stage 2: rack */
-    links->x[0] = start[4]; /* rack */
-    links->rate[0] = xd[4];
-    status = hmmwv_vehicle_solve_rack(self, hmmwv_vehicle_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
-    if (status != GIC_OK) {
-        self->head.subset = 1;
-        return status;
+    if (links->again && links->same[4]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[4]; /* rack */
+        links->rate[0] = xd[4];
+        status = hmmwv_vehicle_solve_rack(self, hmmwv_vehicle_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
+        if (status != GIC_OK) {
+            self->head.subset = 1;
+            return status;
+        }
     }
     /* stage 2: lca_f_l */
-    links->x[0] = start[0]; /* spring_f_l */
-    links->rate[0] = xd[0];
-    status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
-    if (status != GIC_OK) {
-        self->head.subset = 2;
-        return status;
+    if (links->again && links->same[0]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[0]; /* spring_f_l */
+        links->rate[0] = xd[0];
+        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
+        if (status != GIC_OK) {
+            self->head.subset = 2;
+            return status;
+        }
     }
     /* stage 2: lca_f_r */
-    links->x[0] = start[1]; /* spring_f_r */
-    links->rate[0] = xd[1];
-    status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
-    if (status != GIC_OK) {
-        self->head.subset = 3;
-        return status;
+    if (links->again && links->same[1]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[1]; /* spring_f_r */
+        links->rate[0] = xd[1];
+        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
+        if (status != GIC_OK) {
+            self->head.subset = 3;
+            return status;
+        }
     }
     /* stage 2: lca_r_l */
-    links->x[0] = start[2]; /* spring_r_l */
-    links->rate[0] = xd[2];
-    status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[2], links, start + 5, self->motion + 90, self->inertia + 69);
-    if (status != GIC_OK) {
-        self->head.subset = 4;
-        return status;
+    if (links->again && links->same[2]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[2]; /* spring_r_l */
+        links->rate[0] = xd[2];
+        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[2], links, start + 5, self->motion + 90, self->inertia + 69);
+        if (status != GIC_OK) {
+            self->head.subset = 4;
+            return status;
+        }
     }
     /* stage 2: lca_r_r */
-    links->x[0] = start[3]; /* spring_r_r */
-    links->rate[0] = xd[3];
-    status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[3], links, start + 5, self->motion + 120, self->inertia + 92);
-    if (status != GIC_OK) {
-        self->head.subset = 5;
-        return status;
+    if (links->again && links->same[3]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[3]; /* spring_r_r */
+        links->rate[0] = xd[3];
+        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[3], links, start + 5, self->motion + 120, self->inertia + 92);
+        if (status != GIC_OK) {
+            self->head.subset = 5;
+            return status;
+        }
     }
     /* stage 3: wheel_f_l */
-    links->known[0] = self->motion + 0; /* rack */
-    links->known[1] = self->motion + 30; /* lca_f_l */
-    links->x[0] = start[4]; /* rack */
-    links->rate[0] = xd[4];
-    links->x[1] = start[0]; /* spring_f_l */
-    links->rate[1] = xd[0];
-    status = hmmwv_vehicle_solve_wheel_f_l(self, hmmwv_vehicle_k_wheel_f_l[0], links, start + 5, self->motion + 150, self->inertia + 115);
-    if (status != GIC_OK) {
-        self->head.subset = 6;
-        return status;
+    if (links->again && links->same[4] && links->same[0]) {
+        ++self->head.kept_count;
+    } else {
+        links->known[0] = self->motion + 0; /* rack */
+        links->known[1] = self->motion + 30; /* lca_f_l */
+        links->x[0] = start[4]; /* rack */
+        links->rate[0] = xd[4];
+        links->x[1] = start[0]; /* spring_f_l */
+        links->rate[1] = xd[0];
+        status = hmmwv_vehicle_solve_wheel_f_l(self, hmmwv_vehicle_k_wheel_f_l[0], links, start + 5, self->motion + 150, self->inertia + 115);
+        if (status != GIC_OK) {
+            self->head.subset = 6;
+            return status;
+        }
     }
     /* stage 3: wheel_f_r */
-    links->known[0] = self->motion + 0; /* rack */
-    links->known[1] = self->motion + 60; /* lca_f_r */
-    links->x[0] = start[4]; /* rack */
-    links->rate[0] = xd[4];
-    links->x[1] = start[1]; /* spring_f_r */
-    links->rate[1] = xd[1];
-    status = hmmwv_vehicle_solve_wheel_f_l(self, hmmwv_vehicle_k_wheel_f_l[1], links, start + 5, self->motion + 186, self->inertia + 147);
-    if (status != GIC_OK) {
-        self->head.subset = 7;
-        return status;
+    if (links->again && links->same[4] && links->same[1]) {
+        ++self->head.kept_count;
+    } else {
+        links->known[0] = self->motion + 0; /* rack */
+        links->known[1] = self->motion + 60; /* lca_f_r */
+        links->x[0] = start[4]; /* rack */
+        links->rate[0] = xd[4];
+        links->x[1] = start[1]; /* spring_f_r */
+        links->rate[1] = xd[1];
+        status = hmmwv_vehicle_solve_wheel_f_l(self, hmmwv_vehicle_k_wheel_f_l[1], links, start + 5, self->motion + 186, self->inertia + 147);
+        if (status != GIC_OK) {
+            self->head.subset = 7;
+            return status;
+        }
     }
     /* stage 3: wheel_r_l */
-    links->known[0] = self->motion + 90; /* lca_r_l */
-    links->x[0] = start[2]; /* spring_r_l */
-    links->rate[0] = xd[2];
-    status = hmmwv_vehicle_solve_wheel_r_l(self, hmmwv_vehicle_k_wheel_r_l[0], links, start + 5, self->motion + 222, self->inertia + 179);
-    if (status != GIC_OK) {
-        self->head.subset = 8;
-        return status;
+    if (links->again && links->same[2]) {
+        ++self->head.kept_count;
+    } else {
+        links->known[0] = self->motion + 90; /* lca_r_l */
+        links->x[0] = start[2]; /* spring_r_l */
+        links->rate[0] = xd[2];
+        status = hmmwv_vehicle_solve_wheel_r_l(self, hmmwv_vehicle_k_wheel_r_l[0], links, start + 5, self->motion + 222, self->inertia + 179);
+        if (status != GIC_OK) {
+            self->head.subset = 8;
+            return status;
+        }
     }
     /* stage 3: wheel_r_r */
-    links->known[0] = self->motion + 120; /* lca_r_r */
-    links->x[0] = start[3]; /* spring_r_r */
-    links->rate[0] = xd[3];
-    status = hmmwv_vehicle_solve_wheel_r_l(self, hmmwv_vehicle_k_wheel_r_l[1], links, start + 5, self->motion + 252, self->inertia + 202);
-    if (status != GIC_OK) {
-        self->head.subset = 9;
-        return status;
+    if (links->again && links->same[3]) {
+        ++self->head.kept_count;
+    } else {
+        links->known[0] = self->motion + 120; /* lca_r_r */
+        links->x[0] = start[3]; /* spring_r_r */
+        links->rate[0] = xd[3];
+        status = hmmwv_vehicle_solve_wheel_r_l(self, hmmwv_vehicle_k_wheel_r_l[1], links, start + 5, self->motion + 252, self->inertia + 202);
+        if (status != GIC_OK) {
+            self->head.subset = 9;
+            return status;
+        }
     }
     return GIC_OK;
 }
@@ -1057,9 +1094,14 @@ static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], in
 {
     hmmwv_vehicle_links links;
     const gic_real *const from = self->start[self->head.flip];
-    gic_real first[HMMWV_VEHICLE_COORDINATE_ROOM];
+    gic_real *const at = self->recovered_at, first[HMMWV_VEHICLE_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
+    links.again = self->recovered && !memcmp(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 0;
+    for (i = 0; links.again && i < HMMWV_VEHICLE_COORDINATES; ++i)
+        links.same[i] = !memcmp(&at[i], &self->x[i], sizeof *at) &&
+            !memcmp(&at[HMMWV_VEHICLE_COORDINATE_ROOM + i], &self->xd[i], sizeof *at);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     for (i = 0; i < HMMWV_VEHICLE_COORDINATES; ++i) {
@@ -1081,6 +1123,10 @@ static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], in
             return status;
         self->head.flip = 1 - self->head.flip;
     }
+    memcpy(at, self->x, sizeof self->x);
+    memcpy(at + HMMWV_VEHICLE_COORDINATE_ROOM, self->xd, sizeof self->xd);
+    memcpy(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 1;
     return GIC_OK;
 }
 
@@ -1221,7 +1267,7 @@ static const gic_real hmmwv_vehicle_k_wheel_tire_f_l[4][1] = {
  * torque: of drive and brake. rate: of spin, slips, brake. grip: force 0 and torque 3 on the carrier,
  * drive and brake 6 7, load, deflection, its rate, road height 8 to 11, Fx Fy Mx My Mz 12, slips and camber 17
  * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26. */
-static int hmmwv_vehicle_wheel_tire_f_l(const hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k, gic_real time,
+static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k, gic_real time,
     const gic_real *GIC_RESTRICT link, const gic_real *GIC_RESTRICT fast, const gic_real *GIC_RESTRICT torque,
     gic_real *GIC_RESTRICT rate, gic_real *GIC_RESTRICT grip)
 {
@@ -1442,7 +1488,8 @@ static int hmmwv_vehicle_wheel_tire_f_l(const hmmwv_vehicle *self, const gic_rea
         force[2] = R(0.0);
         force[3] = t77;
         force[4] = t78;
-    }
+    } else
+        ++self->head.air_count;
     /* balance of the wheel, and what it does to its carrier */
     {
         const gic_real t1 = fast[0] - (link[8] * link[11] + (link[7] * link[10] + link[6] * link[9]));
@@ -1838,21 +1885,14 @@ static int hmmwv_vehicle_turn_wheels(hmmwv_vehicle *self, gic_real time, const g
 /* Recovery, unless the last one was for the very same coordinates and velocities. */
 static int hmmwv_vehicle_recover_once(hmmwv_vehicle *self, const gic_real turn[3])
 {
-    gic_real *const at = self->recovered_at;
-    int status;
+    const gic_real *const at = self->recovered_at;
     if (self->recovered && !memcmp(at, self->x, sizeof self->x) &&
         !memcmp(at + HMMWV_VEHICLE_COORDINATE_ROOM, self->xd, sizeof self->xd) &&
-        !memcmp(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn))
+        !memcmp(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn)) {
+        self->head.kept_count += HMMWV_VEHICLE_SOLUTIONS;
         return GIC_OK;
-    self->recovered = 0;
-    status = hmmwv_vehicle_recover(self, turn, 0);
-    if (status == GIC_OK) {
-        memcpy(at, self->x, sizeof self->x);
-        memcpy(at + HMMWV_VEHICLE_COORDINATE_ROOM, self->xd, sizeof self->xd);
-        memcpy(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn);
-        self->recovered = 1;
     }
-    return status;
+    return hmmwv_vehicle_recover(self, turn, 0);
 }
 
 /* Applied forces, composite inertia, and elimination of 10 accelerations: alpha and a of a free base, then the

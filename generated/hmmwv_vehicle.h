@@ -86,8 +86,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "hmmwv_vehicle.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "hmmwv_vehicle.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -103,7 +103,7 @@ enum {
     HMMWV_VEHICLE_REVERSE = 1,
     HMMWV_VEHICLE_ENGINE = 16, /* engine.speed among the fast states */
     HMMWV_VEHICLE_GEAR = 1, /* transmission.gear in discrete[] */
-    HMMWV_VEHICLE_ABI = 3,
+    HMMWV_VEHICLE_ABI = 4,
     HMMWV_VEHICLE_FREE_BASE = 1,
     HMMWV_VEHICLE_STATES = 39,
     HMMWV_VEHICLE_SLOW = 21,
@@ -115,6 +115,7 @@ enum {
     HMMWV_VEHICLE_COORDINATES = 5,
     HMMWV_VEHICLE_UNKNOWNS = 10,
     HMMWV_VEHICLE_SUBSETS = 10,
+    HMMWV_VEHICLE_SOLUTIONS = 9,
     HMMWV_VEHICLE_BODIES = 10,
     HMMWV_VEHICLE_FOLLOWED = 0,
     HMMWV_VEHICLE_WHEELS = 4,
@@ -338,18 +339,18 @@ typedef struct hmmwv_vehicle {
     gic_real port[HMMWV_VEHICLE_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV_VEHICLE_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[HMMWV_VEHICLE_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * HMMWV_VEHICLE_STATE_ROOM];
+    gic_real history[GIC_HISTORY(HMMWV_VEHICLE_STATE_ROOM, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_VEHICLE_STATE_ROOM, HMMWV_VEHICLE_INPUT_ROOM)];
     gic_real x[HMMWV_VEHICLE_COORDINATE_ROOM], xd[HMMWV_VEHICLE_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][HMMWV_VEHICLE_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_VEHICLE_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * HMMWV_VEHICLE_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[HMMWV_VEHICLE_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_VEHICLE_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_VEHICLE_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_VEHICLE_GRIP * HMMWV_VEHICLE_ROLLING]; /* what the wheels do, HMMWV_VEHICLE_GRIP numbers each */
-    gic_real recovered_at[2 * HMMWV_VEHICLE_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the last recovery */
     gic_real watch[8]; /* of the powertrain, as in its outputs */
-    int32_t recovered; /* 1: and it was good */
 } hmmwv_vehicle;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

@@ -102,6 +102,7 @@ typedef struct pendulum_links {
     const gic_real *known[PENDULUM_KNOWN_ROOM];
     gic_real x[PENDULUM_DEPENDENCE_ROOM], rate[PENDULUM_DEPENDENCE_ROOM], change[PENDULUM_DEPENDENCE_ROOM], turn[3];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
+    int again, same[PENDULUM_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
 } pendulum_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
@@ -205,12 +206,16 @@ static int pendulum_recover_piece(pendulum *self, pendulum_links *links, const g
     (void)xd;
     (void)status;
     /* stage 1: rod */
-    links->x[0] = start[0]; /* angle */
-    links->rate[0] = xd[0];
-    status = pendulum_solve_rod(self, pendulum_k_rod[0], links, start + 1, self->motion + 0, self->inertia + 0);
-    if (status != GIC_OK) {
-        self->head.subset = 0;
-        return status;
+    if (links->again && links->same[0]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[0]; /* angle */
+        links->rate[0] = xd[0];
+        status = pendulum_solve_rod(self, pendulum_k_rod[0], links, start + 1, self->motion + 0, self->inertia + 0);
+        if (status != GIC_OK) {
+            self->head.subset = 0;
+            return status;
+        }
     }
     return GIC_OK;
 }
@@ -220,9 +225,14 @@ static int pendulum_recover(pendulum *self, const gic_real turn[3], int cold)
 {
     pendulum_links links;
     const gic_real *const from = self->start[self->head.flip];
-    gic_real first[PENDULUM_COORDINATE_ROOM];
+    gic_real *const at = self->recovered_at, first[PENDULUM_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
+    links.again = self->recovered && !memcmp(at + 2 * PENDULUM_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 0;
+    for (i = 0; links.again && i < PENDULUM_COORDINATES; ++i)
+        links.same[i] = !memcmp(&at[i], &self->x[i], sizeof *at) &&
+            !memcmp(&at[PENDULUM_COORDINATE_ROOM + i], &self->xd[i], sizeof *at);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     for (i = 0; i < PENDULUM_COORDINATES; ++i) {
@@ -244,6 +254,10 @@ static int pendulum_recover(pendulum *self, const gic_real turn[3], int cold)
             return status;
         self->head.flip = 1 - self->head.flip;
     }
+    memcpy(at, self->x, sizeof self->x);
+    memcpy(at + PENDULUM_COORDINATE_ROOM, self->xd, sizeof self->xd);
+    memcpy(at + 2 * PENDULUM_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 1;
     return GIC_OK;
 }
 

@@ -32,8 +32,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "pendulum.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "pendulum.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -42,7 +42,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    PENDULUM_ABI = 3,
+    PENDULUM_ABI = 4,
     PENDULUM_FREE_BASE = 0,
     PENDULUM_STATES = 2,
     PENDULUM_SLOW = 2,
@@ -54,6 +54,7 @@ enum {
     PENDULUM_COORDINATES = 1,
     PENDULUM_UNKNOWNS = 1,
     PENDULUM_SUBSETS = 1,
+    PENDULUM_SOLUTIONS = 1,
     PENDULUM_BODIES = 2,
     PENDULUM_FOLLOWED = 0,
     PENDULUM_WHEELS = 0,
@@ -108,11 +109,13 @@ typedef struct pendulum {
     gic_real port[PENDULUM_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[PENDULUM_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[PENDULUM_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * PENDULUM_STATE_ROOM];
+    gic_real history[GIC_HISTORY(PENDULUM_STATE_ROOM, PENDULUM_STATES - PENDULUM_SLOW)];
     gic_real scratch[GIC_SCRATCH(PENDULUM_STATE_ROOM, PENDULUM_INPUT_ROOM)];
     gic_real x[PENDULUM_COORDINATE_ROOM], xd[PENDULUM_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][PENDULUM_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[PENDULUM_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * PENDULUM_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[PENDULUM_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[PENDULUM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } pendulum;

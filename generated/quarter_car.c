@@ -121,6 +121,7 @@ typedef struct quarter_car_links {
     const gic_real *known[QUARTER_CAR_KNOWN_ROOM];
     gic_real x[QUARTER_CAR_DEPENDENCE_ROOM], rate[QUARTER_CAR_DEPENDENCE_ROOM], change[QUARTER_CAR_DEPENDENCE_ROOM], turn[3];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
+    int again, same[QUARTER_CAR_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
 } quarter_car_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
@@ -559,35 +560,47 @@ static int quarter_car_recover_piece(quarter_car *self, quarter_car_links *links
     (void)xd;
     (void)status;
     /* stage 1: carriage */
-    links->x[0] = start[0]; /* bounce */
-    links->rate[0] = xd[0];
-    status = quarter_car_solve_carriage(self, quarter_car_k_carriage[0], links, start + 2, self->motion + 0, self->inertia + 0);
-    if (status != GIC_OK) {
-        self->head.subset = 0;
-        return status;
+    if (links->again && links->same[0]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[0]; /* bounce */
+        links->rate[0] = xd[0];
+        status = quarter_car_solve_carriage(self, quarter_car_k_carriage[0], links, start + 2, self->motion + 0, self->inertia + 0);
+        if (status != GIC_OK) {
+            self->head.subset = 0;
+            return status;
+        }
     }
     /* stage 2: arm */
-    links->known[0] = self->motion + 0; /* carriage */
-    links->x[0] = start[1]; /* spring */
-    links->rate[0] = xd[1];
-    links->x[1] = start[0]; /* bounce */
-    links->rate[1] = xd[0];
-    status = quarter_car_solve_arm(self, quarter_car_k_arm[0], links, start + 2, self->motion + 30, self->inertia + 23);
-    if (status != GIC_OK) {
-        self->head.subset = 1;
-        return status;
+    if (links->again && links->same[1] && links->same[0]) {
+        ++self->head.kept_count;
+    } else {
+        links->known[0] = self->motion + 0; /* carriage */
+        links->x[0] = start[1]; /* spring */
+        links->rate[0] = xd[1];
+        links->x[1] = start[0]; /* bounce */
+        links->rate[1] = xd[0];
+        status = quarter_car_solve_arm(self, quarter_car_k_arm[0], links, start + 2, self->motion + 30, self->inertia + 23);
+        if (status != GIC_OK) {
+            self->head.subset = 1;
+            return status;
+        }
     }
     /* stage 3: wheel */
-    links->known[0] = self->motion + 0; /* carriage */
-    links->known[1] = self->motion + 30; /* arm */
-    links->x[0] = start[0]; /* bounce */
-    links->rate[0] = xd[0];
-    links->x[1] = start[1]; /* spring */
-    links->rate[1] = xd[1];
-    status = quarter_car_solve_wheel(self, quarter_car_k_wheel[0], links, start + 2, self->motion + 66, self->inertia + 55);
-    if (status != GIC_OK) {
-        self->head.subset = 2;
-        return status;
+    if (links->again && links->same[0] && links->same[1]) {
+        ++self->head.kept_count;
+    } else {
+        links->known[0] = self->motion + 0; /* carriage */
+        links->known[1] = self->motion + 30; /* arm */
+        links->x[0] = start[0]; /* bounce */
+        links->rate[0] = xd[0];
+        links->x[1] = start[1]; /* spring */
+        links->rate[1] = xd[1];
+        status = quarter_car_solve_wheel(self, quarter_car_k_wheel[0], links, start + 2, self->motion + 66, self->inertia + 55);
+        if (status != GIC_OK) {
+            self->head.subset = 2;
+            return status;
+        }
     }
     return GIC_OK;
 }
@@ -597,9 +610,14 @@ static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int co
 {
     quarter_car_links links;
     const gic_real *const from = self->start[self->head.flip];
-    gic_real first[QUARTER_CAR_COORDINATE_ROOM];
+    gic_real *const at = self->recovered_at, first[QUARTER_CAR_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
+    links.again = self->recovered && !memcmp(at + 2 * QUARTER_CAR_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 0;
+    for (i = 0; links.again && i < QUARTER_CAR_COORDINATES; ++i)
+        links.same[i] = !memcmp(&at[i], &self->x[i], sizeof *at) &&
+            !memcmp(&at[QUARTER_CAR_COORDINATE_ROOM + i], &self->xd[i], sizeof *at);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     for (i = 0; i < QUARTER_CAR_COORDINATES; ++i) {
@@ -621,6 +639,10 @@ static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int co
             return status;
         self->head.flip = 1 - self->head.flip;
     }
+    memcpy(at, self->x, sizeof self->x);
+    memcpy(at + QUARTER_CAR_COORDINATE_ROOM, self->xd, sizeof self->xd);
+    memcpy(at + 2 * QUARTER_CAR_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 1;
     return GIC_OK;
 }
 

@@ -51,8 +51,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "quarter_car.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "quarter_car.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -61,7 +61,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    QUARTER_CAR_ABI = 3,
+    QUARTER_CAR_ABI = 4,
     QUARTER_CAR_FREE_BASE = 0,
     QUARTER_CAR_STATES = 4,
     QUARTER_CAR_SLOW = 4,
@@ -73,6 +73,7 @@ enum {
     QUARTER_CAR_COORDINATES = 2,
     QUARTER_CAR_UNKNOWNS = 2,
     QUARTER_CAR_SUBSETS = 3,
+    QUARTER_CAR_SOLUTIONS = 3,
     QUARTER_CAR_BODIES = 4,
     QUARTER_CAR_FOLLOWED = 0,
     QUARTER_CAR_WHEELS = 1,
@@ -140,11 +141,13 @@ typedef struct quarter_car {
     gic_real port[QUARTER_CAR_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[QUARTER_CAR_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[QUARTER_CAR_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * QUARTER_CAR_STATE_ROOM];
+    gic_real history[GIC_HISTORY(QUARTER_CAR_STATE_ROOM, QUARTER_CAR_STATES - QUARTER_CAR_SLOW)];
     gic_real scratch[GIC_SCRATCH(QUARTER_CAR_STATE_ROOM, QUARTER_CAR_INPUT_ROOM)];
     gic_real x[QUARTER_CAR_COORDINATE_ROOM], xd[QUARTER_CAR_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][QUARTER_CAR_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[QUARTER_CAR_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * QUARTER_CAR_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[QUARTER_CAR_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[QUARTER_CAR_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } quarter_car;

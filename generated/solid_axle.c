@@ -140,6 +140,7 @@ typedef struct solid_axle_links {
     const gic_real *known[SOLID_AXLE_KNOWN_ROOM];
     gic_real x[SOLID_AXLE_DEPENDENCE_ROOM], rate[SOLID_AXLE_DEPENDENCE_ROOM], change[SOLID_AXLE_DEPENDENCE_ROOM], turn[3];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
+    int again, same[SOLID_AXLE_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
 } solid_axle_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
@@ -540,6 +541,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
                 return GIC_ERROR_NEWTON;
             if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
                 break;
+            ++self->head.late_count;
         }
     }
     for (i = 0; i < GIC_PASSES; ++i) {
@@ -1033,6 +1035,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             return GIC_OK;
         }
         before = step;
+        ++self->head.late_count;
     }
     return GIC_ERROR_NEWTON;
 }
@@ -1460,28 +1463,40 @@ static int solid_axle_recover_piece(solid_axle *self, solid_axle_links *links, c
     (void)xd;
     (void)status;
     /* stage 2: rack */
-    links->x[0] = start[4]; /* rack */
-    links->rate[0] = xd[4];
-    status = solid_axle_solve_rack(self, solid_axle_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
-    if (status != GIC_OK) {
-        self->head.subset = 1;
-        return status;
+    if (links->again && links->same[4]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[4]; /* rack */
+        links->rate[0] = xd[4];
+        status = solid_axle_solve_rack(self, solid_axle_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
+        if (status != GIC_OK) {
+            self->head.subset = 1;
+            return status;
+        }
     }
     /* stage 2: lca_f_l */
-    links->x[0] = start[0]; /* spring_f_l */
-    links->rate[0] = xd[0];
-    status = solid_axle_solve_lca_f_l(self, solid_axle_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
-    if (status != GIC_OK) {
-        self->head.subset = 2;
-        return status;
+    if (links->again && links->same[0]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[0]; /* spring_f_l */
+        links->rate[0] = xd[0];
+        status = solid_axle_solve_lca_f_l(self, solid_axle_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
+        if (status != GIC_OK) {
+            self->head.subset = 2;
+            return status;
+        }
     }
     /* stage 2: lca_f_r */
-    links->x[0] = start[1]; /* spring_f_r */
-    links->rate[0] = xd[1];
-    status = solid_axle_solve_lca_f_l(self, solid_axle_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
-    if (status != GIC_OK) {
-        self->head.subset = 3;
-        return status;
+    if (links->again && links->same[1]) {
+        ++self->head.kept_count;
+    } else {
+        links->x[0] = start[1]; /* spring_f_r */
+        links->rate[0] = xd[1];
+        status = solid_axle_solve_lca_f_l(self, solid_axle_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
+        if (status != GIC_OK) {
+            self->head.subset = 3;
+            return status;
+        }
     }
     /* stage 2: axle */
     links->x[0] = start[2]; /* spring_r_l */
@@ -1496,28 +1511,36 @@ static int solid_axle_recover_piece(solid_axle *self, solid_axle_links *links, c
         return status;
     }
     /* stage 3: wheel_f_l */
-    links->known[0] = self->motion + 0; /* rack */
-    links->known[1] = self->motion + 30; /* lca_f_l */
-    links->x[0] = start[4]; /* rack */
-    links->rate[0] = xd[4];
-    links->x[1] = start[0]; /* spring_f_l */
-    links->rate[1] = xd[0];
-    status = solid_axle_solve_wheel_f_l(self, solid_axle_k_wheel_f_l[0], links, start + 57, self->motion + 126, self->inertia + 101);
-    if (status != GIC_OK) {
-        self->head.subset = 5;
-        return status;
+    if (links->again && links->same[4] && links->same[0]) {
+        ++self->head.kept_count;
+    } else {
+        links->known[0] = self->motion + 0; /* rack */
+        links->known[1] = self->motion + 30; /* lca_f_l */
+        links->x[0] = start[4]; /* rack */
+        links->rate[0] = xd[4];
+        links->x[1] = start[0]; /* spring_f_l */
+        links->rate[1] = xd[0];
+        status = solid_axle_solve_wheel_f_l(self, solid_axle_k_wheel_f_l[0], links, start + 57, self->motion + 126, self->inertia + 101);
+        if (status != GIC_OK) {
+            self->head.subset = 5;
+            return status;
+        }
     }
     /* stage 3: wheel_f_r */
-    links->known[0] = self->motion + 0; /* rack */
-    links->known[1] = self->motion + 60; /* lca_f_r */
-    links->x[0] = start[4]; /* rack */
-    links->rate[0] = xd[4];
-    links->x[1] = start[1]; /* spring_f_r */
-    links->rate[1] = xd[1];
-    status = solid_axle_solve_wheel_f_l(self, solid_axle_k_wheel_f_l[1], links, start + 57, self->motion + 162, self->inertia + 133);
-    if (status != GIC_OK) {
-        self->head.subset = 6;
-        return status;
+    if (links->again && links->same[4] && links->same[1]) {
+        ++self->head.kept_count;
+    } else {
+        links->known[0] = self->motion + 0; /* rack */
+        links->known[1] = self->motion + 60; /* lca_f_r */
+        links->x[0] = start[4]; /* rack */
+        links->rate[0] = xd[4];
+        links->x[1] = start[1]; /* spring_f_r */
+        links->rate[1] = xd[1];
+        status = solid_axle_solve_wheel_f_l(self, solid_axle_k_wheel_f_l[1], links, start + 57, self->motion + 162, self->inertia + 133);
+        if (status != GIC_OK) {
+            self->head.subset = 6;
+            return status;
+        }
     }
     return GIC_OK;
 }
@@ -1527,9 +1550,14 @@ static int solid_axle_recover(solid_axle *self, const gic_real turn[3], int cold
 {
     solid_axle_links links;
     const gic_real *const from = self->start[self->head.flip];
-    gic_real first[SOLID_AXLE_COORDINATE_ROOM];
+    gic_real *const at = self->recovered_at, first[SOLID_AXLE_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
+    links.again = self->recovered && !memcmp(at + 2 * SOLID_AXLE_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 0;
+    for (i = 0; links.again && i < SOLID_AXLE_COORDINATES; ++i)
+        links.same[i] = !memcmp(&at[i], &self->x[i], sizeof *at) &&
+            !memcmp(&at[SOLID_AXLE_COORDINATE_ROOM + i], &self->xd[i], sizeof *at);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     for (i = 0; i < SOLID_AXLE_COORDINATES; ++i) {
@@ -1551,6 +1579,10 @@ static int solid_axle_recover(solid_axle *self, const gic_real turn[3], int cold
             return status;
         self->head.flip = 1 - self->head.flip;
     }
+    memcpy(at, self->x, sizeof self->x);
+    memcpy(at + SOLID_AXLE_COORDINATE_ROOM, self->xd, sizeof self->xd);
+    memcpy(at + 2 * SOLID_AXLE_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    self->recovered = 1;
     return GIC_OK;
 }
 

@@ -70,8 +70,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "solid_axle.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "solid_axle.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -80,7 +80,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    SOLID_AXLE_ABI = 3,
+    SOLID_AXLE_ABI = 4,
     SOLID_AXLE_FREE_BASE = 1,
     SOLID_AXLE_STATES = 23,
     SOLID_AXLE_SLOW = 23,
@@ -92,6 +92,7 @@ enum {
     SOLID_AXLE_COORDINATES = 5,
     SOLID_AXLE_UNKNOWNS = 11,
     SOLID_AXLE_SUBSETS = 7,
+    SOLID_AXLE_SOLUTIONS = 6,
     SOLID_AXLE_BODIES = 7,
     SOLID_AXLE_FOLLOWED = 1,
     SOLID_AXLE_WHEELS = 4,
@@ -228,11 +229,13 @@ typedef struct solid_axle {
     gic_real port[SOLID_AXLE_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[SOLID_AXLE_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[SOLID_AXLE_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * SOLID_AXLE_STATE_ROOM];
+    gic_real history[GIC_HISTORY(SOLID_AXLE_STATE_ROOM, SOLID_AXLE_STATES - SOLID_AXLE_SLOW)];
     gic_real scratch[GIC_SCRATCH(SOLID_AXLE_STATE_ROOM, SOLID_AXLE_INPUT_ROOM)];
     gic_real x[SOLID_AXLE_COORDINATE_ROOM], xd[SOLID_AXLE_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][SOLID_AXLE_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[SOLID_AXLE_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * SOLID_AXLE_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[SOLID_AXLE_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[SOLID_AXLE_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } solid_axle;

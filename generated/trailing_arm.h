@@ -73,8 +73,8 @@
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 3
-#error "trailing_arm.h was generated for version 3 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 4
+#error "trailing_arm.h was generated for version 4 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -83,7 +83,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    TRAILING_ARM_ABI = 3,
+    TRAILING_ARM_ABI = 4,
     TRAILING_ARM_FREE_BASE = 1,
     TRAILING_ARM_STATES = 23,
     TRAILING_ARM_SLOW = 23,
@@ -95,6 +95,7 @@ enum {
     TRAILING_ARM_COORDINATES = 5,
     TRAILING_ARM_UNKNOWNS = 11,
     TRAILING_ARM_SUBSETS = 8,
+    TRAILING_ARM_SOLUTIONS = 7,
     TRAILING_ARM_BODIES = 8,
     TRAILING_ARM_FOLLOWED = 0,
     TRAILING_ARM_WHEELS = 4,
@@ -238,11 +239,13 @@ typedef struct trailing_arm {
     gic_real port[TRAILING_ARM_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[TRAILING_ARM_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
     gic_real rate[TRAILING_ARM_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
-    gic_real history[2 * TRAILING_ARM_STATE_ROOM];
+    gic_real history[GIC_HISTORY(TRAILING_ARM_STATE_ROOM, TRAILING_ARM_STATES - TRAILING_ARM_SLOW)];
     gic_real scratch[GIC_SCRATCH(TRAILING_ARM_STATE_ROOM, TRAILING_ARM_INPUT_ROOM)];
     gic_real x[TRAILING_ARM_COORDINATE_ROOM], xd[TRAILING_ARM_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[2][TRAILING_ARM_START_ROOM];           /* where Newton begins: the last good one, and the next */
     gic_real motion[TRAILING_ARM_MOTION_ROOM];            /* bodies relative to the base */
+    gic_real recovered_at[2 * TRAILING_ARM_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[TRAILING_ARM_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[TRAILING_ARM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } trailing_arm;

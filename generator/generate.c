@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* The version of gic_runtime.h that emitted code is written for: GIC_ABI_VERSION. */
-enum { ABI_VERSION = 3 };
+enum { ABI_VERSION = 4 };
 
 /* ---- texts ------------------------------------------------------------------------------------------------ */
 
@@ -103,6 +103,15 @@ int states(const Generation *g)
     return g->plan->states + g->model->fast_states;
 }
 
+/* Subsets that a recovery solves. */
+static int solutions(const Sequence *sequence)
+{
+    int count = 0;
+    for (int s = 0; s < sequence->subsets; ++s)
+        count += sequence->subset[s].class >= 0;
+    return count;
+}
+
 /* Bodies whose poses a Newton start has. */
 static int followed_bodies(const Plan *plan)
 {
@@ -131,6 +140,7 @@ static void write_sizes(Generation *g, Text *out, int indent)
                 {"COORDINATES", model->coordinates},
                 {"UNKNOWNS", plan->unknowns},
                 {"SUBSETS", g->sequence->subsets},
+                {"SOLUTIONS", solutions(g->sequence)},
                 {"BODIES", model->bodies},
                 {"FOLLOWED", followed_bodies(plan)},
                 {"WHEELS", model->wheels},
@@ -343,6 +353,22 @@ static void write_knowns(Generation *g, Text *out, int indent, const Subset *sub
         line(out, indent, "links.known[%d] = self->motion + %d;", i, g->plan->motion_offset[subset->known[i]]);
 }
 
+/* The solution of a subset is kept where it is for the same numbers; what the start has of it moves on. Returns the
+ * indent of the other branch. */
+static int open_kept(Generation *g, Text *out, int indent, const Subset *subset, int s)
+{
+    const int offset = g->plan->start_offset[s], numbers = g->plan->formula[subset->class]->layout.start_size;
+    text_print(out, "%*sif (links->again", indent, "");
+    for (int j = 0; j < subset->deps; ++j)
+        text_print(out, " && links->same[%d]", subset->dep[j]);
+    text_print(out, ") {\n");
+    line(out, indent + 4, "++self->head.kept_count;");
+    if (numbers)
+        line(out, indent + 4, "memcpy(start + %d, old + %d, %d * sizeof *start);", offset, offset, numbers);
+    line(out, indent, "} else {");
+    return indent + 4;
+}
+
 /* Through a pointer in recover_piece, an object in residual: the same lines serve both. */
 static void write_calls(Generation *g, Text *out, int indent)
 {
@@ -353,7 +379,7 @@ static void write_calls(Generation *g, Text *out, int indent)
             continue;
         const Class *class = &sequence->class[subset->class];
         const bool closed = g->plan->formula[subset->class]->closed;
-        const bool steady = narrowing_steady(g->formulation->narrowing, s);
+        const bool steady = narrowing_steady(g->formulation->narrowing, s), keeps = !steady && plan_keeps(g->plan, s);
         if (steady)
             line(out, indent, "if (links->cold) { /* nothing about it changes later */");
         indent += steady ? 4 : 0;
@@ -361,6 +387,8 @@ static void write_calls(Generation *g, Text *out, int indent)
         for (int b = 0; b < subset->bodies; ++b)
             text_print(out, " %s", g->model->body[subset->body[b]].name);
         text_print(out, " */\n");
+        if (keeps)
+            indent = open_kept(g, out, indent, subset, s);
         for (int i = 0; i < subset->knowns; ++i)
             line(out, indent, "links->known[%d] = self->motion + %d; /* %s */", i,
                  g->plan->motion_offset[subset->known[i]], g->model->body[subset->known[i]].name);
@@ -382,9 +410,8 @@ static void write_calls(Generation *g, Text *out, int indent)
         line(out, indent + 4, "self->head.subset = %d;", s);
         line(out, indent + 4, "return status;");
         line(out, indent, "}");
-        indent -= steady ? 4 : 0;
-        if (steady)
-            line(out, indent, "}");
+        if (steady || keeps)
+            line(out, indent -= 4, "}");
     }
 }
 

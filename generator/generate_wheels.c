@@ -163,11 +163,7 @@ void write_wheel_members(Generation *g, Text *out, int indent)
          g->upper);
     line(out, indent, "gic_real grip[%s_GRIP * %s_ROLLING]; /* what the wheels do, %s_GRIP numbers each */", g->upper,
          g->upper, g->upper);
-    line(out, indent,
-         "gic_real recovered_at[2 * %s_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the last recovery */",
-         g->upper);
     write_powertrain_members(g, out, indent);
-    line(out, indent, "int32_t recovered; /* 1: and it was good */");
 }
 
 void write_wheel_sizes(Generation *g, Text *out, int indent)

@@ -497,6 +497,9 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve s
 
 /* Does the Newton start have poses of this subset's bodies? Not of the base, nor where poses have a closed form. */
 bool plan_follows(const Plan *plan, int subset);
+/* Is the solution of a subset a function of its coordinates, their rates and the angular velocity of the base alone, so
+ * that one for the same numbers can be kept? One that Newton's iteration finds depends on its start, by rounding. */
+bool plan_keeps(const Plan *plan, int subset);
 
 /* Inputs of every global block, as C names: y state, e recovered Euler parameters of the base, x and xd values and
  * rates of all coordinates, u inputs, m motions, n inertias, lambda multipliers (Plan.multiplier_offset). Fixed base:

@@ -129,6 +129,17 @@ static void body_motion(Whole *whole, int body)
     }
 }
 
+bool plan_keeps(const Plan *plan, int subset)
+{
+    const Subset *own = &plan->sequence->subset[subset];
+    if (own->class < 0 || plan_follows(plan, subset))
+        return false;
+    for (int i = 0; i < own->knowns; ++i)
+        if (!plan_keeps(plan, plan->sequence->body_subset[own->known[i]]))
+            return false;
+    return true;
+}
+
 Whole *whole_new(Pool *pool, const Plan *plan)
 {
     const Model *model = plan->model;

@@ -140,7 +140,7 @@ static void place_arrays(gic_model *code)
         size_t *offset, count;
     } array[] = {{&code->state_offset, states},
                  {&code->rate_offset, states},
-                 {&code->history_offset, 2 * states},
+                 {&code->history_offset, GIC_HISTORY(states, (size_t)code->fast_count)},
                  {&code->scratch_offset, GIC_SCRATCH(states, (size_t)code->input_count)},
                  {&code->discrete_offset, 1 + POWERTRAIN_DISCRETE},
                  {&code->input_offset, (size_t)code->input_count},

@@ -525,7 +525,7 @@ static void set_states(Pool *pool, Interpreted *context, int own)
     code->state = signals(pool, context->world);
     code->state_offset = descriptor_place(code, states);
     code->rate_offset = descriptor_place(code, states);
-    code->history_offset = descriptor_place(code, 2 * states);
+    code->history_offset = descriptor_place(code, GIC_HISTORY(states, (size_t)code->fast_count));
     code->scratch_offset = descriptor_place(code, GIC_SCRATCH(states, (size_t)code->input_count));
 }
 

@@ -232,6 +232,7 @@ typedef struct Dual {
     gic_real start, step; /* time is start + steps * step, whichever way the head counts so far */
     int64_t steps;
     int32_t ratio;
+    gic_real steady;   /* of gic_step_steady */
     gic_real *scratch; /* rows of a state: 0 the rate at the start, 1 and 2 states, 3 to 6 what the method needs */
     gic_real *link;    /* rows 0 to 2: at this slow step and the two before; 3 at the next; 4 at a fast step */
     const gic_real *next, *fast[2]; /* results: the state; rates of the fast states at the last two fast steps */
@@ -294,6 +295,40 @@ static int start_dual(Dual *dual, int32_t known)
     return status == GIC_OK ? link_at(dual, dual->ratio, from, link + 3 * model->link_count) : status;
 }
 
+/* The course of the fast states: their rates as they were on average of late. */
+static gic_real *course(const Dual *dual)
+{
+    const gic_model *model = dual->model;
+    return array_at(dual->self, model->history_offset) + 2 * (model->slow_count + model->fast_count);
+}
+
+/* Do the fast states keep their course? rate: theirs at the start of this step. */
+static int keeps_course(const Dual *dual, const gic_real *fast, const gic_real *rate)
+{
+    const gic_real *mean = course(dual);
+    for (int32_t i = 0; i < dual->model->fast_count; ++i) {
+        const gic_real change = (rate[i] - mean[i]) * dual->step, size = fast[i] < GIC_R(0.0) ? -fast[i] : fast[i];
+        const gic_real most = dual->steady * (GIC_R(1.0) + size);
+        if (!(change <= most && change >= -most))
+            return 0;
+    }
+    return dual->steady > GIC_R(0.0);
+}
+
+/* A step on course. What rates differ from it acts for a fast step only, which is short enough for the fast states to
+ * be stable; rates: room for those that this makes in all. */
+static int stay_on_course(Dual *dual, gic_real *fast, const gic_real *rate, gic_real *rates)
+{
+    const gic_real *mean = course(dual);
+    for (int32_t i = 0; i < dual->model->fast_count; ++i) {
+        rates[i] = mean[i] + (rate[i] - mean[i]) / (gic_real)dual->ratio;
+        fast[i] += dual->step * rates[i];
+    }
+    dual->fast[0] = dual->fast[1] = rates;
+    ((gic_head *)dual->self)->steady_count += dual->ratio - 1;
+    return gic_finite(fast, dual->model->fast_count) ? GIC_OK : GIC_ERROR_RESULT;
+}
+
 /* A step with history: one of AB3 for the slow states, then `ratio` of AB3 for the fast ones. */
 static int march_dual(Dual *dual)
 {
@@ -317,6 +352,8 @@ static int march_dual(Dual *dual)
     dual->next = next;
     dual->fast[0] = history + slow;
     dual->fast[1] = history + n + slow;
+    if (keeps_course(dual, fast, rate + slow))
+        return stay_on_course(dual, fast, rate + slow, row(dual, 3));
     for (int32_t k = 0; k < dual->ratio; ++k) {
         gic_real *now = k == 0 ? rate + slow : row(dual, 3 + k % 3);
         if (k > 0) {
@@ -338,6 +375,16 @@ static int march_dual(Dual *dual)
     return GIC_OK;
 }
 
+/* After a step of the fast states from `before` to `after`: the course is a mean over some `ratio` steps. */
+static void follow_course(const Dual *dual, int32_t known, const gic_real *before, const gic_real *after)
+{
+    gic_real *mean = course(dual);
+    for (int32_t i = 0; i < dual->model->fast_count; ++i) {
+        const gic_real rate = (after[i] - before[i]) / dual->step;
+        mean[i] = known < 2 ? rate : mean[i] + (rate - mean[i]) / (gic_real)dual->ratio;
+    }
+}
+
 /* Rates and links of this step become those of the past. */
 static void keep_dual(const Dual *dual, int32_t known)
 {
@@ -348,6 +395,8 @@ static void keep_dual(const Dual *dual, int32_t known)
     copy(history, row(dual, 0), slow);
     copy(history + n + slow, dual->fast[1], fast);
     copy(history + slow, dual->fast[0], fast);
+    if (dual->steady > GIC_R(0.0))
+        follow_course(dual, known, array_at(dual->self, model->state_offset) + slow, dual->next + slow);
     if (known == 0)
         copy(link, link + 4 * links, links);
     copy(link + 2 * links, link + links, links);
@@ -357,20 +406,36 @@ static void keep_dual(const Dual *dual, int32_t known)
 
 int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t ratio)
 {
+    return gic_step_steady(model, self, step, ratio, GIC_R(0.0));
+}
+
+int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t ratio, gic_real steady)
+{
     if (ratio == 1 || (ratio > 1 && model->fast_count == 0))
         return gic_step(model, self, step, GIC_AB3);
     /* without a ratio there is no fast step that time could move by */
     int status = check_step(model, self, step, ratio > 0 ? step / (gic_real)ratio : GIC_R(0.0));
     if (status != GIC_OK)
         return status;
+    if (!gic_finite(&steady, 1) || steady < GIC_R(0.0))
+        return ((gic_head *)self)->status = GIC_ERROR_ARGUMENT;
 
     gic_head *head = (gic_head *)self;
     const int same = goes_on(head, step, GIC_AB3, ratio);
     const int32_t known = same ? head->history : 0;
     gic_real *input = array_at(self, model->input_offset), *scratch = array_at(self, model->scratch_offset);
     gic_real *input_before = scratch + 7 * (model->slow_count + model->fast_count);
-    Dual dual = {model, self,    same ? head->start_time : gic_time(self), step, same ? head->steps : 0,
-                 ratio, scratch, array_at(self, model->link_offset),       NULL, {NULL, NULL}};
+    Dual dual = {model,
+                 self,
+                 same ? head->start_time : gic_time(self),
+                 step,
+                 same ? head->steps : 0,
+                 ratio,
+                 steady,
+                 scratch,
+                 array_at(self, model->link_offset),
+                 NULL,
+                 {NULL, NULL}};
     copy(input_before, input, model->input_count);
     status = known == 2 ? march_dual(&dual) : start_dual(&dual, known);
     head->status = status;

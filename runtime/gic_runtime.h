@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Raised when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 3
+#define GIC_ABI_VERSION 4
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. */
@@ -102,7 +102,13 @@ typedef struct gic_head {
     int64_t fast_count;   /* rates of the fast states alone evaluated, by gic_step_dual */
     int64_t newton_count; /* subset solutions, and the corrections they took in total */
     int64_t correction_count;
-    int64_t switch_count;               /* changes of the dependent Euler parameter */
+    int64_t switch_count; /* changes of the dependent Euler parameter */
+    /* what was skipped, and what could not be: counted where it happens, so that it costs nothing elsewhere */
+    int64_t late_count;                 /* Newton corrections beyond the first check of a solution */
+    int64_t kept_count;                 /* subset solutions kept, for nothing that they follow from had changed */
+    int64_t air_count;                  /* wheels whose tire was not evaluated, for they were in the air */
+    int64_t steady_count;               /* fast rates not evaluated, for fast states moved steadily: gic_step_steady */
+    int64_t sleep_count;                /* steps in which the state was left as it is: for whoever makes steps */
     gic_real largest_step;              /* largest last Newton correction accepted, relative to the subset's size */
     const gic_road *road;               /* NULL: flat at z = 0 */
     gic_input_function *input_function; /* NULL: input[] is what the caller puts there */
@@ -171,9 +177,11 @@ typedef struct gic_model {
     int (*shift)(void *self);
 } gic_model;
 
-/* With n = slow_count + fast_count: state has n numbers; rate n, at the start of the last step; history 2 n, two past
- * rates, newest first (of dual rate those of the slow states at slow steps, of the fast states at fast steps); scratch
- * GIC_SCRATCH(n, input_count), free between calls. */
+/* With n = slow_count + fast_count: state has n numbers; rate n, at the start of the last step; history
+ * GIC_HISTORY(n, fast_count), two past rates, newest first (of dual rate those of the slow states at slow steps, of the
+ * fast states at fast steps), and the mean rates of the fast states; scratch GIC_SCRATCH(n, input_count), free between
+ * calls. */
+#define GIC_HISTORY(n, fast) (2 * (n) + (fast))
 #define GIC_SCRATCH(n, inputs) (7 * (n) + (inputs))
 
 /* ---- integrators: fixed step, any generated model ------------------------------------------------- */
@@ -191,6 +199,12 @@ int gic_step(const gic_model *model, void *self, gic_real step, int32_t method);
  * input function inputs stay through the step, its end included. */
 #define gic_step_dual GIC_NAME(gic_step_dual)
 int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t ratio);
+
+/* The same with fast steps only while they are needed: where the rate of each fast state x at the start of a step is
+ * its mean rate of late but for steady (1 + |x|) / step, all fast states go on at their mean rates, and their rates are
+ * not evaluated again in the step. steady 0: always fast steps. SCENE.md section 9 says what comes of it. */
+#define gic_step_steady GIC_NAME(gic_step_steady)
+int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t ratio, gic_real steady);
 
 /* The present time of an instance, s. */
 #define gic_time GIC_NAME(gic_time)

@@ -24,7 +24,7 @@ typedef struct TapeWheel {
 /* What a subset is connected to, as in model.c.in, and addresses of all arrays of its class's blocks. */
 typedef struct TapeLinks {
     double **array, *x, *rate, *change, turn[3];
-    bool cold;
+    bool cold, again, *same; /* the last: [coordinates] */
 } TapeLinks;
 
 /* What all instances of a model share: tapes, tables, places in an instance (bytes), and scratch that no call leaves
@@ -35,6 +35,7 @@ typedef struct TapeEngine {
     const Formulation *formulation;
     TapeClass *class;
     int *member; /* [subsets] */
+    bool *keeps; /* [subsets] plan_keeps() */
     const Tape *dynamics, *outputs, *poses, *inverse, *energy;
     const Tape *wrenches;      /* NULL: no reactions to find after the accelerations */
     const Tape *derive, *draw; /* NULL: no parameter is geometric */
@@ -83,8 +84,9 @@ static inline double *tape_start(Instance *self)
     X(e) \
     X(x) \
     X(xd) \
-    X(u) X(m) X(n) X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) X(torque) \
-        X(hub) X(force) X(grip) X(gear) X(watch) X(choice)
+    X(u) \
+    X(m) X(n) X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) X(torque) X(hub) \
+        X(force) X(grip) X(gear) X(watch) X(choice)
 #define CLASS_ENUM(name) CLASS_##name,
 #define WHOLE_ENUM(name) WHOLE_##name,
 enum { CLASS_ARRAYS(CLASS_ENUM) CLASS_KNOWN };

@@ -80,7 +80,8 @@ TapeLinks tape_links_new(Pool *pool, const Formulation *f)
     return (TapeLinks){.array = pool_alloc(pool, (size_t)(CLASS_KNOWN + 2 * f->known_most) * sizeof(double *)),
                        .x = numbers(pool, f->dependence_most),
                        .rate = numbers(pool, f->dependence_most),
-                       .change = numbers(pool, f->dependence_most)};
+                       .change = numbers(pool, f->dependence_most),
+                       .same = pool_alloc(pool, (size_t)(f->model->coordinates + 1) * sizeof(bool))};
 }
 
 static void make_scratch(Pool *pool, TapeEngine *engine)
@@ -143,11 +144,11 @@ static void lay_out(TapeEngine *engine)
     engine->inertia_offset = descriptor_place(code, (size_t)plan->inertia_size);
     engine->derived_offset = descriptor_place(code, (size_t)plan->derived->count);
     engine->multiplier_offset = descriptor_place(code, (size_t)plan->multipliers);
+    engine->recovered_offset = descriptor_place(code, 2 * coordinates + 4);
     const Wheels *wheels = engine->formulation->wheels;
     if (wheels) {
         code->link_offset = descriptor_place(code, 5 * (size_t)wheels->links);
         engine->grip_offset = descriptor_place(code, GRIP_NUMBERS * (size_t)wheels->count);
-        engine->recovered_offset = descriptor_place(code, 2 * coordinates + 4);
         engine->gear_offset = descriptor_place(code, engine->drive ? GEAR_NUMBERS : 0);
         engine->watch_offset = descriptor_place(code, engine->drive ? WATCH_NUMBERS : 0);
     }
@@ -161,10 +162,13 @@ TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve, Recovery reco
     *engine = (TapeEngine){.formulation = f,
                            .code = descriptor_new(pool, f->model, f->sequence),
                            .profile = pool_alloc(pool, sizeof *engine->profile),
+                           .keeps = pool_alloc(pool, (size_t)(f->sequence->subsets + 1) * sizeof(bool)),
                            .member = pool_alloc(pool, (size_t)(f->sequence->subsets + 1) * sizeof(int)),
                            .piece = numbers(pool, f->model->coordinates),
                            .initial = numbers(pool, f->plan->states + f->model->fast_states)};
     engine->code.hash = f->hash;
+    for (int s = 0; s < f->sequence->subsets; ++s)
+        engine->keeps[s] = plan_keeps(f->plan, s);
     for (int i = 0; i < f->model->coordinates; ++i)
         engine->piece[i] = coordinate_piece(f, i);
     for (int i = 0; i < f->plan->states + f->model->fast_states; ++i)

@@ -60,6 +60,7 @@ static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, do
                 return GIC_ERROR_NEWTON;
             if (4 * step * GIC_MAX(reach, step) <= class->enough)
                 break;
+            ++self->head.late_count;
         }
     }
     for (int i = 0; i < GIC_PASSES; ++i) {
@@ -80,8 +81,19 @@ static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, do
             return GIC_OK;
         }
         before = step;
+        ++self->head.late_count;
     }
     return GIC_ERROR_NEWTON;
+}
+
+/* Is the last solution of a subset the one for the numbers that it has now? */
+static bool is_kept(const TapeEngine *engine, const TapeLinks *links, int s)
+{
+    const Subset *subset = &engine->formulation->plan->sequence->subset[s];
+    bool same = links->again && engine->keeps[s];
+    for (int j = 0; j < subset->deps && same; ++j)
+        same = links->same[subset->dep[j]];
+    return same;
 }
 
 /* start[] from old[], both with the coordinates in front. */
@@ -93,6 +105,13 @@ static int recover_piece(Instance *self, TapeLinks *links, double *old, double *
         const Subset *subset = &plan->sequence->subset[s];
         if (subset->class < 0)
             continue;
+        if (is_kept(tape_of(self), links, s)) {
+            const Layout *layout = tape_of(self)->class[subset->class].layout;
+            memcpy(start + plan->start_offset[s], old + plan->start_offset[s],
+                   (size_t)layout->start_size * sizeof *start);
+            ++self->head.kept_count;
+            continue;
+        }
         for (int j = 0; j < subset->deps; ++j) {
             const int w = subset->dep[j];
             links->x[j] = start[w];
@@ -116,7 +135,15 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
     double *first = engine->first;
     TapeLinks links = engine->links;
     int pieces = 1;
+    double *at = tape_array(self, engine->recovered_offset), *at_rate = at + coordinates,
+           *at_turn = at_rate + coordinates;
+    double *recovered = at_turn + 3;
+    const double *xd = tape_array(self, engine->xd_offset);
     links.cold = cold;
+    links.again = *recovered > 0 && !memcmp(at_turn, turn, sizeof links.turn);
+    *recovered = 0;
+    for (int i = 0; i < coordinates; ++i)
+        links.same[i] = !memcmp(&at[i], &x[i], sizeof *x) && !memcmp(&at_rate[i], &xd[i], sizeof *xd);
     memcpy(links.turn, turn, sizeof links.turn);
     for (int i = 0; i < coordinates; ++i) {
         const double parts = fabs(x[i] - from[i]) / engine->piece[i];
@@ -135,6 +162,10 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
             return status;
         self->head.flip = 1 - self->head.flip;
     }
+    memcpy(at, x, (size_t)coordinates * sizeof *at);
+    memcpy(at_rate, xd, (size_t)coordinates * sizeof *at);
+    memcpy(at_turn, turn, sizeof links.turn);
+    *recovered = 1;
     return GIC_OK;
 }
 

@@ -30,6 +30,7 @@ typedef struct Turning {
     TapeWorld world;
     double *array[2][WHOLE_COUNT]; /* of numbers, of derivatives */
     double *slope_frame;
+    int64_t *in_air; /* counts wheels that are; NULL: nobody does */
 } Turning;
 
 static int play(const Turning *t, const Tape *tape, int member)
@@ -70,6 +71,8 @@ static int wheel_of(Turning *t, const TapeWheel *wheel, int member)
         return status;
     if (hub[0][HUB_LOAD] > 0) /* a wheel in the air has no tire forces */
         play(t, wheel->tire, member);
+    else if (t->in_air)
+        ++*t->in_air;
     return play(t, wheel->balance, member);
 }
 
@@ -106,6 +109,7 @@ static int grip(Instance *self, double time, const double *link, const double *f
     const Turning all = {
         .engine = engine,
         .world = {engine->table, self->head.road, self->head.lane, time, NULL},
+        .in_air = &self->head.air_count,
         .array = {{
             [WHOLE_time] = &time,
             [WHOLE_link] = (double *)link, /* blocks only read these two */
@@ -160,19 +164,14 @@ int tape_recover_once(Instance *self, const double turn[3])
     const int coordinates = engine->code.coordinate_count;
     const size_t size = (size_t)coordinates * sizeof(double);
     const double *x = tape_array(self, engine->x_offset), *xd = tape_array(self, engine->xd_offset);
-    double *at = tape_array(self, engine->recovered_offset), *recovered = at + 2 * coordinates + 3;
+    const double *at = tape_array(self, engine->recovered_offset), *recovered = at + 2 * coordinates + 3;
     if (*recovered > 0 && !memcmp(at, x, size) && !memcmp(at + coordinates, xd, size) &&
-        !memcmp(at + 2 * coordinates, turn, 3 * sizeof *turn))
+        !memcmp(at + 2 * coordinates, turn, 3 * sizeof *turn)) {
+        for (int s = 0; s < engine->code.subset_count; ++s)
+            self->head.kept_count += engine->formulation->sequence->subset[s].class >= 0;
         return GIC_OK;
-    *recovered = 0;
-    const int status = tape_recover(self, turn, false);
-    if (status == GIC_OK) {
-        memcpy(at, x, size);
-        memcpy(at + coordinates, xd, size);
-        memcpy(at + 2 * coordinates, turn, 3 * sizeof *turn);
-        *recovered = 1;
     }
-    return status;
+    return tape_recover(self, turn, false);
 }
 
 /* ---- dual rate ------------------------------------------------------------------------------------------------- */

@@ -37,7 +37,7 @@ typedef enum Call { CALL_RHS, CALL_SETTLE, CALL_LINK, CALL_FAST, CALLS } Call;
 
 typedef struct Probe {
     gic_head head;
-    gic_real state[N], rate[N], history[2 * N], input[1], link[5 * LINKS], scratch[GIC_SCRATCH(N, 1)];
+    gic_real state[N], rate[N], history[GIC_HISTORY(N, FAST)], input[1], link[5 * LINKS], scratch[GIC_SCRATCH(N, 1)];
     int cubic;                  /* links are a cubic of time and a constant instead */
     int calls[CALLS], all;      /* of the step so far */
     int fail_at, poison_at;     /* call of the step, from 0, that fails or gives what is no number; -1: none */
@@ -360,6 +360,41 @@ static void test_costs(void **unused)
     assert_int_equal(probe.surprised, 0);
 }
 
+/* Fast steps only while they are needed: with 0 always; else what is left out and what is not adds up, the right-hand
+ * side is evaluated at every step, and the result differs by some of the bound. Over a step of 0.01 s that allows rates
+ * to be off by 100 (1 + |x|) bounds a second, which z0 makes up for at 40 / s, z1' at 10 / s; it swings by up to 4. */
+static void test_steady(void **unused)
+{
+    (void)unused;
+    enum { STEPS = 400 };
+    const gic_real step = GIC_R(0.01);
+    Probe full = probe_new(), none = full;
+    for (int k = 0; k < STEPS; ++k) {
+        assert_int_equal(gic_step_dual(&probe_model, &full, step, RATIO), GIC_OK);
+        assert_int_equal(gic_step_steady(&probe_model, &none, step, RATIO, 0), GIC_OK);
+    }
+    assert_memory_equal(full.state, none.state, sizeof full.state);
+    assert_int_equal(none.head.steady_count, 0);
+    int64_t before = 0;
+    for (double bound = 1e-4; bound < 0.5; bound *= 10) {
+        Probe eased = probe_new();
+        for (int k = 0; k < STEPS; ++k)
+            assert_int_equal(gic_step_steady(&probe_model, &eased, step, RATIO, (gic_real)bound), GIC_OK);
+        assert_int_equal(eased.head.steady_count + eased.head.fast_count, full.head.fast_count);
+        assert_int_equal(eased.head.rhs_count, full.head.rhs_count);
+        assert_true(eased.head.steady_count >= before);
+        before = eased.head.steady_count;
+        for (int i = 0; i < N; ++i)
+            assert_true(fabs((double)(eased.state[i] - full.state[i])) <
+                        (i < N - 1 ? 10 : 50) * bound * (1 + fabs((double)full.state[i])));
+    }
+    assert_true(before > STEPS * (RATIO - 1) / 2);
+    const Probe kept = full;
+    assert_int_equal(gic_step_steady(&probe_model, &full, step, RATIO, -1), GIC_ERROR_ARGUMENT);
+    assert_int_equal(gic_step_steady(&probe_model, &full, step, RATIO, not_a_number()), GIC_ERROR_ARGUMENT);
+    assert_memory_equal(full.state, kept.state, sizeof full.state);
+}
+
 static void test_links(void **unused)
 {
     (void)unused;
@@ -528,11 +563,17 @@ static void test_variable(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order),     cmocka_unit_test(test_single_rate),
-        cmocka_unit_test(test_ratio_one), cmocka_unit_test(test_start),
-        cmocka_unit_test(test_costs),     cmocka_unit_test(test_links),
-        cmocka_unit_test(test_time),      cmocka_unit_test(test_failure_changes_nothing),
-        cmocka_unit_test(test_arguments), cmocka_unit_test(test_snapshot),
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_single_rate),
+        cmocka_unit_test(test_ratio_one),
+        cmocka_unit_test(test_start),
+        cmocka_unit_test(test_costs),
+        cmocka_unit_test(test_steady),
+        cmocka_unit_test(test_links),
+        cmocka_unit_test(test_time),
+        cmocka_unit_test(test_failure_changes_nothing),
+        cmocka_unit_test(test_arguments),
+        cmocka_unit_test(test_snapshot),
         cmocka_unit_test(test_restart),
 #ifndef GIC_FLOAT
         cmocka_unit_test(test_variable),
