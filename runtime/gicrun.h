@@ -67,6 +67,7 @@ typedef struct Profile {
 } Profile;
 
 typedef struct Driver Driver; /* driver.h */
+typedef struct Rest Rest;     /* rest.h */
 
 typedef struct Scene {
     const Source *source;
@@ -76,6 +77,7 @@ typedef struct Scene {
     int32_t method;                     /* gic_method, or one of variable.h */
     double tolerance;                   /* of variable steps */
     int32_t ratio;                      /* of AB3: fast steps in a step */
+    double steady;                      /* of gic_step_steady; 0: always fast steps */
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
     bool along, equilibrium; /* is the velocity one of `speed` along the base's x axis; start in static equilibrium? */
     double speed;
@@ -88,6 +90,7 @@ typedef struct Scene {
     int profiles, columns, curves, panels;
     Profile *profile;
     Driver *driver; /* changes as the run goes on; NULL: nobody drives */
+    Rest *rest;     /* the same; NULL: the vehicle never sleeps */
     /* What can be written and drawn: components of outputs, in the order of output[], then inputs. Indices into it:
      * columns of the results; curves over time of the picture; its panels of one over another, x and y. */
     const gic_signal *signal;
@@ -114,6 +117,8 @@ void profile_at(const Profile *profile, double time, double out[3]);
 void scene_inputs(void *user, int32_t lane, double time, double *input);
 /* The first time after `time` at which a profile is less smooth than elsewhere, or INFINITY. */
 double scene_next_kink(const Scene *scene, double time);
+/* The time up to which all inputs surely stay as they are at `time`, `time` itself where they may move. */
+double scene_quiet_until(const Scene *scene, double time);
 /* scene_outputs.c: columns, curves and panels of a scene. */
 void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene *scene);
 /* scene_facts.c: what is known about a run of the scene beforehand. path: of the scene; drawn: is there a picture? */
@@ -218,6 +223,9 @@ int scene_set_fast(const gic_model *model, const Scene *scene, gic_head *self);
  * `end` that stops at kinks of inputs. Before it the driver looks, where it is time for that. */
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
                double end);
+/* Outputs at the present time, computed on a copy of the instance, so that how often someone looks leaves no trace in
+ * the results; those of a vehicle that sleeps stay. *slumber: 0 at first, and the same number from call to call. */
+int scene_outputs(const gic_model *model, const Scene *scene, const gic_head *self, gic_head *copy, int64_t *slumber);
 /* equilibrium.c: the scene, or where it asks for it one that starts in static equilibrium. Ends in diag_fail where
  * there is none. */
 const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scene, Solve solve);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Scenes: models/SCENE.md. */
 #include "driver.h"
+#include "rest.h"
 
 #include <math.h>
 #include <string.h>
@@ -487,6 +488,46 @@ double scene_next_kink(const Scene *scene, double time)
     return next;
 }
 
+/* How long a profile stays as it is at `time`. */
+static double profile_quiet_until(const Profile *profile, double time)
+{
+    if (!profile->count)
+        return profile->amplitude == 0 ? INFINITY : fmax(time, profile->start);
+    if (time < profile->time[0])
+        return profile->time[0];
+    int k = 0;
+    while (k + 1 < profile->count && profile->time[k + 1] <= time)
+        ++k;
+    if (k + 1 == profile->count)
+        return INFINITY;
+    return profile->value[k + 1] == profile->value[k] ? profile->time[k + 1] : time;
+}
+
+double scene_quiet_until(const Scene *scene, double time)
+{
+    double until = scene->driver ? time : (double)INFINITY;
+    for (int i = 0; i < scene->profiles; ++i)
+        until = fmin(until, profile_quiet_until(&scene->profile[i], time));
+    return until;
+}
+
+/* ---- what may be left out: SCENE.md section 9 ------------------------------------------------------------- */
+
+static void read_skips(Reader *reader, const Item *root, bool replaced)
+{
+    const Item *steady = doc_find(root, "steady"), *sleep = doc_find(root, "sleep");
+    Scene *scene = reader->scene;
+    if (steady) {
+        scene->steady = scene_positive(steady, "steady");
+        if (scene->ratio == 1 && !replaced)
+            diag_fail(steady->at, "add `ratio: 6`", "steady is about fast steps, of which there are none");
+    }
+    if (sleep && scene->method >= METHOD_ADAMS && !replaced)
+        diag_fail(sleep->at, "write `integrator: ab3` and a step", "only constant steps can be slept through");
+    if (sleep && scene->method < METHOD_ADAMS)
+        scene->rest = rest_read(reader->pool, sleep, reader->model);
+}
+
 /* ---- the scene ------------------------------------------------------------------------------------------ */
 
 const Scene *scene_read(Pool *pool, const char *path, const Model *model, const char *integrator, double tolerance)
@@ -495,7 +536,8 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     Scene *scene = pool_alloc(pool, sizeof *scene);
     Reader reader = {pool, model, scene};
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
-               "output_step", "initial", "road", "inputs", "driver", "parameters", "outputs", "plot");
+               "steady", "sleep", "output_step", "initial", "road", "inputs", "driver", "parameters", "outputs",
+               "plot");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
     if (doc_number(version, "gicscene") != 1)
@@ -507,6 +549,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     if (doc_find(root, "ratio"))
         read_ratio(&reader, doc_find(root, "ratio"), integrator);
     read_time(&reader, root);
+    read_skips(&reader, root, integrator);
 
     memcpy(scene->position, model->body[BODY_BASE].position, sizeof scene->position);
     memcpy(scene->euler, model->body[BODY_BASE].euler, sizeof scene->euler);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Run a scene: steps, results, progress, summary. */
 #include "driver.h"
+#include "rest.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,6 +33,7 @@ typedef struct Run {
     double constraint;      /* largest residual so far */
     double integrating;     /* CPU seconds in steps */
     double looked;          /* when the run looked around last */
+    int64_t slumber;        /* of scene_outputs */
     bool shown, interrupted;
 } Run;
 
@@ -124,11 +126,22 @@ static void prepare_plot(Run *run)
     run->plot.sample = pool_alloc(run->pool, sizeof(double) * (size_t)rows * (size_t)(drawn + 1));
 }
 
-/* Compute outputs at the present time on the copy, and what is seen then. Once an output time. */
+int scene_outputs(const gic_model *model, const Scene *scene, const gic_head *self, gic_head *copy, int64_t *slumber)
+{
+    const Rest *rest = scene->rest;
+    const int64_t now = rest && rest->asleep ? rest->slumbers : 0;
+    const bool stay = now && now == *slumber;
+    *slumber = now;
+    if (stay)
+        return GIC_OK;
+    memcpy(copy, self, model->size);
+    return model->outputs(copy);
+}
+
+/* At an output time: what is seen then. */
 static int compute_outputs(Run *run)
 {
-    memcpy(run->copy, run->self, run->model->size);
-    const int status = run->model->outputs(run->copy);
+    const int status = scene_outputs(run->model, run->scene, run->self, run->copy, &run->slumber);
     return status == GIC_OK && run->animation ? animation_frame(run->animation, run->model, run->copy) : status;
 }
 
@@ -172,6 +185,23 @@ static void clear_progress(const Run *run)
         fputs("\r\x1b[K", stderr);
 }
 
+/* What was not computed, each where there was some. */
+static void summary_of_skips(const gic_head *head)
+{
+    const struct {
+        int64_t count;
+        const char *name, *what;
+    } skip[] = {
+        {head->kept_count, "recoveries kept", "subset solutions, for nothing they follow from had changed"},
+        {head->air_count, "tires left out", "times, for the wheel was in the air"},
+        {head->steady_count, "fast rates left out", "for fast states moved steadily"},
+        {head->sleep_count, "steps asleep", "for the vehicle was at rest"},
+    };
+    for (size_t i = 0; i < sizeof skip / sizeof *skip; ++i)
+        if (skip[i].count)
+            fprintf(stderr, "  %-20s %lld %s\n", skip[i].name, (long long)skip[i].count, skip[i].what);
+}
+
 static void summary(const Run *run, double total)
 {
     const gic_head *head = run->self;
@@ -190,9 +220,10 @@ static void summary(const Run *run, double total)
     fprintf(stderr, "  right-hand sides     %lld\n", (long long)head->rhs_count);
     if (head->fast_count)
         fprintf(stderr, "  fast rates           %lld\n", (long long)head->fast_count);
-    fprintf(stderr, "  Newton corrections   %.3f a subset solution (%lld in %lld)\n",
+    fprintf(stderr, "  Newton corrections   %.3f a subset solution (%lld in %lld), %lld beyond the first check\n",
             solutions > 0 ? (double)head->correction_count / solutions : 0.0, (long long)head->correction_count,
-            (long long)head->newton_count);
+            (long long)head->newton_count, (long long)head->late_count);
+    summary_of_skips(head);
     fprintf(stderr, "  parameter switches   %lld\n", (long long)head->switch_count);
     fprintf(stderr, "  constraint residual  %.2g at most, relative to the subset's size\n", run->constraint);
     if (engine_remark(run->engine))
@@ -231,7 +262,11 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
         driver_start(scene->driver);
     scene_inputs(self->user, 0, 0, instance_array(self, model->input_offset));
     status = set_state(engine, scene, self);
-    return status == GIC_OK ? scene_set_fast(model, scene, self) : status;
+    if (status == GIC_OK)
+        status = scene_set_fast(model, scene, self);
+    if (scene->rest)
+        rest_start(scene->rest, model, self);
+    return status;
 }
 
 static void change_code(Run *run)
@@ -278,6 +313,19 @@ static int look(const Engine *engine, gic_head *self, Driver *driver)
     return GIC_OK;
 }
 
+static int step_awake(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end)
+{
+    if (!variable && scene->method == GIC_AB3)
+        return gic_step_steady(model, self, scene->step, scene->ratio, scene->steady);
+    if (!variable)
+        return gic_step(model, self, scene->step, scene->method);
+    const double kink = scene_next_kink(scene, gic_time(self));
+    const int status = variable_step(variable, self, fmin(kink, end));
+    if (status == GIC_OK && gic_time(self) >= kink)
+        variable_restart(variable);
+    return status;
+}
+
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
                double end)
 {
@@ -286,14 +334,11 @@ int scene_step(const Engine *engine, const gic_model *model, const Scene *scene,
         if (status != GIC_OK)
             return status;
     }
-    if (!variable && scene->method == GIC_AB3)
-        return gic_step_dual(model, self, scene->step, scene->ratio);
-    if (!variable)
-        return gic_step(model, self, scene->step, scene->method);
-    const double kink = scene_next_kink(scene, gic_time(self));
-    const int status = variable_step(variable, self, fmin(kink, end));
-    if (status == GIC_OK && gic_time(self) >= kink)
-        variable_restart(variable);
+    if (scene->rest && rest_step(scene->rest, model, scene, self))
+        return GIC_OK;
+    const int status = step_awake(model, scene, variable, self, end);
+    if (scene->rest && status == GIC_OK)
+        rest_watch(scene->rest, model, self);
     return status;
 }
 

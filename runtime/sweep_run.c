@@ -61,6 +61,8 @@ static void set_input(Pool *pool, const Model *model, Scene *scene, int input, d
 static Scene vary_scene(Pool *pool, const Sweep *sweep, int64_t run)
 {
     Scene own = *sweep->scene;
+    own.rest = NULL; /* as in lanes, which move together */
+    own.steady = 0;
     const size_t parameters = sizeof(double) * (size_t)sweep->model->tunables;
     own.parameter = pool_alloc(pool, parameters + 1);
     memcpy(own.parameter, sweep->scene->parameter, parameters);

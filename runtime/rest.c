@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT
+ * Vehicles at rest that sleep (models/SCENE.md section 9): steps that leave the state as it is and cost next to
+ * nothing, until an input changes. */
+#include "rest.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- models that may not sleep ---------------------------------------------------------------------------------- */
+
+static bool law_reads_time(const Law *law)
+{
+    if (!law || law->op == LAW_TIME)
+        return law;
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        if (law_reads_time(law->arg[i]))
+            return true;
+    return false;
+}
+
+static bool any_reads_time(const Law *const *law, int count)
+{
+    for (int i = 0; i < count; ++i)
+        if (law_reads_time(law[i]))
+            return true;
+    return false;
+}
+
+static bool powertrain_reads_time(const Powertrain *powertrain)
+{
+    const Law *const law[] = {powertrain->throttle, powertrain->torque, powertrain->selector};
+    if (any_reads_time(law, 3) || any_reads_time(powertrain->up, powertrain->forward - 1) ||
+        any_reads_time(powertrain->down, powertrain->forward - 1))
+        return true;
+    for (int i = 0; i < powertrain->differentials; ++i)
+        if (law_reads_time(powertrain->differential[i].lock))
+            return true;
+    return false;
+}
+
+/* What in a model changes with time by itself, NULL: nothing. */
+static const char *restless(const Model *model)
+{
+    for (int i = 0; i < model->forces; ++i)
+        if (any_reads_time(model->force[i].law, (int)(sizeof model->force[i].law / sizeof *model->force[i].law)))
+            return model->force[i].name;
+    for (int i = 0; i < model->wheels; ++i)
+        if (law_reads_time(model->wheel[i].drive) || law_reads_time(model->wheel[i].brake))
+            return model->wheel[i].name;
+    return model->powertrain && powertrain_reads_time(model->powertrain) ? "powertrain" : NULL;
+}
+
+Rest *rest_read(Pool *pool, const Item *item, const Model *model)
+{
+    const double within = 1e-4, after = 1;
+    Rest *rest = pool_alloc(pool, sizeof *rest);
+    if (item->kind != ITEM_MAP)
+        diag_fail(item->at, "write {within: 1e-4, after: 1}", "sleep must be a map");
+    CHECK_KEYS(item, "sleep", "within", "after");
+    rest->pool = pool;
+    rest->within = doc_find(item, "within") ? scene_positive(doc_find(item, "within"), "within") : within;
+    rest->after = doc_find(item, "after") ? scene_positive(doc_find(item, "after"), "after") : after;
+    if (restless(model))
+        diag_fail(item->at, "remove it", "'%s' of '%s' changes with time by itself, so that nothing rests",
+                  restless(model), model->name);
+    return rest;
+}
+
+/* ---- what is compared ------------------------------------------------------------------------------------------- */
+
+/* Everything but the state that a rate can depend on. */
+static void note_surroundings(Rest *rest, const gic_model *model, gic_head *self)
+{
+    const double *const array[] = {instance_array(self, model->input_offset),
+                                   instance_array(self, model->parameter_offset),
+                                   instance_array(self, model->port_offset)};
+    const int count[] = {model->input_count, model->parameter_count, model->port_count};
+    double *next = rest->around;
+    for (int k = 0; k < 3; ++k) {
+        memcpy(next, array[k], sizeof *next * (size_t)count[k]);
+        next += count[k];
+    }
+    rest->road = self->road;
+    for (int i = 0; i < model->discrete_count; ++i)
+        rest->discrete[i] = ((const int32_t *)(const void *)((const char *)self + model->discrete_offset))[i];
+}
+
+static bool surroundings_stay(const Rest *rest, const gic_model *model, gic_head *self)
+{
+    const double *const array[] = {instance_array(self, model->input_offset),
+                                   instance_array(self, model->parameter_offset),
+                                   instance_array(self, model->port_offset)};
+    const int count[] = {model->input_count, model->parameter_count, model->port_count};
+    const double *next = rest->around;
+    for (int k = 0; k < 3; ++k) {
+        if (memcmp(next, array[k], sizeof *next * (size_t)count[k]))
+            return false;
+        next += count[k];
+    }
+    return rest->road == self->road && !memcmp(rest->discrete, (const char *)self + model->discrete_offset,
+                                               sizeof *rest->discrete * (size_t)model->discrete_count);
+}
+
+/* The state that runs on by itself, the time since a gear was shifted: the one that is a time. -1: none. */
+static int clock_of(const gic_model *model)
+{
+    int i = model->slow_count + model->fast_count - 1;
+    while (i >= 0 && strcmp(model->state[i].unit, "s") != 0)
+        --i;
+    return i;
+}
+
+static bool state_stays(const Rest *rest, const gic_model *model, gic_head *self)
+{
+    const double *state = instance_array(self, model->state_offset);
+    for (int i = 0; i < model->slow_count + model->fast_count; ++i)
+        if (!(fabs(state[i] - rest->state[i]) <= rest->within) && i != rest->clock)
+            return false;
+    return true;
+}
+
+static void note_state(Rest *rest, const gic_model *model, gic_head *self)
+{
+    const size_t count = (size_t)(model->slow_count + model->fast_count);
+    memcpy(rest->state, instance_array(self, model->state_offset), sizeof *rest->state * count);
+    rest->since = gic_time(self);
+}
+
+/* ---- a run ------------------------------------------------------------------------------------------------------ */
+
+void rest_start(Rest *rest, const gic_model *model, gic_head *self)
+{
+    const size_t around = (size_t)(model->input_count + model->parameter_count + model->port_count);
+    if (rest->model != model) {
+        rest->model = model;
+        rest->state = pool_alloc(rest->pool, sizeof *rest->state * (size_t)(model->slow_count + model->fast_count + 1));
+        rest->around = pool_alloc(rest->pool, sizeof *rest->around * (around + 1));
+        rest->input = pool_alloc(rest->pool, sizeof *rest->input * (size_t)(model->input_count + 1));
+        rest->discrete = pool_alloc(rest->pool, sizeof *rest->discrete * (size_t)(model->discrete_count + 1));
+    }
+    rest->clock = clock_of(model);
+    rest->asleep = false;
+    rest->slumbers = 0;
+    note_surroundings(rest, model, self);
+    note_state(rest, model, self);
+}
+
+/* Do all inputs stay until the end of a step from now on? */
+static bool inputs_stay(Rest *rest, const gic_model *model, gic_head *self, const Scene *scene, double end)
+{
+    if (end <= rest->quiet)
+        return true;
+    const double *input = instance_array(self, model->input_offset);
+    const size_t size = sizeof *input * (size_t)model->input_count;
+    memcpy(rest->input, input, size);
+    self->input_function(self->user, self->lane, end, rest->input);
+    rest->quiet = scene_quiet_until(scene, end);
+    return !memcmp(rest->input, input, size);
+}
+
+bool rest_step(Rest *rest, const gic_model *model, const Scene *scene, gic_head *self)
+{
+    if (!rest->asleep)
+        return false;
+    const double end = gic_time(self) + scene->step;
+    if (!inputs_stay(rest, model, self, scene, end) || !surroundings_stay(rest, model, self)) {
+        rest->asleep = false;
+        self->history = 0; /* it begins anew, as after any other pause */
+        note_state(rest, model, self);
+        return false;
+    }
+    ++self->steps;
+    ++self->sleep_count;
+    if (rest->clock >= 0)
+        ((double *)instance_array(self, model->state_offset))[rest->clock] += scene->step;
+    return true;
+}
+
+void rest_watch(Rest *rest, const gic_model *model, gic_head *self)
+{
+    if (!surroundings_stay(rest, model, self)) {
+        note_surroundings(rest, model, self);
+        note_state(rest, model, self);
+    } else if (!state_stays(rest, model, self)) {
+        note_state(rest, model, self);
+    } else if (gic_time(self) - rest->since >= rest->after) {
+        rest->asleep = true;
+        ++rest->slumbers;
+        rest->quiet = -INFINITY;
+    }
+}
