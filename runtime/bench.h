@@ -24,7 +24,10 @@ typedef struct Bench {
     const char *const *starting; /* names of the engines whose start is measured, ended by NULL */
     gic_head **instance;         /* [engines] */
     bool quick;
-    int vehicles; /* of --batch; 0: another benchmark */
+    int vehicles;            /* of --batch; 0: another benchmark */
+    int files;               /* of --scenes: models and scenes by turns; 0: another benchmark */
+    char *const *file;       /* [files] */
+    const char *engine_name; /* that runs them */
     struct Report *report;
 } Bench;
 
@@ -163,6 +166,8 @@ typedef struct Limit {
 Limit limit_measure(void);
 /* bench_drive.c: the scene with its own step and ratio; shares of multibody system, tires and powertrain. */
 void bench_drive(const Bench *bench);
+/* bench_scenes.c: scenes with code for any and code for each. */
+void bench_scenes(const Bench *bench);
 /* bench_rhs.c: one right-hand side of every variant of the code, against the limit. scene: NULL for none. */
 void bench_rhs(const Bench *bench);
 

@@ -51,7 +51,10 @@ void bench_machine(const Bench *bench)
                 "Model %s, scene %s%s%s\nProcessor: %s, %ld online\nSystem: %s %s %s\n"
                 "Compiler of generated code: %s\nIts flags: %s %s\nHost program and interpreted engines: %s, flags %s\n"
                 "gicgen %s, %s",
-                bench->model_path, bench->scene_path ? bench->scene_path : "none",
+                bench->files ? "and" : bench->model_path,
+                bench->files        ? "as in the table"
+                : bench->scene_path ? bench->scene_path
+                                    : "none",
                 bench->quick ? " (quick: few repetitions, few settings)" : "", engines.s,
                 processor(pool, system.machine), sysconf(_SC_NPROCESSORS_ONLN), system.sysname, system.release,
                 system.machine, compiler_version(pool, bench->options.compiler), build_flags, bench->options.flags,

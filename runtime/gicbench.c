@@ -12,6 +12,7 @@ static const char help[] = "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCEN
                            "       gicbench --rhs [--quick] [-o FOLDER] MODEL.veh [SCENE]\n"
                            "       gicbench --drive [--quick] [-o FOLDER] MODEL.veh SCENE\n"
                            "       gicbench --batch N [--quick] [-o FOLDER] MODEL.veh SCENE\n"
+                           "       gicbench --scenes [--quick] [-o FOLDER] MODEL.veh SCENE [MODEL.veh SCENE]...\n"
                            "\n"
                            "Runs a scene with all engines and integrators and writes a folder: index.html with\n"
                            "tables and pictures, the same as text, a CSV file a table.\n"
@@ -24,6 +25,8 @@ static const char help[] = "usage: gicbench [--quick] [-o FOLDER] MODEL.veh SCEN
                            "                       as text, with -o also as a folder\n"
                            "      --batch N        likewise steps of N vehicles in lanes (gicgen --batch), and one\n"
                            "                       after another\n"
+                           "      --scenes         each scene with general code and with code for it alone:\n"
+                           "                       operations, CPU time, difference of the results\n"
                            "  -o, --output FOLDER  default: gicbench\n"
                            "      --engines NAMES  some engines, separated by commas; the others are compared\n"
                            "                       with the first; default: all\n"
@@ -55,21 +58,17 @@ static const char *const *engine_list(Pool *pool, char *names)
 /* What the command line asks for, and the names of the engines, ended by NULL. */
 static Bench read_command_line(Pool *pool, int count, char **word, const char *const **names)
 {
-    enum { ENGINES = 256, QUICK, RHS, DRIVE, BATCH, COMPILER, FLAGS, VERSION };
+    enum { ENGINES = 256, QUICK, RHS, DRIVE, BATCH, SCENES, COMPILER, FLAGS, VERSION };
     static const struct option options[] = {
-        {"output", required_argument, NULL, 'o'},
-        {"engines", required_argument, NULL, ENGINES},
-        {"quick", no_argument, NULL, QUICK},
-        {"rhs", no_argument, NULL, RHS},
-        {"drive", no_argument, NULL, DRIVE},
-        {"cc", required_argument, NULL, COMPILER},
-        {"batch", required_argument, NULL, BATCH},
-        {"cflags", required_argument, NULL, FLAGS},
-        {"help", no_argument, NULL, 'h'},
-        {"version", no_argument, NULL, VERSION},
-        {NULL, 0, NULL, 0},
+        {"output", required_argument, NULL, 'o'},   {"engines", required_argument, NULL, ENGINES},
+        {"quick", no_argument, NULL, QUICK},        {"rhs", no_argument, NULL, RHS},
+        {"drive", no_argument, NULL, DRIVE},        {"cc", required_argument, NULL, COMPILER},
+        {"batch", required_argument, NULL, BATCH},  {"scenes", no_argument, NULL, SCENES},
+        {"cflags", required_argument, NULL, FLAGS}, {"help", no_argument, NULL, 'h'},
+        {"version", no_argument, NULL, VERSION},    {NULL, 0, NULL, 0},
     };
     Bench bench = {.pool = pool, .repetitions = 9};
+    bool scenes = false;
     bench.options.compiler = compiler_default();
     bench.options.flags = "";
     *names = engine_name + 2;         /* auto and tcc do what cc does, if more slowly: */
@@ -89,6 +88,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
             if (bench.vehicles < 1 || bench.vehicles > 65536)
                 usage_fail("gicbench", "--batch takes a number of vehicles up to 65536, not", optarg);
             break;
+        case SCENES: scenes = true; break;
         case COMPILER: bench.options.compiler = optarg; break;
         case FLAGS: bench.options.flags = optarg; break;
         case 'h': fputs(help, stdout); exit(0);
@@ -96,8 +96,16 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
         default: fputs("  remedy: `gicbench -h` shows how\n", stderr); exit(2);
         }
     const int files = count - optind;
-    if (bench.rhs + bench.drive + (bench.vehicles > 0) > 1)
-        usage_fail("gicbench", "one of --rhs, --drive and --batch, please", NULL);
+    if (bench.rhs + bench.drive + scenes + (bench.vehicles > 0) > 1)
+        usage_fail("gicbench", "one of --rhs, --drive, --batch and --scenes, please", NULL);
+    if (scenes) {
+        if (files < 2 || files % 2)
+            usage_fail("gicbench", "a model and a scene, please, or several pairs of them", NULL);
+        bench.engine_name = (*names)[0];
+        bench.files = files;
+        bench.file = word + optind;
+        return bench;
+    }
     if ((bench.drive || bench.vehicles) && files != 2)
         usage_fail("gicbench", "a model and a scene, please", NULL);
     if (bench.rhs && (files < 1 || files > 2))
@@ -175,7 +183,7 @@ static void drive_alone(Bench *bench, const char *const *name)
     report_tell(bench->report, stdout);
 }
 
-/* Right-hand sides alone, or steps in lanes alone. */
+/* Right-hand sides alone, steps in lanes alone, or scene after scene. */
 static void evaluate_alone(const Bench *bench)
 {
     if (bench->folder)
@@ -183,6 +191,8 @@ static void evaluate_alone(const Bench *bench)
     bench_machine(bench);
     if (bench->vehicles)
         bench_batch(bench);
+    else if (bench->files)
+        bench_scenes(bench);
     else
         bench_rhs(bench);
     report_tell(bench->report, stdout);
@@ -195,10 +205,10 @@ int main(int count, char **word)
     Bench bench = read_command_line(pool, count, word, &name);
     Report report = {.pool = pool};
     bench.report = &report;
-    bench.model = model_read(pool, bench.model_path);
+    bench.model = bench.model_path ? model_read(pool, bench.model_path) : NULL;
     bench.scene = bench.scene_path ? read_scene(&bench, bench.scene_path) : NULL;
     bench.spin = bench.spin_path ? read_scene(&bench, bench.spin_path) : NULL;
-    if (bench.rhs || bench.vehicles)
+    if (bench.rhs || bench.vehicles || bench.files)
         evaluate_alone(&bench);
     else if (bench.drive)
         drive_alone(&bench, name);
