@@ -32,24 +32,39 @@ static void count_operations(Pool *pool, Way *way, const Formulation *formulatio
     way->fast = operations(figures->fast);
 }
 
-static Way open_way(const Bench *bench, Pool *pool, const Model *model, const Scene *scene, int kind)
+/* What is known of a scene: all of it, or what it asks for alone. */
+static const Facts *facts_of(Pool *pool, const Model *model, const Scene *scene, const char *path, int kind)
 {
-    Scene *own = pool_alloc(pool, sizeof *own);
-    const Sequence *sequence = sequence_find(pool, model);
-    *own = *scene;
+    Facts *facts = pool_alloc(pool, sizeof *facts);
+    *facts = *scene_facts(pool, model, scene, path, false);
+    if (kind == SPECIAL)
+        return facts;
+    *facts = (Facts){.scene = facts->scene,
+                     .wanted = facts->wanted,
+                     .fixed = pool_alloc(pool, sizeof(bool) * (size_t)(model->inputs + 1)),
+                     .input = facts->input};
+    return facts;
+}
+
+static Way open_way(const Bench *bench, Pool *pool, const Model *model, const Scene *scene, const char *path, int kind)
+{
+    Scene own = *scene;
+    EngineOptions options = bench->options;
+    options.facts = facts_of(pool, model, scene, path, kind);
     if (kind == GENERAL) {
-        own->rest = NULL;
-        own->steady = 0;
+        own.rest = NULL;
+        own.steady = 0;
     }
-    Way way = {.scene = own};
-    way.engine = engine_open(pool, bench->engine_name, model, &bench->options);
+    Way way = {.engine = engine_open(pool, bench->engine_name, model, &options)};
+    way.scene = scene_narrow(pool, pool_grow(pool, &own, sizeof own, sizeof own), model, way.engine);
     way.self = instance_new(pool, way.engine);
     way.copy = instance_new(pool, way.engine);
     way.second = pool_alloc(pool, sizeof *way.second * (size_t)bench->repetitions);
     way.result = pool_alloc(pool, sizeof *way.result * (size_t)((scene->outputs + 1) * scene->columns + 1));
+    const Sequence *sequence = sequence_find(pool, model);
     count_operations(pool, &way,
-                     formulate(pool, model_assemble(pool, model, sequence), sequence, bench->options.solve,
-                               bench->options.recovery));
+                     formulate_narrow(pool, model_assemble(pool, model, sequence), sequence, bench->options.solve,
+                                      bench->options.recovery, options.facts));
     return way;
 }
 
@@ -157,7 +172,7 @@ static void measure_scene(const Bench *bench, Sheet *table, const char *model_pa
         diag_fail(at, "write `integrator: ab3` and a step", "a scene is timed with constant steps");
     scene = equilibrium_start(pool, model, scene, bench->options.solve);
     for (int k = 0; k < WAYS; ++k)
-        way[k] = open_way(bench, pool, model, scene, k);
+        way[k] = open_way(bench, pool, model, scene, scene_path, k);
     for (int r = 0; r < bench->repetitions; ++r)
         for (int k = 0; k < WAYS; ++k) {
             bench_progress("%s, repetition %d of %d", file_name(scene_path), r + 1, bench->repetitions);

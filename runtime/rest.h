@@ -23,9 +23,9 @@ struct Rest {
     double quiet, *input; /* inputs stay till then; room for them */
 };
 
-/* The `sleep:` item of a scene with constant steps. */
+/* scene_rest.c: the `sleep:` item of a scene with constant steps. */
 Rest *rest_read(Pool *pool, const Item *item, const Model *model);
-/* Awake at the instance's state. */
+/* rest.c: awake at the instance's state. */
 void rest_start(Rest *rest, const gic_model *model, gic_head *self);
 /* A step asleep: time goes on, the state stays. False: it is awake, or wakes for this step. */
 bool rest_step(Rest *rest, const gic_model *model, const Scene *scene, gic_head *self);
