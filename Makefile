@@ -228,12 +228,18 @@ demo: all
 	@echo "pages:    $(BUILD)/demo/hmmwv.html, $(BUILD)/demo/full_run.html"
 	@echo "numbers:  $(BUILD)/demo/hmmwv.csv, $(BUILD)/demo/full_run.csv"
 
+# scenes that are run with general code and with code for each alone: model/scene
+compared := hmmwv/paper_run hmmwv/rough_road hmmwv_tires/straight hmmwv_tires/tires_jump quarter_car/quarter_car \
+    hmmwv_vehicle/constant_steer hmmwv_vehicle/cruise hmmwv_vehicle/coasting hmmwv_vehicle/parked hmmwv_vehicle/full_run
+
 # QUICK=1: fewer repetitions and settings
 bench: all
 	$(BUILD)/gicbench $(if $(QUICK),--quick) -o $(BUILD)/bench models/hmmwv.veh models/scenes/paper_run.scene \
 	    models/scenes/spin.scene
 	$(BUILD)/gicbench --drive $(if $(QUICK),--quick) -o $(BUILD)/bench/full_run models/hmmwv_vehicle.veh \
 	    models/scenes/full_run.scene
+	$(BUILD)/gicbench --scenes $(if $(QUICK),--quick) -o $(BUILD)/bench/scenes $(foreach run,$(compared), \
+	    models/$(patsubst %/,%.veh,$(dir $(run))) models/scenes/$(notdir $(run)).scene)
 
 generated: $(BUILD)/gicgen
 	@mkdir -p generated

@@ -32,31 +32,37 @@ static void count_operations(Pool *pool, Way *way, const Formulation *formulatio
     way->fast = operations(figures->fast);
 }
 
-/* What is known of a scene: all of it, or what it asks for alone. */
-static const Facts *facts_of(Pool *pool, const Model *model, const Scene *scene, const char *path, int kind)
+/* The model with those outputs alone that a scene asks for. */
+static const Model *with_outputs(Pool *pool, const Model *model, const bool *wanted)
 {
-    Facts *facts = pool_alloc(pool, sizeof *facts);
-    *facts = *scene_facts(pool, model, scene, path, false);
-    if (kind == SPECIAL)
-        return facts;
-    *facts = (Facts){.scene = facts->scene,
-                     .wanted = facts->wanted,
-                     .fixed = pool_alloc(pool, sizeof(bool) * (size_t)(model->inputs + 1)),
-                     .input = facts->input};
-    return facts;
+    Model *own = pool_alloc(pool, sizeof *own);
+    *own = *model;
+    own->output = pool_alloc(pool, sizeof *own->output * (size_t)(model->outputs + 1));
+    own->outputs = own->output_components = 0;
+    for (int i = 0; i < model->outputs; ++i)
+        if (wanted[i]) {
+            own->output[own->outputs++] = model->output[i];
+            own->output_components += model->output[i].count;
+        }
+    return own;
 }
 
-static Way open_way(const Bench *bench, Pool *pool, const Model *model, const Scene *scene, const char *path, int kind)
+static Way open_way(const Bench *bench, Pool *pool, const Model *model, const char *path, int kind)
 {
-    Scene own = *scene;
     EngineOptions options = bench->options;
-    options.facts = facts_of(pool, model, scene, path, kind);
+    Scene *scene = pool_alloc(pool, sizeof *scene);
+    const Facts *facts = scene_facts(pool, model, scene_read(pool, path, model, NULL, 0), path, false);
+    if (kind == GENERAL)
+        model = with_outputs(pool, model, facts->wanted);
+    *scene = *equilibrium_start(pool, model, scene_read(pool, path, model, NULL, 0), bench->options.solve);
     if (kind == GENERAL) {
-        own.rest = NULL;
-        own.steady = 0;
+        scene->rest = NULL;
+        scene->steady = 0;
+    } else {
+        options.facts = scene_facts(pool, model, scene, path, false);
     }
     Way way = {.engine = engine_open(pool, bench->engine_name, model, &options)};
-    way.scene = scene_narrow(pool, pool_grow(pool, &own, sizeof own, sizeof own), model, way.engine);
+    way.scene = scene_narrow(pool, scene, model, way.engine);
     way.self = instance_new(pool, way.engine);
     way.copy = instance_new(pool, way.engine);
     way.second = pool_alloc(pool, sizeof *way.second * (size_t)bench->repetitions);
@@ -165,14 +171,12 @@ static void measure_scene(const Bench *bench, Sheet *table, const char *model_pa
 {
     Pool *pool = pool_new();
     const Model *model = model_read(pool, model_path);
-    const Scene *scene = scene_read(pool, scene_path, model, NULL, 0);
-    const Place at = {scene->source, 0, 0};
     Way way[WAYS];
-    if (!scene->per_output)
-        diag_fail(at, "write `integrator: ab3` and a step", "a scene is timed with constant steps");
-    scene = equilibrium_start(pool, model, scene, bench->options.solve);
     for (int k = 0; k < WAYS; ++k)
-        way[k] = open_way(bench, pool, model, scene, scene_path, k);
+        way[k] = open_way(bench, pool, model, scene_path, k);
+    const Place at = {way[GENERAL].scene->source, 0, 0};
+    if (!way[GENERAL].scene->per_output)
+        diag_fail(at, "write `integrator: ab3` and a step", "a scene is timed with constant steps");
     for (int r = 0; r < bench->repetitions; ++r)
         for (int k = 0; k < WAYS; ++k) {
             bench_progress("%s, repetition %d of %d", file_name(scene_path), r + 1, bench->repetitions);
@@ -198,9 +202,10 @@ void bench_scenes(const Bench *bench)
                 "side, and in millions in a second of the scene. Difference: the largest of all results, relative to "
                 "the largest magnitude of each, which counts as 1 at least.",
                 bench->engine_name, bench->repetitions);
-    Sheet *table = report_table(bench->report, "scenes", "General and specialised",
-                                "scene|model|rhs, general|rhs, specialised|operations [M/s], general|specialised|"
-                                "ratio|CPU time [ms], general|specialised|ratio|lowest|highest|difference|left out");
+    Sheet *table =
+        report_table(bench->report, "scenes", "General and specialised",
+                     "scene|model|rhs general|rhs specialised|general [M/s]|specialised [M/s]|operations ratio|"
+                     "general [ms]|specialised [ms]|time ratio|lowest|highest|difference|left out");
     for (int i = 0; i < bench->files; i += 2)
         measure_scene(bench, table, bench->file[i], bench->file[i + 1]);
 }

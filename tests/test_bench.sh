@@ -224,6 +224,34 @@ check 'vehicles in lanes' [ $? -eq 0 ]
 check 'all ways have times, and the same states' awk '/^way / {on = 1; next} on && NF {++n; if (!($(NF - 2) > 0 && $NF == 0)) bad = 1}
     END {exit bad || n < 5}' "$work/out"
 
+# ---- scenes with code for each: a drive, a rig, a vehicle that sleeps, all of them short
+
+cut() { sed "s/^duration: .*/duration: $2/" "$models/scenes/$1.scene" >"$work/$1.scene"; }
+cut constant_steer 0.6
+cut quarter_car 1
+cut parked 30
+"$gicbench" --scenes --quick --engines tcc -o "$work/scenes" "$models/hmmwv_vehicle.veh" "$work/constant_steer.scene" \
+    "$models/quarter_car.veh" "$work/quarter_car.scene" "$models/hmmwv_vehicle.veh" "$work/parked.scene" >"$work/out" 2>"$work/err"
+check 'scenes' [ $? -eq 0 ]
+check 'it is printed too' grep -q 'General and specialised' "$work/out"
+check 'operations, times and ratios hang together' awk -F, '
+    NR == 1 {for (i = 1; i <= NF; ++i) at[$i] = i; next}
+    {++n; ratio = $at["time ratio"]; work = $at["specialised [M/s]"] / $at["general [M/s]"]; said = $at["operations ratio"]
+        if (!($at["rhs specialised"] > 0 && $at["rhs specialised"] <= $at["rhs general"])) bad = 1
+        if (!($at["lowest"] <= ratio && ratio <= $at["highest"] && $at["lowest"] > 0)) bad = 1
+        if (!($at["general [ms]"] > 0 && $at["specialised [ms]"] > 0)) bad = 1
+        if (!(work <= 1 && said > 0.99 * work && said < 1.01 * work)) bad = 1}
+    END {exit bad || n != 3}' "$work/scenes/scenes.csv"
+# the same operations but for those with constants: rounding, grown in a second
+check 'what is exact differs by rounding' awk -F, '
+    NR == 1 {for (i = 1; i <= NF; ++i) at[$i] = i; next}
+    $1 != "parked.scene" {++n; if (!($at["difference"] < 1e-9)) bad = 1} END {exit bad || n != 2}' "$work/scenes/scenes.csv"
+# it rests within 1e-4 of its state; tires make 1e5 N of a slip of 1
+check 'what sleeps hardly moves' awk -F, '
+    NR == 1 {for (i = 1; i <= NF; ++i) at[$i] = i; next}
+    $1 == "parked.scene" {++n; if (!($at["difference"] < 1e-2 && $at["operations ratio"] < 0.05 && /asleep [1-9]/)) bad = 1}
+    END {exit bad || n != 1}' "$work/scenes/scenes.csv"
+
 # fails STATUS TEXT ARGUMENT...
 fails() {
     status=$1
@@ -238,7 +266,9 @@ fails 2 'a model and a scene' "$work/soft.veh"
 fails 2 'a model, please' --rhs
 fails 2 'a model and a scene' --drive "$work/soft.veh"
 fails 2 'one of --rhs, --drive' --rhs --drive "$work/soft.veh" "$work/cart.scene"
+fails 2 'several pairs' --scenes "$work/soft.veh" "$work/cart.scene" "$work/soft.veh"
 sed 's/^step.*/integrator: adams\noutput_step: 0.01/' "$work/cart.scene" >"$work/variable.scene"
+fails 1 'constant steps' --scenes --engines tcc "$work/soft.veh" "$work/variable.scene"
 fails 1 'constant steps' --drive --engines tape "$work/soft.veh" "$work/variable.scene"
 fails 2 'number of vehicles' --batch x "$work/soft.veh" "$work/cart.scene"
 fails 2 "no engine 'fast'" --engines fast "$work/soft.veh" "$work/cart.scene"
