@@ -1812,8 +1812,10 @@ static int andrews_recover_piece(andrews *self, andrews_links *links, const gic_
 static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
 {
     andrews_links links;
-    const gic_real *const from = self->start[self->head.flip];
-    gic_real *const at = self->recovered_at, first[ANDREWS_COORDINATE_ROOM];
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const gic_real *const from = self->start[first];
+    gic_real *const at = self->recovered_at;
+    int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered && !memcmp(at + 2 * ANDREWS_COORDINATE_ROOM, turn, 3 * sizeof *turn);
@@ -1828,24 +1830,27 @@ static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
-        first[i] = from[i];
     }
     for (piece = 1; piece <= pieces; ++piece) {
-        const gic_real *const old = self->start[self->head.flip];
-        gic_real *const start = self->start[1 - self->head.flip];
         const gic_real share = (gic_real)piece / (gic_real)pieces;
+        gic_real *start;
         int status;
+        /* the first one stays until the last is good: a way that fails is forgotten */
+        for (next = 0; next == first || next == now || next == hold;)
+            ++next;
+        start = self->start[next];
         for (i = 0; i < ANDREWS_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : first[i] + share * (self->x[i] - first[i]);
-        status = andrews_recover_piece(self, &links, old, start);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+        status = andrews_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - self->head.flip;
+        now = next;
     }
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + ANDREWS_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * ANDREWS_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     self->recovered = 1;
+    self->head.flip = now;
     return GIC_OK;
 }
 
@@ -1877,8 +1882,7 @@ static int andrews_orient(const andrews *self, const gic_real *y, gic_real e[4],
 static int andrews_settle(andrews *self, gic_real *y)
 {
     (void)self;
-    (void)y;
-    return GIC_OK;
+    return gic_bounded(y, ANDREWS_STATES) ? GIC_OK : GIC_ERROR_INPUT;
 }
 
 /* Applied forces, composite inertia, and elimination of 1 accelerations: alpha and a of a free base, then the
@@ -2448,7 +2452,7 @@ static int andrews_locate(andrews *self, gic_real time, const gic_real *y, gic_r
     gic_real turn[3];
     int status;
     self->head.subset = -1;
-    if (!gic_finite(y, ANDREWS_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, ANDREWS_INPUTS) ||
+    if (!gic_bounded(y, ANDREWS_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, ANDREWS_INPUTS) ||
         !gic_finite(self->parameter, ANDREWS_PARAMETERS) || !gic_finite(self->port, ANDREWS_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
     status = andrews_orient(self, y, e, turn);
@@ -2670,7 +2674,7 @@ int andrews_setup_with(andrews *self, const gic_real *parameter)
     for (i = 0; i < ANDREWS_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (andrews_model.abi_version != GIC_ABI_VERSION || andrews_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < ANDREWS_STATES; ++i)

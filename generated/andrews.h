@@ -168,7 +168,7 @@ typedef struct andrews {
     gic_real history[GIC_HISTORY(ANDREWS_STATE_ROOM, ANDREWS_STATES - ANDREWS_SLOW)];
     gic_real scratch[GIC_SCRATCH(ANDREWS_STATE_ROOM, ANDREWS_INPUT_ROOM)];
     gic_real x[ANDREWS_COORDINATE_ROOM], xd[ANDREWS_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[2][ANDREWS_START_ROOM];           /* where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][ANDREWS_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[ANDREWS_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * ANDREWS_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
     int32_t recovered;                             /* 1: and it was good */

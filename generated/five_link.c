@@ -1503,8 +1503,10 @@ static int five_link_recover_piece(five_link *self, five_link_links *links, cons
 static int five_link_recover(five_link *self, const gic_real turn[3], int cold)
 {
     five_link_links links;
-    const gic_real *const from = self->start[self->head.flip];
-    gic_real *const at = self->recovered_at, first[FIVE_LINK_COORDINATE_ROOM];
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const gic_real *const from = self->start[first];
+    gic_real *const at = self->recovered_at;
+    int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered && !memcmp(at + 2 * FIVE_LINK_COORDINATE_ROOM, turn, 3 * sizeof *turn);
@@ -1519,24 +1521,27 @@ static int five_link_recover(five_link *self, const gic_real turn[3], int cold)
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
-        first[i] = from[i];
     }
     for (piece = 1; piece <= pieces; ++piece) {
-        const gic_real *const old = self->start[self->head.flip];
-        gic_real *const start = self->start[1 - self->head.flip];
         const gic_real share = (gic_real)piece / (gic_real)pieces;
+        gic_real *start;
         int status;
+        /* the first one stays until the last is good: a way that fails is forgotten */
+        for (next = 0; next == first || next == now || next == hold;)
+            ++next;
+        start = self->start[next];
         for (i = 0; i < FIVE_LINK_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : first[i] + share * (self->x[i] - first[i]);
-        status = five_link_recover_piece(self, &links, old, start);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+        status = five_link_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - self->head.flip;
+        now = next;
     }
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + FIVE_LINK_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * FIVE_LINK_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     self->recovered = 1;
+    self->head.flip = now;
     return GIC_OK;
 }
 
@@ -1579,7 +1584,9 @@ static int five_link_orient(const five_link *self, const gic_real *y, gic_real e
 static int five_link_settle(five_link *self, gic_real *y)
 {
     gic_real e[4];
-    int i, status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
+    int i, status = GIC_ERROR_INPUT;
+    if (gic_bounded(y, FIVE_LINK_STATES))
+        status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
     for (i = 0; status == GIC_OK && i < 4; ++i)
         y[3 + i] = e[i];
     return status;
@@ -2854,7 +2861,7 @@ static int five_link_locate(five_link *self, gic_real time, const gic_real *y, g
     gic_real turn[3];
     int status;
     self->head.subset = -1;
-    if (!gic_finite(y, FIVE_LINK_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, FIVE_LINK_INPUTS) ||
+    if (!gic_bounded(y, FIVE_LINK_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, FIVE_LINK_INPUTS) ||
         !gic_finite(self->parameter, FIVE_LINK_PARAMETERS) || !gic_finite(self->port, FIVE_LINK_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
     status = five_link_orient(self, y, e, turn);
@@ -3172,7 +3179,7 @@ int five_link_setup_with(five_link *self, const gic_real *parameter)
     for (i = 0; i < FIVE_LINK_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (five_link_model.abi_version != GIC_ABI_VERSION || five_link_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < FIVE_LINK_STATES; ++i)

@@ -240,7 +240,7 @@ typedef struct five_link {
     gic_real history[GIC_HISTORY(FIVE_LINK_STATE_ROOM, FIVE_LINK_STATES - FIVE_LINK_SLOW)];
     gic_real scratch[GIC_SCRATCH(FIVE_LINK_STATE_ROOM, FIVE_LINK_INPUT_ROOM)];
     gic_real x[FIVE_LINK_COORDINATE_ROOM], xd[FIVE_LINK_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[2][FIVE_LINK_START_ROOM];           /* where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][FIVE_LINK_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[FIVE_LINK_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * FIVE_LINK_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
     int32_t recovered;                             /* 1: and it was good */

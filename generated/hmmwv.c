@@ -1088,8 +1088,10 @@ static int hmmwv_recover_piece(hmmwv *self, hmmwv_links *links, const gic_real *
 static int hmmwv_recover(hmmwv *self, const gic_real turn[3], int cold)
 {
     hmmwv_links links;
-    const gic_real *const from = self->start[self->head.flip];
-    gic_real *const at = self->recovered_at, first[HMMWV_COORDINATE_ROOM];
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const gic_real *const from = self->start[first];
+    gic_real *const at = self->recovered_at;
+    int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered && !memcmp(at + 2 * HMMWV_COORDINATE_ROOM, turn, 3 * sizeof *turn);
@@ -1104,24 +1106,27 @@ static int hmmwv_recover(hmmwv *self, const gic_real turn[3], int cold)
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
-        first[i] = from[i];
     }
     for (piece = 1; piece <= pieces; ++piece) {
-        const gic_real *const old = self->start[self->head.flip];
-        gic_real *const start = self->start[1 - self->head.flip];
         const gic_real share = (gic_real)piece / (gic_real)pieces;
+        gic_real *start;
         int status;
+        /* the first one stays until the last is good: a way that fails is forgotten */
+        for (next = 0; next == first || next == now || next == hold;)
+            ++next;
+        start = self->start[next];
         for (i = 0; i < HMMWV_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : first[i] + share * (self->x[i] - first[i]);
-        status = hmmwv_recover_piece(self, &links, old, start);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+        status = hmmwv_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - self->head.flip;
+        now = next;
     }
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + HMMWV_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * HMMWV_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     self->recovered = 1;
+    self->head.flip = now;
     return GIC_OK;
 }
 
@@ -1164,7 +1169,9 @@ static int hmmwv_orient(const hmmwv *self, const gic_real *y, gic_real e[4], gic
 static int hmmwv_settle(hmmwv *self, gic_real *y)
 {
     gic_real e[4];
-    int i, status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
+    int i, status = GIC_ERROR_INPUT;
+    if (gic_bounded(y, HMMWV_STATES))
+        status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
     for (i = 0; status == GIC_OK && i < 4; ++i)
         y[3 + i] = e[i];
     return status;
@@ -2504,7 +2511,7 @@ static int hmmwv_locate(hmmwv *self, gic_real time, const gic_real *y, gic_real 
     gic_real turn[3];
     int status;
     self->head.subset = -1;
-    if (!gic_finite(y, HMMWV_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV_INPUTS) ||
+    if (!gic_bounded(y, HMMWV_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV_INPUTS) ||
         !gic_finite(self->parameter, HMMWV_PARAMETERS) || !gic_finite(self->port, HMMWV_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
     status = hmmwv_orient(self, y, e, turn);
@@ -2819,7 +2826,7 @@ int hmmwv_setup_with(hmmwv *self, const gic_real *parameter)
     for (i = 0; i < HMMWV_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (hmmwv_model.abi_version != GIC_ABI_VERSION || hmmwv_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < HMMWV_STATES; ++i)

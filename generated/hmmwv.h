@@ -240,7 +240,7 @@ typedef struct hmmwv {
     gic_real history[GIC_HISTORY(HMMWV_STATE_ROOM, HMMWV_STATES - HMMWV_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_STATE_ROOM, HMMWV_INPUT_ROOM)];
     gic_real x[HMMWV_COORDINATE_ROOM], xd[HMMWV_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[2][HMMWV_START_ROOM];           /* where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][HMMWV_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * HMMWV_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
     int32_t recovered;                             /* 1: and it was good */

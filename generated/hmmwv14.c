@@ -1523,8 +1523,10 @@ static int hmmwv14_recover_piece(hmmwv14 *self, hmmwv14_links *links, const gic_
 static int hmmwv14_recover(hmmwv14 *self, const gic_real turn[3], int cold)
 {
     hmmwv14_links links;
-    const gic_real *const from = self->start[self->head.flip];
-    gic_real *const at = self->recovered_at, first[HMMWV14_COORDINATE_ROOM];
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const gic_real *const from = self->start[first];
+    gic_real *const at = self->recovered_at;
+    int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered && !memcmp(at + 2 * HMMWV14_COORDINATE_ROOM, turn, 3 * sizeof *turn);
@@ -1539,24 +1541,27 @@ static int hmmwv14_recover(hmmwv14 *self, const gic_real turn[3], int cold)
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
-        first[i] = from[i];
     }
     for (piece = 1; piece <= pieces; ++piece) {
-        const gic_real *const old = self->start[self->head.flip];
-        gic_real *const start = self->start[1 - self->head.flip];
         const gic_real share = (gic_real)piece / (gic_real)pieces;
+        gic_real *start;
         int status;
+        /* the first one stays until the last is good: a way that fails is forgotten */
+        for (next = 0; next == first || next == now || next == hold;)
+            ++next;
+        start = self->start[next];
         for (i = 0; i < HMMWV14_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : first[i] + share * (self->x[i] - first[i]);
-        status = hmmwv14_recover_piece(self, &links, old, start);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+        status = hmmwv14_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - self->head.flip;
+        now = next;
     }
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + HMMWV14_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * HMMWV14_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     self->recovered = 1;
+    self->head.flip = now;
     return GIC_OK;
 }
 
@@ -1599,7 +1604,9 @@ static int hmmwv14_orient(const hmmwv14 *self, const gic_real *y, gic_real e[4],
 static int hmmwv14_settle(hmmwv14 *self, gic_real *y)
 {
     gic_real e[4];
-    int i, status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
+    int i, status = GIC_ERROR_INPUT;
+    if (gic_bounded(y, HMMWV14_STATES))
+        status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
     for (i = 0; status == GIC_OK && i < 4; ++i)
         y[3 + i] = e[i];
     return status;
@@ -3435,7 +3442,7 @@ static int hmmwv14_locate(hmmwv14 *self, gic_real time, const gic_real *y, gic_r
     gic_real turn[3];
     int status;
     self->head.subset = -1;
-    if (!gic_finite(y, HMMWV14_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV14_INPUTS) ||
+    if (!gic_bounded(y, HMMWV14_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV14_INPUTS) ||
         !gic_finite(self->parameter, HMMWV14_PARAMETERS) || !gic_finite(self->port, HMMWV14_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
     status = hmmwv14_orient(self, y, e, turn);
@@ -3769,7 +3776,7 @@ int hmmwv14_setup_with(hmmwv14 *self, const gic_real *parameter)
     for (i = 0; i < HMMWV14_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (hmmwv14_model.abi_version != GIC_ABI_VERSION || hmmwv14_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < HMMWV14_STATES; ++i)

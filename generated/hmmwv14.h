@@ -257,7 +257,7 @@ typedef struct hmmwv14 {
     gic_real history[GIC_HISTORY(HMMWV14_STATE_ROOM, HMMWV14_STATES - HMMWV14_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV14_STATE_ROOM, HMMWV14_INPUT_ROOM)];
     gic_real x[HMMWV14_COORDINATE_ROOM], xd[HMMWV14_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[2][HMMWV14_START_ROOM];           /* where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][HMMWV14_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV14_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * HMMWV14_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
     int32_t recovered;                             /* 1: and it was good */

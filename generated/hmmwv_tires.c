@@ -1092,8 +1092,10 @@ static int hmmwv_tires_recover_piece(hmmwv_tires *self, hmmwv_tires_links *links
 static int hmmwv_tires_recover(hmmwv_tires *self, const gic_real turn[3], int cold)
 {
     hmmwv_tires_links links;
-    const gic_real *const from = self->start[self->head.flip];
-    gic_real *const at = self->recovered_at, first[HMMWV_TIRES_COORDINATE_ROOM];
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const gic_real *const from = self->start[first];
+    gic_real *const at = self->recovered_at;
+    int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered && !memcmp(at + 2 * HMMWV_TIRES_COORDINATE_ROOM, turn, 3 * sizeof *turn);
@@ -1108,24 +1110,27 @@ static int hmmwv_tires_recover(hmmwv_tires *self, const gic_real turn[3], int co
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
-        first[i] = from[i];
     }
     for (piece = 1; piece <= pieces; ++piece) {
-        const gic_real *const old = self->start[self->head.flip];
-        gic_real *const start = self->start[1 - self->head.flip];
         const gic_real share = (gic_real)piece / (gic_real)pieces;
+        gic_real *start;
         int status;
+        /* the first one stays until the last is good: a way that fails is forgotten */
+        for (next = 0; next == first || next == now || next == hold;)
+            ++next;
+        start = self->start[next];
         for (i = 0; i < HMMWV_TIRES_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : first[i] + share * (self->x[i] - first[i]);
-        status = hmmwv_tires_recover_piece(self, &links, old, start);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+        status = hmmwv_tires_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - self->head.flip;
+        now = next;
     }
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + HMMWV_TIRES_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * HMMWV_TIRES_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     self->recovered = 1;
+    self->head.flip = now;
     return GIC_OK;
 }
 
@@ -1168,7 +1173,9 @@ static int hmmwv_tires_orient(const hmmwv_tires *self, const gic_real *y, gic_re
 static int hmmwv_tires_settle(hmmwv_tires *self, gic_real *y)
 {
     gic_real e[4];
-    int i, status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
+    int i, status = GIC_ERROR_INPUT;
+    if (gic_bounded(y, HMMWV_TIRES_STATES))
+        status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
     for (i = 0; status == GIC_OK && i < 4; ++i)
         y[3 + i] = e[i];
     return status;
@@ -1703,7 +1710,7 @@ static int hmmwv_tires_grip(hmmwv_tires *self, gic_real time, const gic_real *li
 static int hmmwv_tires_turn_wheels(hmmwv_tires *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
 {
     gic_real link[HMMWV_TIRES_LINKS];
-    if (!gic_finite(y + HMMWV_TIRES_SLOW, HMMWV_TIRES_STATES - HMMWV_TIRES_SLOW))
+    if (!gic_bounded(y + HMMWV_TIRES_SLOW, HMMWV_TIRES_STATES - HMMWV_TIRES_SLOW))
         return GIC_ERROR_INPUT;
     hmmwv_tires_link_wheels(self, y, e, link);
     return hmmwv_tires_grip(self, time, link, y + HMMWV_TIRES_SLOW, rate);
@@ -3136,7 +3143,7 @@ static int hmmwv_tires_locate(hmmwv_tires *self, gic_real time, const gic_real *
     gic_real turn[3];
     int status;
     self->head.subset = -1;
-    if (!gic_finite(y, HMMWV_TIRES_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV_TIRES_INPUTS) ||
+    if (!gic_bounded(y, HMMWV_TIRES_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV_TIRES_INPUTS) ||
         !gic_finite(self->parameter, HMMWV_TIRES_PARAMETERS) || !gic_finite(self->port, HMMWV_TIRES_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
     status = hmmwv_tires_orient(self, y, e, turn);
@@ -3549,7 +3556,7 @@ int hmmwv_tires_setup_with(hmmwv_tires *self, const gic_real *parameter)
     for (i = 0; i < HMMWV_TIRES_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (hmmwv_tires_model.abi_version != GIC_ABI_VERSION || hmmwv_tires_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < HMMWV_TIRES_STATES; ++i)
@@ -4718,10 +4725,15 @@ static int hmmwv_tires_any_link(void *instance, gic_real time, const gic_real *s
 {
     hmmwv_tires *const self = (hmmwv_tires *)instance;
     gic_real e[4];
-    const int status = hmmwv_tires_locate(self, time, slow, e);
-    if (status == GIC_OK)
-        hmmwv_tires_link_wheels(self, slow, e, link);
-    return status;
+    gic_real found[HMMWV_TIRES_LINKS];
+    int status = hmmwv_tires_locate(self, time, slow, e);
+    if (status != GIC_OK)
+        return status;
+    hmmwv_tires_link_wheels(self, slow, e, found);
+    if (!gic_finite(found, HMMWV_TIRES_LINKS))
+        return self->head.status = GIC_ERROR_RESULT;
+    memcpy(link, found, sizeof found);
+    return GIC_OK;
 }
 
 static int hmmwv_tires_any_fast(void *instance, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate)
@@ -4729,7 +4741,7 @@ static int hmmwv_tires_any_fast(void *instance, gic_real time, const gic_real *l
     hmmwv_tires *const self = (hmmwv_tires *)instance;
     gic_real result[HMMWV_TIRES_STATES - HMMWV_TIRES_SLOW];
     int status;
-    if (!gic_finite(link, HMMWV_TIRES_LINKS) || !gic_finite(fast, HMMWV_TIRES_STATES - HMMWV_TIRES_SLOW) || !gic_finite(&time, 1) ||
+    if (!gic_finite(link, HMMWV_TIRES_LINKS) || !gic_bounded(fast, HMMWV_TIRES_STATES - HMMWV_TIRES_SLOW) || !gic_finite(&time, 1) ||
         !gic_finite(self->input, HMMWV_TIRES_INPUTS) || !gic_finite(self->parameter, HMMWV_TIRES_PARAMETERS))
         return self->head.status = GIC_ERROR_INPUT;
     status = hmmwv_tires_grip(self, time, link, fast, result);

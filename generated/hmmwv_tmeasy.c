@@ -1092,8 +1092,10 @@ static int hmmwv_tmeasy_recover_piece(hmmwv_tmeasy *self, hmmwv_tmeasy_links *li
 static int hmmwv_tmeasy_recover(hmmwv_tmeasy *self, const gic_real turn[3], int cold)
 {
     hmmwv_tmeasy_links links;
-    const gic_real *const from = self->start[self->head.flip];
-    gic_real *const at = self->recovered_at, first[HMMWV_TMEASY_COORDINATE_ROOM];
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const gic_real *const from = self->start[first];
+    gic_real *const at = self->recovered_at;
+    int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered && !memcmp(at + 2 * HMMWV_TMEASY_COORDINATE_ROOM, turn, 3 * sizeof *turn);
@@ -1108,24 +1110,27 @@ static int hmmwv_tmeasy_recover(hmmwv_tmeasy *self, const gic_real turn[3], int 
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
-        first[i] = from[i];
     }
     for (piece = 1; piece <= pieces; ++piece) {
-        const gic_real *const old = self->start[self->head.flip];
-        gic_real *const start = self->start[1 - self->head.flip];
         const gic_real share = (gic_real)piece / (gic_real)pieces;
+        gic_real *start;
         int status;
+        /* the first one stays until the last is good: a way that fails is forgotten */
+        for (next = 0; next == first || next == now || next == hold;)
+            ++next;
+        start = self->start[next];
         for (i = 0; i < HMMWV_TMEASY_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : first[i] + share * (self->x[i] - first[i]);
-        status = hmmwv_tmeasy_recover_piece(self, &links, old, start);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+        status = hmmwv_tmeasy_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - self->head.flip;
+        now = next;
     }
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + HMMWV_TMEASY_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * HMMWV_TMEASY_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     self->recovered = 1;
+    self->head.flip = now;
     return GIC_OK;
 }
 
@@ -1168,7 +1173,9 @@ static int hmmwv_tmeasy_orient(const hmmwv_tmeasy *self, const gic_real *y, gic_
 static int hmmwv_tmeasy_settle(hmmwv_tmeasy *self, gic_real *y)
 {
     gic_real e[4];
-    int i, status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
+    int i, status = GIC_ERROR_INPUT;
+    if (gic_bounded(y, HMMWV_TMEASY_STATES))
+        status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
     for (i = 0; status == GIC_OK && i < 4; ++i)
         y[3 + i] = e[i];
     return status;
@@ -1689,7 +1696,7 @@ static int hmmwv_tmeasy_grip(hmmwv_tmeasy *self, gic_real time, const gic_real *
 static int hmmwv_tmeasy_turn_wheels(hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
 {
     gic_real link[HMMWV_TMEASY_LINKS];
-    if (!gic_finite(y + HMMWV_TMEASY_SLOW, HMMWV_TMEASY_STATES - HMMWV_TMEASY_SLOW))
+    if (!gic_bounded(y + HMMWV_TMEASY_SLOW, HMMWV_TMEASY_STATES - HMMWV_TMEASY_SLOW))
         return GIC_ERROR_INPUT;
     hmmwv_tmeasy_link_wheels(self, y, e, link);
     return hmmwv_tmeasy_grip(self, time, link, y + HMMWV_TMEASY_SLOW, rate);
@@ -3122,7 +3129,7 @@ static int hmmwv_tmeasy_locate(hmmwv_tmeasy *self, gic_real time, const gic_real
     gic_real turn[3];
     int status;
     self->head.subset = -1;
-    if (!gic_finite(y, HMMWV_TMEASY_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV_TMEASY_INPUTS) ||
+    if (!gic_bounded(y, HMMWV_TMEASY_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV_TMEASY_INPUTS) ||
         !gic_finite(self->parameter, HMMWV_TMEASY_PARAMETERS) || !gic_finite(self->port, HMMWV_TMEASY_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
     status = hmmwv_tmeasy_orient(self, y, e, turn);
@@ -3535,7 +3542,7 @@ int hmmwv_tmeasy_setup_with(hmmwv_tmeasy *self, const gic_real *parameter)
     for (i = 0; i < HMMWV_TMEASY_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (hmmwv_tmeasy_model.abi_version != GIC_ABI_VERSION || hmmwv_tmeasy_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < HMMWV_TMEASY_STATES; ++i)
@@ -4704,10 +4711,15 @@ static int hmmwv_tmeasy_any_link(void *instance, gic_real time, const gic_real *
 {
     hmmwv_tmeasy *const self = (hmmwv_tmeasy *)instance;
     gic_real e[4];
-    const int status = hmmwv_tmeasy_locate(self, time, slow, e);
-    if (status == GIC_OK)
-        hmmwv_tmeasy_link_wheels(self, slow, e, link);
-    return status;
+    gic_real found[HMMWV_TMEASY_LINKS];
+    int status = hmmwv_tmeasy_locate(self, time, slow, e);
+    if (status != GIC_OK)
+        return status;
+    hmmwv_tmeasy_link_wheels(self, slow, e, found);
+    if (!gic_finite(found, HMMWV_TMEASY_LINKS))
+        return self->head.status = GIC_ERROR_RESULT;
+    memcpy(link, found, sizeof found);
+    return GIC_OK;
 }
 
 static int hmmwv_tmeasy_any_fast(void *instance, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate)
@@ -4715,7 +4727,7 @@ static int hmmwv_tmeasy_any_fast(void *instance, gic_real time, const gic_real *
     hmmwv_tmeasy *const self = (hmmwv_tmeasy *)instance;
     gic_real result[HMMWV_TMEASY_STATES - HMMWV_TMEASY_SLOW];
     int status;
-    if (!gic_finite(link, HMMWV_TMEASY_LINKS) || !gic_finite(fast, HMMWV_TMEASY_STATES - HMMWV_TMEASY_SLOW) || !gic_finite(&time, 1) ||
+    if (!gic_finite(link, HMMWV_TMEASY_LINKS) || !gic_bounded(fast, HMMWV_TMEASY_STATES - HMMWV_TMEASY_SLOW) || !gic_finite(&time, 1) ||
         !gic_finite(self->input, HMMWV_TMEASY_INPUTS) || !gic_finite(self->parameter, HMMWV_TMEASY_PARAMETERS))
         return self->head.status = GIC_ERROR_INPUT;
     status = hmmwv_tmeasy_grip(self, time, link, fast, result);

@@ -326,7 +326,7 @@ typedef struct hmmwv_tmeasy {
     gic_real history[GIC_HISTORY(HMMWV_TMEASY_STATE_ROOM, HMMWV_TMEASY_STATES - HMMWV_TMEASY_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_TMEASY_STATE_ROOM, HMMWV_TMEASY_INPUT_ROOM)];
     gic_real x[HMMWV_TMEASY_COORDINATE_ROOM], xd[HMMWV_TMEASY_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[2][HMMWV_TMEASY_START_ROOM];           /* where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][HMMWV_TMEASY_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_TMEASY_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * HMMWV_TMEASY_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
     int32_t recovered;                             /* 1: and it was good */

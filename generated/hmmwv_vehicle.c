@@ -1093,8 +1093,10 @@ static int hmmwv_vehicle_recover_piece(hmmwv_vehicle *self, hmmwv_vehicle_links 
 static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], int cold)
 {
     hmmwv_vehicle_links links;
-    const gic_real *const from = self->start[self->head.flip];
-    gic_real *const at = self->recovered_at, first[HMMWV_VEHICLE_COORDINATE_ROOM];
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const gic_real *const from = self->start[first];
+    gic_real *const at = self->recovered_at;
+    int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered && !memcmp(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn);
@@ -1109,24 +1111,27 @@ static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], in
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
-        first[i] = from[i];
     }
     for (piece = 1; piece <= pieces; ++piece) {
-        const gic_real *const old = self->start[self->head.flip];
-        gic_real *const start = self->start[1 - self->head.flip];
         const gic_real share = (gic_real)piece / (gic_real)pieces;
+        gic_real *start;
         int status;
+        /* the first one stays until the last is good: a way that fails is forgotten */
+        for (next = 0; next == first || next == now || next == hold;)
+            ++next;
+        start = self->start[next];
         for (i = 0; i < HMMWV_VEHICLE_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : first[i] + share * (self->x[i] - first[i]);
-        status = hmmwv_vehicle_recover_piece(self, &links, old, start);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+        status = hmmwv_vehicle_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - self->head.flip;
+        now = next;
     }
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + HMMWV_VEHICLE_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     self->recovered = 1;
+    self->head.flip = now;
     return GIC_OK;
 }
 
@@ -1223,7 +1228,9 @@ static int hmmwv_vehicle_orient(const hmmwv_vehicle *self, const gic_real *y, gi
 static int hmmwv_vehicle_settle(hmmwv_vehicle *self, gic_real *y)
 {
     gic_real e[4];
-    int i, status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
+    int i, status = GIC_ERROR_INPUT;
+    if (gic_bounded(y, HMMWV_VEHICLE_STATES))
+        status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
     for (i = 0; status == GIC_OK && i < 4; ++i)
         y[3 + i] = e[i];
     return status;
@@ -1876,7 +1883,7 @@ static int hmmwv_vehicle_grip(hmmwv_vehicle *self, gic_real time, const gic_real
 static int hmmwv_vehicle_turn_wheels(hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
 {
     gic_real link[HMMWV_VEHICLE_LINKS];
-    if (!gic_finite(y + HMMWV_VEHICLE_SLOW, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW))
+    if (!gic_bounded(y + HMMWV_VEHICLE_SLOW, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW))
         return GIC_ERROR_INPUT;
     hmmwv_vehicle_link_wheels(self, y, e, link);
     return hmmwv_vehicle_grip(self, time, link, y + HMMWV_VEHICLE_SLOW, rate);
@@ -3384,7 +3391,7 @@ static int hmmwv_vehicle_locate(hmmwv_vehicle *self, gic_real time, const gic_re
     gic_real turn[3];
     int status;
     self->head.subset = -1;
-    if (!gic_finite(y, HMMWV_VEHICLE_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV_VEHICLE_INPUTS) ||
+    if (!gic_bounded(y, HMMWV_VEHICLE_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, HMMWV_VEHICLE_INPUTS) ||
         !gic_finite(self->parameter, HMMWV_VEHICLE_PARAMETERS) || !gic_finite(self->port, HMMWV_VEHICLE_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
     status = hmmwv_vehicle_orient(self, y, e, turn);
@@ -3813,7 +3820,7 @@ int hmmwv_vehicle_setup_with(hmmwv_vehicle *self, const gic_real *parameter)
     for (i = 0; i < HMMWV_VEHICLE_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (hmmwv_vehicle_model.abi_version != GIC_ABI_VERSION || hmmwv_vehicle_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < HMMWV_VEHICLE_STATES; ++i)
@@ -5033,10 +5040,15 @@ static int hmmwv_vehicle_any_link(void *instance, gic_real time, const gic_real 
 {
     hmmwv_vehicle *const self = (hmmwv_vehicle *)instance;
     gic_real e[4];
-    const int status = hmmwv_vehicle_locate(self, time, slow, e);
-    if (status == GIC_OK)
-        hmmwv_vehicle_link_wheels(self, slow, e, link);
-    return status;
+    gic_real found[HMMWV_VEHICLE_LINKS];
+    int status = hmmwv_vehicle_locate(self, time, slow, e);
+    if (status != GIC_OK)
+        return status;
+    hmmwv_vehicle_link_wheels(self, slow, e, found);
+    if (!gic_finite(found, HMMWV_VEHICLE_LINKS))
+        return self->head.status = GIC_ERROR_RESULT;
+    memcpy(link, found, sizeof found);
+    return GIC_OK;
 }
 
 static int hmmwv_vehicle_any_fast(void *instance, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate)
@@ -5044,7 +5056,7 @@ static int hmmwv_vehicle_any_fast(void *instance, gic_real time, const gic_real 
     hmmwv_vehicle *const self = (hmmwv_vehicle *)instance;
     gic_real result[HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW];
     int status;
-    if (!gic_finite(link, HMMWV_VEHICLE_LINKS) || !gic_finite(fast, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW) || !gic_finite(&time, 1) ||
+    if (!gic_finite(link, HMMWV_VEHICLE_LINKS) || !gic_bounded(fast, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW) || !gic_finite(&time, 1) ||
         !gic_finite(self->input, HMMWV_VEHICLE_INPUTS) || !gic_finite(self->parameter, HMMWV_VEHICLE_PARAMETERS))
         return self->head.status = GIC_ERROR_INPUT;
     status = hmmwv_vehicle_grip(self, time, link, fast, result);

@@ -342,7 +342,7 @@ typedef struct hmmwv_vehicle {
     gic_real history[GIC_HISTORY(HMMWV_VEHICLE_STATE_ROOM, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_VEHICLE_STATE_ROOM, HMMWV_VEHICLE_INPUT_ROOM)];
     gic_real x[HMMWV_VEHICLE_COORDINATE_ROOM], xd[HMMWV_VEHICLE_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[2][HMMWV_VEHICLE_START_ROOM];           /* where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][HMMWV_VEHICLE_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_VEHICLE_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * HMMWV_VEHICLE_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
     int32_t recovered;                             /* 1: and it was good */

@@ -224,8 +224,10 @@ static int pendulum_recover_piece(pendulum *self, pendulum_links *links, const g
 static int pendulum_recover(pendulum *self, const gic_real turn[3], int cold)
 {
     pendulum_links links;
-    const gic_real *const from = self->start[self->head.flip];
-    gic_real *const at = self->recovered_at, first[PENDULUM_COORDINATE_ROOM];
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const gic_real *const from = self->start[first];
+    gic_real *const at = self->recovered_at;
+    int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered && !memcmp(at + 2 * PENDULUM_COORDINATE_ROOM, turn, 3 * sizeof *turn);
@@ -240,24 +242,27 @@ static int pendulum_recover(pendulum *self, const gic_real turn[3], int cold)
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
-        first[i] = from[i];
     }
     for (piece = 1; piece <= pieces; ++piece) {
-        const gic_real *const old = self->start[self->head.flip];
-        gic_real *const start = self->start[1 - self->head.flip];
         const gic_real share = (gic_real)piece / (gic_real)pieces;
+        gic_real *start;
         int status;
+        /* the first one stays until the last is good: a way that fails is forgotten */
+        for (next = 0; next == first || next == now || next == hold;)
+            ++next;
+        start = self->start[next];
         for (i = 0; i < PENDULUM_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : first[i] + share * (self->x[i] - first[i]);
-        status = pendulum_recover_piece(self, &links, old, start);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+        status = pendulum_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - self->head.flip;
+        now = next;
     }
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + PENDULUM_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * PENDULUM_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     self->recovered = 1;
+    self->head.flip = now;
     return GIC_OK;
 }
 
@@ -289,8 +294,7 @@ static int pendulum_orient(const pendulum *self, const gic_real *y, gic_real e[4
 static int pendulum_settle(pendulum *self, gic_real *y)
 {
     (void)self;
-    (void)y;
-    return GIC_OK;
+    return gic_bounded(y, PENDULUM_STATES) ? GIC_OK : GIC_ERROR_INPUT;
 }
 
 /* Applied forces, composite inertia, and elimination of 1 accelerations: alpha and a of a free base, then the
@@ -407,7 +411,7 @@ static int pendulum_locate(pendulum *self, gic_real time, const gic_real *y, gic
     gic_real turn[3];
     int status;
     self->head.subset = -1;
-    if (!gic_finite(y, PENDULUM_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, PENDULUM_INPUTS) ||
+    if (!gic_bounded(y, PENDULUM_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, PENDULUM_INPUTS) ||
         !gic_finite(self->parameter, PENDULUM_PARAMETERS) || !gic_finite(self->port, PENDULUM_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
     status = pendulum_orient(self, y, e, turn);
@@ -581,7 +585,7 @@ int pendulum_setup_with(pendulum *self, const gic_real *parameter)
     for (i = 0; i < PENDULUM_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (pendulum_model.abi_version != GIC_ABI_VERSION || pendulum_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < PENDULUM_STATES; ++i)

@@ -112,7 +112,7 @@ typedef struct pendulum {
     gic_real history[GIC_HISTORY(PENDULUM_STATE_ROOM, PENDULUM_STATES - PENDULUM_SLOW)];
     gic_real scratch[GIC_SCRATCH(PENDULUM_STATE_ROOM, PENDULUM_INPUT_ROOM)];
     gic_real x[PENDULUM_COORDINATE_ROOM], xd[PENDULUM_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[2][PENDULUM_START_ROOM];           /* where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][PENDULUM_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[PENDULUM_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * PENDULUM_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
     int32_t recovered;                             /* 1: and it was good */

@@ -609,8 +609,10 @@ static int quarter_car_recover_piece(quarter_car *self, quarter_car_links *links
 static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int cold)
 {
     quarter_car_links links;
-    const gic_real *const from = self->start[self->head.flip];
-    gic_real *const at = self->recovered_at, first[QUARTER_CAR_COORDINATE_ROOM];
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const gic_real *const from = self->start[first];
+    gic_real *const at = self->recovered_at;
+    int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered && !memcmp(at + 2 * QUARTER_CAR_COORDINATE_ROOM, turn, 3 * sizeof *turn);
@@ -625,24 +627,27 @@ static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int co
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
-        first[i] = from[i];
     }
     for (piece = 1; piece <= pieces; ++piece) {
-        const gic_real *const old = self->start[self->head.flip];
-        gic_real *const start = self->start[1 - self->head.flip];
         const gic_real share = (gic_real)piece / (gic_real)pieces;
+        gic_real *start;
         int status;
+        /* the first one stays until the last is good: a way that fails is forgotten */
+        for (next = 0; next == first || next == now || next == hold;)
+            ++next;
+        start = self->start[next];
         for (i = 0; i < QUARTER_CAR_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : first[i] + share * (self->x[i] - first[i]);
-        status = quarter_car_recover_piece(self, &links, old, start);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+        status = quarter_car_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - self->head.flip;
+        now = next;
     }
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + QUARTER_CAR_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * QUARTER_CAR_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     self->recovered = 1;
+    self->head.flip = now;
     return GIC_OK;
 }
 
@@ -676,8 +681,7 @@ static int quarter_car_orient(const quarter_car *self, const gic_real *y, gic_re
 static int quarter_car_settle(quarter_car *self, gic_real *y)
 {
     (void)self;
-    (void)y;
-    return GIC_OK;
+    return gic_bounded(y, QUARTER_CAR_STATES) ? GIC_OK : GIC_ERROR_INPUT;
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
@@ -939,7 +943,7 @@ static int quarter_car_locate(quarter_car *self, gic_real time, const gic_real *
     gic_real turn[3];
     int status;
     self->head.subset = -1;
-    if (!gic_finite(y, QUARTER_CAR_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, QUARTER_CAR_INPUTS) ||
+    if (!gic_bounded(y, QUARTER_CAR_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, QUARTER_CAR_INPUTS) ||
         !gic_finite(self->parameter, QUARTER_CAR_PARAMETERS) || !gic_finite(self->port, QUARTER_CAR_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
     status = quarter_car_orient(self, y, e, turn);
@@ -1138,7 +1142,7 @@ int quarter_car_setup_with(quarter_car *self, const gic_real *parameter)
     for (i = 0; i < QUARTER_CAR_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (quarter_car_model.abi_version != GIC_ABI_VERSION || quarter_car_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < QUARTER_CAR_STATES; ++i)

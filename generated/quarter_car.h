@@ -144,7 +144,7 @@ typedef struct quarter_car {
     gic_real history[GIC_HISTORY(QUARTER_CAR_STATE_ROOM, QUARTER_CAR_STATES - QUARTER_CAR_SLOW)];
     gic_real scratch[GIC_SCRATCH(QUARTER_CAR_STATE_ROOM, QUARTER_CAR_INPUT_ROOM)];
     gic_real x[QUARTER_CAR_COORDINATE_ROOM], xd[QUARTER_CAR_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[2][QUARTER_CAR_START_ROOM];           /* where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][QUARTER_CAR_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[QUARTER_CAR_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * QUARTER_CAR_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
     int32_t recovered;                             /* 1: and it was good */

@@ -1549,8 +1549,10 @@ static int solid_axle_recover_piece(solid_axle *self, solid_axle_links *links, c
 static int solid_axle_recover(solid_axle *self, const gic_real turn[3], int cold)
 {
     solid_axle_links links;
-    const gic_real *const from = self->start[self->head.flip];
-    gic_real *const at = self->recovered_at, first[SOLID_AXLE_COORDINATE_ROOM];
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const gic_real *const from = self->start[first];
+    gic_real *const at = self->recovered_at;
+    int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered && !memcmp(at + 2 * SOLID_AXLE_COORDINATE_ROOM, turn, 3 * sizeof *turn);
@@ -1565,24 +1567,27 @@ static int solid_axle_recover(solid_axle *self, const gic_real turn[3], int cold
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
-        first[i] = from[i];
     }
     for (piece = 1; piece <= pieces; ++piece) {
-        const gic_real *const old = self->start[self->head.flip];
-        gic_real *const start = self->start[1 - self->head.flip];
         const gic_real share = (gic_real)piece / (gic_real)pieces;
+        gic_real *start;
         int status;
+        /* the first one stays until the last is good: a way that fails is forgotten */
+        for (next = 0; next == first || next == now || next == hold;)
+            ++next;
+        start = self->start[next];
         for (i = 0; i < SOLID_AXLE_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : first[i] + share * (self->x[i] - first[i]);
-        status = solid_axle_recover_piece(self, &links, old, start);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+        status = solid_axle_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - self->head.flip;
+        now = next;
     }
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + SOLID_AXLE_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * SOLID_AXLE_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     self->recovered = 1;
+    self->head.flip = now;
     return GIC_OK;
 }
 
@@ -1625,7 +1630,9 @@ static int solid_axle_orient(const solid_axle *self, const gic_real *y, gic_real
 static int solid_axle_settle(solid_axle *self, gic_real *y)
 {
     gic_real e[4];
-    int i, status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
+    int i, status = GIC_ERROR_INPUT;
+    if (gic_bounded(y, SOLID_AXLE_STATES))
+        status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
     for (i = 0; status == GIC_OK && i < 4; ++i)
         y[3 + i] = e[i];
     return status;
@@ -2805,7 +2812,7 @@ static int solid_axle_locate(solid_axle *self, gic_real time, const gic_real *y,
     gic_real turn[3];
     int status;
     self->head.subset = -1;
-    if (!gic_finite(y, SOLID_AXLE_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, SOLID_AXLE_INPUTS) ||
+    if (!gic_bounded(y, SOLID_AXLE_SLOW) || !gic_finite(&time, 1) || !gic_finite(self->input, SOLID_AXLE_INPUTS) ||
         !gic_finite(self->parameter, SOLID_AXLE_PARAMETERS) || !gic_finite(self->port, SOLID_AXLE_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
     status = solid_axle_orient(self, y, e, turn);
@@ -3117,7 +3124,7 @@ int solid_axle_setup_with(solid_axle *self, const gic_real *parameter)
     for (i = 0; i < SOLID_AXLE_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
     memset(self, 0, sizeof *self);
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (solid_axle_model.abi_version != GIC_ABI_VERSION || solid_axle_model.real_size != sizeof(gic_real))
         return self->head.status = GIC_ERROR_ABI;
     for (i = 0; i < SOLID_AXLE_STATES; ++i)

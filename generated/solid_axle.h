@@ -232,7 +232,7 @@ typedef struct solid_axle {
     gic_real history[GIC_HISTORY(SOLID_AXLE_STATE_ROOM, SOLID_AXLE_STATES - SOLID_AXLE_SLOW)];
     gic_real scratch[GIC_SCRATCH(SOLID_AXLE_STATE_ROOM, SOLID_AXLE_INPUT_ROOM)];
     gic_real x[SOLID_AXLE_COORDINATE_ROOM], xd[SOLID_AXLE_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[2][SOLID_AXLE_START_ROOM];           /* where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][SOLID_AXLE_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[SOLID_AXLE_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * SOLID_AXLE_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
     int32_t recovered;                             /* 1: and it was good */

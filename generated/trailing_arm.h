@@ -242,7 +242,7 @@ typedef struct trailing_arm {
     gic_real history[GIC_HISTORY(TRAILING_ARM_STATE_ROOM, TRAILING_ARM_STATES - TRAILING_ARM_SLOW)];
     gic_real scratch[GIC_SCRATCH(TRAILING_ARM_STATE_ROOM, TRAILING_ARM_INPUT_ROOM)];
     gic_real x[TRAILING_ARM_COORDINATE_ROOM], xd[TRAILING_ARM_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[2][TRAILING_ARM_START_ROOM];           /* where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][TRAILING_ARM_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[TRAILING_ARM_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * TRAILING_ARM_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
     int32_t recovered;                             /* 1: and it was good */

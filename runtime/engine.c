@@ -109,6 +109,13 @@ const char *instance_status(Pool *pool, const gic_model *model, const gic_head *
 {
     if ((status == GIC_ERROR_GEOMETRY || status == GIC_ERROR_ASSUMPTION) && self->condition >= 0 && self->condition < model->condition_count)
         return pool_print(pool, "%s: %s", gic_status_text(status), model->condition_text[self->condition]);
+    if (status == GIC_ERROR_UNSTABLE && self->grown >= 0 && self->grown < model->slow_count + model->fast_count) {
+        const gic_signal *signal = &model->state[self->grown];
+        const double value = instance_array((gic_head *)self, model->state_offset)[self->grown];
+        const double rate = instance_array((gic_head *)self, model->rate_offset)[self->grown];
+        return pool_print(pool, "%s: '%s' is at %.4g %s and changes by %.3g a second", gic_status_text(status),
+                          signal->name, value, signal->unit, rate);
+    }
     if (self->subset < 0 || self->subset >= model->subset_count)
         return gic_status_text(status);
     return pool_print(pool, "%s: subset '%s'", gic_status_text(status), model->subset_name[self->subset]);

@@ -101,7 +101,7 @@ int engine_enter(const Engine *engine, gic_head *self, const double *standard);
 int engine_look(const Engine *engine, gic_head *self, double *standard, double *rate);
 /* Give back what doesn't come from the pool. */
 void engine_close(const Engine *engine);
-/* "status text" or "status text: subset 'name'" of the last call. */
+/* "status text", "status text: subset 'name'", or which state grew, of the last call. */
 const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status);
 /* An array of the instance at one of the descriptor's offsets. */
 double *instance_array(gic_head *self, size_t offset);

@@ -273,26 +273,31 @@ static int recover(const Interpreted *context, Instance *self, bool cold)
     World *world = context->world;
     const int count = world->model->coordinates;
     const double begun = profile_clock(context->profile);
-    double first[count + 1], last[count + 1];
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const double *const from = start_of(context, self, first);
+    double last[count + 1];
+    int32_t now = first;
     int pieces = 1;
     for (int c = 0; c < count; ++c) {
-        first[c] = start_of(context, self, self->head.flip)[c];
         last[c] = world->x[c];
-        const double parts = fabs(last[c] - first[c]) / gic->piece[c];
+        const double parts = fabs(last[c] - from[c]) / gic->piece[c];
         if (!(parts < PIECES))
             return GIC_ERROR_REACH;
         pieces = (int)parts + 1 > pieces ? (int)parts + 1 : pieces;
     }
     for (int piece = 1; piece <= pieces; ++piece) {
-        const int flip = self->head.flip;
+        int32_t next = 0;
+        while (next == first || next == now || next == hold)
+            ++next;
         for (int c = 0; c < count; ++c)
-            world->x[c] = piece == pieces ? last[c] : first[c] + (last[c] - first[c]) * piece / pieces;
+            world->x[c] = piece == pieces ? last[c] : from[c] + (last[c] - from[c]) * piece / pieces;
         const int status =
-            recover_piece(context, self, start_of(context, self, flip), start_of(context, self, 1 - flip), cold);
+            recover_piece(context, self, start_of(context, self, now), start_of(context, self, next), cold);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - flip;
+        now = next;
     }
+    self->head.flip = now;
     context->profile->recovery += profile_clock(context->profile) - begun;
     return GIC_OK;
 }
@@ -440,7 +445,7 @@ const Engine *engine_gic(Pool *pool, const Model *drawn, const EngineOptions *op
             gic->start_size += factors_size(n);
             most = n > most ? n : most;
         }
-    Interpreted *context = interpreted_new(pool, model, sequence, 2 * (size_t)gic->start_size);
+    Interpreted *context = interpreted_new(pool, model, sequence, GIC_STARTS * (size_t)gic->start_size);
     gic->part = pool_alloc(pool, (size_t)sequence->subsets * sizeof *gic->part);
     for (int s = 0, at = model->coordinates + BODY_Q * model->bodies; s < sequence->subsets; ++s)
         if (sequence->subset[s].class >= 0) {

@@ -137,6 +137,9 @@ int gic_road_table_setup(gic_road_table *road)
             return GIC_ERROR_ARGUMENT;
     table_slopes(road->x, road->left, road->slope_left, road->count);
     table_slopes(road->x, road->right, road->slope_right, road->count);
+    /* steps may be too steep for a number */
+    if (!gic_finite(road->slope_left, road->count) || !gic_finite(road->slope_right, road->count))
+        return GIC_ERROR_ARGUMENT;
     return GIC_OK;
 }
 

@@ -23,26 +23,39 @@ const char *gic_status_text(int status)
     }
 }
 
-/* Numbers by their bits: a comparison with itself or with infinity would be optimized away under -ffast-math. */
-int gic_finite(const gic_real *x, int32_t count)
-{
 #ifdef GIC_FLOAT
-    typedef uint32_t bits_type;
-    const bits_type exponent = UINT32_C(0x7f800000);
+typedef uint32_t bits_type;
+static const bits_type exponent = UINT32_C(0x7f800000), exponent_of_bound = UINT32_C(0x49800000); /* 2^20 */
 #else
-    typedef uint64_t bits_type;
-    const bits_type exponent = UINT64_C(0x7ff0000000000000);
+typedef uint64_t bits_type;
+static const bits_type exponent = UINT64_C(0x7ff0000000000000),
+                       exponent_of_bound = UINT64_C(0x41d0000000000000); /* 2^30 */
 #endif
+
+/* Are all numbers below a power of two? By their bits: a comparison with itself or with infinity would be optimized
+ * away under -ffast-math. */
+static int below(const gic_real *x, int32_t count, bits_type bound)
+{
     for (int32_t i = 0; i < count; ++i) {
         bits_type bits = 0;
         const unsigned char *from = (const unsigned char *)&x[i];
         unsigned char *to = (unsigned char *)&bits;
         for (size_t k = 0; k < sizeof bits; ++k)
             to[k] = from[k];
-        if ((bits & exponent) == exponent)
+        if ((bits & exponent) >= bound)
             return 0;
     }
     return 1;
+}
+
+int gic_finite(const gic_real *x, int32_t count)
+{
+    return below(x, count, exponent);
+}
+
+int gic_bounded(const gic_real *x, int32_t count)
+{
+    return below(x, count, exponent_of_bound);
 }
 
 /* ---- integrators ---------------------------------------------------------------------------------------- */
@@ -121,28 +134,81 @@ static int runge_kutta(const gic_model *model, void *self, gic_real time, gic_re
     return GIC_OK;
 }
 
+/* Where a number of a state is out of bounds, or GIC_ERROR_RESULT where none is. */
+static int out_of_bounds(void *self, const gic_real *state, int32_t first, int32_t behind)
+{
+    gic_head *head = (gic_head *)self;
+    for (int32_t i = first; i < behind; ++i)
+        if (!gic_bounded(&state[i - first], 1)) {
+            head->grown = i;
+            return GIC_ERROR_UNSTABLE;
+        }
+    return GIC_ERROR_RESULT;
+}
+
 /* What makes the numbers that an integrator found a state. */
 static int settle(const gic_model *model, void *self, gic_real *next)
 {
     const int32_t n = model->slow_count + model->fast_count;
     ((gic_head *)self)->subset = -1; /* what follows is about the whole state */
-    if (!gic_finite(next, n))
-        return GIC_ERROR_RESULT;
+    if (!gic_bounded(next, n))
+        return out_of_bounds(self, next, 0, n);
     const int status = model->settle(self, next);
     if (status != GIC_OK)
         return status;
-    return gic_finite(next, n) ? GIC_OK : GIC_ERROR_RESULT;
+    return gic_bounded(next, n) ? GIC_OK : out_of_bounds(self, next, 0, n);
 }
 
-/* The state one step on from `from`, into `next`, and the rate at the step's start, into `rate`. `past` holds the two
- * rates before the step, or is NULL: then RK4. */
+static gic_real absolute(gic_real x)
+{
+    return x < GIC_R(0.0) ? -x : x;
+}
+
+int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int status, int32_t *grown)
+{
+    const int32_t half = (model->slow_count - model->free_base) / 2; /* from a coordinate to its rate */
+    gic_real farthest = GIC_R(1.0);
+    int32_t coordinates = 0;
+    if (status != GIC_ERROR_INPUT && status != GIC_ERROR_ORIENTATION && status != GIC_ERROR_REACH &&
+        status != GIC_ERROR_NEWTON && status != GIC_ERROR_SINGULAR && status != GIC_ERROR_MASS &&
+        status != GIC_ERROR_RESULT)
+        return status;
+    for (int32_t c = 0; c < model->coordinate_count; ++c)
+        coordinates += model->coordinate_state[c] >= 0;
+    if (model->slow_count != 2 * coordinates + (model->free_base ? 13 : 0))
+        return status; /* a host's engine that integrates something else */
+    for (int32_t c = 0; c < model->coordinate_count; ++c) {
+        const int32_t at = model->coordinate_state[c];
+        if (at < 0)
+            continue;
+        const gic_real allowed = GIC_R(0.25) * (model->coordinate_high[c] - model->coordinate_low[c]);
+        const gic_real moved = step * (absolute(rate[at]) + step * absolute(rate[at + half])) / allowed;
+        if (moved > farthest) {
+            farthest = moved;
+            *grown = at;
+        }
+    }
+    /* Euler parameters move at half the angular velocity, which is named, for it is what grows */
+    for (int32_t i = 0; model->free_base && i < 3; ++i) {
+        const gic_real moved = GIC_R(2.0) * step * absolute(rate[4 + i]);
+        if (moved > farthest) {
+            farthest = moved;
+            *grown = 10 + coordinates + i;
+        }
+    }
+    return farthest > GIC_R(1.0) ? GIC_ERROR_UNSTABLE : status;
+}
+
+/* The state one step on from `from`, into `next`, and the rate at the step's start, into `rate`, which *newest becomes
+ * once it is there. `past` holds the two rates before the step, or is NULL: then RK4. */
 static int advance(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
-                   const gic_real *past, gic_real *rate, gic_real *next, gic_real *work)
+                   const gic_real *past, gic_real *rate, gic_real *next, gic_real *work, const gic_real **newest)
 {
     const int32_t n = model->slow_count + model->fast_count;
     int status = evaluate(model, self, time, from, rate);
     if (status != GIC_OK)
         return status;
+    *newest = rate;
     if (past)
         adams_bashforth(n, step, from, rate, past, past + n, next);
     else
@@ -157,7 +223,7 @@ static int check_step(const gic_model *model, void *self, gic_real step, gic_rea
         return GIC_ERROR_ABI;
     gic_head *head = (gic_head *)self;
     const gic_real time = gic_time(self);
-    head->subset = -1;
+    head->subset = head->grown = -1;
     if (!gic_finite(&step, 1) || !gic_finite(&time, 1) || time + part <= time)
         return head->status = GIC_ERROR_ARGUMENT;
     return GIC_OK;
@@ -167,6 +233,18 @@ static int check_step(const gic_model *model, void *self, gic_real step, gic_rea
 static int goes_on(const gic_head *head, gic_real step, int32_t method, int32_t ratio)
 {
     return step == head->step && method == head->method && ratio == head->ratio;
+}
+
+/* A step fails with `status`: the instance is as before, that Newton's method starts from among it. newest: rate known
+ * last. */
+static int give_up(const gic_model *model, void *self, gic_real step, int status, const gic_real *newest,
+                   const gic_real *input_before)
+{
+    gic_head *head = (gic_head *)self;
+    head->flip = head->hold;
+    head->hold = -1;
+    copy(array_at(self, model->input_offset), input_before, model->input_count);
+    return head->status = gic_blame(model, step, newest, status, &head->grown);
 }
 
 /* A step was made: the instance moves on, with `history` rates kept. */
@@ -184,6 +262,7 @@ static void move_on(const gic_model *model, void *self, gic_real step, int32_t m
     }
     ++head->steps;
     head->history = history;
+    head->hold = -1;
     copy(array_at(self, model->state_offset), next, n);
     copy(array_at(self, model->rate_offset), rate, n);
     set_inputs(model, self, gic_time(self));
@@ -203,18 +282,15 @@ int gic_step(const gic_model *model, void *self, gic_real step, int32_t method)
     const int32_t n = model->slow_count + model->fast_count;
     const int32_t known = goes_on(head, step, method, 1) && method == GIC_AB3 ? head->history : 0;
     gic_real *history = array_at(self, model->history_offset);
-    gic_real *input = array_at(self, model->input_offset);
     gic_real *rate = array_at(self, model->scratch_offset), *next = rate + n, *work = next + n;
     gic_real *input_before = work + 2 * n;
-    copy(input_before, input, model->input_count);
-
-    status = advance(model, self, gic_time(self), step, array_at(self, model->state_offset),
-                     known == 2 ? history : NULL, rate, next, work);
-    head->status = status;
-    if (status != GIC_OK) {
-        copy(input, input_before, model->input_count);
-        return status;
-    }
+    const gic_real *newest = array_at(self, model->rate_offset);
+    copy(input_before, array_at(self, model->input_offset), model->input_count);
+    head->hold = head->flip;
+    status = head->status = advance(model, self, gic_time(self), step, array_at(self, model->state_offset),
+                                    known == 2 ? history : NULL, rate, next, work, &newest);
+    if (status != GIC_OK)
+        return give_up(model, self, step, status, newest, input_before);
     if (method == GIC_AB3) {
         copy(history + n, history, n);
         copy(history, rate, n);
@@ -236,6 +312,7 @@ typedef struct Dual {
     gic_real *scratch; /* rows of a state: 0 the rate at the start, 1 and 2 states, 3 to 6 what the method needs */
     gic_real *link;    /* rows 0 to 2: at this slow step and the two before; 3 at the next; 4 at a fast step */
     const gic_real *next, *fast[2]; /* results: the state; rates of the fast states at the last two fast steps */
+    const gic_real *newest;         /* rate of all states known last */
 } Dual;
 
 static gic_real *row(const Dual *dual, int32_t i)
@@ -286,7 +363,7 @@ static int start_dual(Dual *dual, int32_t known)
     for (int32_t k = 0; k < dual->ratio && status == GIC_OK; ++k) {
         gic_real *rate = row(dual, k == 0 ? 0 : 5 + k % 2), *next = row(dual, 1 + k % 2);
         status = advance(model, dual->self, moment(dual, k), dual->step / (gic_real)dual->ratio, from, NULL, rate, next,
-                         row(dual, 3));
+                         row(dual, 3), &dual->newest);
         dual->fast[1] = dual->fast[0];
         dual->fast[0] = rate + model->slow_count;
         from = next;
@@ -341,6 +418,7 @@ static int march_dual(Dual *dual)
     int status = evaluate(model, dual->self, moment(dual, 0), state, rate);
     if (status != GIC_OK)
         return status;
+    dual->newest = rate;
     adams_bashforth(slow, dual->step, state, rate, history, history + n, next);
     copy(fast, state + slow, model->fast_count);
     status = settle(model, dual->self, next);
@@ -367,8 +445,8 @@ static int march_dual(Dual *dual)
         }
         adams_bashforth(model->fast_count, dual->step / (gic_real)dual->ratio, fast, now, dual->fast[0], dual->fast[1],
                         fast);
-        if (!gic_finite(fast, model->fast_count))
-            return GIC_ERROR_RESULT;
+        if (!gic_bounded(fast, model->fast_count))
+            return out_of_bounds(dual->self, fast, slow, n);
         dual->fast[1] = dual->fast[0];
         dual->fast[0] = now;
     }
@@ -414,7 +492,8 @@ int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t r
     if (ratio == 1 || (ratio > 1 && model->fast_count == 0))
         return gic_step(model, self, step, GIC_AB3);
     /* without a ratio there is no fast step that time could move by */
-    int status = check_step(model, self, step, ratio > 0 ? step / (gic_real)ratio : GIC_R(0.0));
+    const int usable = ratio > 0 && ratio <= GIC_RATIOS;
+    int status = check_step(model, self, step, usable ? step / (gic_real)ratio : GIC_R(0.0));
     if (status != GIC_OK)
         return status;
     if (!gic_finite(&steady, 1) || steady < GIC_R(0.0))
@@ -423,7 +502,7 @@ int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t r
     gic_head *head = (gic_head *)self;
     const int same = goes_on(head, step, GIC_AB3, ratio);
     const int32_t known = same ? head->history : 0;
-    gic_real *input = array_at(self, model->input_offset), *scratch = array_at(self, model->scratch_offset);
+    gic_real *scratch = array_at(self, model->scratch_offset);
     gic_real *input_before = scratch + 7 * (model->slow_count + model->fast_count);
     Dual dual = {model,
                  self,
@@ -435,14 +514,13 @@ int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t r
                  scratch,
                  array_at(self, model->link_offset),
                  NULL,
-                 {NULL, NULL}};
-    copy(input_before, input, model->input_count);
-    status = known == 2 ? march_dual(&dual) : start_dual(&dual, known);
-    head->status = status;
-    if (status != GIC_OK) {
-        copy(input, input_before, model->input_count);
-        return status;
-    }
+                 {NULL, NULL},
+                 array_at(self, model->rate_offset)};
+    copy(input_before, array_at(self, model->input_offset), model->input_count);
+    head->hold = head->flip;
+    status = head->status = known == 2 ? march_dual(&dual) : start_dual(&dual, known);
+    if (status != GIC_OK)
+        return give_up(model, self, step, status, dual.newest, input_before);
     keep_dual(&dual, known);
     move_on(model, self, step, GIC_AB3, ratio, known < 2 ? known + 1 : 2, dual.next, row(&dual, 0));
     return GIC_OK;

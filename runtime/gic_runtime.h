@@ -43,7 +43,7 @@ typedef double gic_real;
 #define GIC_STATUS_LIST(X) \
     X(GIC_OK, 0, "ok") \
     X(GIC_ERROR_ARGUMENT, -1, "an argument is out of range (step, method, time or size)") \
-    X(GIC_ERROR_INPUT, -2, "a state, input or parameter is not a finite number") \
+    X(GIC_ERROR_INPUT, -2, "a state, input or parameter is not a finite number, or a state beyond all bounds") \
     X(GIC_ERROR_ORIENTATION, -3, "the Euler parameters of the base are not normalized") \
     X(GIC_ERROR_REACH, -4, "a coordinate is too far from the last good one to be followed") \
     X(GIC_ERROR_NEWTON, -5, "the dependent coordinates of a subset were not found (out of reach, or no solution)") \
@@ -54,7 +54,8 @@ typedef double gic_real;
     X(GIC_ERROR_ABI, -10, "generated code and runtime have different versions or number types") \
     X(GIC_ERROR_GEOMETRY, -11, "a parameter makes the geometry impossible") \
     X(GIC_ERROR_TUNED, -12, "a geometric parameter is not the one that the geometry is for: set up with it") \
-    X(GIC_ERROR_ASSUMPTION, -13, "what code for one scene takes for granted does not hold")
+    X(GIC_ERROR_ASSUMPTION, -13, "what code for one scene takes for granted does not hold") \
+    X(GIC_ERROR_UNSTABLE, -14, "a state moves too far within a step: the run is unstable, or the step too long")
 
 typedef enum gic_status {
 #define GIC_STATUS_ENUM(name, code, text) name = code,
@@ -78,6 +79,9 @@ typedef struct gic_road {
     gic_real (*friction)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y);
 } gic_road;
 
+/* Newton starts of an instance: the last good one, one held, and two for the steps of a way from one to another. */
+#define GIC_STARTS 4
+
 /* ---- the instance ------------------------------------------------------------------------------- */
 
 typedef enum gic_method { GIC_AB3 = 0, GIC_RK4 = 1 } gic_method;
@@ -94,10 +98,12 @@ typedef struct gic_head {
     int32_t history;      /* rates kept for AB3: 0, 1 or 2 */
     int32_t ratio;        /* of the last step: fast steps in it, 1: a single rate; a change restarts the history too */
     int32_t lane;         /* free for the caller: which vehicle of many this is */
-    int32_t flip;         /* which of the two Newton starts is the last good one */
+    int32_t flip;         /* which of the Newton starts is the last good one */
+    int32_t hold;         /* one that must not be lost: that of the beginning of a step under way, -1: none */
     int32_t status;       /* of the last call */
     int32_t subset;       /* that the status is about, -1: none; see the descriptor's subset_name */
     int32_t condition;    /* that GIC_ERROR_GEOMETRY or _ASSUMPTION is about, -1: none; the descriptor's condition_text */
+    int32_t grown;        /* index in state[] of what GIC_ERROR_UNSTABLE is about, -1: none */
     int64_t rhs_count;    /* right-hand sides evaluated */
     int64_t fast_count;   /* rates of the fast states alone evaluated, by gic_step_dual */
     int64_t newton_count; /* subset solutions, and the corrections they took in total */
@@ -192,11 +198,14 @@ typedef struct gic_model {
 #define gic_step GIC_NAME(gic_step)
 int gic_step(const gic_model *model, void *self, gic_real step, int32_t method);
 
-/* One step of `step` seconds of AB3 in which the fast states take `ratio` >= 1 steps: TIRES.md section 9. The first two
- * steps are `ratio` steps each of RK4. As gic_step otherwise, a new ratio restarts the history too; with ratio 1, or a
- * model without fast states, it is gic_step. A step with history costs one right-hand side, one evaluation of the links
- * (at its end) and `ratio` - 1 of the fast rates, for those at its start come with the right-hand side. Without an
- * input function inputs stay through the step, its end included. */
+/* The largest ratio of gic_step_dual, so that a wrong one is a status and not a step without end. */
+#define GIC_RATIOS 10000
+
+/* One step of `step` seconds of AB3 in which the fast states take `ratio` steps, 1 to GIC_RATIOS: TIRES.md section 9.
+ * The first two steps are `ratio` steps each of RK4. As gic_step otherwise, a new ratio restarts the history too; with
+ * ratio 1, or a model without fast states, it is gic_step. A step with history costs one right-hand side, one
+ * evaluation of the links (at its end) and `ratio` - 1 of the fast rates, for those at its start come with the
+ * right-hand side. Without an input function inputs stay through the step, its end included. */
 #define gic_step_dual GIC_NAME(gic_step_dual)
 int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t ratio);
 
@@ -217,6 +226,17 @@ void gic_restart(void *self, gic_real time);
 /* 1 when every number is finite; looks at bits, so it works under -ffast-math too. */
 #define gic_finite GIC_NAME(gic_finite)
 int gic_finite(const gic_real *x, int32_t count);
+
+/* 1 when every number can be one of a state: finite, and below 2^30 in magnitude, in single precision below 2^20
+ * (FORMAT.md section 14). */
+#define gic_bounded GIC_NAME(gic_bounded)
+int gic_bounded(const gic_real *x, int32_t count);
+
+/* Why a step of `step` seconds fails with `status`: GIC_ERROR_UNSTABLE where at rate[] (states, the newest known) a
+ * coordinate moves by more than a quarter of its range, or the base turns by more than 1 rad, within it; *grown is then
+ * its index in state[]. Else `status`. Step functions call it. */
+#define gic_blame GIC_NAME(gic_blame)
+int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int status, int32_t *grown);
 
 /* ---- orientation ------------------------------------------------------------------------------------ */
 

@@ -215,7 +215,7 @@ static int any_rhs(void *instance, double time, const double *state, double *rat
     const int32_t count = code->slow_count + code->fast_count;
     double result[count + 1];
     self->head.subset = -1;
-    if (!gic_finite(state, count))
+    if (!gic_bounded(state, count))
         return self->head.status = GIC_ERROR_INPUT;
     int status = interpreted_load(self, time);
     if (status == GIC_ERROR_INPUT)
@@ -278,8 +278,11 @@ static int any_self_test(void *instance, gic_self_test *result)
 static int any_settle(void *instance, double *state)
 {
     Instance *self = instance;
+    const gic_model *code = &context_of(self)->code;
     double e[4];
-    if (!context_of(self)->code.free_base)
+    if (!gic_bounded(state, code->slow_count + code->fast_count))
+        return GIC_ERROR_INPUT;
+    if (!code->free_base)
         return GIC_OK;
     const int status = gic_orientation(state + 3, dependent_of(self), &self->head.switch_count, e);
     if (status == GIC_OK)
@@ -345,7 +348,7 @@ static int any_setup_with(void *instance, const double *parameter)
     memcpy(wanted, parameter, size); /* they may be the instance's own */
     memset(self, 0, code->size);
     self->context = context;
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     memcpy(array_of(self, code->parameter_offset), wanted, size);
     memcpy(setup_parameter(self), wanted, size);
     if (!gic_finite(wanted, code->parameter_count))

@@ -24,7 +24,9 @@ int interpreted_link(void *instance, double time, const double *slow, double *li
     const Interpreted *context = self->context;
     const World *world = context->world;
     const size_t coordinates = (size_t)world->model->coordinates;
-    int status = gic_finite(slow, context->code.slow_count) ? interpreted_load(self, time) : GIC_ERROR_INPUT;
+    const int32_t count = context->code.link_count;
+    double found[count], *next = found;
+    int status = gic_bounded(slow, context->code.slow_count) ? interpreted_load(self, time) : GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = context->place(context, self, slow);
     if (status != GIC_OK)
@@ -33,11 +35,14 @@ int interpreted_link(void *instance, double time, const double *slow, double *li
         if (world->model->wheel[i].tire >= 0) {
             WheelMotion motion;
             world_wheel_motion(world, i, &motion);
-            memcpy(link, &motion, sizeof motion);
-            link += MOTION_NUMBERS;
+            memcpy(next, &motion, sizeof motion);
+            next += MOTION_NUMBERS;
         }
-    memcpy(link, world->x, sizeof *link * coordinates);
-    memcpy(link + coordinates, world->xd, sizeof *link * coordinates);
+    memcpy(next, world->x, sizeof *link * coordinates);
+    memcpy(next + coordinates, world->xd, sizeof *link * coordinates);
+    if (!gic_finite(found, count))
+        return self->head.status = GIC_ERROR_RESULT;
+    memcpy(link, found, sizeof found);
     return self->head.status = GIC_OK;
 }
 
@@ -60,7 +65,7 @@ int interpreted_fast(void *instance, double time, const double *link, const doub
     const Model *model = world->model;
     const int count = context->code.fast_count;
     const double begun = profile_clock(context->profile);
-    const bool finite = gic_finite(fast, count) && gic_finite(link, context->code.link_count);
+    const bool finite = gic_bounded(fast, count) && gic_finite(link, context->code.link_count);
     double result[count];
     int status = finite ? interpreted_load(self, time) : GIC_ERROR_INPUT;
     if (status == GIC_OK)

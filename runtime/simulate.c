@@ -242,6 +242,10 @@ static const char *remedy_of(int status)
                "rows of the results show how it got there";
     case GIC_ERROR_RESULT:
     case GIC_ERROR_INPUT: return "the run has probably become unstable: try a shorter step";
+    case GIC_ERROR_UNSTABLE:
+        return "try a shorter step, or variable ones (--integrator adams); where that changes nothing, the model "
+               "itself "
+               "is unstable: gicrun --modes shows its eigenvalues";
     case GIC_ERROR_ARGUMENT: return "the tolerance can't be reached in double precision: write a larger one";
     default: return NULL;
     }

@@ -90,7 +90,7 @@ int tape_locate(Instance *self, double time, const double *y, double e[4])
     const gic_model *code = &engine->code;
     double turn[3];
     self->head.subset = -1;
-    if (!gic_finite(y, code->slow_count) || !gic_finite(&time, 1) ||
+    if (!gic_bounded(y, code->slow_count) || !gic_finite(&time, 1) ||
         !gic_finite(tape_array(self, code->input_offset), code->input_count) ||
         !gic_finite(tape_array(self, code->parameter_offset), code->parameter_count) ||
         !gic_finite(tape_array(self, code->port_offset), code->port_count))
@@ -155,7 +155,10 @@ static int settle(void *instance, double *y)
 {
     Instance *self = instance;
     double e[4];
-    if (!tape_of(self)->code.free_base)
+    const gic_model *code = &tape_of(self)->code;
+    if (!gic_bounded(y, code->slow_count + code->fast_count))
+        return GIC_ERROR_INPUT;
+    if (!code->free_base)
         return GIC_OK;
     int status = gic_orientation(y + 3, dependent_parameter(self), &self->head.switch_count, e);
     if (status == GIC_OK)
@@ -204,7 +207,7 @@ static int setup_with(void *instance, const double *wanted)
     memcpy(engine->wanted, wanted, (size_t)code->parameter_count * sizeof *wanted); /* may be the instance's own */
     memset(self, 0, code->size);
     self->context = engine;
-    self->head.subset = self->head.condition = -1;
+    self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     double *state = tape_array(self, code->state_offset), *input = tape_array(self, code->input_offset);
     double *x = tape_array(self, engine->x_offset);
     double *start = tape_start(self);

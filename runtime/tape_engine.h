@@ -45,13 +45,13 @@ typedef struct TapeEngine {
     TapeWheel *wheel;          /* [classes of wheels] */
     gic_table *table;
     double *piece, *initial; /* [coordinates], [states] */
-    size_t x_offset, xd_offset, start_offset[2], motion_offset, inertia_offset, multiplier_offset, derived_offset;
+    size_t x_offset, xd_offset, start_offset[GIC_STARTS], motion_offset, inertia_offset, multiplier_offset, derived_offset;
     size_t grip_offset,
         recovered_offset; /* the latter: x, xd and angular velocity of the last recovery, 1: it was good */
     size_t gear_offset, watch_offset;
     double *link_row, *torques; /* a link; what drives and brakes [wheels with tires][2] */
     double *choice;             /* powertrain.h */
-    double *frame, *q, *first, *result, *out;
+    double *frame, *q, *result, *out;
     int slots;                              /* of the largest tape: room in `frame` */
     double *standard, *wanted;              /* [tunables] values in the file, and while one is set up */
     double *acc, *unit, *tau0, *tau, *mass; /* [unknowns], and squared */

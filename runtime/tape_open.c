@@ -116,7 +116,6 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
     engine->slots = slots;
     engine->frame = numbers(pool, slots);
     engine->q = numbers(pool, 7 * bodies);
-    engine->first = numbers(pool, f->model->coordinates);
     engine->result = numbers(pool, f->plan->states + f->model->fast_states);
     engine->out = numbers(pool, f->model->output_components);
     engine->wanted = numbers(pool, f->model->tunables);
@@ -138,8 +137,8 @@ static void lay_out(TapeEngine *engine)
     const size_t coordinates = (size_t)code->coordinate_count;
     engine->x_offset = descriptor_place(code, coordinates);
     engine->xd_offset = descriptor_place(code, coordinates);
-    engine->start_offset[0] = descriptor_place(code, (size_t)plan->start_size);
-    engine->start_offset[1] = descriptor_place(code, (size_t)plan->start_size);
+    for (int i = 0; i < GIC_STARTS; ++i)
+        engine->start_offset[i] = descriptor_place(code, (size_t)plan->start_size);
     engine->motion_offset = descriptor_place(code, (size_t)plan->motion_size);
     engine->inertia_offset = descriptor_place(code, (size_t)plan->inertia_size);
     engine->derived_offset = descriptor_place(code, (size_t)plan->derived->count);

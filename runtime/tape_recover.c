@@ -132,7 +132,8 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
     const TapeEngine *engine = tape_of(self);
     const int coordinates = engine->code.coordinate_count;
     const double *from = tape_start(self), *x = tape_array(self, engine->x_offset);
-    double *first = engine->first;
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    int32_t now = first;
     TapeLinks links = engine->links;
     int pieces = 1;
     double *at = tape_array(self, engine->recovered_offset), *at_rate = at + coordinates,
@@ -150,22 +151,26 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
         if (!(parts < GIC_PIECES))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
-        first[i] = from[i];
     }
     for (int piece = 1; piece <= pieces; ++piece) {
-        double *old = tape_start(self), *start = tape_array(self, engine->start_offset[1 - self->head.flip]);
+        int32_t next = 0;
+        while (next == first || next == now || next == hold)
+            ++next;
+        double *old = tape_array(self, engine->start_offset[now]);
+        double *start = tape_array(self, engine->start_offset[next]);
         const double share = (double)piece / (double)pieces;
         for (int i = 0; i < coordinates; ++i)
-            start[i] = piece == pieces ? x[i] : first[i] + share * (x[i] - first[i]);
+            start[i] = piece == pieces ? x[i] : from[i] + share * (x[i] - from[i]);
         int status = recover_piece(self, &links, old, start);
         if (status != GIC_OK)
             return status;
-        self->head.flip = 1 - self->head.flip;
+        now = next;
     }
     memcpy(at, x, (size_t)coordinates * sizeof *at);
     memcpy(at_rate, xd, (size_t)coordinates * sizeof *at);
     memcpy(at_turn, turn, sizeof links.turn);
     *recovered = 1;
+    self->head.flip = now;
     return GIC_OK;
 }
 

@@ -131,7 +131,7 @@ static int grip(Instance *self, double time, const double *link, const double *f
 int tape_turn_wheels(Instance *self, double time, const double *y, const double *e, double *rate)
 {
     const TapeEngine *engine = tape_of(self);
-    if (!gic_finite(y + engine->code.slow_count, engine->code.fast_count))
+    if (!gic_bounded(y + engine->code.slow_count, engine->code.fast_count))
         return GIC_ERROR_INPUT;
     links_of(self, y, e, engine->link_row);
     return grip(self, time, engine->link_row, y + engine->code.slow_count, rate);
@@ -179,11 +179,16 @@ int tape_recover_once(Instance *self, const double turn[3])
 int tape_link_wheels(void *instance, double time, const double *slow, double *link)
 {
     Instance *self = instance;
-    double e[4];
+    const int32_t count = tape_of(self)->code.link_count;
+    double e[4], found[count];
     const int status = tape_locate(self, time, slow, e);
-    if (status == GIC_OK)
-        links_of(self, slow, e, link);
-    return status;
+    if (status != GIC_OK)
+        return status;
+    links_of(self, slow, e, found);
+    if (!gic_finite(found, count))
+        return self->head.status = GIC_ERROR_RESULT;
+    memcpy(link, found, sizeof found);
+    return GIC_OK;
 }
 
 int tape_fast(void *instance, double time, const double *link, const double *fast, double *rate)
@@ -191,7 +196,7 @@ int tape_fast(void *instance, double time, const double *link, const double *fas
     Instance *self = instance;
     const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
-    if (!gic_finite(link, code->link_count) || !gic_finite(fast, code->fast_count) || !gic_finite(&time, 1) ||
+    if (!gic_finite(link, code->link_count) || !gic_bounded(fast, code->fast_count) || !gic_finite(&time, 1) ||
         !gic_finite(tape_array(self, code->input_offset), code->input_count) ||
         !gic_finite(tape_array(self, code->parameter_offset), code->parameter_count))
         return self->head.status = GIC_ERROR_INPUT;

@@ -165,6 +165,12 @@ static void test_table(void **unused)
     bad = road;
     bad.count = 1;
     assert_int_equal(gic_road_table_setup(&bad), GIC_ERROR_ARGUMENT);
+    /* a rise whose slope is no number */
+    static const gic_real close[] = {0, GIC_R(1e-30), GIC_R(2e-30)}, steep[] = {0, GIC_R(1e30), GIC_R(2e30)};
+    bad.x = close;
+    bad.left = bad.right = steep;
+    bad.count = 3;
+    assert_int_equal(gic_road_table_setup(&bad), sizeof(gic_real) == 4 ? GIC_ERROR_ARGUMENT : GIC_OK);
 }
 
 /* ---- height fields -------------------------------------------------------------------------------------- */

@@ -195,7 +195,7 @@ static void test_failure_changes_nothing(void **unused)
                     probe.fail_at = fault;
                 } else if (fault < 8) {
                     probe.poison_at = fault - 4;
-                    expected = GIC_ERROR_RESULT;
+                    expected = GIC_ERROR_UNSTABLE;
                 } else if (fault == 8) {
                     probe.settle_status = expected = GIC_ERROR_ORIENTATION;
                 }
@@ -209,6 +209,7 @@ static void test_failure_changes_nothing(void **unused)
                 assert_same(&probe, &good);
                 assert_int_equal(probe.head.status, expected);
                 assert_int_equal(probe.head.subset, expected == GIC_ERROR_NEWTON ? 3 : -1);
+                assert_true((probe.head.grown >= 0) == (expected == GIC_ERROR_UNSTABLE));
 
                 Probe undisturbed = good;
                 probe.fail_at = probe.poison_at = -1;
@@ -324,6 +325,50 @@ static void test_finite(void **unused)
         }
 }
 
+/* Numbers of a state are below 2^30, or 2^20. */
+static void test_bounded(void **unused)
+{
+    (void)unused;
+    const gic_real bound = (gic_real)(sizeof(gic_real) == 8 ? 0x1p30 : 0x1p20);
+    const gic_real below = bound * (1 - (gic_real)EPSILON);
+    const gic_real good[] = {0, 1, below, -below, (gic_real)1e-30};
+    const gic_real bad[] = {bound, -bound, 2 * bound, bound * bound};
+    assert_true(gic_bounded(good, 5));
+    for (int i = 0; i < 4; ++i)
+        assert_false(gic_bounded(&bad[i], 1));
+}
+
+/* What is to blame for a step that fails: 2 coordinates of a free base, the second of which is driven. */
+static void test_blame(void **unused)
+{
+    (void)unused;
+    static const gic_real low[] = {0, 0}, high[] = {GIC_R(0.4), GIC_R(1e-6)};
+    static const int32_t place[] = {7, -1};
+    const gic_model model = {.free_base = 1,
+                             .slow_count = 15,
+                             .coordinate_count = 2,
+                             .coordinate_low = low,
+                             .coordinate_high = high,
+                             .coordinate_state = place};
+    const struct {
+        int at; /* of the rate */
+        double value;
+        int grown; /* -1: nothing */
+    } trial[] = {{7, 9, -1},  {7, -11, 7},  {14, 900, -1}, {14, -1100, 7}, {0, 1e6, -1},
+                 {5, 49, -1}, {5, -51, 12}, {3, 1e3, -1},  {8, 1e6, -1},   {11, 1e6, -1}};
+    for (size_t i = 0; i < sizeof trial / sizeof *trial; ++i) {
+        gic_real rate[15] = {0};
+        int32_t grown = -1;
+        rate[trial[i].at] = (gic_real)trial[i].value;
+        const int expected = trial[i].grown < 0 ? GIC_ERROR_NEWTON : GIC_ERROR_UNSTABLE;
+        assert_int_equal(gic_blame(&model, GIC_R(0.01), rate, GIC_ERROR_NEWTON, &grown), expected);
+        assert_int_equal(grown, trial[i].grown);
+        grown = -1;
+        assert_int_equal(gic_blame(&model, GIC_R(0.01), rate, GIC_ERROR_ROAD, &grown), GIC_ERROR_ROAD);
+        assert_int_equal(grown, -1);
+    }
+}
+
 static void test_status_text(void **unused)
 {
     (void)unused;
@@ -436,6 +481,7 @@ int main(void)
         cmocka_unit_test(test_rate_and_input), cmocka_unit_test(test_failure_changes_nothing),
         cmocka_unit_test(test_snapshot),       cmocka_unit_test(test_time),
         cmocka_unit_test(test_arguments),      cmocka_unit_test(test_finite),
+        cmocka_unit_test(test_bounded),        cmocka_unit_test(test_blame),
         cmocka_unit_test(test_status_text),    cmocka_unit_test(test_orientation),
         cmocka_unit_test(test_quintic),
     };
