@@ -135,6 +135,7 @@ int scene_outputs(const gic_model *model, const Scene *scene, const gic_head *se
     if (stay)
         return GIC_OK;
     memcpy(copy, self, model->size);
+    copy->grown = -1;
     return model->outputs(copy);
 }
 
@@ -376,7 +377,8 @@ static int run_all(Run *run, const gic_head **failed)
         status = compute_outputs(run);
         *failed = run->copy;
         if (status != GIC_OK)
-            return status;
+            return gic_blame(run->model, run->self->step, instance_array(run->self, run->model->rate_offset), status,
+                             &run->copy->grown);
         record(run);
     }
     return GIC_OK;
