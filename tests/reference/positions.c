@@ -203,7 +203,7 @@ static bool continue_to(Solver *solver, Configuration *trial)
     quad tangent = correct(solver, trial);
     if (tangent > 0.3)
         return false;
-    for (quad last = tangent; last > 1e-10;) {
+    for (quad last = tangent; last > 1e-16;) {
         quad size = correct(solver, trial);
         if (!(size < 0.25 * last))
             return false;
@@ -239,7 +239,7 @@ bool solve_positions(Solver *solver, const State *state)
             step *= 2;
         } else {
             step /= 2;
-            if (step < 1e-4 || !refactor(solver, good))
+            if (step < 1e-24 || !refactor(solver, good))
                 return false;
         }
     }

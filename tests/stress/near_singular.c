@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: MIT
+ * near_singular MODEL --count N --seed S --keep K -o FILE [--recovery WAY]
+ *
+ * Random states inside the coordinates' ranges and far beyond, evaluated from the design by generated code and by the
+ * interpreted engine gic. From every twentieth that generated code refuses a walk begins that creeps towards limits: to
+ * the last state that is taken, by bisection, and on from there in another direction. Prints how many states were
+ * tried, taken and refused, how many were taken that gic refuses, the largest relative difference of accelerations, and
+ * what is wrong: results that are no numbers, or an instance that a refusal changed. FILE.states and FILE.results, as
+ * `gicrun
+ * --eval` reads and writes them: the K states with the largest differences, and of those that gic refuses K / 2 at
+ * which bodies move most with the coordinates. */
+#include "attack.h"
+
+static const char usage[] = "usage: near_singular MODEL --count N --seed S --keep K -o FILE [--recovery WAY]\n";
+
+/* A state with the inputs that go with it, and what became of it. */
+typedef struct Trial {
+    double score;
+    double *number; /* [states + inputs], then rate [states] and pose [7 bodies] */
+} Trial;
+
+typedef struct List {
+    int count, room;
+    Trial *trial;
+} List;
+
+typedef struct Attack {
+    Subject code, other;
+    gic_head *good[2];                  /* of either engine: the last state of a walk that was taken */
+    int states, inputs, numbers, whole; /* numbers: of a state with inputs; whole: with all that became of it */
+    Chance chance;
+    List worst, unseen;
+    long tried, taken, refused, doubted, wrong;
+    double largest;
+} Attack;
+
+static List list_new(Pool *pool, int room, int numbers)
+{
+    List list = {.room = room, .trial = pool_alloc(pool, sizeof *list.trial * (size_t)(room + 1))};
+    for (int i = 0; i < room; ++i)
+        list.trial[i].number = pool_alloc(pool, sizeof(double) * (size_t)numbers);
+    return list;
+}
+
+/* Keep it where it is among the worst: the list is a heap with the best on top. */
+static void keep(List *list, const double *number, int numbers, double score)
+{
+    if (!list->room || (list->count == list->room && !(score > list->trial[0].score)))
+        return;
+    int at = list->count < list->room ? list->count++ : 0;
+    Trial *trial = list->trial;
+    memcpy(trial[at].number, number, sizeof *number * (size_t)numbers);
+    trial[at].score = score;
+    for (int up; at > 0 && trial[up = (at - 1) / 2].score > trial[at].score; at = up) {
+        const Trial swap = trial[up];
+        trial[up] = trial[at];
+        trial[at] = swap;
+    }
+    for (int down; (down = 2 * at + 1) < list->count; at = down) {
+        down += down + 1 < list->count && trial[down + 1].score < trial[down].score;
+        if (trial[at].score <= trial[down].score)
+            break;
+        const Trial swap = trial[down];
+        trial[down] = trial[at];
+        trial[at] = swap;
+    }
+}
+
+/* From the instance `from`: its rate and poses behind the numbers. */
+static int evaluate(const Attack *attack, const Subject *subject, const gic_head *from, double *number)
+{
+    const gic_model *code = subject->code;
+    double *rate = number + attack->numbers, *pose = rate + attack->states;
+    memcpy(subject->self, from, code->size);
+    memcpy(instance_array(subject->self, code->state_offset), number, sizeof *number * (size_t)attack->states);
+    memcpy(instance_array(subject->self, code->input_offset), number + attack->states,
+           sizeof *number * (size_t)attack->inputs);
+    const int status = code->rhs(subject->self, 0, number, rate);
+    return status == GIC_OK ? code->poses(subject->self, pose) : status;
+}
+
+/* Base anywhere, turned in any way, everything in motion. */
+static void random_state(Attack *attack, double *number)
+{
+    const gic_model *code = attack->code.code;
+    Chance *chance = &attack->chance;
+    static const double beyond[] = {0, 0, 0.1, 0.3, 1, 3};
+    const double reach = beyond[(int)uniform(chance, 0, 6)];
+    memcpy(number, instance_array(attack->code.fresh, code->state_offset), sizeof *number * (size_t)attack->states);
+    memcpy(number + attack->states, instance_array(attack->code.fresh, code->input_offset),
+           sizeof *number * (size_t)attack->inputs);
+    if (code->free_base) {
+        const double turn = uniform(chance, 0, 6.283185307179586);
+        number[0] = uniform(chance, -10, 10);
+        number[1] = uniform(chance, -10, 10);
+        number[2] += uniform(chance, -0.2, 0.2);
+        number[3] = cos(turn / 2);
+        number[4] = number[5] = 0;
+        number[6] = sin(turn / 2);
+        for (int i = 0; i < 6; ++i)
+            number[code->slow_count / 2 + 1 + i] = uniform(chance, -3, 3);
+    }
+    for (int c = 0; c < code->coordinate_count; ++c) {
+        int rate;
+        double *value = coordinate_place(code, c, number, number + attack->states, &rate);
+        *value = coordinate_value(chance, code, c, reach);
+        value[rate] = uniform(chance, -1, 1);
+    }
+}
+
+/* Coordinates `share` of the way from one state to another. */
+static void mix(const Attack *attack, double *from, double *to, double share, double *out)
+{
+    const gic_model *code = attack->code.code;
+    memmove(out, from, sizeof *out * (size_t)attack->numbers);
+    for (int c = 0; c < code->coordinate_count; ++c) {
+        int rate;
+        const double *start = coordinate_place(code, c, from, from + attack->states, &rate);
+        const double *end = coordinate_place(code, c, to, to + attack->states, &rate);
+        double *value = coordinate_place(code, c, out, out + attack->states, &rate);
+        *value = *start + share * (*end - *start);
+    }
+}
+
+/* How fast bodies move with the coordinates: a ten-thousand-millionth of the way back towards the first state. */
+static double sensitivity(Attack *attack, const gic_head *from, const double *number)
+{
+    const gic_model *code = attack->code.code;
+    const int poses = attack->numbers + attack->states;
+    double moved[attack->whole], start[attack->numbers], move = 0;
+    const double share = 1e-10;
+    memcpy(start, instance_array(attack->code.fresh, code->state_offset), sizeof *start * (size_t)attack->states);
+    memcpy(start + attack->states, instance_array(attack->code.fresh, code->input_offset),
+           sizeof *start * (size_t)attack->inputs);
+    memcpy(moved, number, sizeof moved);
+    mix(attack, moved, start, share, moved);
+    if (evaluate(attack, &attack->code, from, moved) != GIC_OK)
+        return 0;
+    for (int i = poses; i < attack->whole; ++i)
+        move = fmax(move, fabs(moved[i] - number[i]));
+    return move / share;
+}
+
+/* A state that generated code takes: how far is gic from it? Accelerations of the base's position and orientation and
+ * of each coordinate, relative to their size: of a group that is small by cancellation too much is said. */
+static void screen(Attack *attack, gic_head *const from[2], const double *number)
+{
+    const gic_model *code = attack->code.code;
+    const int half = code->slow_count / 2;
+    const double *rate = number + attack->numbers;
+    double other[attack->whole], *other_rate = other + attack->numbers, worst = 0;
+    ++attack->taken;
+    attack->wrong += !gic_finite(rate, attack->whole - attack->numbers);
+    memcpy(other, number, sizeof other);
+    if (evaluate(attack, &attack->other, from[1], other) != GIC_OK) {
+        ++attack->doubted;
+        keep(&attack->unseen, number, attack->whole, sensitivity(attack, from[0], number));
+        return;
+    }
+    for (int i = code->free_base ? half + 1 : half; i < code->slow_count;) {
+        const int count = code->free_base && i < half + 7 ? 3 : 1;
+        double size = 0, difference = 0;
+        for (int end = i + count; i < end; ++i) {
+            size += fabs(other_rate[i]);
+            difference += fabs(other_rate[i] - rate[i]);
+        }
+        worst = fmax(worst, difference / (1 + size));
+    }
+    attack->largest = fmax(attack->largest, worst);
+    keep(&attack->worst, number, attack->whole, worst);
+}
+
+/* From the good state of the walk towards another: the last that is taken becomes the good one. */
+static void creep(Attack *attack, double *good, double *target)
+{
+    const size_t size[] = {attack->code.code->size, attack->other.code->size};
+    double number[attack->whole], low = 0, high = 1;
+    for (int i = 0; i < 40 && high - low > 1e-13; ++i) {
+        const double share = i ? 0.5 * (low + high) : 1;
+        mix(attack, good, target, share, number);
+        ++attack->tried;
+        if (evaluate(attack, &attack->code, attack->good[0], number) != GIC_OK) {
+            ++attack->refused;
+            high = share;
+            continue;
+        }
+        screen(attack, attack->good, number);
+        evaluate(attack, &attack->code, attack->good[0], number);
+        memcpy(attack->good[0], attack->code.self, size[0]);
+        if (evaluate(attack, &attack->other, attack->good[1], number) == GIC_OK)
+            memcpy(attack->good[1], attack->other.self, size[1]);
+        low = share;
+    }
+    mix(attack, good, target, low, number);
+    memcpy(good, number, sizeof *good * (size_t)attack->numbers);
+}
+
+static void walk(Attack *attack, double *target)
+{
+    double good[attack->whole];
+    memcpy(good, instance_array(attack->code.fresh, attack->code.code->state_offset),
+           sizeof *good * (size_t)attack->states);
+    memcpy(good + attack->states, instance_array(attack->code.fresh, attack->code.code->input_offset),
+           sizeof *good * (size_t)attack->inputs);
+    memcpy(attack->good[0], attack->code.fresh, attack->code.code->size);
+    memcpy(attack->good[1], attack->other.fresh, attack->other.code->size);
+    for (int leg = 0; leg < 3; ++leg) {
+        creep(attack, good, target);
+        random_state(attack, target);
+    }
+}
+
+static FILE *open_file(Pool *pool, const char *path, const char *ending)
+{
+    FILE *out = fopen(pool_print(pool, "%s%s", path, ending), "w");
+    if (!out) {
+        perror(path);
+        exit(1);
+    }
+    return out;
+}
+
+static void write_numbers(FILE *out, const double *number, int count)
+{
+    for (int i = 0; i < count; ++i)
+        fprintf(out, "%.17g%c", number[i], i + 1 < count ? ',' : '\n');
+}
+
+static void write_states(const Attack *attack, const Trial *trial, int trials, FILE *out)
+{
+    const Engine *engine = attack->code.engine;
+    for (int i = 0; i < attack->numbers; ++i)
+        fprintf(out, "%s%s", i ? "," : "",
+                i < attack->states ? engine->standard[i].name : engine->code->input[i - attack->states].name);
+    fputc('\n', out);
+    for (int t = 0; t < trials; ++t)
+        write_numbers(out, trial[t].number, attack->numbers);
+}
+
+static void write_results(const Attack *attack, const Trial *trial, int trials, FILE *out)
+{
+    static const char *const base[] = {"a.x", "a.y", "a.z", "alpha.x", "alpha.y", "alpha.z"};
+    static const char *const part[] = {"x", "y", "z", "e0", "e1", "e2", "e3"};
+    const gic_model *code = attack->code.code;
+    const int half = code->slow_count / 2, first = code->free_base ? 0 : 1;
+    for (int i = 0; code->free_base && i < 6; ++i)
+        fprintf(out, "%s,", base[i]);
+    for (int c = 0; c < code->coordinate_count; ++c)
+        if (code->coordinate_state[c] >= 0)
+            fprintf(out, "%s.acceleration,", code->coordinate[c].name);
+    for (int b = first; b < code->body_count; ++b)
+        for (int i = 0; i < 7; ++i)
+            fprintf(out, "%s.%s,", code->body_name[b], part[i]);
+    fputs("status\n", out);
+    for (int t = 0; t < trials; ++t) {
+        const double *rate = trial[t].number + attack->numbers, *pose = rate + attack->states;
+        for (int i = 0; code->free_base && i < 6; ++i)
+            fprintf(out, "%.17g,", rate[half + 1 + i]);
+        for (int c = 0; c < code->coordinate_count; ++c)
+            if (code->coordinate_state[c] >= 0)
+                fprintf(out, "%.17g,", rate[code->coordinate_state[c] + half]);
+        for (int i = 7 * first; i < 7 * code->body_count; ++i)
+            fprintf(out, "%.17g,", pose[i]);
+        fputs("0\n", out);
+    }
+}
+
+/* Both lists in two files. */
+static void write_files(Pool *pool, const Attack *attack, const char *path)
+{
+    const int trials = attack->worst.count + attack->unseen.count;
+    Trial *trial = pool_alloc(pool, sizeof *trial * (size_t)(trials + 1));
+    memcpy(trial, attack->worst.trial, sizeof *trial * (size_t)attack->worst.count);
+    memcpy(trial + attack->worst.count, attack->unseen.trial, sizeof *trial * (size_t)attack->unseen.count);
+    FILE *out[2] = {open_file(pool, path, ".states"), open_file(pool, path, ".results")};
+    write_states(attack, trial, trials, out[0]);
+    write_results(attack, trial, trials, out[1]);
+    if (fclose(out[0]) | fclose(out[1])) {
+        perror(path);
+        exit(1);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const char *path = NULL, *out = NULL;
+    double count = 0, seed = 0, kept = 0;
+    Recovery recovery = RECOVERY_AUTO;
+    for (int i = 1; i < argc; ++i) {
+        const char *value = i + 1 < argc ? argv[i + 1] : "";
+        if (argv[i][0] != '-' && !path) {
+            path = argv[i];
+            continue;
+        }
+        if (!strcmp(argv[i], "--count"))
+            count = atof(value);
+        else if (!strcmp(argv[i], "--seed"))
+            seed = atof(value);
+        else if (!strcmp(argv[i], "--keep"))
+            kept = atof(value);
+        else if (!strcmp(argv[i], "--recovery"))
+            recovery = recovery_of(value);
+        else if (!strcmp(argv[i], "-o"))
+            out = value;
+        else
+            path = NULL, i = argc;
+        ++i;
+    }
+    if (!path || !out || !(count >= 1 && count <= 1e8) || recovery == RECOVERIES) {
+        fputs(usage, stderr);
+        return 2;
+    }
+    Pool *pool = pool_new();
+    const Model *model = model_read(pool, path);
+    Attack attack = {.code = subject_open(pool, "tcc", model, recovery),
+                     .other = subject_open(pool, "gic", model, recovery),
+                     .chance = chance_new(seed)};
+    attack.states = attack.code.engine->standard_count;
+    attack.inputs = attack.code.code->input_count;
+    attack.numbers = attack.states + attack.inputs;
+    attack.whole = attack.numbers + attack.states + 7 * attack.code.code->body_count;
+    attack.worst = list_new(pool, (int)kept, attack.whole);
+    attack.unseen = list_new(pool, (int)kept / 2, attack.whole);
+    attack.good[0] = instance_new(pool, attack.code.engine);
+    attack.good[1] = instance_new(pool, attack.other.engine);
+    double number[attack.whole];
+    while ((double)attack.tried < count) {
+        random_state(&attack, number);
+        ++attack.tried;
+        if (evaluate(&attack, &attack.code, attack.code.fresh, number) == GIC_OK)
+            screen(&attack, (gic_head *[]){attack.code.fresh, attack.other.fresh}, number);
+        else if (attack.refused++ % 20 == 0)
+            walk(&attack, number);
+    }
+    write_files(pool, &attack, out);
+    printf("%ld %ld %ld %ld %.2g %ld\n", attack.tried, attack.taken, attack.refused, attack.doubted, attack.largest,
+           attack.wrong);
+    engine_close(attack.code.engine);
+    engine_close(attack.other.engine);
+    pool_free(pool);
+    return 0;
+}

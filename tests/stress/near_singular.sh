@@ -1,0 +1,46 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# near_singular.sh GICGEN NEAR_SINGULAR REFERENCE AGREE: suspensions driven to their limits and beyond, against gic and quad precision
+#
+# No state is taken whose accelerations or poses are off by more than 1e-8 of the sum of magnitudes of their terms, or of
+# the model's size. COUNT states a model and way of recovery (a million: COUNT=1000000 KEEP=1000, an hour a model), of
+# which KEEP and half as many more are compared with the reference; MODELS instead of ours.
+gicgen=$1
+near_singular=$2
+reference=$3
+agree=$4
+models=$(cd "$(dirname "$0")/../../models" && pwd)
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+case $STRESS in
+short) count=${COUNT:-1500} keep=${KEEP:-4} names="hmmwv:newton five_link:auto quarter_car:newton" ;;
+*) count=${COUNT:-100000} keep=${KEEP:-60} names="" ;;
+esac
+for name in hmmwv hmmwv14 hmmwv_full five_link quarter_car solid_axle trailing_arm pendulum; do
+    [ "$STRESS" = short ] || names="$names $name:closed $name:newton"
+done
+for pair in ${MODELS:-$names}; do
+    name=${pair%:*}
+    way=${pair#*:}
+    model=$models/$name.veh
+    if "$gicgen" --dump-model "$model" >"$work/dump" &&
+        "$near_singular" "$model" --recovery "$way" --count "$count" --seed 1 --keep "$keep" -o "$work/worst" >"$work/out"; then
+        read -r tried taken refused doubted screened wrong <"$work/out"
+    else
+        echo "near_singular | $name $way | 0 | 0 | 0 | - | the attack itself failed"
+        continue
+    fi
+    "$reference" "$work/dump" "$work/worst.states" -o "$work/reference.csv" 2>"$work/log"
+    "$agree" "$work/dump" "$work/reference.csv" "$work/worst.results" --tolerance 1e-8 --condition 1e300 --refusals \
+        >"$work/agree"
+    status=$?
+    worst=$(sed -n 's/.* worst \([^ ]*\) in row .*/\1/p' "$work/agree" | sort -g | tail -n 1)
+    unreached=$(sed -n 's/.* rows: \([0-9]*\) not reached.*/\1/p' "$work/agree")
+    compared=$(sed -n 's/.*, \([0-9]*\) compared.*/\1/p' "$work/agree")
+    verdict="ok: $compared in quad precision, gic refuses $doubted, else differs by $screened"
+    [ "$unreached" = 0 ] || verdict="$verdict; $unreached not on a straight way from the design"
+    [ "$wrong" = 0 ] || verdict="$wrong results are no numbers"
+    [ $status -eq 0 ] || verdict="off by more than 1e-8"
+    [ "${compared:-0}" -gt 0 ] || verdict="nothing compared"
+    echo "near_singular | $name $way | $tried | $taken | $refused | $worst relative | $verdict"
+done
