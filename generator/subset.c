@@ -444,13 +444,17 @@ static void store_motion(Block *block, const Motion *m, int offset)
             block_store(block, part[p].e[i], "motion[%d]", offset + part[p].offset + i);
 }
 
-/* A pivot this much smaller than at any sample means that independence is being lost, while the error it causes, about
- * epsilon times the ratio, is still far below 1e-8. */
-static const double pivot_loss = 1e-7;
+/* A determinant this small relative to that at the design, or of the other sign, means that independence is lost
+ * (Serban and Haug 2000, eq. 6). It is the distance to where two solutions meet, as an angle: poses are off by epsilon
+ * divided by it, what follows from the matrix there by epsilon divided by its square, 1e-8 and less. */
+static const double determinant_loss = 1e-3;
+/* A pivot this much smaller than at any sample makes multipliers so large that they cost as many digits. */
+static const double pivot_loss = 1e-6;
 
 /* guarded: poses may be on a wrong branch. */
 static void check_pivots(Work *w, Formula *formula, const Factors *factors, bool guarded)
 {
+    Ex determinant = 0;
     for (int k = 0; k < w->n; ++k) {
         Ex pivot = factors->pivot[k];
         if (w->dag->node[pivot].level < LEVEL_VARIABLE)
@@ -459,6 +463,14 @@ static void check_pivots(Work *w, Formula *formula, const Factors *factors, bool
         for (int s = 0; s < w->dag->samples; ++s)
             usual = fmax(usual, fabs(ex_value(w->dag, pivot, s)));
         block_check(&formula->solve, pivot, true, pivot_loss * usual, "GIC_ERROR_SINGULAR");
+        determinant = determinant ? ex_mul(w->dag, determinant, pivot) : pivot;
+    }
+    if (determinant) {
+        double inverse[w->class->members];
+        for (int i = 0; i < w->class->members; ++i)
+            inverse[i] = 1 / ex_value(w->dag, determinant, i * w->configurations);
+        block_check(&formula->solve, ex_mul(w->dag, ex_constant(w->dag, inverse), determinant), false, determinant_loss,
+                    "GIC_ERROR_SINGULAR");
     }
     for (int r = 0; guarded && r < w->n; ++r)
         if (w->row[r].guard)

@@ -266,7 +266,7 @@ static double *start_of(const Interpreted *context, const Instance *self, int fl
     return instance_own(self) + flip * ((const Gic *)context->engine)->start_size;
 }
 
-/* All bodies at world->x, followed from the last good configuration. */
+/* All bodies at world->x, followed from the last good configuration, which stays that where a piece fails. */
 static int recover(const Interpreted *context, Instance *self, bool cold)
 {
     const Gic *gic = context->engine;

@@ -73,7 +73,7 @@ static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, do
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
         /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= class->enough || (step <= GIC_ROUNDING_SQUARE && step > before / 16)) {
+        if (step <= class->enough || (step <= GIC_AMPLIFIED * class->enough && step > before / 16)) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
