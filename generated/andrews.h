@@ -42,11 +42,11 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'K1' (1 times, closed form)                        21        57       2      1         2
- *   subset 'K2_K3' (1 times)                                 596       783       6      0         0
- *   subset 'K5_K4' (2 times)                                 722       915       6      0         0
+ *   subset 'K1' (1 times, closed form)                        21        58       2      1         2
+ *   subset 'K2_K3' (1 times)                                 596       789       6      0         0
+ *   subset 'K5_K4' (2 times)                                 722       921       6      0         0
  *   forces and equations of motion                            24        25       2      1         0
- *   all together                                            2085      2695      22      2         2
+ *   all together                                            2085      2714      22      2         2
  *   outputs, when asked for                                  201       361       0      1        18
  */
 #ifndef ANDREWS_H

@@ -63,11 +63,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   69       109       1      1         0
- *   subset 'wheel_r_l' (2 times)                             594       673       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       406       5      2         0
+ *   subset 'lca_f_l' (2 times, closed form)                   69       110       1      1         0
+ *   subset 'wheel_r_l' (2 times)                             594       679       6      0         0
+ *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
  *   forces and equations of motion                           703       657      11      0         4
- *   all together                                            2656      3058      35      6         4
+ *   all together                                            2656      3078      35      6         4
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #include "five_link.h"
@@ -121,15 +121,15 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* Squares of corrections relative to a subset's size: what is rounding, and what is rounding near a singular
- * configuration. far: square of the subset's distance from the base relative to its size; 16 epsilon of the distance is
- * rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
+ * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
+ * epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-7)
+#define GIC_AMPLIFIED R(1e4)
 #else
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-18)
+#define GIC_AMPLIFIED R(1e6)
 #endif
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
@@ -220,16 +220,16 @@ static GIC_COLD gic_real five_link_residual_rack(const gic_real *GIC_RESTRICT k,
     return worst;
 }
 
-static const gic_real five_link_k_lca_f_l[2][10] = {
+static const gic_real five_link_k_lca_f_l[2][11] = {
     { /* lca_f_l */
         R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428), R(0.307086),
-        R(0.509778), R(51.57660077184113), R(51.576600771841136), R(-51.57660077184113),
-        R(0.24689200985615367), R(0.2403881036540444),
+        R(0.509778), R(-17.83418213330566), R(51.57660077184113), R(51.576600771841136),
+        R(-51.57660077184113), R(0.24689200985615367), R(0.2403881036540444),
     },
     { /* lca_f_r */
         R(0.038649583990999964), R(-0.05607209753299996), R(-50.90547521989428), R(-0.307086),
-        R(-0.509778), R(-51.57660077184113), R(-51.576600771841136), R(51.57660077184113),
-        R(-0.24689200985615367), R(-0.2403881036540444),
+        R(-0.509778), R(17.83418213330566), R(-51.57660077184113), R(-51.576600771841136),
+        R(51.57660077184113), R(-0.24689200985615367), R(-0.2403881036540444),
     },
 };
 
@@ -258,12 +258,14 @@ static int five_link_solve_lca_f_l(five_link *self, const gic_real *GIC_RESTRICT
         const gic_real t8 = t7 - R(0.19748500000000002);
         const gic_real t9 = k[3] + t6 - k[4];
         const gic_real t10 = t6 * t8 - t7 * t9;
-        if (!(GIC_FABS(t10) > R(6.1065511042664625e-09)))
+        if (!(GIC_FABS(t10) > R(6.106551104266462e-08)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t11 = t5 * k[5] + t4 * R(209.3566321652691);
-        const gic_real t12 = t5 * R(-209.35663216526908) + t4 * k[6];
-        const gic_real t13 = t5 * R(209.3566321652691) + t4 * k[7];
-        const gic_real t14 = t5 * k[6] + t4 * R(209.35663216526908);
+        if (!(t10 * k[5] > R(0.001)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t11 = t5 * k[6] + t4 * R(209.3566321652691);
+        const gic_real t12 = t5 * R(-209.35663216526908) + t4 * k[7];
+        const gic_real t13 = t5 * R(209.3566321652691) + t4 * k[8];
+        const gic_real t14 = t5 * k[7] + t4 * R(209.35663216526908);
         const gic_real t15 = R(1.0) / t10;
         const gic_real t16 = x[0] * t15;
         const gic_real t17 = rate[0] * t16;
@@ -271,10 +273,10 @@ static int five_link_solve_lca_f_l(five_link *self, const gic_real *GIC_RESTRICT
         const gic_real t19 = t7 * t17;
         const gic_real t20 = t18 * t18 + t19 * t19 - (t8 * (t17 * t19) + t9 * (t17 * t18));
         const gic_real t21 = t15 * (rate[0] * rate[0] - t20);
-        const gic_real t22 = t12 * R(3.0379110359107786e-06) + t11 * k[8];
+        const gic_real t22 = t12 * R(3.0379110359107786e-06) + t11 * k[9];
         const gic_real t23 = k[3] + t22;
         const gic_real t24 = R(23.965) * t23;
-        const gic_real t25 = t14 * R(3.0379110359107786e-06) + t13 * k[8];
+        const gic_real t25 = t14 * R(3.0379110359107786e-06) + t13 * k[9];
         const gic_real t26 = R(23.965) * t25;
         const gic_real t27 = t23 * t24;
         const gic_real t28 = t25 * t26;
@@ -362,8 +364,8 @@ static GIC_COLD gic_real five_link_residual_lca_f_l(const gic_real *GIC_RESTRICT
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = R(0.01121887479261392) * motion[11] + k[9] * motion[10] - R(0.19748500000000002);
-        const gic_real t2 = k[3] + (R(0.01121887479261392) * motion[8] + k[9] * motion[7]) - k[4];
+        const gic_real t1 = R(0.01121887479261392) * motion[11] + k[10] * motion[10] - R(0.19748500000000002);
+        const gic_real t2 = k[3] + (R(0.01121887479261392) * motion[8] + k[10] * motion[7]) - k[4];
         const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
         const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * R(7.892375927523104)));
         worst = t4;
@@ -371,16 +373,16 @@ static GIC_COLD gic_real five_link_residual_lca_f_l(const gic_real *GIC_RESTRICT
     return worst;
 }
 
-static const gic_real five_link_k_wheel_r_l[2][9] = {
+static const gic_real five_link_k_wheel_r_l[2][10] = {
     { /* wheel_r_l */
         R(0.307086), R(-0.07099299999999997), R(0.4622571), R(0.4620489),
         R(0.03459480000000004), R(0.416052), R(-0.00012699999999998823), R(0.716026),
-        R(0.08910630000000008),
+        R(-43514.16664400747), R(0.08910630000000008),
     },
     { /* wheel_r_r */
         R(-0.307086), R(0.07099299999999997), R(-0.4622571), R(-0.4620489),
         R(-0.03459480000000004), R(-0.416052), R(0.00012699999999998823), R(-0.716026),
-        R(-0.08910630000000008),
+        R(43514.16664400747), R(-0.08910630000000008),
     },
 };
 
@@ -556,7 +558,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
         /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
         {
             const gic_real t1 = q[0] - R(-1.465699);
-            if (!(GIC_FABS(t1) > R(1.5777149692119317e-08)))
+            if (!(GIC_FABS(t1) > R(1.5777149692119319e-07)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t2 = q[5] + q[5];
             const gic_real t3 = q[6] * t2;
@@ -579,7 +581,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t20 = q[2] + t19 - R(0.22759419999999997);
             const gic_real t21 = q[1] + t13 - k[2];
             const gic_real t22 = t13 * t20 - t19 * t21;
-            if (!(GIC_FABS(t22) > R(8.541960994359942e-09)))
+            if (!(GIC_FABS(t22) > R(8.541960994359942e-08)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t23 = q[4] * t9;
             const gic_real t24 = q[3] * t2;
@@ -607,7 +609,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t46 = R(1.0) / t22;
             const gic_real t47 = (t44 * t38 - t27 * t45) * t46;
             const gic_real t48 = t27 * t37 - t36 * t38 - t41 * t47;
-            if (!(GIC_FABS(t48) > R(7.239494819332874e-09)))
+            if (!(GIC_FABS(t48) > R(7.239494819332874e-08)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t49 = R(0.10883900000000002) * t28 + (k[4] * t32 + R(0.10472159999999997) * t34);
             const gic_real t50 = R(0.10883900000000002) * t6 + (k[4] * t11 + R(0.10472159999999997) * t42);
@@ -621,7 +623,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t58 = R(1.0) / t48;
             const gic_real t59 = (t54 * t52 - t49 * t55 - t41 * t56) * t58;
             const gic_real t60 = t49 * t51 - t50 * t52 - t53 * t56 - t57 * t59;
-            if (!(GIC_FABS(t60) > R(5.553502285728826e-09)))
+            if (!(GIC_FABS(t60) > R(5.553502285728826e-08)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t61 = q[1] + t43 - k[0];
             const gic_real t62 = q[1] - k[0];
@@ -642,7 +644,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t77 = R(1.0) / t60;
             const gic_real t78 = t76 * t77;
             const gic_real t79 = t73 - t75 * t78;
-            if (!(GIC_FABS(t79) > R(1.3143287125939886e-07)))
+            if (!(GIC_FABS(t79) > R(1.3143287125939887e-06)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t80 = R(0.079756) * t15 + (k[6] * t17 + R(-0.16944599999999999) * t25);
             const gic_real t81 = q[2] + t80 - R(0.32308800000000004);
@@ -665,261 +667,264 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t98 = R(1.0) / t79;
             const gic_real t99 = (t97 - t75 * t94) * t98;
             const gic_real t100 = t91 - t92 * t94 - t96 * t99;
-            if (!(GIC_FABS(t100) > R(3.857839531913572e-08)))
+            if (!(GIC_FABS(t100) > R(3.8578395319135713e-07)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t101 = q[2] * q[2] + (t62 * t62 + t1 * t1) - R(0.26866948516099987);
-            const gic_real t102 = t101 * R(0.5);
-            const gic_real t103 = t68 * t68 + (t61 * t61 + t63 * t63) - R(0.29615964100099984);
-            const gic_real t104 = t20 * t20 + (t21 * t21 + t40 * t40) - R(0.14467861041253996);
-            const gic_real t105 = t102 * t66 - R(0.5) * t104;
-            const gic_real t106 = t38 * t38 + (t45 * t45 + t37 * t37) - R(0.06942663884414002);
-            const gic_real t107 = t102 * t70 - R(0.5) * t106 - t47 * t105;
-            const gic_real t108 = t102 * t65 - R(0.5) * t103 - t69 * t105 - t72 * t107;
-            const gic_real t109 = t55 * t55 + (t51 * t51 + t52 * t52) - R(0.1714924505628);
-            const gic_real t110 = t102 * t74 - R(0.5) * t109 - t56 * t105 - t59 * t107;
-            const gic_real t111 = t108 - t78 * t110;
-            const gic_real t112 = R(1.0) / t100;
-            const gic_real t113 = t81 * t81 + (t87 * t87 + t83 * t83) - x[0] * x[0];
-            const gic_real t114 = t102 * t84 - R(0.5) * t113 - t88 * t105 - t90 * t107;
-            const gic_real t115 = t112 * (t114 - t94 * t110 - t99 * t111);
-            const gic_real t116 = t98 * (t111 - t96 * t115);
-            const gic_real t117 = t64 * (t102 + t62 * t116 + q[2] * t115);
-            const gic_real t118 = q[0] - t117;
-            const gic_real t119 = q[1] + t116;
-            const gic_real t120 = q[2] + t115;
-            const gic_real t121 = t77 * (t110 - t75 * t116 - t92 * t115);
-            const gic_real t122 = R(0.5) * t121;
-            const gic_real t123 = t107 - t57 * t121 - t71 * t116 - t89 * t115;
-            const gic_real t124 = t58 * t123;
-            const gic_real t125 = R(0.5) * t124;
-            const gic_real t126 = t105 - t41 * t124 - t53 * t121 - t67 * t116;
-            const gic_real t127 = t46 * (t126 - t85 * t115);
-            const gic_real t128 = R(0.5) * t127;
-            const gic_real t129 = q[3] - (q[6] * t122 + (q[5] * t125 + q[4] * t128));
-            const gic_real t130 = q[6] + (q[5] * t128 - q[4] * t125 + q[3] * t122);
-            const gic_real t131 = q[5] + (q[4] * t122 - q[6] * t128 + q[3] * t125);
-            const gic_real t132 = q[4] + (q[6] * t125 - q[5] * t122 + q[3] * t128);
-            const gic_real t133 = t130 * t130 + (t131 * t131 + t132 * t132) + t129 * t129;
-            const gic_real t134 = R(1.5) - R(0.5) * t133;
-            const gic_real t135 = t129 * t134;
-            const gic_real t136 = t132 * t134;
-            const gic_real t137 = t131 * t134;
-            const gic_real t138 = t130 * t134;
-            const gic_real t139 = R(8.319281640348928) * (t115 * t115 + (t116 * t116 + t117 * t117));
-            const gic_real t140 = t121 * t121 + (t124 * t124 + t127 * t127) + t139;
-            const gic_real t141 = t137 + t137;
-            const gic_real t142 = t137 * t141;
-            const gic_real t143 = t138 + t138;
-            const gic_real t144 = t138 * t143;
-            const gic_real t145 = R(1.0) - (t142 + t144);
-            const gic_real t146 = t136 + t136;
-            const gic_real t147 = t137 * t146;
-            const gic_real t148 = t135 * t143;
-            const gic_real t149 = t147 - t148;
-            const gic_real t150 = t136 * t143;
-            const gic_real t151 = t135 * t141;
-            const gic_real t152 = t150 + t151;
-            const gic_real t153 = t147 + t148;
-            const gic_real t154 = t136 * t146;
-            const gic_real t155 = R(1.0) - (t154 + t144);
-            const gic_real t156 = t138 * t141;
-            const gic_real t157 = t135 * t146;
-            const gic_real t158 = t156 - t157;
-            const gic_real t159 = t150 - t151;
-            const gic_real t160 = t156 + t157;
-            const gic_real t161 = R(1.0) - (t154 + t142);
-            const gic_real t162 = x[0] * t112;
-            const gic_real t163 = t98 * (t96 * t162);
-            const gic_real t164 = t77 * (t75 * t163 - t92 * t162);
-            const gic_real t165 = t58 * (t71 * t163 - t57 * t164 - t89 * t162);
-            const gic_real t166 = t67 * t163 - (t41 * t165 + t53 * t164) - t85 * t162;
-            const gic_real t167 = t46 * t166;
-            const gic_real t168 = rate[0] * t167;
-            const gic_real t169 = rate[0] * t165;
-            const gic_real t170 = rate[0] * t164;
-            const gic_real t171 = t64 * (t62 * t163 - q[2] * t162);
-            const gic_real t172 = rate[0] * t171;
-            const gic_real t173 = rate[0] * t163;
-            const gic_real t174 = rate[0] * t162;
-            const gic_real t175 = t174 * t174 + (t173 * t173 + t172 * t172);
-            const gic_real t176 = t13 * t168 - t39 * t169;
-            const gic_real t177 = t174 + t176;
-            const gic_real t178 = t39 * t170 - t19 * t168;
-            const gic_real t179 = t178 - t173;
-            const gic_real t180 = t19 * t169 - t13 * t170;
-            const gic_real t181 = t172 + t180;
-            const gic_real t182 = t21 * (t170 * t180 - t168 * t176) + t40 * (t169 * t176 - t170 * t178);
-            const gic_real t183 = t177 * t177 + (t179 * t179 + t181 * t181) + (t20 * (t168 * t178 - t169 * t180) + t182);
-            const gic_real t184 = t66 * t175 - t183;
-            const gic_real t185 = t44 * t168 - t36 * t169;
-            const gic_real t186 = t174 + t185;
-            const gic_real t187 = t36 * t170 - t27 * t168;
-            const gic_real t188 = t187 - t173;
-            const gic_real t189 = t27 * t169 - t44 * t170;
-            const gic_real t190 = t172 + t189;
-            const gic_real t191 = t45 * (t170 * t189 - t168 * t185) + t37 * (t169 * t185 - t170 * t187);
-            const gic_real t192 = t186 * t186 + (t188 * t188 + t190 * t190) + (t38 * (t168 * t187 - t169 * t189) + t191);
-            const gic_real t193 = t70 * t175 - t192 - t47 * t184;
-            const gic_real t194 = t50 * t168 - t49 * t169;
-            const gic_real t195 = t174 + t194;
-            const gic_real t196 = t49 * t170 - t54 * t168;
-            const gic_real t197 = t196 - t173;
-            const gic_real t198 = t54 * t169 - t50 * t170;
-            const gic_real t199 = t172 + t198;
-            const gic_real t200 = t51 * (t170 * t198 - t168 * t194) + t52 * (t169 * t194 - t170 * t196);
-            const gic_real t201 = t195 * t195 + (t197 * t197 + t199 * t199) + (t55 * (t168 * t196 - t169 * t198) + t200);
-            const gic_real t202 = t74 * t175 - t201 - t56 * t184 - t59 * t193;
-            const gic_real t203 = t43 * t168 - t35 * t169;
-            const gic_real t204 = t174 + t203;
-            const gic_real t205 = t35 * t170 - t26 * t168;
-            const gic_real t206 = t205 - t173;
-            const gic_real t207 = t26 * t169 - t43 * t170;
-            const gic_real t208 = t172 + t207;
-            const gic_real t209 = t61 * (t170 * t207 - t168 * t203) + t63 * (t169 * t203 - t170 * t205);
-            const gic_real t210 = t204 * t204 + (t206 * t206 + t208 * t208) + (t68 * (t168 * t205 - t169 * t207) + t209);
-            const gic_real t211 = t65 * t175 - t210 - t69 * t184 - t72 * t193;
-            const gic_real t212 = t211 - t78 * t202;
-            const gic_real t213 = t86 * t168 - t82 * t169;
-            const gic_real t214 = t174 + t213;
-            const gic_real t215 = t82 * t170 - t80 * t168;
-            const gic_real t216 = t215 - t173;
-            const gic_real t217 = t80 * t169 - t86 * t170;
-            const gic_real t218 = t172 + t217;
-            const gic_real t219 = t87 * (t170 * t217 - t168 * t213) + t83 * (t169 * t213 - t170 * t215);
-            const gic_real t220 = t214 * t214 + (t216 * t216 + t218 * t218) + (t81 * (t168 * t215 - t169 * t217) + t219);
-            const gic_real t221 = rate[0] * rate[0] - t220 + t84 * t175 - t88 * t184;
-            const gic_real t222 = t221 - t90 * t193 - t94 * t202 - t99 * t212;
-            const gic_real t223 = t112 * t222;
-            const gic_real t224 = t98 * (t212 - t96 * t223);
-            const gic_real t225 = t77 * (t202 - t75 * t224 - t92 * t223);
-            const gic_real t226 = t193 - t57 * t225 - t71 * t224 - t89 * t223;
-            const gic_real t227 = t58 * t226;
-            const gic_real t228 = t184 - t41 * t227 - t53 * t225 - t67 * t224;
-            const gic_real t229 = t46 * (t228 - t85 * t223);
-            const gic_real t230 = t64 * (t175 + t62 * t224 + q[2] * t223);
-            const gic_real t231 = -t163;
-            const gic_real t232 = t152 * R(0.09182100000000004) + (t149 * k[8] + t145 * R(-0.030000000000000027));
-            const gic_real t233 = t118 + t232;
-            const gic_real t234 = R(90.555) * t233;
-            const gic_real t235 = t158 * R(0.09182100000000004) + (t155 * k[8] + t153 * R(-0.030000000000000027));
-            const gic_real t236 = t119 + t235;
-            const gic_real t237 = R(90.555) * t236;
-            const gic_real t238 = t161 * R(0.09182100000000004) + (t160 * k[8] + t159 * R(-0.030000000000000027));
-            const gic_real t239 = t120 + t238;
-            const gic_real t240 = R(90.555) * t239;
-            const gic_real t241 = t149 * R(2.8083995);
-            const gic_real t242 = t145 * R(0.12192999999999987);
-            const gic_real t243 = R(4.7728205) + (t149 * t241 + t145 * t242);
-            const gic_real t244 = t236 * t237;
-            const gic_real t245 = t239 * t240;
-            const gic_real t246 = t155 * R(2.8083995);
-            const gic_real t247 = t153 * R(0.12192999999999987);
-            const gic_real t248 = R(4.7728205) + (t155 * t246 + t153 * t247);
-            const gic_real t249 = t233 * t234;
-            const gic_real t250 = R(4.7728205) + (t160 * (t160 * R(2.8083995)) + t159 * (t159 * R(0.12192999999999987)));
-            const gic_real t251 = t155 * t241 + t153 * t242;
-            const gic_real t252 = t160 * t241 + t159 * t242;
-            const gic_real t253 = t160 * t246 + t159 * t247;
-            const gic_real t254 = t168 * t235 - t169 * t232;
-            const gic_real t255 = t174 + t254;
-            const gic_real t256 = t255 + (t255 + (turn[0] * t236 - turn[1] * t233));
-            const gic_real t257 = t170 * t232 - t168 * t238;
-            const gic_real t258 = t257 - t173;
-            const gic_real t259 = t258 + (t258 + (turn[2] * t233 - turn[0] * t239));
-            const gic_real t260 = turn[1] * t256 - turn[2] * t259 + (t169 * t254 - t170 * t257);
-            const gic_real t261 = R(90.555) * (t260 + (t227 * t238 - t225 * t235) - t230);
-            const gic_real t262 = t169 * t238 - t170 * t235;
-            const gic_real t263 = t172 + t262;
-            const gic_real t264 = t263 + (t263 + (turn[1] * t239 - turn[2] * t236));
-            const gic_real t265 = turn[2] * t264 - turn[0] * t256 + (t170 * t262 - t168 * t254);
-            const gic_real t266 = R(90.555) * (t224 + (t265 + (t225 * t232 - t229 * t238)));
-            const gic_real t267 = turn[0] * t259 - turn[1] * t264 + (t168 * t257 - t169 * t262);
-            const gic_real t268 = R(90.555) * (t223 + (t267 + (t229 * t235 - t227 * t232)));
-            const gic_real t269 = t225 + (t169 * turn[0] - t168 * turn[1]);
-            const gic_real t270 = t227 + (t168 * turn[2] - t170 * turn[0]);
-            const gic_real t271 = t229 + (t170 * turn[1] - t169 * turn[2]);
-            const gic_real t272 = t169 + turn[1];
-            const gic_real t273 = t170 + turn[2];
-            const gic_real t274 = t168 + turn[0];
-            const gic_real t275 = t250 * t273 + (t253 * t272 + t252 * t274);
-            const gic_real t276 = t253 * t273 + (t248 * t272 + t251 * t274);
-            const gic_real t277 = t252 * t269 + (t251 * t270 + t243 * t271) + (t272 * t275 - t273 * t276);
-            const gic_real t278 = t252 * t273 + (t251 * t272 + t243 * t274);
-            const gic_real t279 = t253 * t269 + (t248 * t270 + t251 * t271) + (t273 * t278 - t274 * t275);
-            const gic_real t280 = t250 * t269 + (t253 * t270 + t252 * t271) + (t274 * t276 - t272 * t278);
-            const gic_real t281 = t171 + (t165 * t238 - t164 * t235);
-            const gic_real t282 = R(90.555) * t281;
-            const gic_real t283 = t164 * t232 - t167 * t238 - t163;
-            const gic_real t284 = R(90.555) * t283;
-            const gic_real t285 = t162 + (t167 * t235 - t165 * t232);
-            const gic_real t286 = R(90.555) * t285;
-            const gic_real t287 = t164 * t252 + (t165 * t251 + t167 * t243);
-            const gic_real t288 = t164 * t253 + (t165 * t248 + t167 * t251);
-            const gic_real t289 = t164 * t250 + (t165 * t253 + t167 * t252);
-            const gic_real t290 = t164 * t280 + (t165 * t279 + t167 * t277) + (t268 * t285 + (t266 * t283 + t261 * t281));
-            const gic_real t291 = t164 * t289 + (t165 * t288 + t167 * t287) + (t285 * t286 + (t283 * t284 + t281 * t282));
-            const gic_real t292 = -t173;
-            const gic_real t293 = -t230;
-            const gic_real t294 = q[2];
-            const gic_real t295 = t243 + (t244 + t245);
-            const gic_real t296 = t248 + (t249 + t245);
-            const gic_real t297 = t250 + (t249 + t244);
-            const gic_real t298 = t251 - t236 * t234;
-            const gic_real t299 = t252 - t239 * t234;
-            const gic_real t300 = t253 - t239 * t237;
-            const gic_real t301 = t277 + (t236 * t268 - t239 * t266);
-            const gic_real t302 = t279 + (t239 * t261 - t233 * t268);
-            const gic_real t303 = t280 + (t233 * t266 - t236 * t261);
-            const gic_real t304 = t287 + (t236 * t286 - t239 * t284);
-            const gic_real t305 = t288 + (t239 * t282 - t233 * t286);
-            const gic_real t306 = t289 + (t233 * t284 - t236 * t282);
-            q[0] = t118;
-            q[1] = t119;
-            q[2] = t120;
-            q[3] = t135;
-            q[4] = t136;
-            q[5] = t137;
-            q[6] = t138;
-            step = t140;
-            motion[0] = t118;
-            motion[1] = t119;
-            motion[2] = t120;
-            motion[3] = t145;
-            motion[4] = t149;
-            motion[5] = t152;
-            motion[6] = t153;
-            motion[7] = t155;
-            motion[8] = t158;
-            motion[9] = t159;
-            motion[10] = t160;
-            motion[11] = t161;
-            motion[12] = t168;
-            motion[13] = t169;
-            motion[14] = t170;
-            motion[15] = t172;
-            motion[16] = t292;
-            motion[17] = t174;
-            motion[18] = t229;
-            motion[19] = t227;
-            motion[20] = t225;
-            motion[21] = t293;
-            motion[22] = t224;
-            motion[23] = t223;
-            motion[24] = t167;
-            motion[25] = t165;
-            motion[26] = t164;
-            motion[27] = t171;
-            motion[28] = t231;
-            motion[29] = t162;
-            start[7] = t167;
-            start[8] = t165;
-            start[9] = t164;
-            start[10] = t171;
-            start[11] = t231;
-            start[12] = t162;
+            const gic_real t101 = t100 * (t79 * (t60 * (t48 * (t1 * t22)))) * k[8];
+            if (!(t101 > R(0.001)))
+                return GIC_ERROR_SINGULAR;
+            const gic_real t102 = q[2] * q[2] + (t62 * t62 + t1 * t1) - R(0.26866948516099987);
+            const gic_real t103 = t102 * R(0.5);
+            const gic_real t104 = t68 * t68 + (t61 * t61 + t63 * t63) - R(0.29615964100099984);
+            const gic_real t105 = t20 * t20 + (t21 * t21 + t40 * t40) - R(0.14467861041253996);
+            const gic_real t106 = t103 * t66 - R(0.5) * t105;
+            const gic_real t107 = t38 * t38 + (t45 * t45 + t37 * t37) - R(0.06942663884414002);
+            const gic_real t108 = t103 * t70 - R(0.5) * t107 - t47 * t106;
+            const gic_real t109 = t103 * t65 - R(0.5) * t104 - t69 * t106 - t72 * t108;
+            const gic_real t110 = t55 * t55 + (t51 * t51 + t52 * t52) - R(0.1714924505628);
+            const gic_real t111 = t103 * t74 - R(0.5) * t110 - t56 * t106 - t59 * t108;
+            const gic_real t112 = t109 - t78 * t111;
+            const gic_real t113 = R(1.0) / t100;
+            const gic_real t114 = t81 * t81 + (t87 * t87 + t83 * t83) - x[0] * x[0];
+            const gic_real t115 = t103 * t84 - R(0.5) * t114 - t88 * t106 - t90 * t108;
+            const gic_real t116 = t113 * (t115 - t94 * t111 - t99 * t112);
+            const gic_real t117 = t98 * (t112 - t96 * t116);
+            const gic_real t118 = t64 * (t103 + t62 * t117 + q[2] * t116);
+            const gic_real t119 = q[0] - t118;
+            const gic_real t120 = q[1] + t117;
+            const gic_real t121 = q[2] + t116;
+            const gic_real t122 = t77 * (t111 - t75 * t117 - t92 * t116);
+            const gic_real t123 = R(0.5) * t122;
+            const gic_real t124 = t108 - t57 * t122 - t71 * t117 - t89 * t116;
+            const gic_real t125 = t58 * t124;
+            const gic_real t126 = R(0.5) * t125;
+            const gic_real t127 = t106 - t41 * t125 - t53 * t122 - t67 * t117;
+            const gic_real t128 = t46 * (t127 - t85 * t116);
+            const gic_real t129 = R(0.5) * t128;
+            const gic_real t130 = q[3] - (q[6] * t123 + (q[5] * t126 + q[4] * t129));
+            const gic_real t131 = q[6] + (q[5] * t129 - q[4] * t126 + q[3] * t123);
+            const gic_real t132 = q[5] + (q[4] * t123 - q[6] * t129 + q[3] * t126);
+            const gic_real t133 = q[4] + (q[6] * t126 - q[5] * t123 + q[3] * t129);
+            const gic_real t134 = t131 * t131 + (t132 * t132 + t133 * t133) + t130 * t130;
+            const gic_real t135 = R(1.5) - R(0.5) * t134;
+            const gic_real t136 = t130 * t135;
+            const gic_real t137 = t133 * t135;
+            const gic_real t138 = t132 * t135;
+            const gic_real t139 = t131 * t135;
+            const gic_real t140 = R(8.319281640348928) * (t116 * t116 + (t117 * t117 + t118 * t118));
+            const gic_real t141 = t122 * t122 + (t125 * t125 + t128 * t128) + t140;
+            const gic_real t142 = t138 + t138;
+            const gic_real t143 = t138 * t142;
+            const gic_real t144 = t139 + t139;
+            const gic_real t145 = t139 * t144;
+            const gic_real t146 = R(1.0) - (t143 + t145);
+            const gic_real t147 = t137 + t137;
+            const gic_real t148 = t138 * t147;
+            const gic_real t149 = t136 * t144;
+            const gic_real t150 = t148 - t149;
+            const gic_real t151 = t137 * t144;
+            const gic_real t152 = t136 * t142;
+            const gic_real t153 = t151 + t152;
+            const gic_real t154 = t148 + t149;
+            const gic_real t155 = t137 * t147;
+            const gic_real t156 = R(1.0) - (t155 + t145);
+            const gic_real t157 = t139 * t142;
+            const gic_real t158 = t136 * t147;
+            const gic_real t159 = t157 - t158;
+            const gic_real t160 = t151 - t152;
+            const gic_real t161 = t157 + t158;
+            const gic_real t162 = R(1.0) - (t155 + t143);
+            const gic_real t163 = x[0] * t113;
+            const gic_real t164 = t98 * (t96 * t163);
+            const gic_real t165 = t77 * (t75 * t164 - t92 * t163);
+            const gic_real t166 = t58 * (t71 * t164 - t57 * t165 - t89 * t163);
+            const gic_real t167 = t67 * t164 - (t41 * t166 + t53 * t165) - t85 * t163;
+            const gic_real t168 = t46 * t167;
+            const gic_real t169 = rate[0] * t168;
+            const gic_real t170 = rate[0] * t166;
+            const gic_real t171 = rate[0] * t165;
+            const gic_real t172 = t64 * (t62 * t164 - q[2] * t163);
+            const gic_real t173 = rate[0] * t172;
+            const gic_real t174 = rate[0] * t164;
+            const gic_real t175 = rate[0] * t163;
+            const gic_real t176 = t175 * t175 + (t174 * t174 + t173 * t173);
+            const gic_real t177 = t13 * t169 - t39 * t170;
+            const gic_real t178 = t175 + t177;
+            const gic_real t179 = t39 * t171 - t19 * t169;
+            const gic_real t180 = t179 - t174;
+            const gic_real t181 = t19 * t170 - t13 * t171;
+            const gic_real t182 = t173 + t181;
+            const gic_real t183 = t21 * (t171 * t181 - t169 * t177) + t40 * (t170 * t177 - t171 * t179);
+            const gic_real t184 = t178 * t178 + (t180 * t180 + t182 * t182) + (t20 * (t169 * t179 - t170 * t181) + t183);
+            const gic_real t185 = t66 * t176 - t184;
+            const gic_real t186 = t44 * t169 - t36 * t170;
+            const gic_real t187 = t175 + t186;
+            const gic_real t188 = t36 * t171 - t27 * t169;
+            const gic_real t189 = t188 - t174;
+            const gic_real t190 = t27 * t170 - t44 * t171;
+            const gic_real t191 = t173 + t190;
+            const gic_real t192 = t45 * (t171 * t190 - t169 * t186) + t37 * (t170 * t186 - t171 * t188);
+            const gic_real t193 = t187 * t187 + (t189 * t189 + t191 * t191) + (t38 * (t169 * t188 - t170 * t190) + t192);
+            const gic_real t194 = t70 * t176 - t193 - t47 * t185;
+            const gic_real t195 = t50 * t169 - t49 * t170;
+            const gic_real t196 = t175 + t195;
+            const gic_real t197 = t49 * t171 - t54 * t169;
+            const gic_real t198 = t197 - t174;
+            const gic_real t199 = t54 * t170 - t50 * t171;
+            const gic_real t200 = t173 + t199;
+            const gic_real t201 = t51 * (t171 * t199 - t169 * t195) + t52 * (t170 * t195 - t171 * t197);
+            const gic_real t202 = t196 * t196 + (t198 * t198 + t200 * t200) + (t55 * (t169 * t197 - t170 * t199) + t201);
+            const gic_real t203 = t74 * t176 - t202 - t56 * t185 - t59 * t194;
+            const gic_real t204 = t43 * t169 - t35 * t170;
+            const gic_real t205 = t175 + t204;
+            const gic_real t206 = t35 * t171 - t26 * t169;
+            const gic_real t207 = t206 - t174;
+            const gic_real t208 = t26 * t170 - t43 * t171;
+            const gic_real t209 = t173 + t208;
+            const gic_real t210 = t61 * (t171 * t208 - t169 * t204) + t63 * (t170 * t204 - t171 * t206);
+            const gic_real t211 = t205 * t205 + (t207 * t207 + t209 * t209) + (t68 * (t169 * t206 - t170 * t208) + t210);
+            const gic_real t212 = t65 * t176 - t211 - t69 * t185 - t72 * t194;
+            const gic_real t213 = t212 - t78 * t203;
+            const gic_real t214 = t86 * t169 - t82 * t170;
+            const gic_real t215 = t175 + t214;
+            const gic_real t216 = t82 * t171 - t80 * t169;
+            const gic_real t217 = t216 - t174;
+            const gic_real t218 = t80 * t170 - t86 * t171;
+            const gic_real t219 = t173 + t218;
+            const gic_real t220 = t87 * (t171 * t218 - t169 * t214) + t83 * (t170 * t214 - t171 * t216);
+            const gic_real t221 = t215 * t215 + (t217 * t217 + t219 * t219) + (t81 * (t169 * t216 - t170 * t218) + t220);
+            const gic_real t222 = rate[0] * rate[0] - t221 + t84 * t176 - t88 * t185;
+            const gic_real t223 = t222 - t90 * t194 - t94 * t203 - t99 * t213;
+            const gic_real t224 = t113 * t223;
+            const gic_real t225 = t98 * (t213 - t96 * t224);
+            const gic_real t226 = t77 * (t203 - t75 * t225 - t92 * t224);
+            const gic_real t227 = t194 - t57 * t226 - t71 * t225 - t89 * t224;
+            const gic_real t228 = t58 * t227;
+            const gic_real t229 = t185 - t41 * t228 - t53 * t226 - t67 * t225;
+            const gic_real t230 = t46 * (t229 - t85 * t224);
+            const gic_real t231 = t64 * (t176 + t62 * t225 + q[2] * t224);
+            const gic_real t232 = -t164;
+            const gic_real t233 = t153 * R(0.09182100000000004) + (t150 * k[9] + t146 * R(-0.030000000000000027));
+            const gic_real t234 = t119 + t233;
+            const gic_real t235 = R(90.555) * t234;
+            const gic_real t236 = t159 * R(0.09182100000000004) + (t156 * k[9] + t154 * R(-0.030000000000000027));
+            const gic_real t237 = t120 + t236;
+            const gic_real t238 = R(90.555) * t237;
+            const gic_real t239 = t162 * R(0.09182100000000004) + (t161 * k[9] + t160 * R(-0.030000000000000027));
+            const gic_real t240 = t121 + t239;
+            const gic_real t241 = R(90.555) * t240;
+            const gic_real t242 = t150 * R(2.8083995);
+            const gic_real t243 = t146 * R(0.12192999999999987);
+            const gic_real t244 = R(4.7728205) + (t150 * t242 + t146 * t243);
+            const gic_real t245 = t237 * t238;
+            const gic_real t246 = t240 * t241;
+            const gic_real t247 = t156 * R(2.8083995);
+            const gic_real t248 = t154 * R(0.12192999999999987);
+            const gic_real t249 = R(4.7728205) + (t156 * t247 + t154 * t248);
+            const gic_real t250 = t234 * t235;
+            const gic_real t251 = R(4.7728205) + (t161 * (t161 * R(2.8083995)) + t160 * (t160 * R(0.12192999999999987)));
+            const gic_real t252 = t156 * t242 + t154 * t243;
+            const gic_real t253 = t161 * t242 + t160 * t243;
+            const gic_real t254 = t161 * t247 + t160 * t248;
+            const gic_real t255 = t169 * t236 - t170 * t233;
+            const gic_real t256 = t175 + t255;
+            const gic_real t257 = t256 + (t256 + (turn[0] * t237 - turn[1] * t234));
+            const gic_real t258 = t171 * t233 - t169 * t239;
+            const gic_real t259 = t258 - t174;
+            const gic_real t260 = t259 + (t259 + (turn[2] * t234 - turn[0] * t240));
+            const gic_real t261 = turn[1] * t257 - turn[2] * t260 + (t170 * t255 - t171 * t258);
+            const gic_real t262 = R(90.555) * (t261 + (t228 * t239 - t226 * t236) - t231);
+            const gic_real t263 = t170 * t239 - t171 * t236;
+            const gic_real t264 = t173 + t263;
+            const gic_real t265 = t264 + (t264 + (turn[1] * t240 - turn[2] * t237));
+            const gic_real t266 = turn[2] * t265 - turn[0] * t257 + (t171 * t263 - t169 * t255);
+            const gic_real t267 = R(90.555) * (t225 + (t266 + (t226 * t233 - t230 * t239)));
+            const gic_real t268 = turn[0] * t260 - turn[1] * t265 + (t169 * t258 - t170 * t263);
+            const gic_real t269 = R(90.555) * (t224 + (t268 + (t230 * t236 - t228 * t233)));
+            const gic_real t270 = t226 + (t170 * turn[0] - t169 * turn[1]);
+            const gic_real t271 = t228 + (t169 * turn[2] - t171 * turn[0]);
+            const gic_real t272 = t230 + (t171 * turn[1] - t170 * turn[2]);
+            const gic_real t273 = t170 + turn[1];
+            const gic_real t274 = t171 + turn[2];
+            const gic_real t275 = t169 + turn[0];
+            const gic_real t276 = t251 * t274 + (t254 * t273 + t253 * t275);
+            const gic_real t277 = t254 * t274 + (t249 * t273 + t252 * t275);
+            const gic_real t278 = t253 * t270 + (t252 * t271 + t244 * t272) + (t273 * t276 - t274 * t277);
+            const gic_real t279 = t253 * t274 + (t252 * t273 + t244 * t275);
+            const gic_real t280 = t254 * t270 + (t249 * t271 + t252 * t272) + (t274 * t279 - t275 * t276);
+            const gic_real t281 = t251 * t270 + (t254 * t271 + t253 * t272) + (t275 * t277 - t273 * t279);
+            const gic_real t282 = t172 + (t166 * t239 - t165 * t236);
+            const gic_real t283 = R(90.555) * t282;
+            const gic_real t284 = t165 * t233 - t168 * t239 - t164;
+            const gic_real t285 = R(90.555) * t284;
+            const gic_real t286 = t163 + (t168 * t236 - t166 * t233);
+            const gic_real t287 = R(90.555) * t286;
+            const gic_real t288 = t165 * t253 + (t166 * t252 + t168 * t244);
+            const gic_real t289 = t165 * t254 + (t166 * t249 + t168 * t252);
+            const gic_real t290 = t165 * t251 + (t166 * t254 + t168 * t253);
+            const gic_real t291 = t165 * t281 + (t166 * t280 + t168 * t278) + (t269 * t286 + (t267 * t284 + t262 * t282));
+            const gic_real t292 = t165 * t290 + (t166 * t289 + t168 * t288) + (t286 * t287 + (t284 * t285 + t282 * t283));
+            const gic_real t293 = -t174;
+            const gic_real t294 = -t231;
+            const gic_real t295 = q[2];
+            const gic_real t296 = t244 + (t245 + t246);
+            const gic_real t297 = t249 + (t250 + t246);
+            const gic_real t298 = t251 + (t250 + t245);
+            const gic_real t299 = t252 - t237 * t235;
+            const gic_real t300 = t253 - t240 * t235;
+            const gic_real t301 = t254 - t240 * t238;
+            const gic_real t302 = t278 + (t237 * t269 - t240 * t267);
+            const gic_real t303 = t280 + (t240 * t262 - t234 * t269);
+            const gic_real t304 = t281 + (t234 * t267 - t237 * t262);
+            const gic_real t305 = t288 + (t237 * t287 - t240 * t285);
+            const gic_real t306 = t289 + (t240 * t283 - t234 * t287);
+            const gic_real t307 = t290 + (t234 * t285 - t237 * t283);
+            q[0] = t119;
+            q[1] = t120;
+            q[2] = t121;
+            q[3] = t136;
+            q[4] = t137;
+            q[5] = t138;
+            q[6] = t139;
+            step = t141;
+            motion[0] = t119;
+            motion[1] = t120;
+            motion[2] = t121;
+            motion[3] = t146;
+            motion[4] = t150;
+            motion[5] = t153;
+            motion[6] = t154;
+            motion[7] = t156;
+            motion[8] = t159;
+            motion[9] = t160;
+            motion[10] = t161;
+            motion[11] = t162;
+            motion[12] = t169;
+            motion[13] = t170;
+            motion[14] = t171;
+            motion[15] = t173;
+            motion[16] = t293;
+            motion[17] = t175;
+            motion[18] = t230;
+            motion[19] = t228;
+            motion[20] = t226;
+            motion[21] = t294;
+            motion[22] = t225;
+            motion[23] = t224;
+            motion[24] = t168;
+            motion[25] = t166;
+            motion[26] = t165;
+            motion[27] = t172;
+            motion[28] = t232;
+            motion[29] = t163;
+            start[7] = t168;
+            start[8] = t166;
+            start[9] = t165;
+            start[10] = t172;
+            start[11] = t232;
+            start[12] = t163;
             start[13] = t64;
             start[14] = t62;
-            start[15] = t294;
+            start[15] = t295;
             start[16] = t66;
             start[17] = t46;
             start[18] = t41;
@@ -949,36 +954,36 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             start[42] = t90;
             start[43] = t94;
             start[44] = t99;
-            start[45] = t112;
-            inertia[0] = t234;
-            inertia[1] = t237;
-            inertia[2] = t240;
-            inertia[3] = t295;
-            inertia[4] = t296;
-            inertia[5] = t297;
-            inertia[6] = t298;
-            inertia[7] = t299;
-            inertia[8] = t300;
-            inertia[9] = t261;
-            inertia[10] = t266;
-            inertia[11] = t268;
-            inertia[12] = t301;
-            inertia[13] = t302;
-            inertia[14] = t303;
-            inertia[15] = t282;
-            inertia[16] = t284;
-            inertia[17] = t286;
-            inertia[18] = t304;
-            inertia[19] = t305;
-            inertia[20] = t306;
-            inertia[21] = t290;
-            inertia[22] = t291;
+            start[45] = t113;
+            inertia[0] = t235;
+            inertia[1] = t238;
+            inertia[2] = t241;
+            inertia[3] = t296;
+            inertia[4] = t297;
+            inertia[5] = t298;
+            inertia[6] = t299;
+            inertia[7] = t300;
+            inertia[8] = t301;
+            inertia[9] = t262;
+            inertia[10] = t267;
+            inertia[11] = t269;
+            inertia[12] = t302;
+            inertia[13] = t303;
+            inertia[14] = t304;
+            inertia[15] = t283;
+            inertia[16] = t285;
+            inertia[17] = t287;
+            inertia[18] = t305;
+            inertia[19] = t306;
+            inertia[20] = t307;
+            inertia[21] = t291;
+            inertia[22] = t292;
         }
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
         /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
+        if (step <= enough || (step <= GIC_AMPLIFIED * enough && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -1122,7 +1127,7 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t39 = t5 + t38 - R(0.05422899999999997);
         const gic_real t40 = t2 + t36 - t20;
         const gic_real t41 = t36 * t39 - t38 * t40;
-        if (!(GIC_FABS(t41) > R(4.78859136239321e-09)))
+        if (!(GIC_FABS(t41) > R(4.7885913623932104e-08)))
             return GIC_ERROR_SINGULAR;
         const gic_real t42 = t2 + t22 - k[2];
         const gic_real t43 = R(1.653405) + t23 - R(1.593883);
@@ -1134,7 +1139,7 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t49 = R(1.0) / t41;
         const gic_real t50 = (t22 * t48 - t19 * t42) * t49;
         const gic_real t51 = t23 * t42 - t22 * t43 - t47 * t50;
-        if (!(GIC_FABS(t51) > R(1.5702185883473092e-08)))
+        if (!(GIC_FABS(t51) > R(1.5702185883473093e-07)))
             return GIC_ERROR_SINGULAR;
         const gic_real t52 = t38 * t46 - t45 * t39;
         const gic_real t53 = (R(0.21526024724178433) * t22 - k[4] * t19) * t49;
@@ -1142,7 +1147,9 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t55 = R(1.0) / t51;
         const gic_real t56 = (k[4] * t23 - R(0.9665541626242249) * t22 - t47 * t53) * t55;
         const gic_real t57 = R(0.9665541626242249) * t19 - R(0.21526024724178433) * t23 - t52 * t53 - t54 * t56;
-        if (!(GIC_FABS(t57) > R(3.3266643612763756e-08)))
+        if (!(GIC_FABS(t57) > R(3.3266643612763756e-07)))
+            return GIC_ERROR_SINGULAR;
+        if (!(t57 * (t41 * t51) * R(-669.5366201272494) > R(0.001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t58 = t22 * t37 - t19 * t35;
         const gic_real t59 = t58 * k[7] + (t44 * R(-6.332169372123424) + t23 * R(-0.14982584743276875));
@@ -1499,7 +1506,7 @@ static int five_link_recover_piece(five_link *self, five_link_links *links, cons
     return GIC_OK;
 }
 
-/* All bodies at self->x, followed from the last good configuration. */
+/* All bodies at self->x, followed from the last good configuration, which stays that where a piece fails. */
 static int five_link_recover(five_link *self, const gic_real turn[3], int cold)
 {
     five_link_links links;

@@ -63,11 +63,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   69       109       1      1         0
- *   subset 'wheel_r_l' (2 times)                             594       673       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       406       5      2         0
+ *   subset 'lca_f_l' (2 times, closed form)                   69       110       1      1         0
+ *   subset 'wheel_r_l' (2 times)                             594       679       6      0         0
+ *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
  *   forces and equations of motion                           703       657      11      0         4
- *   all together                                            2656      3058      35      6         4
+ *   all together                                            2656      3078      35      6         4
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H

@@ -69,11 +69,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   69       109       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       406       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                103       163       3      1         0
+ *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                103       166       3      1         0
  *   forces and equations of motion                           681       587      10      0         4
- *   all together                                            1790      2186      30     10         4
+ *   all together                                            1790      2202      30     10         4
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #ifndef HMMWV_H

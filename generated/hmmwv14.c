@@ -71,11 +71,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   69       109       1      1         0
- *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        524       656       6      2         0
- *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        438       547       6      2         0
+ *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
+ *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        524       660       6      2         0
+ *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        438       551       6      2         0
  *   forces and equations of motion                           855       777      15      4         4
- *   all together                                            3070      3644      43     16         4
+ *   all together                                            3070      3664      43     16         4
  *   outputs, when asked for                                  933      1185       4      4        19
  */
 #include "hmmwv14.h"
@@ -129,15 +129,15 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* Squares of corrections relative to a subset's size: what is rounding, and what is rounding near a singular
- * configuration. far: square of the subset's distance from the base relative to its size; 16 epsilon of the distance is
- * rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
+ * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
+ * epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-7)
+#define GIC_AMPLIFIED R(1e4)
 #else
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-18)
+#define GIC_AMPLIFIED R(1e6)
 #endif
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
@@ -228,42 +228,42 @@ static GIC_COLD gic_real hmmwv14_residual_rack(const gic_real *GIC_RESTRICT k, c
     return worst;
 }
 
-static const gic_real hmmwv14_k_lca_f_l[4][26] = {
+static const gic_real hmmwv14_k_lca_f_l[4][27] = {
     { /* lca_f_l */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
         R(-0.05607209753299996), R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428),
         R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(0.307086),
-        R(0.509778), R(51.57660077184113), R(209.3566321652691), R(-209.35663216526908),
-        R(51.576600771841136), R(-51.57660077184113), R(209.35663216526908), R(3.0379110359107786e-06),
-        R(0.24689200985615367), R(1.688965), R(40.476046225), R(0.01121887479261392),
-        R(0.2403881036540444), R(7.892375927523102),
+        R(0.509778), R(-17.83418213330566), R(51.57660077184113), R(209.3566321652691),
+        R(-209.35663216526908), R(51.576600771841136), R(-51.57660077184113), R(209.35663216526908),
+        R(3.0379110359107786e-06), R(0.24689200985615367), R(1.688965), R(40.476046225),
+        R(0.01121887479261392), R(0.2403881036540444), R(7.892375927523102),
     },
     { /* lca_f_r */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
         R(-0.05607209753299996), R(0.038649583990999964), R(-0.05607209753299996), R(-50.90547521989428),
         R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(-0.307086),
-        R(-0.509778), R(-51.57660077184113), R(209.3566321652691), R(-209.35663216526908),
-        R(-51.576600771841136), R(51.57660077184113), R(209.35663216526908), R(3.0379110359107786e-06),
-        R(-0.24689200985615367), R(1.688965), R(40.476046225), R(0.01121887479261392),
-        R(-0.2403881036540444), R(7.892375927523102),
+        R(-0.509778), R(17.83418213330566), R(-51.57660077184113), R(209.3566321652691),
+        R(-209.35663216526908), R(-51.576600771841136), R(51.57660077184113), R(209.35663216526908),
+        R(3.0379110359107786e-06), R(-0.24689200985615367), R(1.688965), R(40.476046225),
+        R(0.01121887479261392), R(-0.2403881036540444), R(7.892375927523102),
     },
     { /* lca_r_l */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
         R(-0.06962018656579994), R(-0.03396250304259998), R(0.06962018656579994), R(39.34606605646901),
         R(7.767620356494952), R(-7.767620356494952), R(0.2564892), R(0.307086),
-        R(0.5015738), R(39.86479513590535), R(161.81677595488463), R(-161.8167759548846),
-        R(39.864795135905354), R(-39.86479513590535), R(161.8167759548846), R(-3.0379110358344508e-06),
-        R(0.246867347245056), R(-1.688965), R(-40.476046225), R(0.011218874792613923),
-        R(0.24038810365404442), R(6.355965194292886),
+        R(0.5015738), R(-14.363650103908768), R(39.86479513590535), R(161.81677595488463),
+        R(-161.8167759548846), R(39.864795135905354), R(-39.86479513590535), R(161.8167759548846),
+        R(-3.0379110358344508e-06), R(0.246867347245056), R(-1.688965), R(-40.476046225),
+        R(0.011218874792613923), R(0.24038810365404442), R(6.355965194292886),
     },
     { /* lca_r_r */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
         R(-0.06962018656579994), R(0.03396250304259998), R(-0.06962018656579994), R(-39.34606605646901),
         R(7.767620356494952), R(-7.767620356494952), R(0.2564892), R(-0.307086),
-        R(-0.5015738), R(-39.86479513590535), R(161.81677595488463), R(-161.8167759548846),
-        R(-39.864795135905354), R(39.86479513590535), R(161.8167759548846), R(-3.0379110358344508e-06),
-        R(-0.246867347245056), R(-1.688965), R(-40.476046225), R(0.011218874792613923),
-        R(-0.24038810365404442), R(6.355965194292886),
+        R(-0.5015738), R(14.363650103908768), R(-39.86479513590535), R(161.81677595488463),
+        R(-161.8167759548846), R(-39.864795135905354), R(39.86479513590535), R(161.8167759548846),
+        R(-3.0379110358344508e-06), R(-0.246867347245056), R(-1.688965), R(-40.476046225),
+        R(0.011218874792613923), R(-0.24038810365404442), R(6.355965194292886),
     },
 };
 
@@ -292,12 +292,14 @@ static int hmmwv14_solve_lca_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, 
         const gic_real t8 = t7 - k[10];
         const gic_real t9 = k[11] + t6 - k[12];
         const gic_real t10 = t6 * t8 - t7 * t9;
-        if (!(GIC_FABS(t10) > R(7.426200502961346e-09)))
+        if (!(GIC_FABS(t10) > R(7.426200502961346e-08)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t11 = t5 * k[13] + t4 * k[14];
-        const gic_real t12 = t5 * k[15] + t4 * k[16];
-        const gic_real t13 = t5 * k[14] + t4 * k[17];
-        const gic_real t14 = t5 * k[16] + t4 * k[18];
+        if (!(t10 * k[13] > R(0.001)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t11 = t5 * k[14] + t4 * k[15];
+        const gic_real t12 = t5 * k[16] + t4 * k[17];
+        const gic_real t13 = t5 * k[15] + t4 * k[18];
+        const gic_real t14 = t5 * k[17] + t4 * k[19];
         const gic_real t15 = R(1.0) / t10;
         const gic_real t16 = x[0] * t15;
         const gic_real t17 = rate[0] * t16;
@@ -305,10 +307,10 @@ static int hmmwv14_solve_lca_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, 
         const gic_real t19 = t7 * t17;
         const gic_real t20 = t18 * t18 + t19 * t19 - (t8 * (t17 * t19) + t9 * (t17 * t18));
         const gic_real t21 = t15 * (rate[0] * rate[0] - t20);
-        const gic_real t22 = t12 * k[19] + t11 * k[20];
+        const gic_real t22 = t12 * k[20] + t11 * k[21];
         const gic_real t23 = k[11] + t22;
         const gic_real t24 = R(23.965) * t23;
-        const gic_real t25 = t14 * k[19] + t13 * k[20];
+        const gic_real t25 = t14 * k[20] + t13 * k[21];
         const gic_real t26 = R(23.965) * t25;
         const gic_real t27 = t23 * t24;
         const gic_real t28 = t25 * t26;
@@ -317,9 +319,9 @@ static int hmmwv14_solve_lca_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, 
         const gic_real t31 = R(0.4469) + t14 * (t14 * R(0.4469));
         const gic_real t32 = t14 * t29;
         const gic_real t33 = t17 * t22;
-        const gic_real t34 = t33 + (t33 + (turn[0] * t23 - k[21] * turn[1]));
+        const gic_real t34 = t33 + (t33 + (turn[0] * t23 - k[22] * turn[1]));
         const gic_real t35 = t17 * t25;
-        const gic_real t36 = k[21] * turn[2] - turn[0] * t25 - t35 - t35;
+        const gic_real t36 = k[22] * turn[2] - turn[0] * t25 - t35 - t35;
         const gic_real t37 = R(23.965) * (turn[1] * t34 - turn[2] * t36);
         const gic_real t38 = turn[1] * t25 - turn[2] * t23;
         const gic_real t39 = turn[2] * t38 - turn[0] * t34 - t17 * t33 - t21 * t25;
@@ -343,16 +345,16 @@ static int hmmwv14_solve_lca_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, 
         const gic_real t57 = R(0.4469) + (t27 + t28);
         const gic_real t58 = t30 + (R(68.36262541240713) + t28);
         const gic_real t59 = t31 + (R(68.36262541240713) + t27);
-        const gic_real t60 = -(t23 * k[22]);
-        const gic_real t61 = -(t25 * k[22]);
+        const gic_real t60 = -(t23 * k[23]);
+        const gic_real t61 = -(t25 * k[23]);
         const gic_real t62 = t32 - t25 * t24;
         const gic_real t63 = t45 + (t23 * t42 - t25 * t40);
-        const gic_real t64 = t50 + (t25 * t37 - k[22] * t41);
-        const gic_real t65 = t51 + (k[22] * t39 - t23 * t37);
+        const gic_real t64 = t50 + (t25 * t37 - k[23] * t41);
+        const gic_real t65 = t51 + (k[23] * t39 - t23 * t37);
         const gic_real t66 = -t53;
         const gic_real t67 = t56 + (t25 * t53 + t23 * t55);
-        const gic_real t68 = -(k[22] * t54);
-        const gic_real t69 = -(k[22] * t52);
+        const gic_real t68 = -(k[23] * t54);
+        const gic_real t69 = -(k[23] * t52);
         const gic_real t70 = t16 * t45 + (t42 * t54 - t40 * t52);
         const gic_real t71 = t16 * t56 + (t54 * t55 + t52 * t53);
         motion[7] = t11;
@@ -396,10 +398,10 @@ static GIC_COLD gic_real hmmwv14_residual_lca_f_l(const gic_real *GIC_RESTRICT k
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = k[23] * motion[11] + k[24] * motion[10] - k[10];
-        const gic_real t2 = k[11] + (k[23] * motion[8] + k[24] * motion[7]) - k[12];
+        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10] - k[10];
+        const gic_real t2 = k[11] + (k[24] * motion[8] + k[25] * motion[7]) - k[12];
         const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[25]));
+        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[26]));
         worst = t4;
     }
     return worst;
@@ -495,9 +497,9 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         if (!(t40 - t36 * R(1.8302069843604057e-05) > R(0.0)))
             return GIC_ERROR_SINGULAR;
         const gic_real t41 = t22 + t18 * k[14];
-        if (!(GIC_FABS(t41) > R(2.9891921463069926e-08)))
+        if (!(GIC_FABS(t41) > R(2.9891921463069924e-07)))
             return GIC_ERROR_SINGULAR;
-        if (!(GIC_FABS(t21) > R(3.35289809163178e-08)))
+        if (!(GIC_FABS(t21) > R(3.35289809163178e-07)))
             return GIC_ERROR_SINGULAR;
         const gic_real t42 = t19 - t1;
         const gic_real t43 = t27 + t22 * k[15];
@@ -509,7 +511,7 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t49 = R(1.0) / t21;
         const gic_real t50 = t48 * t49;
         const gic_real t51 = t29 - t42 * t45 + t47 * t50;
-        if (!(GIC_FABS(t51) > R(1.8566393830364032e-07)))
+        if (!(GIC_FABS(t51) > R(1.8566393830364031e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t52 = k[8] * GIC_SQRT(t40);
         const gic_real t53 = t33 * t39 + (t29 * t34 - t24 * t35) * t52;
@@ -543,7 +545,9 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t81 = R(1.0) / t51;
         const gic_real t82 = (t77 * t70 - t60 * t78 + t47 * t79) * t81;
         const gic_real t83 = t60 * t67 - t66 * t70 - t71 * t79 + t80 * t82;
-        if (!(GIC_FABS(t83) > R(5.6462361080464645e-09)))
+        if (!(GIC_FABS(t83) > R(5.646236108046465e-08)))
+            return GIC_ERROR_SINGULAR;
+        if (!(t83 * (t51 * (t21 * t41)) * R(144.12462184390654) > R(0.001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t84 = t17 * k[21] + t16 * R(-4.208295072412286e-18) + R(0.9665541626242248);
         const gic_real t85 = t17 * R(-0.20230352269044816) + t16 * k[22] + k[23];
@@ -1008,9 +1012,9 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         if (!(t39 - t35 * R(1.83001068413443e-05) > R(0.0)))
             return GIC_ERROR_SINGULAR;
         const gic_real t40 = t19 - t1;
-        if (!(GIC_FABS(t40) > R(3.36404754567952e-08)))
+        if (!(GIC_FABS(t40) > R(3.3640475456795196e-07)))
             return GIC_ERROR_SINGULAR;
-        if (!(GIC_FABS(t21) > R(3.36404754567952e-08)))
+        if (!(GIC_FABS(t21) > R(3.3640475456795196e-07)))
             return GIC_ERROR_SINGULAR;
         const gic_real t41 = t18 + t22 * k[14];
         const gic_real t42 = t41 * k[15] - t22 * R(-0.01408190770438876);
@@ -1021,7 +1025,7 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t47 = R(1.0) / t21;
         const gic_real t48 = t46 * t47;
         const gic_real t49 = t22 + t26 * k[15] + t42 * t44 + t45 * t48;
-        if (!(GIC_FABS(t49) > R(2.6266726675619255e-08)))
+        if (!(GIC_FABS(t49) > R(2.6266726675619257e-07)))
             return GIC_ERROR_SINGULAR;
         const gic_real t50 = GIC_SQRT(t39) * k[16];
         const gic_real t51 = t32 * t38 + (t28 * t33 - t24 * t34) * t50;
@@ -1056,7 +1060,9 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t80 = R(1.0) / -t49;
         const gic_real t81 = (t42 * t76 + t45 * t77) * t80;
         const gic_real t82 = t78 - t79 * t81;
-        if (!(GIC_FABS(t82) > R(5.861394116518996e-09)))
+        if (!(GIC_FABS(t82) > R(5.8613941165189956e-08)))
+            return GIC_ERROR_SINGULAR;
+        if (!(-(t82 * (t49 * (t21 * t40)) * R(638.9113358012528)) > R(0.001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t83 = t17 * k[22] + t16 * R(-1.2367697331657191e-22) + R(0.9999005718370344);
         const gic_real t84 = t17 * R(-0.01409667407318452) + t16 * k[23] + k[24];
@@ -1519,7 +1525,7 @@ static int hmmwv14_recover_piece(hmmwv14 *self, hmmwv14_links *links, const gic_
     return GIC_OK;
 }
 
-/* All bodies at self->x, followed from the last good configuration. */
+/* All bodies at self->x, followed from the last good configuration, which stays that where a piece fails. */
 static int hmmwv14_recover(hmmwv14 *self, const gic_real turn[3], int cold)
 {
     hmmwv14_links links;

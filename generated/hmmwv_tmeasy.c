@@ -69,15 +69,15 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   69       109       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       406       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                103       163       3      1         0
+ *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                103       166       3      1         0
  *   forces and equations of motion                           551       459       9      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
  *   wheel 'tire_f_l' (4 times)                               160       246      33     14         5
  *   a fast step: all wheels                                  640       986     132     56        20
- *   all together                                            2499      3246     161     66        20
+ *   all together                                            2499      3262     161     66        20
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #include "hmmwv_tmeasy.h"
@@ -131,15 +131,15 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* Squares of corrections relative to a subset's size: what is rounding, and what is rounding near a singular
- * configuration. far: square of the subset's distance from the base relative to its size; 16 epsilon of the distance is
- * rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
+ * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
+ * epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-7)
+#define GIC_AMPLIFIED R(1e4)
 #else
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-18)
+#define GIC_AMPLIFIED R(1e6)
 #endif
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
@@ -230,42 +230,42 @@ static GIC_COLD gic_real hmmwv_tmeasy_residual_rack(const gic_real *GIC_RESTRICT
     return worst;
 }
 
-static const gic_real hmmwv_tmeasy_k_lca_f_l[4][26] = {
+static const gic_real hmmwv_tmeasy_k_lca_f_l[4][27] = {
     { /* lca_f_l */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
         R(-0.05607209753299996), R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428),
         R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(0.307086),
-        R(0.509778), R(51.57660077184113), R(209.3566321652691), R(-209.35663216526908),
-        R(51.576600771841136), R(-51.57660077184113), R(209.35663216526908), R(3.0379110359107786e-06),
-        R(0.24689200985615367), R(1.688965), R(40.476046225), R(0.01121887479261392),
-        R(0.2403881036540444), R(7.892375927523102),
+        R(0.509778), R(-17.83418213330566), R(51.57660077184113), R(209.3566321652691),
+        R(-209.35663216526908), R(51.576600771841136), R(-51.57660077184113), R(209.35663216526908),
+        R(3.0379110359107786e-06), R(0.24689200985615367), R(1.688965), R(40.476046225),
+        R(0.01121887479261392), R(0.2403881036540444), R(7.892375927523102),
     },
     { /* lca_f_r */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
         R(-0.05607209753299996), R(0.038649583990999964), R(-0.05607209753299996), R(-50.90547521989428),
         R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(-0.307086),
-        R(-0.509778), R(-51.57660077184113), R(209.3566321652691), R(-209.35663216526908),
-        R(-51.576600771841136), R(51.57660077184113), R(209.35663216526908), R(3.0379110359107786e-06),
-        R(-0.24689200985615367), R(1.688965), R(40.476046225), R(0.01121887479261392),
-        R(-0.2403881036540444), R(7.892375927523102),
+        R(-0.509778), R(17.83418213330566), R(-51.57660077184113), R(209.3566321652691),
+        R(-209.35663216526908), R(-51.576600771841136), R(51.57660077184113), R(209.35663216526908),
+        R(3.0379110359107786e-06), R(-0.24689200985615367), R(1.688965), R(40.476046225),
+        R(0.01121887479261392), R(-0.2403881036540444), R(7.892375927523102),
     },
     { /* lca_r_l */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
         R(-0.06962018656579994), R(-0.03396250304259998), R(0.06962018656579994), R(39.34606605646901),
         R(7.767620356494952), R(-7.767620356494952), R(0.2564892), R(0.307086),
-        R(0.5015738), R(39.86479513590535), R(161.81677595488463), R(-161.8167759548846),
-        R(39.864795135905354), R(-39.86479513590535), R(161.8167759548846), R(-3.0379110358344508e-06),
-        R(0.246867347245056), R(-1.688965), R(-40.476046225), R(0.011218874792613923),
-        R(0.24038810365404442), R(6.355965194292886),
+        R(0.5015738), R(-14.363650103908768), R(39.86479513590535), R(161.81677595488463),
+        R(-161.8167759548846), R(39.864795135905354), R(-39.86479513590535), R(161.8167759548846),
+        R(-3.0379110358344508e-06), R(0.246867347245056), R(-1.688965), R(-40.476046225),
+        R(0.011218874792613923), R(0.24038810365404442), R(6.355965194292886),
     },
     { /* lca_r_r */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
         R(-0.06962018656579994), R(0.03396250304259998), R(-0.06962018656579994), R(-39.34606605646901),
         R(7.767620356494952), R(-7.767620356494952), R(0.2564892), R(-0.307086),
-        R(-0.5015738), R(-39.86479513590535), R(161.81677595488463), R(-161.8167759548846),
-        R(-39.864795135905354), R(39.86479513590535), R(161.8167759548846), R(-3.0379110358344508e-06),
-        R(-0.246867347245056), R(-1.688965), R(-40.476046225), R(0.011218874792613923),
-        R(-0.24038810365404442), R(6.355965194292886),
+        R(-0.5015738), R(14.363650103908768), R(-39.86479513590535), R(161.81677595488463),
+        R(-161.8167759548846), R(-39.864795135905354), R(39.86479513590535), R(161.8167759548846),
+        R(-3.0379110358344508e-06), R(-0.246867347245056), R(-1.688965), R(-40.476046225),
+        R(0.011218874792613923), R(-0.24038810365404442), R(6.355965194292886),
     },
 };
 
@@ -294,12 +294,14 @@ static int hmmwv_tmeasy_solve_lca_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RE
         const gic_real t8 = t7 - k[10];
         const gic_real t9 = k[11] + t6 - k[12];
         const gic_real t10 = t6 * t8 - t7 * t9;
-        if (!(GIC_FABS(t10) > R(7.426200502961346e-09)))
+        if (!(GIC_FABS(t10) > R(7.426200502961346e-08)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t11 = t5 * k[13] + t4 * k[14];
-        const gic_real t12 = t5 * k[15] + t4 * k[16];
-        const gic_real t13 = t5 * k[14] + t4 * k[17];
-        const gic_real t14 = t5 * k[16] + t4 * k[18];
+        if (!(t10 * k[13] > R(0.001)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t11 = t5 * k[14] + t4 * k[15];
+        const gic_real t12 = t5 * k[16] + t4 * k[17];
+        const gic_real t13 = t5 * k[15] + t4 * k[18];
+        const gic_real t14 = t5 * k[17] + t4 * k[19];
         const gic_real t15 = R(1.0) / t10;
         const gic_real t16 = x[0] * t15;
         const gic_real t17 = rate[0] * t16;
@@ -307,10 +309,10 @@ static int hmmwv_tmeasy_solve_lca_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RE
         const gic_real t19 = t7 * t17;
         const gic_real t20 = t18 * t18 + t19 * t19 - (t8 * (t17 * t19) + t9 * (t17 * t18));
         const gic_real t21 = t15 * (rate[0] * rate[0] - t20);
-        const gic_real t22 = t12 * k[19] + t11 * k[20];
+        const gic_real t22 = t12 * k[20] + t11 * k[21];
         const gic_real t23 = k[11] + t22;
         const gic_real t24 = R(23.965) * t23;
-        const gic_real t25 = t14 * k[19] + t13 * k[20];
+        const gic_real t25 = t14 * k[20] + t13 * k[21];
         const gic_real t26 = R(23.965) * t25;
         const gic_real t27 = t23 * t24;
         const gic_real t28 = t25 * t26;
@@ -319,9 +321,9 @@ static int hmmwv_tmeasy_solve_lca_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RE
         const gic_real t31 = R(0.4469) + t14 * (t14 * R(0.4469));
         const gic_real t32 = t14 * t29;
         const gic_real t33 = t17 * t22;
-        const gic_real t34 = t33 + (t33 + (turn[0] * t23 - k[21] * turn[1]));
+        const gic_real t34 = t33 + (t33 + (turn[0] * t23 - k[22] * turn[1]));
         const gic_real t35 = t17 * t25;
-        const gic_real t36 = k[21] * turn[2] - turn[0] * t25 - t35 - t35;
+        const gic_real t36 = k[22] * turn[2] - turn[0] * t25 - t35 - t35;
         const gic_real t37 = R(23.965) * (turn[1] * t34 - turn[2] * t36);
         const gic_real t38 = turn[1] * t25 - turn[2] * t23;
         const gic_real t39 = turn[2] * t38 - turn[0] * t34 - t17 * t33 - t21 * t25;
@@ -345,16 +347,16 @@ static int hmmwv_tmeasy_solve_lca_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RE
         const gic_real t57 = R(0.4469) + (t27 + t28);
         const gic_real t58 = t30 + (R(68.36262541240713) + t28);
         const gic_real t59 = t31 + (R(68.36262541240713) + t27);
-        const gic_real t60 = -(t23 * k[22]);
-        const gic_real t61 = -(t25 * k[22]);
+        const gic_real t60 = -(t23 * k[23]);
+        const gic_real t61 = -(t25 * k[23]);
         const gic_real t62 = t32 - t25 * t24;
         const gic_real t63 = t45 + (t23 * t42 - t25 * t40);
-        const gic_real t64 = t50 + (t25 * t37 - k[22] * t41);
-        const gic_real t65 = t51 + (k[22] * t39 - t23 * t37);
+        const gic_real t64 = t50 + (t25 * t37 - k[23] * t41);
+        const gic_real t65 = t51 + (k[23] * t39 - t23 * t37);
         const gic_real t66 = -t53;
         const gic_real t67 = t56 + (t25 * t53 + t23 * t55);
-        const gic_real t68 = -(k[22] * t54);
-        const gic_real t69 = -(k[22] * t52);
+        const gic_real t68 = -(k[23] * t54);
+        const gic_real t69 = -(k[23] * t52);
         const gic_real t70 = t16 * t45 + (t42 * t54 - t40 * t52);
         const gic_real t71 = t16 * t56 + (t54 * t55 + t52 * t53);
         motion[7] = t11;
@@ -398,10 +400,10 @@ static GIC_COLD gic_real hmmwv_tmeasy_residual_lca_f_l(const gic_real *GIC_RESTR
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = k[23] * motion[11] + k[24] * motion[10] - k[10];
-        const gic_real t2 = k[11] + (k[23] * motion[8] + k[24] * motion[7]) - k[12];
+        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10] - k[10];
+        const gic_real t2 = k[11] + (k[24] * motion[8] + k[25] * motion[7]) - k[12];
         const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[25]));
+        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[26]));
         worst = t4;
     }
     return worst;
@@ -483,7 +485,7 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t39 = t5 + t38 - R(0.05422899999999997);
         const gic_real t40 = t2 + t36 - t20;
         const gic_real t41 = t36 * t39 - t38 * t40;
-        if (!(GIC_FABS(t41) > R(4.78859136239321e-09)))
+        if (!(GIC_FABS(t41) > R(4.7885913623932104e-08)))
             return GIC_ERROR_SINGULAR;
         const gic_real t42 = t2 + t22 - k[2];
         const gic_real t43 = R(1.653405) + t23 - R(1.593883);
@@ -495,7 +497,7 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t49 = R(1.0) / t41;
         const gic_real t50 = (t22 * t48 - t19 * t42) * t49;
         const gic_real t51 = t23 * t42 - t22 * t43 - t47 * t50;
-        if (!(GIC_FABS(t51) > R(1.5702185883473092e-08)))
+        if (!(GIC_FABS(t51) > R(1.5702185883473093e-07)))
             return GIC_ERROR_SINGULAR;
         const gic_real t52 = t38 * t46 - t45 * t39;
         const gic_real t53 = (R(0.21526024724178433) * t22 - k[4] * t19) * t49;
@@ -503,7 +505,9 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t55 = R(1.0) / t51;
         const gic_real t56 = (k[4] * t23 - R(0.9665541626242249) * t22 - t47 * t53) * t55;
         const gic_real t57 = R(0.9665541626242249) * t19 - R(0.21526024724178433) * t23 - t52 * t53 - t54 * t56;
-        if (!(GIC_FABS(t57) > R(3.3266643612763756e-08)))
+        if (!(GIC_FABS(t57) > R(3.3266643612763756e-07)))
+            return GIC_ERROR_SINGULAR;
+        if (!(t57 * (t41 * t51) * R(-669.5366201272494) > R(0.001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t58 = t22 * t37 - t19 * t35;
         const gic_real t59 = t58 * k[7] + (t44 * R(-6.332169372123424) + t23 * R(-0.14982584743276875));
@@ -750,14 +754,16 @@ static GIC_COLD gic_real hmmwv_tmeasy_residual_wheel_f_l(const gic_real *GIC_RES
     return worst;
 }
 
-static const gic_real hmmwv_tmeasy_k_wheel_r_l[2][8] = {
+static const gic_real hmmwv_tmeasy_k_wheel_r_l[2][9] = {
     { /* wheel_r_l */
         R(-0.23920559337529682), R(0.49375935710120966), R(0.307086), R(0.462153),
-        R(0.23920559337529687), R(-0.07099299999999997), R(-1.0), R(0.08910630000000008),
+        R(0.23920559337529687), R(-0.07099299999999997), R(-1.0), R(11.91437806979548),
+        R(0.08910630000000008),
     },
     { /* wheel_r_r */
         R(0.23920559337529682), R(-0.49375935710120966), R(-0.307086), R(-0.462153),
-        R(-0.23920559337529687), R(0.07099299999999997), R(1.0), R(-0.08910630000000008),
+        R(-0.23920559337529687), R(0.07099299999999997), R(1.0), R(-11.91437806979548),
+        R(-0.08910630000000008),
     },
 };
 
@@ -801,13 +807,15 @@ static int hmmwv_tmeasy_solve_wheel_r_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t23 = t2 + t22 - R(0.22567900000000007);
         const gic_real t24 = t6 + t21 - k[3];
         const gic_real t25 = t21 * t23 - t22 * t24;
-        if (!(GIC_FABS(t25) > R(8.650478159472867e-09)))
+        if (!(GIC_FABS(t25) > R(8.650478159472867e-08)))
             return GIC_ERROR_SINGULAR;
         const gic_real t26 = t10 * R(0.9999999999999996);
-        if (!(GIC_FABS(t26) > R(9.999999999999993e-08)))
+        if (!(GIC_FABS(t26) > R(9.999999999999993e-07)))
             return GIC_ERROR_SINGULAR;
         const gic_real t27 = t9 * R(0.9999999999999996) * (t4 * R(0.9999999999999996) * (R(1.0) / t26)) - t1 * R(0.9999999999999996);
-        if (!(GIC_FABS(t27) > R(1.0138372856525834e-07)))
+        if (!(GIC_FABS(t27) > R(1.0138372856525834e-06)))
+            return GIC_ERROR_SINGULAR;
+        if (!(t27 * (t26 * t25) * k[7] > R(0.001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t28 = t10 * t19 + t4 * t20;
         const gic_real t29 = t4 * t19 - t10 * t20;
@@ -828,10 +836,10 @@ static int hmmwv_tmeasy_solve_wheel_r_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t44 = m0[12] * (m0[12] * t5) + m0[18] * t2;
         const gic_real t45 = m0[18] * t5 - m0[12] * (m0[12] * t2);
         const gic_real t46 = t32 * (t43 + t44 * t24 - t45 * t23);
-        const gic_real t47 = t29 * R(0.09182100000000004) + t28 * k[7];
+        const gic_real t47 = t29 * R(0.09182100000000004) + t28 * k[8];
         const gic_real t48 = t6 + t47;
         const gic_real t49 = R(90.555) * t48;
-        const gic_real t50 = t31 * R(0.09182100000000004) + t30 * k[7];
+        const gic_real t50 = t31 * R(0.09182100000000004) + t30 * k[8];
         const gic_real t51 = t2 + t50;
         const gic_real t52 = R(90.555) * t51;
         const gic_real t53 = t48 * t49;
@@ -1088,7 +1096,7 @@ static int hmmwv_tmeasy_recover_piece(hmmwv_tmeasy *self, hmmwv_tmeasy_links *li
     return GIC_OK;
 }
 
-/* All bodies at self->x, followed from the last good configuration. */
+/* All bodies at self->x, followed from the last good configuration, which stays that where a piece fails. */
 static int hmmwv_tmeasy_recover(hmmwv_tmeasy *self, const gic_real turn[3], int cold)
 {
     hmmwv_tmeasy_links links;

@@ -78,15 +78,15 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* Squares of corrections relative to a subset's size: what is rounding, and what is rounding near a singular
- * configuration. far: square of the subset's distance from the base relative to its size; 16 epsilon of the distance is
- * rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
+ * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
+ * epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-7)
+#define GIC_AMPLIFIED R(1e4)
 #else
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-18)
+#define GIC_AMPLIFIED R(1e6)
 #endif
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
@@ -135,7 +135,9 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t6 = t4 * (t2 * t5);
         const gic_real t7 = t4 * (t1 * t5);
         const gic_real t8 = t2 * t6 + t1 * t7;
-        if (!(GIC_FABS(t8) > R(1e-07)))
+        if (!(GIC_FABS(t8) > R(1e-06)))
+            return GIC_ERROR_SINGULAR;
+        if (!(t8 > R(0.001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t9 = R(1.0) / -t8;
         const gic_real t10 = t8 * t9;
@@ -220,7 +222,7 @@ static int pendulum_recover_piece(pendulum *self, pendulum_links *links, const g
     return GIC_OK;
 }
 
-/* All bodies at self->x, followed from the last good configuration. */
+/* All bodies at self->x, followed from the last good configuration, which stays that where a piece fails. */
 static int pendulum_recover(pendulum *self, const gic_real turn[3], int cold)
 {
     pendulum_links links;

@@ -40,10 +40,10 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
- *   subset 'arm' (1 times, closed form)                       43        68       2      1         0
- *   subset 'wheel' (1 times, closed form)                    232       319       5      2         0
+ *   subset 'arm' (1 times, closed form)                       43        69       2      1         0
+ *   subset 'wheel' (1 times, closed form)                    232       322       5      2         0
  *   forces and equations of motion                            39        38       1      0         1
- *   all together                                             315       425       8      3         1
+ *   all together                                             315       429       8      3         1
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #include "quarter_car.h"
@@ -97,15 +97,15 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* Squares of corrections relative to a subset's size: what is rounding, and what is rounding near a singular
- * configuration. far: square of the subset's distance from the base relative to its size; 16 epsilon of the distance is
- * rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
+ * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
+ * epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-7)
+#define GIC_AMPLIFIED R(1e4)
 #else
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-18)
+#define GIC_AMPLIFIED R(1e6)
 #endif
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
@@ -204,7 +204,9 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         const gic_real t16 = t2 + t15 - t1;
         const gic_real t17 = R(0.307086) + t14 - R(0.509778);
         const gic_real t18 = t14 * t16 - t15 * t17;
-        if (!(GIC_FABS(t18) > R(6.171290232860449e-09)))
+        if (!(GIC_FABS(t18) > R(6.171290232860449e-08)))
+            return GIC_ERROR_SINGULAR;
+        if (!(t18 * R(-17.834182133305664) > R(0.001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t19 = R(0.23920559337529682) * t13 + R(0.9709689408513393) * t12;
         const gic_real t20 = R(-0.9709689408513391) * t13 + R(0.23920559337529687) * t12;
@@ -343,7 +345,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t41 = t7 + t40 - t19;
         const gic_real t42 = t2 + t38 - R(0.448437);
         const gic_real t43 = t38 * t41 - t40 * t42;
-        if (!(GIC_FABS(t43) > R(4.304353877485568e-09)))
+        if (!(GIC_FABS(t43) > R(4.304353877485568e-08)))
             return GIC_ERROR_SINGULAR;
         const gic_real t44 = t2 + t24 - R(0.4527638);
         const gic_real t45 = R(-0.03555999999999999) + t25 - R(-0.095082);
@@ -355,7 +357,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t51 = R(1.0) / t43;
         const gic_real t52 = (t24 * t50 - t22 * t44) * t51;
         const gic_real t53 = t25 * t44 - t24 * t45 - t49 * t52;
-        if (!(GIC_FABS(t53) > R(1.2633210609740421e-08)))
+        if (!(GIC_FABS(t53) > R(1.2633210609740422e-07)))
             return GIC_ERROR_SINGULAR;
         const gic_real t54 = t40 * t48 - t47 * t41;
         const gic_real t55 = (R(0.21526024724178433) * t24 - R(-0.1394133303209898) * t22) * t51;
@@ -363,7 +365,9 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t57 = R(1.0) / t53;
         const gic_real t58 = (R(-0.1394133303209898) * t25 - R(0.9665541626242249) * t24 - t49 * t55) * t57;
         const gic_real t59 = R(0.9665541626242249) * t22 - R(0.21526024724178433) * t25 - t54 * t55 - t56 * t58;
-        if (!(GIC_FABS(t59) > R(3.2601841366889306e-08)))
+        if (!(GIC_FABS(t59) > R(3.2601841366889304e-07)))
+            return GIC_ERROR_SINGULAR;
+        if (!(t59 * (t43 * t53) * R(-669.536620127249) > R(0.001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t60 = t24 * t39 - t22 * t37;
         const gic_real t61 = t60 * R(-7.5372227832688194) + (t46 * R(-6.332169372123424) + t25 * R(-0.1498258474327685));
@@ -605,7 +609,7 @@ static int quarter_car_recover_piece(quarter_car *self, quarter_car_links *links
     return GIC_OK;
 }
 
-/* All bodies at self->x, followed from the last good configuration. */
+/* All bodies at self->x, followed from the last good configuration, which stays that where a piece fails. */
 static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int cold)
 {
     quarter_car_links links;

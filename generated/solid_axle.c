@@ -58,11 +58,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   69       109       1      1         0
- *   subset 'axle' (1 times)                                  658       737       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       406       5      2         0
+ *   subset 'lca_f_l' (2 times, closed form)                   69       110       1      1         0
+ *   subset 'axle' (1 times)                                  658       743       6      0         0
+ *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
  *   forces and equations of motion                           697       663       9      0         4
- *   all together                                            2120      2455      27      6         4
+ *   all together                                            2120      2469      27      6         4
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #include "solid_axle.h"
@@ -116,15 +116,15 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* Squares of corrections relative to a subset's size: what is rounding, and what is rounding near a singular
- * configuration. far: square of the subset's distance from the base relative to its size; 16 epsilon of the distance is
- * rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
+ * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
+ * epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-7)
+#define GIC_AMPLIFIED R(1e4)
 #else
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-18)
+#define GIC_AMPLIFIED R(1e6)
 #endif
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
@@ -215,16 +215,16 @@ static GIC_COLD gic_real solid_axle_residual_rack(const gic_real *GIC_RESTRICT k
     return worst;
 }
 
-static const gic_real solid_axle_k_lca_f_l[2][10] = {
+static const gic_real solid_axle_k_lca_f_l[2][11] = {
     { /* lca_f_l */
         R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428), R(0.307086),
-        R(0.509778), R(51.57660077184113), R(51.576600771841136), R(-51.57660077184113),
-        R(0.24689200985615367), R(0.2403881036540444),
+        R(0.509778), R(-17.83418213330566), R(51.57660077184113), R(51.576600771841136),
+        R(-51.57660077184113), R(0.24689200985615367), R(0.2403881036540444),
     },
     { /* lca_f_r */
         R(0.038649583990999964), R(-0.05607209753299996), R(-50.90547521989428), R(-0.307086),
-        R(-0.509778), R(-51.57660077184113), R(-51.576600771841136), R(51.57660077184113),
-        R(-0.24689200985615367), R(-0.2403881036540444),
+        R(-0.509778), R(17.83418213330566), R(-51.57660077184113), R(-51.576600771841136),
+        R(51.57660077184113), R(-0.24689200985615367), R(-0.2403881036540444),
     },
 };
 
@@ -253,12 +253,14 @@ static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRI
         const gic_real t8 = t7 - R(0.19748500000000002);
         const gic_real t9 = k[3] + t6 - k[4];
         const gic_real t10 = t6 * t8 - t7 * t9;
-        if (!(GIC_FABS(t10) > R(6.1065511042664625e-09)))
+        if (!(GIC_FABS(t10) > R(6.106551104266462e-08)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t11 = t5 * k[5] + t4 * R(209.3566321652691);
-        const gic_real t12 = t5 * R(-209.35663216526908) + t4 * k[6];
-        const gic_real t13 = t5 * R(209.3566321652691) + t4 * k[7];
-        const gic_real t14 = t5 * k[6] + t4 * R(209.35663216526908);
+        if (!(t10 * k[5] > R(0.001)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t11 = t5 * k[6] + t4 * R(209.3566321652691);
+        const gic_real t12 = t5 * R(-209.35663216526908) + t4 * k[7];
+        const gic_real t13 = t5 * R(209.3566321652691) + t4 * k[8];
+        const gic_real t14 = t5 * k[7] + t4 * R(209.35663216526908);
         const gic_real t15 = R(1.0) / t10;
         const gic_real t16 = x[0] * t15;
         const gic_real t17 = rate[0] * t16;
@@ -266,10 +268,10 @@ static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRI
         const gic_real t19 = t7 * t17;
         const gic_real t20 = t18 * t18 + t19 * t19 - (t8 * (t17 * t19) + t9 * (t17 * t18));
         const gic_real t21 = t15 * (rate[0] * rate[0] - t20);
-        const gic_real t22 = t12 * R(3.0379110359107786e-06) + t11 * k[8];
+        const gic_real t22 = t12 * R(3.0379110359107786e-06) + t11 * k[9];
         const gic_real t23 = k[3] + t22;
         const gic_real t24 = R(23.965) * t23;
-        const gic_real t25 = t14 * R(3.0379110359107786e-06) + t13 * k[8];
+        const gic_real t25 = t14 * R(3.0379110359107786e-06) + t13 * k[9];
         const gic_real t26 = R(23.965) * t25;
         const gic_real t27 = t23 * t24;
         const gic_real t28 = t25 * t26;
@@ -357,8 +359,8 @@ static GIC_COLD gic_real solid_axle_residual_lca_f_l(const gic_real *GIC_RESTRIC
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = R(0.01121887479261392) * motion[11] + k[9] * motion[10] - R(0.19748500000000002);
-        const gic_real t2 = k[3] + (R(0.01121887479261392) * motion[8] + k[9] * motion[7]) - k[4];
+        const gic_real t1 = R(0.01121887479261392) * motion[11] + k[10] * motion[10] - R(0.19748500000000002);
+        const gic_real t2 = k[3] + (R(0.01121887479261392) * motion[8] + k[10] * motion[7]) - k[4];
         const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
         const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * R(7.892375927523104)));
         worst = t4;
@@ -548,7 +550,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
         /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
         {
             const gic_real t1 = q[0] - R(-1.05);
-            if (!(GIC_FABS(t1) > R(5.713652174950159e-08)))
+            if (!(GIC_FABS(t1) > R(5.713652174950159e-07)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t2 = q[4] + q[4];
             const gic_real t3 = q[4] * t2;
@@ -579,7 +581,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t28 = q[0] + t27 - R(-0.9);
             const gic_real t29 = q[2] + t17 - R(-0.05399999999999999);
             const gic_real t30 = t17 * t28 - t27 * t29;
-            if (!(GIC_FABS(t30) > R(2.1666629935035974e-08)))
+            if (!(GIC_FABS(t30) > R(2.1666629935035974e-07)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t31 = R(0.62) * t22;
             const gic_real t32 = t19 + (t26 + t31);
@@ -602,7 +604,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t49 = R(1.0) / t30;
             const gic_real t50 = (t47 * t41 - t32 * t48) * t49;
             const gic_real t51 = t32 * t40 - t39 * t41 - t45 * t50;
-            if (!(GIC_FABS(t51) > R(7.485177140633895e-08)))
+            if (!(GIC_FABS(t51) > R(7.485177140633895e-07)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t52 = R(0.24) * t37;
             const gic_real t53 = q[1] + t52 - R(0.45);
@@ -621,7 +623,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t66 = R(1.0) / t51;
             const gic_real t67 = (t55 * t53 - t52 * t56 - t45 * t63) * t66;
             const gic_real t68 = t53 - t54 * t58 - t60 * t63 - t65 * t67;
-            if (!(GIC_FABS(t68) > R(6.799390158721217e-08)))
+            if (!(GIC_FABS(t68) > R(6.799390158721218e-07)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t69 = R(-0.16999999999999998) * t33;
             const gic_real t70 = R(-0.09999999999999987) * t35;
@@ -646,7 +648,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t89 = R(1.0) / t68;
             const gic_real t90 = t88 * t89;
             const gic_real t91 = t85 - t86 * t90;
-            if (!(GIC_FABS(t91) > R(2.372369036614256e-08)))
+            if (!(GIC_FABS(t91) > R(2.372369036614256e-07)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t92 = t72 + (t11 + t73);
             const gic_real t93 = q[2] + t92 - R(0.30600000000000005);
@@ -670,292 +672,295 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t111 = R(1.0) / t91;
             const gic_real t112 = (t110 - t86 * t107) * t111;
             const gic_real t113 = t104 - t105 * t107 - t109 * t112;
-            if (!(GIC_FABS(t113) > R(6.45037735856188e-08)))
+            if (!(GIC_FABS(t113) > R(6.450377358561879e-07)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t114 = t94 * t94 + (t54 * t54 + t1 * t1) - R(0.43540000000000006);
-            const gic_real t115 = t114 * R(0.5);
-            const gic_real t116 = t62 * t62 + (t53 * t53 + t56 * t56) - R(0.43540000000000006);
-            const gic_real t117 = t29 * t29 + (t44 * t44 + t28 * t28) - R(0.4974000000000001);
-            const gic_real t118 = t115 * t59 - R(0.5) * t117;
-            const gic_real t119 = t48 * t48 + (t40 * t40 + t41 * t41) - R(0.4974000000000001);
-            const gic_real t120 = t115 * t64 - R(0.5) * t119 - t50 * t118;
-            const gic_real t121 = t115 * t58 - R(0.5) * t116 - t63 * t118 - t67 * t120;
-            const gic_real t122 = t75 * t75 + (t76 * t76 + t81 * t81) - x[0] * x[0];
-            const gic_real t123 = t115 * t87 - R(0.5) * t122 - t82 * t118 - t84 * t120;
-            const gic_real t124 = t123 - t90 * t121;
-            const gic_real t125 = R(1.0) / t113;
-            const gic_real t126 = t93 * t93 + (t102 * t102 + t96 * t96) - x[1] * x[1];
-            const gic_real t127 = t115 * t97 - R(0.5) * t126 - t99 * t118 - t103 * t120;
-            const gic_real t128 = t125 * (t127 - t107 * t121 - t112 * t124);
-            const gic_real t129 = t111 * (t124 - t109 * t128);
-            const gic_real t130 = t89 * (t121 - t86 * t129 - t105 * t128);
-            const gic_real t131 = t57 * (t115 + t54 * t130 + t94 * t128);
-            const gic_real t132 = q[0] - t131;
-            const gic_real t133 = q[1] + t130;
-            const gic_real t134 = q[2] + t128;
-            const gic_real t135 = t120 - t65 * t130 - t83 * t129 - t100 * t128;
-            const gic_real t136 = t66 * t135;
-            const gic_real t137 = R(0.5) * t136;
-            const gic_real t138 = t118 - t45 * t136 - t60 * t130 - t77 * t129;
-            const gic_real t139 = t49 * (t138 - t98 * t128);
-            const gic_real t140 = R(0.5) * t139;
-            const gic_real t141 = R(0.5) * t129;
-            const gic_real t142 = q[3] - (q[6] * t137 + (q[5] * t140 + q[4] * t141));
-            const gic_real t143 = q[6] + (q[5] * t141 - q[4] * t140 + q[3] * t137);
-            const gic_real t144 = q[5] + (q[4] * t137 - q[6] * t141 + q[3] * t140);
-            const gic_real t145 = q[4] + (q[6] * t140 - q[5] * t137 + q[3] * t141);
-            const gic_real t146 = t143 * t143 + (t144 * t144 + t145 * t145) + t142 * t142;
-            const gic_real t147 = R(1.5) - R(0.5) * t146;
-            const gic_real t148 = t142 * t147;
-            const gic_real t149 = t145 * t147;
-            const gic_real t150 = t144 * t147;
-            const gic_real t151 = t143 * t147;
-            const gic_real t152 = R(2.184837229626393) * (t128 * t128 + (t130 * t130 + t131 * t131));
-            const gic_real t153 = t136 * t136 + (t139 * t139 + t129 * t129) + t152;
-            const gic_real t154 = t150 + t150;
-            const gic_real t155 = t150 * t154;
-            const gic_real t156 = t151 + t151;
-            const gic_real t157 = t151 * t156;
-            const gic_real t158 = R(1.0) - (t155 + t157);
-            const gic_real t159 = t149 + t149;
-            const gic_real t160 = t150 * t159;
-            const gic_real t161 = t148 * t156;
-            const gic_real t162 = t160 - t161;
-            const gic_real t163 = t149 * t156;
-            const gic_real t164 = t148 * t154;
-            const gic_real t165 = t163 + t164;
-            const gic_real t166 = t160 + t161;
-            const gic_real t167 = t149 * t159;
-            const gic_real t168 = R(1.0) - (t167 + t157);
-            const gic_real t169 = t151 * t154;
-            const gic_real t170 = t148 * t159;
-            const gic_real t171 = t169 - t170;
-            const gic_real t172 = t163 - t164;
-            const gic_real t173 = t169 + t170;
-            const gic_real t174 = R(1.0) - (t167 + t155);
-            const gic_real t175 = t125 * (x[0] * t112);
-            const gic_real t176 = t111 * (x[0] + t109 * t175);
-            const gic_real t177 = x[1] * t125;
-            const gic_real t178 = t111 * (t109 * t177);
-            const gic_real t179 = rate[0] * t176 - rate[1] * t178;
-            const gic_real t180 = t89 * (t105 * t175 - t86 * t176);
-            const gic_real t181 = t66 * (t100 * t175 - (t65 * t180 + t83 * t176));
-            const gic_real t182 = t98 * t175 - (t45 * t181 + t60 * t180 + t77 * t176);
-            const gic_real t183 = t49 * t182;
-            const gic_real t184 = t89 * (t86 * t178 - t105 * t177);
-            const gic_real t185 = t66 * (t83 * t178 - t65 * t184 - t100 * t177);
-            const gic_real t186 = t77 * t178 - (t45 * t185 + t60 * t184) - t98 * t177;
-            const gic_real t187 = t49 * t186;
-            const gic_real t188 = rate[0] * t183 + rate[1] * t187;
-            const gic_real t189 = rate[0] * t181 + rate[1] * t185;
-            const gic_real t190 = t57 * (t94 * t175 - t54 * t180);
-            const gic_real t191 = t57 * (t54 * t184 + t94 * t177);
-            const gic_real t192 = rate[0] * t190 - rate[1] * t191;
-            const gic_real t193 = rate[0] * t180 + rate[1] * t184;
-            const gic_real t194 = rate[1] * t177 - rate[0] * t175;
-            const gic_real t195 = t71 * t179 - t80 * t188;
-            const gic_real t196 = t194 + t195;
-            const gic_real t197 = t80 * t189 - t74 * t179;
-            const gic_real t198 = t193 + t197;
-            const gic_real t199 = t74 * t188 - t71 * t189;
-            const gic_real t200 = t192 + t199;
-            const gic_real t201 = t76 * (t189 * t199 - t179 * t195) + t81 * (t188 * t195 - t189 * t197);
-            const gic_real t202 = t196 * t196 + (t198 * t198 + t200 * t200) + (t75 * (t179 * t197 - t188 * t199) + t201);
-            const gic_real t203 = t194 * t194 + (t193 * t193 + t192 * t192);
-            const gic_real t204 = t43 * t179 - t27 * t188;
-            const gic_real t205 = t194 + t204;
-            const gic_real t206 = t27 * t189 - t17 * t179;
-            const gic_real t207 = t193 + t206;
-            const gic_real t208 = t17 * t188 - t43 * t189;
-            const gic_real t209 = t192 + t208;
-            const gic_real t210 = t44 * (t189 * t208 - t179 * t204) + t28 * (t188 * t204 - t189 * t206);
-            const gic_real t211 = t205 * t205 + (t207 * t207 + t209 * t209) + (t29 * (t179 * t206 - t188 * t208) + t210);
-            const gic_real t212 = t59 * t203 - t211;
-            const gic_real t213 = rate[0] * rate[0] - t202 + t87 * t203 - t82 * t212;
-            const gic_real t214 = t39 * t179 - t32 * t188;
-            const gic_real t215 = t194 + t214;
-            const gic_real t216 = t32 * t189 - t47 * t179;
-            const gic_real t217 = t193 + t216;
-            const gic_real t218 = t47 * t188 - t39 * t189;
-            const gic_real t219 = t192 + t218;
-            const gic_real t220 = t40 * (t189 * t218 - t179 * t214) + t41 * (t188 * t214 - t189 * t216);
-            const gic_real t221 = t215 * t215 + (t217 * t217 + t219 * t219) + (t48 * (t179 * t216 - t188 * t218) + t220);
-            const gic_real t222 = t64 * t203 - t221 - t50 * t212;
-            const gic_real t223 = t52 * t179 - t55 * t188;
-            const gic_real t224 = t194 + t223;
-            const gic_real t225 = t55 * t189 - t61 * t179;
-            const gic_real t226 = t193 + t225;
-            const gic_real t227 = t61 * t188 - t52 * t189;
-            const gic_real t228 = t192 + t227;
-            const gic_real t229 = t53 * (t189 * t227 - t179 * t223) + t56 * (t188 * t223 - t189 * t225);
-            const gic_real t230 = t224 * t224 + (t226 * t226 + t228 * t228) + (t62 * (t179 * t225 - t188 * t227) + t229);
-            const gic_real t231 = t58 * t203 - t230 - t63 * t212 - t67 * t222;
-            const gic_real t232 = t213 - t84 * t222 - t90 * t231;
-            const gic_real t233 = t101 * t179 - t95 * t188;
-            const gic_real t234 = t194 + t233;
-            const gic_real t235 = t95 * t189 - t92 * t179;
-            const gic_real t236 = t193 + t235;
-            const gic_real t237 = t92 * t188 - t101 * t189;
-            const gic_real t238 = t192 + t237;
-            const gic_real t239 = t102 * (t189 * t237 - t179 * t233) + t96 * (t188 * t233 - t189 * t235);
-            const gic_real t240 = t234 * t234 + (t236 * t236 + t238 * t238) + (t93 * (t179 * t235 - t188 * t237) + t239);
-            const gic_real t241 = rate[1] * rate[1] - t240 + t97 * t203 - t99 * t212;
-            const gic_real t242 = t241 - t103 * t222 - t107 * t231 - t112 * t232;
-            const gic_real t243 = t125 * t242;
-            const gic_real t244 = t111 * (t232 - t109 * t243);
-            const gic_real t245 = t89 * (t231 - t86 * t244 - t105 * t243);
-            const gic_real t246 = t222 - t65 * t245 - t83 * t244 - t100 * t243;
-            const gic_real t247 = t66 * t246;
-            const gic_real t248 = t212 - t45 * t247 - t60 * t245 - t77 * t244;
-            const gic_real t249 = t49 * (t248 - t98 * t243);
-            const gic_real t250 = t57 * (t203 + t54 * t245 + t94 * t243);
-            const gic_real t251 = -t175;
-            const gic_real t252 = -t178;
-            const gic_real t253 = -t191;
-            const gic_real t254 = t165 * R(-0.17228899999999997) + (t162 * R(0.12) + t158 * R(-0.03340499999999991));
-            const gic_real t255 = t132 + t254;
-            const gic_real t256 = R(271.11) * t255;
-            const gic_real t257 = t171 * R(-0.17228899999999997) + (t168 * R(0.12) + t166 * R(-0.03340499999999991));
-            const gic_real t258 = t133 + t257;
-            const gic_real t259 = R(271.11) * t258;
-            const gic_real t260 = t174 * R(-0.17228899999999997) + (t173 * R(0.12) + t172 * R(-0.03340499999999991));
-            const gic_real t261 = t134 + t260;
-            const gic_real t262 = R(271.11) * t261;
-            const gic_real t263 = t162 * R(-147.617262);
-            const gic_real t264 = t158 * R(0.24386000000001218);
-            const gic_real t265 = R(163.103702) + (t162 * t263 + t158 * t264);
-            const gic_real t266 = t258 * t259;
-            const gic_real t267 = t261 * t262;
-            const gic_real t268 = t168 * R(-147.617262);
-            const gic_real t269 = t166 * R(0.24386000000001218);
-            const gic_real t270 = R(163.103702) + (t168 * t268 + t166 * t269);
-            const gic_real t271 = t255 * t256;
-            const gic_real t272 = R(163.103702) + (t173 * (t173 * R(-147.617262)) + t172 * (t172 * R(0.24386000000001218)));
-            const gic_real t273 = t168 * t263 + t166 * t264;
-            const gic_real t274 = t173 * t263 + t172 * t264;
-            const gic_real t275 = t173 * t268 + t172 * t269;
-            const gic_real t276 = t179 * t257 - t188 * t254;
-            const gic_real t277 = t194 + t276;
-            const gic_real t278 = t277 + (t277 + (turn[0] * t258 - turn[1] * t255));
-            const gic_real t279 = t189 * t254 - t179 * t260;
-            const gic_real t280 = t193 + t279;
-            const gic_real t281 = t280 + (t280 + (turn[2] * t255 - turn[0] * t261));
-            const gic_real t282 = turn[1] * t278 - turn[2] * t281 + (t188 * t276 - t189 * t279);
-            const gic_real t283 = R(271.11) * (t282 + (t249 * t260 - t247 * t257) - t250);
-            const gic_real t284 = t188 * t260 - t189 * t257;
-            const gic_real t285 = t192 + t284;
-            const gic_real t286 = t285 + (t285 + (turn[1] * t261 - turn[2] * t258));
-            const gic_real t287 = turn[2] * t286 - turn[0] * t278 + (t189 * t284 - t179 * t276);
-            const gic_real t288 = R(271.11) * (t245 + (t287 + (t247 * t254 - t244 * t260)));
-            const gic_real t289 = turn[0] * t281 - turn[1] * t286 + (t179 * t279 - t188 * t284);
-            const gic_real t290 = R(271.11) * (t243 + (t289 + (t244 * t257 - t249 * t254)));
-            const gic_real t291 = t247 + (t188 * turn[0] - t179 * turn[1]);
-            const gic_real t292 = t249 + (t179 * turn[2] - t189 * turn[0]);
-            const gic_real t293 = t244 + (t189 * turn[1] - t188 * turn[2]);
-            const gic_real t294 = t188 + turn[1];
-            const gic_real t295 = t189 + turn[2];
-            const gic_real t296 = t179 + turn[0];
-            const gic_real t297 = t272 * t295 + (t275 * t294 + t274 * t296);
-            const gic_real t298 = t275 * t295 + (t270 * t294 + t273 * t296);
-            const gic_real t299 = t274 * t291 + (t273 * t292 + t265 * t293) + (t294 * t297 - t295 * t298);
-            const gic_real t300 = t274 * t295 + (t273 * t294 + t265 * t296);
-            const gic_real t301 = t275 * t291 + (t270 * t292 + t273 * t293) + (t295 * t300 - t296 * t297);
-            const gic_real t302 = t272 * t291 + (t275 * t292 + t274 * t293) + (t296 * t298 - t294 * t300);
-            const gic_real t303 = t190 + (t183 * t260 - t181 * t257);
-            const gic_real t304 = R(271.11) * t303;
-            const gic_real t305 = t180 + (t181 * t254 - t176 * t260);
-            const gic_real t306 = R(271.11) * t305;
-            const gic_real t307 = t176 * t257 - t183 * t254 - t175;
-            const gic_real t308 = R(271.11) * t307;
-            const gic_real t309 = t181 * t274 + (t183 * t273 + t176 * t265);
-            const gic_real t310 = t181 * t275 + (t183 * t270 + t176 * t273);
-            const gic_real t311 = t181 * t272 + (t183 * t275 + t176 * t274);
-            const gic_real t312 = t181 * t302 + (t183 * t301 + t176 * t299) + (t290 * t307 + (t288 * t305 + t283 * t303));
-            const gic_real t313 = t187 * t260 - t185 * t257 - t191;
-            const gic_real t314 = R(271.11) * t313;
-            const gic_real t315 = t184 + (t178 * t260 + t185 * t254);
-            const gic_real t316 = R(271.11) * t315;
-            const gic_real t317 = t177 - (t187 * t254 + t178 * t257);
-            const gic_real t318 = R(271.11) * t317;
-            const gic_real t319 = t185 * t274 + (t187 * t273 - t178 * t265);
-            const gic_real t320 = t185 * t275 + (t187 * t270 - t178 * t273);
-            const gic_real t321 = t185 * t272 + (t187 * t275 - t178 * t274);
-            const gic_real t322 = t185 * t302 + (t187 * t301 - t178 * t299) + (t290 * t317 + (t288 * t315 + t283 * t313));
-            const gic_real t323 = t181 * t311 + (t183 * t310 + t176 * t309) + (t307 * t308 + (t305 * t306 + t303 * t304));
-            const gic_real t324 = t181 * t321 + (t183 * t320 + t176 * t319) + (t307 * t318 + (t305 * t316 + t303 * t314));
-            const gic_real t325 = t185 * t321 + (t187 * t320 - t178 * t319) + (t317 * t318 + (t315 * t316 + t313 * t314));
-            const gic_real t326 = -t250;
-            const gic_real t327 = t265 + (t266 + t267);
-            const gic_real t328 = t270 + (t271 + t267);
-            const gic_real t329 = t272 + (t271 + t266);
-            const gic_real t330 = t273 - t258 * t256;
-            const gic_real t331 = t274 - t261 * t256;
-            const gic_real t332 = t275 - t261 * t259;
-            const gic_real t333 = t299 + (t258 * t290 - t261 * t288);
-            const gic_real t334 = t301 + (t261 * t283 - t255 * t290);
-            const gic_real t335 = t302 + (t255 * t288 - t258 * t283);
-            const gic_real t336 = t309 + (t258 * t308 - t261 * t306);
-            const gic_real t337 = t310 + (t261 * t304 - t255 * t308);
-            const gic_real t338 = t311 + (t255 * t306 - t258 * t304);
-            const gic_real t339 = t319 + (t258 * t318 - t261 * t316);
-            const gic_real t340 = t320 + (t261 * t314 - t255 * t318);
-            const gic_real t341 = t321 + (t255 * t316 - t258 * t314);
-            q[0] = t132;
-            q[1] = t133;
-            q[2] = t134;
-            q[3] = t148;
-            q[4] = t149;
-            q[5] = t150;
-            q[6] = t151;
-            step = t153;
-            motion[0] = t132;
-            motion[1] = t133;
-            motion[2] = t134;
-            motion[3] = t158;
-            motion[4] = t162;
-            motion[5] = t165;
-            motion[6] = t166;
-            motion[7] = t168;
-            motion[8] = t171;
-            motion[9] = t172;
-            motion[10] = t173;
-            motion[11] = t174;
-            motion[12] = t179;
-            motion[13] = t188;
-            motion[14] = t189;
-            motion[15] = t192;
-            motion[16] = t193;
-            motion[17] = t194;
-            motion[18] = t244;
-            motion[19] = t249;
-            motion[20] = t247;
-            motion[21] = t326;
-            motion[22] = t245;
-            motion[23] = t243;
-            motion[24] = t176;
-            motion[25] = t183;
-            motion[26] = t181;
-            motion[27] = t190;
-            motion[28] = t180;
-            motion[29] = t251;
-            motion[30] = t252;
-            motion[31] = t187;
-            motion[32] = t185;
-            motion[33] = t253;
-            motion[34] = t184;
-            motion[35] = t177;
-            start[7] = t176;
-            start[8] = t183;
-            start[9] = t181;
-            start[10] = t190;
-            start[11] = t180;
-            start[12] = t251;
-            start[13] = t252;
-            start[14] = t187;
-            start[15] = t185;
-            start[16] = t253;
-            start[17] = t184;
-            start[18] = t177;
+            const gic_real t114 = t113 * (t91 * (t68 * (t51 * (t1 * t30)))) * R(181.98810773723645);
+            if (!(t114 > R(0.001)))
+                return GIC_ERROR_SINGULAR;
+            const gic_real t115 = t94 * t94 + (t54 * t54 + t1 * t1) - R(0.43540000000000006);
+            const gic_real t116 = t115 * R(0.5);
+            const gic_real t117 = t62 * t62 + (t53 * t53 + t56 * t56) - R(0.43540000000000006);
+            const gic_real t118 = t29 * t29 + (t44 * t44 + t28 * t28) - R(0.4974000000000001);
+            const gic_real t119 = t116 * t59 - R(0.5) * t118;
+            const gic_real t120 = t48 * t48 + (t40 * t40 + t41 * t41) - R(0.4974000000000001);
+            const gic_real t121 = t116 * t64 - R(0.5) * t120 - t50 * t119;
+            const gic_real t122 = t116 * t58 - R(0.5) * t117 - t63 * t119 - t67 * t121;
+            const gic_real t123 = t75 * t75 + (t76 * t76 + t81 * t81) - x[0] * x[0];
+            const gic_real t124 = t116 * t87 - R(0.5) * t123 - t82 * t119 - t84 * t121;
+            const gic_real t125 = t124 - t90 * t122;
+            const gic_real t126 = R(1.0) / t113;
+            const gic_real t127 = t93 * t93 + (t102 * t102 + t96 * t96) - x[1] * x[1];
+            const gic_real t128 = t116 * t97 - R(0.5) * t127 - t99 * t119 - t103 * t121;
+            const gic_real t129 = t126 * (t128 - t107 * t122 - t112 * t125);
+            const gic_real t130 = t111 * (t125 - t109 * t129);
+            const gic_real t131 = t89 * (t122 - t86 * t130 - t105 * t129);
+            const gic_real t132 = t57 * (t116 + t54 * t131 + t94 * t129);
+            const gic_real t133 = q[0] - t132;
+            const gic_real t134 = q[1] + t131;
+            const gic_real t135 = q[2] + t129;
+            const gic_real t136 = t121 - t65 * t131 - t83 * t130 - t100 * t129;
+            const gic_real t137 = t66 * t136;
+            const gic_real t138 = R(0.5) * t137;
+            const gic_real t139 = t119 - t45 * t137 - t60 * t131 - t77 * t130;
+            const gic_real t140 = t49 * (t139 - t98 * t129);
+            const gic_real t141 = R(0.5) * t140;
+            const gic_real t142 = R(0.5) * t130;
+            const gic_real t143 = q[3] - (q[6] * t138 + (q[5] * t141 + q[4] * t142));
+            const gic_real t144 = q[6] + (q[5] * t142 - q[4] * t141 + q[3] * t138);
+            const gic_real t145 = q[5] + (q[4] * t138 - q[6] * t142 + q[3] * t141);
+            const gic_real t146 = q[4] + (q[6] * t141 - q[5] * t138 + q[3] * t142);
+            const gic_real t147 = t144 * t144 + (t145 * t145 + t146 * t146) + t143 * t143;
+            const gic_real t148 = R(1.5) - R(0.5) * t147;
+            const gic_real t149 = t143 * t148;
+            const gic_real t150 = t146 * t148;
+            const gic_real t151 = t145 * t148;
+            const gic_real t152 = t144 * t148;
+            const gic_real t153 = R(2.184837229626393) * (t129 * t129 + (t131 * t131 + t132 * t132));
+            const gic_real t154 = t137 * t137 + (t140 * t140 + t130 * t130) + t153;
+            const gic_real t155 = t151 + t151;
+            const gic_real t156 = t151 * t155;
+            const gic_real t157 = t152 + t152;
+            const gic_real t158 = t152 * t157;
+            const gic_real t159 = R(1.0) - (t156 + t158);
+            const gic_real t160 = t150 + t150;
+            const gic_real t161 = t151 * t160;
+            const gic_real t162 = t149 * t157;
+            const gic_real t163 = t161 - t162;
+            const gic_real t164 = t150 * t157;
+            const gic_real t165 = t149 * t155;
+            const gic_real t166 = t164 + t165;
+            const gic_real t167 = t161 + t162;
+            const gic_real t168 = t150 * t160;
+            const gic_real t169 = R(1.0) - (t168 + t158);
+            const gic_real t170 = t152 * t155;
+            const gic_real t171 = t149 * t160;
+            const gic_real t172 = t170 - t171;
+            const gic_real t173 = t164 - t165;
+            const gic_real t174 = t170 + t171;
+            const gic_real t175 = R(1.0) - (t168 + t156);
+            const gic_real t176 = t126 * (x[0] * t112);
+            const gic_real t177 = t111 * (x[0] + t109 * t176);
+            const gic_real t178 = x[1] * t126;
+            const gic_real t179 = t111 * (t109 * t178);
+            const gic_real t180 = rate[0] * t177 - rate[1] * t179;
+            const gic_real t181 = t89 * (t105 * t176 - t86 * t177);
+            const gic_real t182 = t66 * (t100 * t176 - (t65 * t181 + t83 * t177));
+            const gic_real t183 = t98 * t176 - (t45 * t182 + t60 * t181 + t77 * t177);
+            const gic_real t184 = t49 * t183;
+            const gic_real t185 = t89 * (t86 * t179 - t105 * t178);
+            const gic_real t186 = t66 * (t83 * t179 - t65 * t185 - t100 * t178);
+            const gic_real t187 = t77 * t179 - (t45 * t186 + t60 * t185) - t98 * t178;
+            const gic_real t188 = t49 * t187;
+            const gic_real t189 = rate[0] * t184 + rate[1] * t188;
+            const gic_real t190 = rate[0] * t182 + rate[1] * t186;
+            const gic_real t191 = t57 * (t94 * t176 - t54 * t181);
+            const gic_real t192 = t57 * (t54 * t185 + t94 * t178);
+            const gic_real t193 = rate[0] * t191 - rate[1] * t192;
+            const gic_real t194 = rate[0] * t181 + rate[1] * t185;
+            const gic_real t195 = rate[1] * t178 - rate[0] * t176;
+            const gic_real t196 = t71 * t180 - t80 * t189;
+            const gic_real t197 = t195 + t196;
+            const gic_real t198 = t80 * t190 - t74 * t180;
+            const gic_real t199 = t194 + t198;
+            const gic_real t200 = t74 * t189 - t71 * t190;
+            const gic_real t201 = t193 + t200;
+            const gic_real t202 = t76 * (t190 * t200 - t180 * t196) + t81 * (t189 * t196 - t190 * t198);
+            const gic_real t203 = t197 * t197 + (t199 * t199 + t201 * t201) + (t75 * (t180 * t198 - t189 * t200) + t202);
+            const gic_real t204 = t195 * t195 + (t194 * t194 + t193 * t193);
+            const gic_real t205 = t43 * t180 - t27 * t189;
+            const gic_real t206 = t195 + t205;
+            const gic_real t207 = t27 * t190 - t17 * t180;
+            const gic_real t208 = t194 + t207;
+            const gic_real t209 = t17 * t189 - t43 * t190;
+            const gic_real t210 = t193 + t209;
+            const gic_real t211 = t44 * (t190 * t209 - t180 * t205) + t28 * (t189 * t205 - t190 * t207);
+            const gic_real t212 = t206 * t206 + (t208 * t208 + t210 * t210) + (t29 * (t180 * t207 - t189 * t209) + t211);
+            const gic_real t213 = t59 * t204 - t212;
+            const gic_real t214 = rate[0] * rate[0] - t203 + t87 * t204 - t82 * t213;
+            const gic_real t215 = t39 * t180 - t32 * t189;
+            const gic_real t216 = t195 + t215;
+            const gic_real t217 = t32 * t190 - t47 * t180;
+            const gic_real t218 = t194 + t217;
+            const gic_real t219 = t47 * t189 - t39 * t190;
+            const gic_real t220 = t193 + t219;
+            const gic_real t221 = t40 * (t190 * t219 - t180 * t215) + t41 * (t189 * t215 - t190 * t217);
+            const gic_real t222 = t216 * t216 + (t218 * t218 + t220 * t220) + (t48 * (t180 * t217 - t189 * t219) + t221);
+            const gic_real t223 = t64 * t204 - t222 - t50 * t213;
+            const gic_real t224 = t52 * t180 - t55 * t189;
+            const gic_real t225 = t195 + t224;
+            const gic_real t226 = t55 * t190 - t61 * t180;
+            const gic_real t227 = t194 + t226;
+            const gic_real t228 = t61 * t189 - t52 * t190;
+            const gic_real t229 = t193 + t228;
+            const gic_real t230 = t53 * (t190 * t228 - t180 * t224) + t56 * (t189 * t224 - t190 * t226);
+            const gic_real t231 = t225 * t225 + (t227 * t227 + t229 * t229) + (t62 * (t180 * t226 - t189 * t228) + t230);
+            const gic_real t232 = t58 * t204 - t231 - t63 * t213 - t67 * t223;
+            const gic_real t233 = t214 - t84 * t223 - t90 * t232;
+            const gic_real t234 = t101 * t180 - t95 * t189;
+            const gic_real t235 = t195 + t234;
+            const gic_real t236 = t95 * t190 - t92 * t180;
+            const gic_real t237 = t194 + t236;
+            const gic_real t238 = t92 * t189 - t101 * t190;
+            const gic_real t239 = t193 + t238;
+            const gic_real t240 = t102 * (t190 * t238 - t180 * t234) + t96 * (t189 * t234 - t190 * t236);
+            const gic_real t241 = t235 * t235 + (t237 * t237 + t239 * t239) + (t93 * (t180 * t236 - t189 * t238) + t240);
+            const gic_real t242 = rate[1] * rate[1] - t241 + t97 * t204 - t99 * t213;
+            const gic_real t243 = t242 - t103 * t223 - t107 * t232 - t112 * t233;
+            const gic_real t244 = t126 * t243;
+            const gic_real t245 = t111 * (t233 - t109 * t244);
+            const gic_real t246 = t89 * (t232 - t86 * t245 - t105 * t244);
+            const gic_real t247 = t223 - t65 * t246 - t83 * t245 - t100 * t244;
+            const gic_real t248 = t66 * t247;
+            const gic_real t249 = t213 - t45 * t248 - t60 * t246 - t77 * t245;
+            const gic_real t250 = t49 * (t249 - t98 * t244);
+            const gic_real t251 = t57 * (t204 + t54 * t246 + t94 * t244);
+            const gic_real t252 = -t176;
+            const gic_real t253 = -t179;
+            const gic_real t254 = -t192;
+            const gic_real t255 = t166 * R(-0.17228899999999997) + (t163 * R(0.12) + t159 * R(-0.03340499999999991));
+            const gic_real t256 = t133 + t255;
+            const gic_real t257 = R(271.11) * t256;
+            const gic_real t258 = t172 * R(-0.17228899999999997) + (t169 * R(0.12) + t167 * R(-0.03340499999999991));
+            const gic_real t259 = t134 + t258;
+            const gic_real t260 = R(271.11) * t259;
+            const gic_real t261 = t175 * R(-0.17228899999999997) + (t174 * R(0.12) + t173 * R(-0.03340499999999991));
+            const gic_real t262 = t135 + t261;
+            const gic_real t263 = R(271.11) * t262;
+            const gic_real t264 = t163 * R(-147.617262);
+            const gic_real t265 = t159 * R(0.24386000000001218);
+            const gic_real t266 = R(163.103702) + (t163 * t264 + t159 * t265);
+            const gic_real t267 = t259 * t260;
+            const gic_real t268 = t262 * t263;
+            const gic_real t269 = t169 * R(-147.617262);
+            const gic_real t270 = t167 * R(0.24386000000001218);
+            const gic_real t271 = R(163.103702) + (t169 * t269 + t167 * t270);
+            const gic_real t272 = t256 * t257;
+            const gic_real t273 = R(163.103702) + (t174 * (t174 * R(-147.617262)) + t173 * (t173 * R(0.24386000000001218)));
+            const gic_real t274 = t169 * t264 + t167 * t265;
+            const gic_real t275 = t174 * t264 + t173 * t265;
+            const gic_real t276 = t174 * t269 + t173 * t270;
+            const gic_real t277 = t180 * t258 - t189 * t255;
+            const gic_real t278 = t195 + t277;
+            const gic_real t279 = t278 + (t278 + (turn[0] * t259 - turn[1] * t256));
+            const gic_real t280 = t190 * t255 - t180 * t261;
+            const gic_real t281 = t194 + t280;
+            const gic_real t282 = t281 + (t281 + (turn[2] * t256 - turn[0] * t262));
+            const gic_real t283 = turn[1] * t279 - turn[2] * t282 + (t189 * t277 - t190 * t280);
+            const gic_real t284 = R(271.11) * (t283 + (t250 * t261 - t248 * t258) - t251);
+            const gic_real t285 = t189 * t261 - t190 * t258;
+            const gic_real t286 = t193 + t285;
+            const gic_real t287 = t286 + (t286 + (turn[1] * t262 - turn[2] * t259));
+            const gic_real t288 = turn[2] * t287 - turn[0] * t279 + (t190 * t285 - t180 * t277);
+            const gic_real t289 = R(271.11) * (t246 + (t288 + (t248 * t255 - t245 * t261)));
+            const gic_real t290 = turn[0] * t282 - turn[1] * t287 + (t180 * t280 - t189 * t285);
+            const gic_real t291 = R(271.11) * (t244 + (t290 + (t245 * t258 - t250 * t255)));
+            const gic_real t292 = t248 + (t189 * turn[0] - t180 * turn[1]);
+            const gic_real t293 = t250 + (t180 * turn[2] - t190 * turn[0]);
+            const gic_real t294 = t245 + (t190 * turn[1] - t189 * turn[2]);
+            const gic_real t295 = t189 + turn[1];
+            const gic_real t296 = t190 + turn[2];
+            const gic_real t297 = t180 + turn[0];
+            const gic_real t298 = t273 * t296 + (t276 * t295 + t275 * t297);
+            const gic_real t299 = t276 * t296 + (t271 * t295 + t274 * t297);
+            const gic_real t300 = t275 * t292 + (t274 * t293 + t266 * t294) + (t295 * t298 - t296 * t299);
+            const gic_real t301 = t275 * t296 + (t274 * t295 + t266 * t297);
+            const gic_real t302 = t276 * t292 + (t271 * t293 + t274 * t294) + (t296 * t301 - t297 * t298);
+            const gic_real t303 = t273 * t292 + (t276 * t293 + t275 * t294) + (t297 * t299 - t295 * t301);
+            const gic_real t304 = t191 + (t184 * t261 - t182 * t258);
+            const gic_real t305 = R(271.11) * t304;
+            const gic_real t306 = t181 + (t182 * t255 - t177 * t261);
+            const gic_real t307 = R(271.11) * t306;
+            const gic_real t308 = t177 * t258 - t184 * t255 - t176;
+            const gic_real t309 = R(271.11) * t308;
+            const gic_real t310 = t182 * t275 + (t184 * t274 + t177 * t266);
+            const gic_real t311 = t182 * t276 + (t184 * t271 + t177 * t274);
+            const gic_real t312 = t182 * t273 + (t184 * t276 + t177 * t275);
+            const gic_real t313 = t182 * t303 + (t184 * t302 + t177 * t300) + (t291 * t308 + (t289 * t306 + t284 * t304));
+            const gic_real t314 = t188 * t261 - t186 * t258 - t192;
+            const gic_real t315 = R(271.11) * t314;
+            const gic_real t316 = t185 + (t179 * t261 + t186 * t255);
+            const gic_real t317 = R(271.11) * t316;
+            const gic_real t318 = t178 - (t188 * t255 + t179 * t258);
+            const gic_real t319 = R(271.11) * t318;
+            const gic_real t320 = t186 * t275 + (t188 * t274 - t179 * t266);
+            const gic_real t321 = t186 * t276 + (t188 * t271 - t179 * t274);
+            const gic_real t322 = t186 * t273 + (t188 * t276 - t179 * t275);
+            const gic_real t323 = t186 * t303 + (t188 * t302 - t179 * t300) + (t291 * t318 + (t289 * t316 + t284 * t314));
+            const gic_real t324 = t182 * t312 + (t184 * t311 + t177 * t310) + (t308 * t309 + (t306 * t307 + t304 * t305));
+            const gic_real t325 = t182 * t322 + (t184 * t321 + t177 * t320) + (t308 * t319 + (t306 * t317 + t304 * t315));
+            const gic_real t326 = t186 * t322 + (t188 * t321 - t179 * t320) + (t318 * t319 + (t316 * t317 + t314 * t315));
+            const gic_real t327 = -t251;
+            const gic_real t328 = t266 + (t267 + t268);
+            const gic_real t329 = t271 + (t272 + t268);
+            const gic_real t330 = t273 + (t272 + t267);
+            const gic_real t331 = t274 - t259 * t257;
+            const gic_real t332 = t275 - t262 * t257;
+            const gic_real t333 = t276 - t262 * t260;
+            const gic_real t334 = t300 + (t259 * t291 - t262 * t289);
+            const gic_real t335 = t302 + (t262 * t284 - t256 * t291);
+            const gic_real t336 = t303 + (t256 * t289 - t259 * t284);
+            const gic_real t337 = t310 + (t259 * t309 - t262 * t307);
+            const gic_real t338 = t311 + (t262 * t305 - t256 * t309);
+            const gic_real t339 = t312 + (t256 * t307 - t259 * t305);
+            const gic_real t340 = t320 + (t259 * t319 - t262 * t317);
+            const gic_real t341 = t321 + (t262 * t315 - t256 * t319);
+            const gic_real t342 = t322 + (t256 * t317 - t259 * t315);
+            q[0] = t133;
+            q[1] = t134;
+            q[2] = t135;
+            q[3] = t149;
+            q[4] = t150;
+            q[5] = t151;
+            q[6] = t152;
+            step = t154;
+            motion[0] = t133;
+            motion[1] = t134;
+            motion[2] = t135;
+            motion[3] = t159;
+            motion[4] = t163;
+            motion[5] = t166;
+            motion[6] = t167;
+            motion[7] = t169;
+            motion[8] = t172;
+            motion[9] = t173;
+            motion[10] = t174;
+            motion[11] = t175;
+            motion[12] = t180;
+            motion[13] = t189;
+            motion[14] = t190;
+            motion[15] = t193;
+            motion[16] = t194;
+            motion[17] = t195;
+            motion[18] = t245;
+            motion[19] = t250;
+            motion[20] = t248;
+            motion[21] = t327;
+            motion[22] = t246;
+            motion[23] = t244;
+            motion[24] = t177;
+            motion[25] = t184;
+            motion[26] = t182;
+            motion[27] = t191;
+            motion[28] = t181;
+            motion[29] = t252;
+            motion[30] = t253;
+            motion[31] = t188;
+            motion[32] = t186;
+            motion[33] = t254;
+            motion[34] = t185;
+            motion[35] = t178;
+            start[7] = t177;
+            start[8] = t184;
+            start[9] = t182;
+            start[10] = t191;
+            start[11] = t181;
+            start[12] = t252;
+            start[13] = t253;
+            start[14] = t188;
+            start[15] = t186;
+            start[16] = t254;
+            start[17] = t185;
+            start[18] = t178;
             start[19] = t57;
             start[20] = t54;
             start[21] = t94;
@@ -988,45 +993,45 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             start[48] = t103;
             start[49] = t107;
             start[50] = t112;
-            start[51] = t125;
-            inertia[0] = t256;
-            inertia[1] = t259;
-            inertia[2] = t262;
-            inertia[3] = t327;
-            inertia[4] = t328;
-            inertia[5] = t329;
-            inertia[6] = t330;
-            inertia[7] = t331;
-            inertia[8] = t332;
-            inertia[9] = t283;
-            inertia[10] = t288;
-            inertia[11] = t290;
-            inertia[12] = t333;
-            inertia[13] = t334;
-            inertia[14] = t335;
-            inertia[15] = t304;
-            inertia[16] = t306;
-            inertia[17] = t308;
-            inertia[18] = t336;
-            inertia[19] = t337;
-            inertia[20] = t338;
-            inertia[21] = t312;
-            inertia[22] = t314;
-            inertia[23] = t316;
-            inertia[24] = t318;
-            inertia[25] = t339;
-            inertia[26] = t340;
-            inertia[27] = t341;
-            inertia[28] = t322;
-            inertia[29] = t323;
-            inertia[30] = t324;
-            inertia[31] = t325;
+            start[51] = t126;
+            inertia[0] = t257;
+            inertia[1] = t260;
+            inertia[2] = t263;
+            inertia[3] = t328;
+            inertia[4] = t329;
+            inertia[5] = t330;
+            inertia[6] = t331;
+            inertia[7] = t332;
+            inertia[8] = t333;
+            inertia[9] = t284;
+            inertia[10] = t289;
+            inertia[11] = t291;
+            inertia[12] = t334;
+            inertia[13] = t335;
+            inertia[14] = t336;
+            inertia[15] = t305;
+            inertia[16] = t307;
+            inertia[17] = t309;
+            inertia[18] = t337;
+            inertia[19] = t338;
+            inertia[20] = t339;
+            inertia[21] = t313;
+            inertia[22] = t315;
+            inertia[23] = t317;
+            inertia[24] = t319;
+            inertia[25] = t340;
+            inertia[26] = t341;
+            inertia[27] = t342;
+            inertia[28] = t323;
+            inertia[29] = t324;
+            inertia[30] = t325;
+            inertia[31] = t326;
         }
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
         /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_ROUNDING_SQUARE && step > before / R(16.0))) {
+        if (step <= enough || (step <= GIC_AMPLIFIED * enough && step > before / R(16.0))) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -1174,7 +1179,7 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t39 = t5 + t38 - R(0.05422899999999997);
         const gic_real t40 = t2 + t36 - t20;
         const gic_real t41 = t36 * t39 - t38 * t40;
-        if (!(GIC_FABS(t41) > R(4.78859136239321e-09)))
+        if (!(GIC_FABS(t41) > R(4.7885913623932104e-08)))
             return GIC_ERROR_SINGULAR;
         const gic_real t42 = t2 + t22 - k[2];
         const gic_real t43 = R(1.653405) + t23 - R(1.593883);
@@ -1186,7 +1191,7 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t49 = R(1.0) / t41;
         const gic_real t50 = (t22 * t48 - t19 * t42) * t49;
         const gic_real t51 = t23 * t42 - t22 * t43 - t47 * t50;
-        if (!(GIC_FABS(t51) > R(1.5702185883473092e-08)))
+        if (!(GIC_FABS(t51) > R(1.5702185883473093e-07)))
             return GIC_ERROR_SINGULAR;
         const gic_real t52 = t38 * t46 - t45 * t39;
         const gic_real t53 = (R(0.21526024724178433) * t22 - k[4] * t19) * t49;
@@ -1194,7 +1199,9 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t55 = R(1.0) / t51;
         const gic_real t56 = (k[4] * t23 - R(0.9665541626242249) * t22 - t47 * t53) * t55;
         const gic_real t57 = R(0.9665541626242249) * t19 - R(0.21526024724178433) * t23 - t52 * t53 - t54 * t56;
-        if (!(GIC_FABS(t57) > R(3.3266643612763756e-08)))
+        if (!(GIC_FABS(t57) > R(3.3266643612763756e-07)))
+            return GIC_ERROR_SINGULAR;
+        if (!(t57 * (t41 * t51) * R(-669.5366201272494) > R(0.001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t58 = t22 * t37 - t19 * t35;
         const gic_real t59 = t58 * k[7] + (t44 * R(-6.332169372123424) + t23 * R(-0.14982584743276875));
@@ -1545,7 +1552,7 @@ static int solid_axle_recover_piece(solid_axle *self, solid_axle_links *links, c
     return GIC_OK;
 }
 
-/* All bodies at self->x, followed from the last good configuration. */
+/* All bodies at self->x, followed from the last good configuration, which stays that where a piece fails. */
 static int solid_axle_recover(solid_axle *self, const gic_real turn[3], int cold)
 {
     solid_axle_links links;

@@ -61,11 +61,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   61       116       2      1         2
- *   subset 'wheel_f_l' (2 times, closed form)                306       406       5      2         0
+ *   subset 'lca_f_l' (2 times, closed form)                   61       117       2      1         2
+ *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
  *   subset 'lca_f_l_2' (2 times, closed form)                 76       121       2      1         2
  *   forces and equations of motion                           743       706      14      4         4
- *   all together                                            1644      2017      32     12        12
+ *   all together                                            1644      2025      32     12        12
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #include "trailing_arm.h"
@@ -119,15 +119,15 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* Squares of corrections relative to a subset's size: what is rounding, and what is rounding near a singular
- * configuration. far: square of the subset's distance from the base relative to its size; 16 epsilon of the distance is
- * rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
+ * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
+ * epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-7)
+#define GIC_AMPLIFIED R(1e4)
 #else
 #define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far))
-#define GIC_ROUNDING_SQUARE R(1e-18)
+#define GIC_AMPLIFIED R(1e6)
 #endif
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
@@ -218,14 +218,16 @@ static GIC_COLD gic_real trailing_arm_residual_rack(const gic_real *GIC_RESTRICT
     return worst;
 }
 
-static const gic_real trailing_arm_k_lca_f_l[2][8] = {
+static const gic_real trailing_arm_k_lca_f_l[2][9] = {
     { /* lca_f_l */
-        R(0.9999999999999996), R(-1.0), R(0.23920559337529682), R(0.23920559337529687),
-        R(-0.23920559337529682), R(1.0), R(0.24689200985615367), R(0.307086),
+        R(0.9999999999999996), R(-1.0), R(1.0000000000000004), R(0.23920559337529682),
+        R(0.23920559337529687), R(-0.23920559337529682), R(1.0), R(0.24689200985615367),
+        R(0.307086),
     },
     { /* lca_f_r */
-        R(-0.9999999999999996), R(1.0), R(-0.23920559337529682), R(-0.23920559337529687),
-        R(0.23920559337529682), R(-1.0), R(-0.24689200985615367), R(-0.307086),
+        R(-0.9999999999999996), R(1.0), R(-1.0000000000000004), R(-0.23920559337529682),
+        R(-0.23920559337529687), R(0.23920559337529682), R(-1.0), R(-0.24689200985615367),
+        R(-0.307086),
     },
 };
 
@@ -255,25 +257,27 @@ static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RE
         const gic_real t9 = R(0.9999999999999996) * t8;
         const gic_real t10 = t6 * (t2 * t7);
         const gic_real t11 = t3 * t9 + t1 * (k[0] * t10);
-        if (!(GIC_FABS(t11) > R(9.999999999999996e-08)))
+        if (!(GIC_FABS(t11) > R(9.999999999999995e-07)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t12 = k[2] * t8 + R(0.9709689408513393) * t10;
-        const gic_real t13 = R(-0.9709689408513391) * t8 + k[3] * t10;
-        const gic_real t14 = R(0.9709689408513393) * t8 + k[4] * t10;
-        const gic_real t15 = k[3] * t8 + R(0.9709689408513391) * t10;
+        if (!(-(t11 * k[2]) > R(0.001)))
+            return GIC_ERROR_SINGULAR;
+        const gic_real t12 = k[3] * t8 + R(0.9709689408513393) * t10;
+        const gic_real t13 = R(-0.9709689408513391) * t8 + k[4] * t10;
+        const gic_real t14 = R(0.9709689408513393) * t8 + k[5] * t10;
+        const gic_real t15 = k[4] * t8 + R(0.9709689408513391) * t10;
         const gic_real t16 = R(0.9999999999999996) * t10;
         const gic_real t17 = R(1.0) / -t11;
         const gic_real t18 = (t1 * t16 + t3 * (k[0] * t8)) * t17;
         const gic_real t19 = rate[0] * t18;
         const gic_real t20 = t16 * t19;
         const gic_real t21 = t9 * t19;
-        const gic_real t22 = rate[0] * (t3 * (k[5] * t20) - t1 * t21);
-        const gic_real t23 = t1 * (k[5] * (t19 * t21)) - t3 * (t19 * t20);
+        const gic_real t22 = rate[0] * (t3 * (k[6] * t20) - t1 * t21);
+        const gic_real t23 = t1 * (k[6] * (t19 * t21)) - t3 * (t19 * t20);
         const gic_real t24 = t17 * (t22 + t22 - t23);
-        const gic_real t25 = t13 * R(3.0379110359107786e-06) + t12 * k[6];
-        const gic_real t26 = k[7] - t25;
+        const gic_real t25 = t13 * R(3.0379110359107786e-06) + t12 * k[7];
+        const gic_real t26 = k[8] - t25;
         const gic_real t27 = R(23.965) * t26;
-        const gic_real t28 = t15 * R(3.0379110359107786e-06) + t14 * k[6];
+        const gic_real t28 = t15 * R(3.0379110359107786e-06) + t14 * k[7];
         const gic_real t29 = R(23.965) * t28;
         const gic_real t30 = t26 * t27;
         const gic_real t31 = t28 * t29;
@@ -368,8 +372,8 @@ static GIC_COLD gic_real trailing_arm_residual_lca_f_l(const gic_real *GIC_RESTR
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_COS(x[0]) * (k[5] * (k[3] * motion[11] + R(0.9709689408513393) * motion[10]));
-        const gic_real t2 = t1 - GIC_SIN(x[0]) * (k[3] * motion[8] + R(0.9709689408513393) * motion[7]);
+        const gic_real t1 = GIC_COS(x[0]) * (k[6] * (k[4] * motion[11] + R(0.9709689408513393) * motion[10]));
+        const gic_real t2 = t1 - GIC_SIN(x[0]) * (k[4] * motion[8] + R(0.9709689408513393) * motion[7]);
         const gic_real t3 = GIC_MAX(R(0.0), GIC_FABS(t2 * R(1.0000000000000004)));
         worst = t3;
     }
@@ -452,7 +456,7 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t39 = t5 + t38 - R(0.05422899999999997);
         const gic_real t40 = t2 + t36 - t20;
         const gic_real t41 = t36 * t39 - t38 * t40;
-        if (!(GIC_FABS(t41) > R(4.467951214483012e-09)))
+        if (!(GIC_FABS(t41) > R(4.467951214483012e-08)))
             return GIC_ERROR_SINGULAR;
         const gic_real t42 = t2 + t22 - k[2];
         const gic_real t43 = R(1.653405) + t23 - R(1.593883);
@@ -464,7 +468,7 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t49 = R(1.0) / t41;
         const gic_real t50 = (t22 * t48 - t19 * t42) * t49;
         const gic_real t51 = t23 * t42 - t22 * t43 - t47 * t50;
-        if (!(GIC_FABS(t51) > R(1.4208107044870632e-08)))
+        if (!(GIC_FABS(t51) > R(1.420810704487063e-07)))
             return GIC_ERROR_SINGULAR;
         const gic_real t52 = t38 * t46 - t45 * t39;
         const gic_real t53 = (R(0.21526024724178433) * t22 - k[4] * t19) * t49;
@@ -472,7 +476,9 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t55 = R(1.0) / t51;
         const gic_real t56 = (k[4] * t23 - R(0.9665541626242249) * t22 - t47 * t53) * t55;
         const gic_real t57 = R(0.9665541626242249) * t19 - R(0.21526024724178433) * t23 - t52 * t53 - t54 * t56;
-        if (!(GIC_FABS(t57) > R(3.338921022828259e-08)))
+        if (!(GIC_FABS(t57) > R(3.3389210228282587e-07)))
+            return GIC_ERROR_SINGULAR;
+        if (!(t57 * (t41 * t51) * R(-669.5366201272494) > R(0.001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t58 = t22 * t37 - t19 * t35;
         const gic_real t59 = t58 * k[7] + (t44 * R(-6.332169372123424) + t23 * R(-0.14982584743276875));
@@ -757,7 +763,9 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
         const gic_real t8 = k[0] * t7;
         const gic_real t9 = t5 * (t2 * t6);
         const gic_real t10 = t3 * t8 + t1 * t9;
-        if (!(GIC_FABS(t10) > R(1e-07)))
+        if (!(GIC_FABS(t10) > R(1e-06)))
+            return GIC_ERROR_SINGULAR;
+        if (!(t10 > R(0.001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t11 = k[1] * t7;
         const gic_real t12 = R(1.0) / t10;
@@ -989,7 +997,7 @@ static int trailing_arm_recover_piece(trailing_arm *self, trailing_arm_links *li
     return GIC_OK;
 }
 
-/* All bodies at self->x, followed from the last good configuration. */
+/* All bodies at self->x, followed from the last good configuration, which stays that where a piece fails. */
 static int trailing_arm_recover(trailing_arm *self, const gic_real turn[3], int cold)
 {
     trailing_arm_links links;
