@@ -47,6 +47,13 @@ Count block_count(const Block *block)
     return dag_count(block->dag, root, roots);
 }
 
+Count block_count_wide(const Block *block)
+{
+    int roots;
+    const Ex *root = block_roots(block, &roots);
+    return dag_count_wide(block->dag, root, roots);
+}
+
 Count block_count_above_loads(const Block *block)
 {
     int roots;

@@ -75,7 +75,7 @@ const Block *draw_block(Pool *pool, const Plan *plan)
             double p[4];
             body_drawn(plan, subset->body[b], c, p);
             for (int i = 0; i < 3; ++i)
-                store_tuned(block, c[i], "self->start[0]", plan->start_offset[s] + 7 * b + i);
+                store_tuned(block, c[i], "self->start[0]", plan->start_offset[s] + plan->stride[s] * (7 * b + i));
         }
     }
     return block;

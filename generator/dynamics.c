@@ -34,7 +34,8 @@ static void add_all(const Summation *now, Ex *sum, int subset, int offset, int c
         if (now->settled)
             e = ex_literal(dag, formula_value(formula, e, class_place(&plan->sequence->class[class], subset)));
         else
-            e = ex_input(dag, pool_print(dag->pool, "n[%d]", plan->inertia_offset[subset] + i), NULL);
+            e = ex_input(dag, pool_print(dag->pool, "n[%d]", plan->inertia_offset[subset] + plan->stride[subset] * i),
+                         NULL);
         sum[i - offset] = ex_add(dag, sum[i - offset], e);
     }
 }

@@ -15,9 +15,27 @@ const Style style_direct = {.leaves = 30, .doubles = true, .whole_self_test = fa
 /* For vector extensions of C, in which sums and products take numbers beside vectors, and functions do not. */
 const Style style_lanes = {.leaves = 6, .doubles = false, .whole_self_test = false, .lanes = true};
 
+/* Names of types and of functions for one number, for lanes of vehicles, for vectors of so many lanes. */
+static const struct {
+    int width;
+    const char *real, *function;
+} width_name[] = {{2, "gic_lane_2", "LANE_2"},
+                  {4, "gic_lane_4", "LANE_4"},
+                  {8, "gic_lane_8", "LANE_8"},
+                  {16, "gic_lane_16", "LANE_16"}};
+
+/* Of a style without width, or of vectors of so many. */
+static const char *real_name(const Style *style, int width)
+{
+    for (size_t i = 0; i < sizeof width_name / sizeof *width_name; ++i)
+        if (width_name[i].width == width)
+            return width_name[i].real;
+    return style->lanes ? "gic_lane" : "gic_real";
+}
+
 const char *style_real(const Style *style)
 {
-    return style->lanes ? "gic_lane" : "gic_real";
+    return real_name(style, style->width);
 }
 
 /* Binding strength of a node's text. */
@@ -44,6 +62,27 @@ typedef struct Emitter {
     int *temporary; /* [nodes] number of its temporary, 0: none yet */
     int temporaries;
 } Emitter;
+
+/* Lanes of what a node becomes; 0: one number, or one of each vehicle. */
+static int width_of(const Emitter *m, Ex e)
+{
+    return m->style->width ? m->style->width : m->dag->node[e].wide;
+}
+
+/* Is it a vector, of whatever? */
+static bool is_vector(const Emitter *m, Ex e)
+{
+    return m->style->lanes || m->dag->node[e].wide;
+}
+
+/* The functions of vectors of that width begin so. */
+static const char *function_name(int width)
+{
+    for (size_t i = 0; i < sizeof width_name / sizeof *width_name; ++i)
+        if (width_name[i].width == width)
+            return width_name[i].function;
+    return "LANE";
+}
 
 /* The shortest of 15 to 17 digits that reads back bit-exactly, between two texts. */
 static const char *number_text(Pool *pool, const char *before, double value, const char *after)
@@ -130,23 +169,52 @@ static int constant_slot(Emitter *m, Ex e)
 
 static void write_text(Emitter *m, Text *line, Ex e, int strength);
 
-/* Text of a node where a number of the type of temporaries must stand. */
-static void write_whole(Emitter *m, Text *line, Ex e)
+/* Must a node be spread over the lanes of a vector to be one? Constants of vectors have a number a lane already. */
+static bool must_spread(const Emitter *m, Ex e)
 {
-    bool spread = m->style->lanes && m->dag->node[e].level < LEVEL_VARIABLE;
-    text_print(line, spread ? "LANE(" : "");
+    const Node *node = &m->dag->node[e];
+    if (m->style->lanes)
+        return node->level < LEVEL_VARIABLE && !(m->style->width && node->op == OP_CONSTANT);
+    return !node->wide;
+}
+
+/* Text of a node where a vector of `width` lanes must stand, with `vector`; else one number. */
+static void write_whole(Emitter *m, Text *line, Ex e, bool vector, int width)
+{
+    bool spread = vector && must_spread(m, e);
+    if (spread)
+        text_print(line, "%s(", function_name(width));
     write_text(m, line, e, 0);
     text_print(line, spread ? ")" : "");
 }
 
 /* The functions of lanes are called as those of numbers are: LANE_SQRT for GIC_SQRT. */
-static const char *form_text(const Emitter *m, Op op, Text *line)
+static const char *form_text(const Emitter *m, Ex e, Text *line)
 {
+    const Op op = (Op)m->dag->node[e].op;
     const char *text = op_form[op].text;
-    if (!m->style->lanes || strncmp(text, "GIC_", 4) != 0)
-        return m->style->lanes && op == OP_POSITIVE ? "LANE_POSITIVE(%0, %1, %2)" : text;
-    text_print(line, "LANE");
+    if (!is_vector(m, e))
+        return text;
+    if (op == OP_POSITIVE) {
+        text_print(line, "%s", function_name(width_of(m, e)));
+        return "_POSITIVE(%0, %1, %2)";
+    }
+    if (strncmp(text, "GIC_", 4) != 0)
+        return text;
+    text_print(line, "%s", function_name(width_of(m, e)));
     return text + 3;
+}
+
+/* A number of a known body where lanes are subsets: one for all, or a row of its vectors. */
+static void write_input(const Emitter *m, Text *line, const char *name)
+{
+    int known, index;
+    if (!m->style->known_stride || sscanf(name, "m%d[%d]", &known, &index) != 2)
+        text_print(line, "%s", name);
+    else if (m->style->known_stride[known] < 0)
+        text_print(line, "%s(m%d[%d])", function_name(m->style->width), known, index * -m->style->known_stride[known]);
+    else
+        text_print(line, "m%d[%d]", known, index * (m->style->known_stride[known] / m->style->width));
 }
 
 /* Text of a node within an expression that binds with `strength`. Recursion is as deep as one line's text. */
@@ -166,7 +234,18 @@ static void write_text(Emitter *m, Text *line, Ex e, int strength)
         return;
     }
     if (node->op == OP_INPUT) {
-        text_print(line, "%s", node->name);
+        write_input(m, line, node->name);
+        return;
+    }
+    if (node->op == OP_LANE) {
+        write_text(m, line, node->arg[0], STRENGTH_ATOM);
+        text_print(line, "[%d]", (int)node->arg[1]);
+        return;
+    }
+    if (node->op == OP_LANE_SUM) {
+        text_print(line, "%s_SUM(", function_name(width_of(m, node->arg[0])));
+        write_text(m, line, node->arg[0], 0);
+        text_print(line, ")");
         return;
     }
     if (node->op == OP_ROAD_PART) {
@@ -174,22 +253,25 @@ static void write_text(Emitter *m, Text *line, Ex e, int strength)
         return;
     }
     if (node->op == OP_TABLE) {
-        text_print(line, "%s(&table[%d], ", m->style->lanes ? "LANE_TABLE" : "gic_table_value", (int)node->arg[1]);
-        write_whole(m, line, node->arg[0]);
+        if (is_vector(m, e))
+            text_print(line, "%s_TABLE(&table[%d], ", function_name(width_of(m, e)), (int)node->arg[1]);
+        else
+            text_print(line, "gic_table_value(&table[%d], ", (int)node->arg[1]);
+        write_whole(m, line, node->arg[0], is_vector(m, e), width_of(m, e));
         text_print(line, ")");
         return;
     }
     int own = strength_of(node);
     if (own < strength)
         text_print(line, "(");
-    for (const char *s = form_text(m, node->op, line); *s; ++s) {
+    for (const char *s = form_text(m, e, line); *s; ++s) {
         if (*s != '%') {
             text_add(line, s, 1);
             continue;
         }
         int which = *++s - '0';
         if (own == STRENGTH_ATOM) {
-            write_whole(m, line, node->arg[which]);
+            write_whole(m, line, node->arg[which], is_vector(m, e), width_of(m, e));
             continue;
         }
         /* the right operand keeps its parentheses: a + (b + c) is not (a + b) + c */
@@ -205,19 +287,24 @@ static void write_statement(Emitter *m, Ex e)
     const Node *node = &m->dag->node[e];
     Text line = {.pool = m->dag->pool};
     int number = m->temporaries + 1;
+    const int width = width_of(m, e);
+    const char *real = real_name(m->style, width);
     if (node->op == OP_ROAD) {
-        text_print(&line, "%s road%d[3];\n%*s", style_real(m->style), number, m->indent, "");
-        text_print(&line, m->style->lanes ? "NEED(LANE_ROAD(" : "if (!road_height(self, time, ");
-        write_whole(m, &line, node->arg[0]);
+        text_print(&line, "%s road%d[3];\n%*s", real, number, m->indent, "");
+        if (width)
+            text_print(&line, "if (!%s_ROAD(", function_name(width));
+        else
+            text_print(&line, m->style->lanes ? "NEED(LANE_ROAD(" : "if (!road_height(self, time, ");
+        write_whole(m, &line, node->arg[0], is_vector(m, e), width);
         text_print(&line, ", ");
-        write_whole(m, &line, node->arg[1]);
+        write_whole(m, &line, node->arg[1], is_vector(m, e), width);
         text_print(&line, ", road%d)", number);
         if (m->style->lanes)
             text_print(&line, ", GIC_ERROR_ROAD);");
         else
             text_print(&line, ")\n%*sreturn GIC_ERROR_ROAD;", m->indent + 4, "");
     } else {
-        text_print(&line, "const %s t%d = ", style_real(m->style), number);
+        text_print(&line, "const %s t%d = ", real, number);
         write_text(m, &line, e, 0);
         text_print(&line, ";");
     }
@@ -254,7 +341,20 @@ static void write_check(Emitter *m, const Check *check)
 {
     Text line = {.pool = m->dag->pool};
     write_temporaries(m, check->value);
-    write_whole(m, &line, check->value);
+    const int width = width_of(m, check->value);
+    write_whole(m, &line, check->value, is_vector(m, check->value), width);
+    if (width) {
+        const char *function = function_name(width);
+        const char *value = check->magnitude ? pool_print(m->dag->pool, "%s_FABS(%s)", function, line.s) : line.s;
+        const char *least = literal_text(m, check->least);
+        if (m->style->width) {
+            text_print(m->out, "%*s%s_NEED(%s > %s, %s);\n", m->indent, "", function, value, least, check->status);
+        } else {
+            text_print(m->out, "%*sif (!%s_EVERY(%s > %s))\n", m->indent, "", function, value, least);
+            text_print(m->out, "%*sreturn %s;\n", m->indent + 4, "", check->status);
+        }
+        return;
+    }
     if (m->style->lanes) {
         text_print(m->out, check->magnitude ? "%*sNEED(LANE_FABS(%s) > %s, %s);\n" : "%*sNEED(%s > %s, %s);\n",
                    m->indent, "", line.s, literal_text(m, check->least), check->status);
@@ -298,7 +398,7 @@ void block_emit(Text *out, const Block *block, const Style *style, Constants *co
             write_statement(&m, store->value);
         }
         text_print(&stores, "%*s%s = ", indent, "", store->target);
-        write_whole(&m, &stores, store->value);
+        write_whole(&m, &stores, store->value, style->lanes, style->width);
         text_print(&stores, ";\n");
     }
     if (stores.s)

@@ -191,7 +191,7 @@ static Ex constant_or_literal(Dag *dag, double *sample)
     }
     if (same)
         return ex_literal(dag, sample[0]);
-    return intern(dag, &(Node){.op = OP_CONSTANT, .level = LEVEL_CONSTANT}, sample);
+    return intern(dag, &(Node){.op = OP_CONSTANT, .level = LEVEL_CONSTANT, .wide = (uint8_t)dag->lanes}, sample);
 }
 
 Ex ex_constant(Dag *dag, const double *value)
@@ -210,6 +210,36 @@ Ex ex_input(Dag *dag, const char *name, const double *sample)
     return intern(dag, &(Node){.op = OP_INPUT, .level = LEVEL_VARIABLE, .name = name}, sample ? sample : zero);
 }
 
+Ex ex_vector(Dag *dag, const char *text)
+{
+    double zero[dag->samples];
+    memset(zero, 0, sizeof zero);
+    return intern(dag, &(Node){.op = OP_INPUT, .level = LEVEL_VARIABLE, .wide = (uint8_t)dag->lanes, .name = text},
+                  zero);
+}
+
+/* From a vector to one number. */
+static Ex narrow(Dag *dag, Op op, Ex vector, int lane)
+{
+    double zero[dag->samples];
+    memset(zero, 0, sizeof zero);
+    return intern(dag, &(Node){.op = (uint8_t)op, .level = LEVEL_VARIABLE, .arg = {vector, (Ex)lane}}, zero);
+}
+
+Ex ex_lane(Dag *dag, Ex vector, int lane)
+{
+    if (dag->node[vector].op == OP_CONSTANT)
+        return ex_literal(dag, ex_value(dag, vector, lane * (dag->samples / dag->members)));
+    return dag->node[vector].wide ? narrow(dag, OP_LANE, vector, lane) : vector;
+}
+
+Ex ex_lane_sum(Dag *dag, Ex vector)
+{
+    if (dag->node[vector].wide)
+        return narrow(dag, OP_LANE_SUM, vector, 0);
+    return ex_mul(dag, ex_literal(dag, dag->lanes), vector);
+}
+
 void ex_set_sample(Dag *dag, Ex input, int sample, double value)
 {
     dag->value[(size_t)input * (size_t)dag->samples + (size_t)sample] = value;
@@ -219,9 +249,12 @@ Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c)
 {
     Node node = {.op = (uint8_t)op, .arg = {a, b, c}};
     int arity = op_arity[op];
-    for (int i = 0; i < arity; ++i)
+    for (int i = 0; i < arity; ++i) {
         if (dag->node[node.arg[i]].level > node.level)
             node.level = dag->node[node.arg[i]].level;
+        if (dag->node[node.arg[i]].wide)
+            node.wide = (uint8_t)dag->lanes;
+    }
     if (op == OP_ROAD || op == OP_ROAD_PART || op == OP_FRICTION || op == OP_TABLE)
         node.level = LEVEL_VARIABLE;
     double sample[dag->samples];
@@ -441,7 +474,8 @@ const bool *dag_needed(const Dag *dag, const Ex *root, int roots)
     return mark_needed(dag, root, roots, NULL);
 }
 
-static Count count_marked(const Dag *dag, const bool *needed)
+/* wide_alone: of the operations on vectors alone. */
+static Count count_marked(const Dag *dag, const bool *needed, bool wide_alone)
 {
     static const char kind[OP_COUNT] = {
 #define OP_KIND(name, arity, text, counted) counted[0],
@@ -451,8 +485,11 @@ static Count count_marked(const Dag *dag, const bool *needed)
     Count count = {0};
     for (int e = 0; e < dag->nodes; ++e) {
         const Node *node = &dag->node[e];
-        if (!needed[e] || node->level < LEVEL_VARIABLE)
+        if (!needed[e] || node->level < LEVEL_VARIABLE || (wide_alone && !node->wide))
             continue;
+        if (node->op == OP_LANE_SUM) /* by halves */
+            for (int lanes = dag->lanes; lanes > 1; lanes /= 2)
+                ++count.add;
         switch (kind[node->op]) {
         case 'a': ++count.add; break;
         case 'm': ++count.multiply; break;
@@ -467,7 +504,12 @@ static Count count_marked(const Dag *dag, const bool *needed)
 
 Count dag_count(const Dag *dag, const Ex *root, int roots)
 {
-    return count_marked(dag, dag_needed(dag, root, roots));
+    return count_marked(dag, dag_needed(dag, root, roots), false);
+}
+
+Count dag_count_wide(const Dag *dag, const Ex *root, int roots)
+{
+    return count_marked(dag, dag_needed(dag, root, roots), true);
 }
 
 Count dag_count_above(const Dag *dag, const Ex *root, int roots, const Ex *given, int givens)
@@ -479,5 +521,5 @@ Count dag_count_above(const Dag *dag, const Ex *root, int roots, const Ex *given
         if (node->op == OP_NEG) /* a sum takes what is under the sign */
             there[node->arg[0]] = true;
     }
-    return count_marked(dag, mark_needed(dag, root, roots, there));
+    return count_marked(dag, mark_needed(dag, root, roots, there), false);
 }

@@ -35,6 +35,19 @@ Recovery recovery_of(const char *name)
     return (Recovery)i;
 }
 
+void formulation_blocks(Pool *pool, Formulation *f)
+{
+    const Plan *plan = f->plan;
+    const bool reduced = plan->solve == SOLVE_REDUCED;
+    f->dynamics = (reduced ? dynamics_block : augmented_block)(whole_new(pool, plan));
+    f->outputs = outputs_block(whole_new(pool, plan));
+    f->poses = poses_block(whole_new(pool, plan));
+    f->inverse = inverse_block(whole_new(pool, plan));
+    f->energy = energy_block(whole_new(pool, plan));
+    f->wrenches = reduced ? wrenches_block(whole_new(pool, plan)) : NULL;
+    f->wheels = f->model->fast_states ? wheels_formulate(pool, plan) : NULL;
+}
+
 const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery)
 {
     double(*origin)[3] = reference_points(pool, model, sequence);
@@ -47,14 +60,8 @@ const Formulation *formulate(Pool *pool, const Model *model, const Sequence *seq
                        .sequence = sequence,
                        .sampling = sampling,
                        .plan = plan,
-                       .hash = model_hash(pool, model, sequence),
-                       .dynamics = (solve == SOLVE_AUGMENTED ? augmented_block : dynamics_block)(whole_new(pool, plan)),
-                       .outputs = outputs_block(whole_new(pool, plan)),
-                       .poses = poses_block(whole_new(pool, plan)),
-                       .inverse = inverse_block(whole_new(pool, plan)),
-                       .energy = energy_block(whole_new(pool, plan)),
-                       .wrenches = solve == SOLVE_REDUCED ? wrenches_block(whole_new(pool, plan)) : NULL,
-                       .wheels = model->fast_states ? wheels_formulate(pool, plan) : NULL};
+                       .hash = model_hash(pool, model, sequence)};
+    formulation_blocks(pool, f);
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
         f->known_most = subset->knowns > f->known_most ? subset->knowns : f->known_most;

@@ -326,13 +326,24 @@ void write_class_constants(Generation *g, Text *out)
                     &g->constants[g->class], member);
 }
 
+/* Are the members of a class solved side by side? */
+static bool in_lanes(const Generation *g, int class)
+{
+    return g->plan->lanes && g->plan->class_lanes[class];
+}
+
 static void write_classes(Generation *g, Text *out)
 {
+    if (g->plan->lanes)
+        write_lane_links(g, out);
     for (g->class = 0; g->class < g->sequence->classes; ++g->class) {
         Text body = {.pool = g->pool};
         const char *way = g->plan->formula[g->class]->closed ? "closed.c.in" : "subset.c.in";
-        template_expand(g->pool, &body, g->templates, way, g->model->name, g->sequence->class[g->class].name,
-                        insert_subset, g);
+        if (in_lanes(g, g->class))
+            write_lane_class(g, out);
+        else
+            template_expand(g->pool, &body, g->templates, way, g->model->name, g->sequence->class[g->class].name,
+                            insert_subset, g);
         template_expand(g->pool, &body, g->templates, "residual.c.in", g->model->name,
                         g->sequence->class[g->class].name, insert_subset, g);
         if (g->plan->formula[g->class]->react.stores)
@@ -347,10 +358,56 @@ static void write_classes(Generation *g, Text *out)
 /* ---- recovery
  * ------------------------------------------------------------------------------------------------------------- */
 
+/* Copies of numbers that stand in rows: of knowns, then of the subset itself. */
+static void write_rooms(Generation *g, Text *out, int indent)
+{
+    int most = 1;
+    for (int c = 0; c < g->sequence->classes; ++c) {
+        const Layout *layout = &g->plan->formula[c]->layout;
+        const int size[] = {layout->bodies * layout->motion_size, layout->start_size};
+        for (int i = 0; i < 2; ++i)
+            most = size[i] > most ? size[i] : most;
+    }
+    if (!g->plan->lanes)
+        return;
+    line(out, indent, "gic_real room[%s_KNOWN_ROOM + 2][%d];", g->upper, most);
+    line(out, indent, "(void)room;");
+}
+
+static const char *room_text(const Generation *g, int index, const char *from)
+{
+    return pool_print(g->pool, "room[%s%s%d]", from, *from ? " + " : "", index);
+}
+
+static const char *known_text(const Generation *g, const Subset *subset, int i)
+{
+    const int owner = g->sequence->body_subset[subset->known[i]];
+    const Formula *formula = g->plan->formula[g->sequence->subset[owner].class];
+    return alone_text(g, room_text(g, i, ""), "self->motion", g->plan->motion_offset[subset->known[i]],
+                      g->plan->stride[owner], formula->layout.motion_size);
+}
+
 static void write_knowns(Generation *g, Text *out, int indent, const Subset *subset)
 {
     for (int i = 0; i < subset->knowns; ++i)
-        line(out, indent, "links.known[%d] = self->motion + %d;", i, g->plan->motion_offset[subset->known[i]]);
+        line(out, indent, "links.known[%d] = %s;", i, known_text(g, subset, i));
+}
+
+/* Motion of a subset's bodies, and its start. */
+static const char *motion_text(const Generation *g, int s)
+{
+    const Subset *subset = &g->sequence->subset[s];
+    const Layout *layout = &g->plan->formula[subset->class]->layout;
+    return alone_text(g, room_text(g, 0, pool_print(g->pool, "%s_KNOWN_ROOM", g->upper)), "self->motion",
+                      g->plan->motion_offset[subset->body[0]], g->plan->stride[s],
+                      layout->bodies * layout->motion_size);
+}
+
+static const char *start_text(const Generation *g, int s)
+{
+    const Layout *layout = &g->plan->formula[g->sequence->subset[s].class]->layout;
+    return alone_text(g, room_text(g, 1, pool_print(g->pool, "%s_KNOWN_ROOM", g->upper)), "start",
+                      g->plan->start_offset[s], g->plan->stride[s], layout->start_size);
 }
 
 /* The solution of a subset is kept where it is for the same numbers; what the start has of it moves on. Returns the
@@ -373,10 +430,15 @@ static int open_kept(Generation *g, Text *out, int indent, const Subset *subset,
 static void write_calls(Generation *g, Text *out, int indent)
 {
     const Sequence *sequence = g->sequence;
+    write_rooms(g, out, indent);
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
         if (subset->class < 0)
             continue;
+        if (in_lanes(g, subset->class)) {
+            write_lane_call(g, out, indent, s);
+            continue;
+        }
         const Class *class = &sequence->class[subset->class];
         const bool closed = g->plan->formula[subset->class]->closed;
         const bool steady = narrowing_steady(g->formulation->narrowing, s), keeps = !steady && plan_keeps(g->plan, s);
@@ -390,8 +452,8 @@ static void write_calls(Generation *g, Text *out, int indent)
         if (keeps)
             indent = open_kept(g, out, indent, subset, s);
         for (int i = 0; i < subset->knowns; ++i)
-            line(out, indent, "links->known[%d] = self->motion + %d; /* %s */", i,
-                 g->plan->motion_offset[subset->known[i]], g->model->body[subset->known[i]].name);
+            line(out, indent, "links->known[%d] = %s; /* %s */", i, known_text(g, subset, i),
+                 g->model->body[subset->known[i]].name);
         for (int j = 0; j < subset->deps; ++j) {
             line(out, indent, "links->x[%d] = start[%d]; /* %s */", j, subset->dep[j],
                  g->model->coordinate[subset->dep[j]].name);
@@ -418,6 +480,7 @@ static void write_calls(Generation *g, Text *out, int indent)
 static void write_residuals(Generation *g, Text *out, int indent)
 {
     const Sequence *sequence = g->sequence;
+    write_rooms(g, out, indent);
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
         if (subset->class < 0)
@@ -428,8 +491,8 @@ static void write_residuals(Generation *g, Text *out, int indent)
             line(out, indent, "links.x[%d] = start[%d];", j, subset->dep[j]);
         if (g->plan->formula[subset->class]->derived)
             line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
-        line(out, indent, "one = %s_residual_%s(%s_k_%s[%d], &links, self->motion + %d);", g->model->name, class->name,
-             g->model->name, class->name, class_place(class, s), g->plan->motion_offset[subset->body[0]]);
+        line(out, indent, "one = %s_residual_%s(%s_k_%s[%d], &links, %s);", g->model->name, class->name, g->model->name,
+             class->name, class_place(class, s), motion_text(g, s));
         line(out, indent, "largest = GIC_MAX(largest, one);");
     }
 }
@@ -440,6 +503,7 @@ static void write_react_calls(Generation *g, Text *out, int indent)
     const Sequence *sequence = g->sequence;
     const Plan *plan = g->plan;
     const bool *needed = reactions_needed(g->pool, g->model, sequence);
+    write_rooms(g, out, indent);
     for (int s = sequence->subsets - 1; s >= 0; --s) {
         const Subset *subset = &sequence->subset[s];
         if (subset->class < 0 || !needed[s])
@@ -456,9 +520,9 @@ static void write_react_calls(Generation *g, Text *out, int indent)
             line(out, indent, "links.x[%d] = start[%d];", j, subset->dep[j]);
         if (plan->formula[subset->class]->derived)
             line(out, indent, "links.derived = self->derived + %d;", plan->derived_offset[s]);
-        line(out, indent, "%s_react_%s(%s_k_%s[%d], &links, start + %d, self->motion + %d, lambda + %d, onto);",
-             g->model->name, class->name, g->model->name, class->name, class_place(class, s), plan->start_offset[s],
-             plan->motion_offset[subset->body[0]], plan->multiplier_offset[subset->body[0]]);
+        line(out, indent, "%s_react_%s(%s_k_%s[%d], &links, %s, %s, lambda + %d, onto);", g->model->name, class->name,
+             g->model->name, class->name, class_place(class, s), start_text(g, s), motion_text(g, s),
+             plan->multiplier_offset[subset->body[0]]);
     }
 }
 
@@ -489,14 +553,19 @@ static void write_design(Generation *g, Text *out, int indent)
         for (int b = 0; plan_follows(g->plan, s) && b < subset->bodies; ++b) {
             double q[7];
             body_design(g->formulation, subset->body[b], q);
-            text_print(out, "%*s{%d, {", indent, "", g->plan->start_offset[s] + 7 * b);
+            text_print(out, "%*s{%d, ", indent, "", g->plan->start_offset[s] + 7 * b * g->plan->stride[s]);
+            if (g->plan->lanes)
+                text_print(out, "%d, ", g->plan->stride[s]);
+            text_print(out, "{");
             for (int i = 0; i < 7; ++i)
                 text_print(out, "%s%s", i ? ", " : "", emit_number(g->pool, q[i]));
             text_print(out, "}}, /* %s */\n", g->model->body[subset->body[b]].name);
         }
     }
     if (!followed_bodies(g->plan))
-        line(out, indent, "{0, {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}}");
+        line(out, indent,
+             g->plan->lanes ? "{0, 1, {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}}"
+                            : "{0, {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}}");
 }
 
 static void write_initial(Generation *g, Text *out, int indent)
@@ -620,6 +689,14 @@ void insert_code(void *context, const char *name, Text *out, int indent)
             line(out, 0, "#include %s\n", quoted(g->pool, g->header));
     } else if (!strcmp(name, "bounds")) {
         insert_template(g, out, "bounds.c.in");
+        if (g->plan->lanes)
+            write_lane_types(g, out);
+    } else if (!strcmp(name, "design stride")) {
+        if (g->plan->lanes)
+            line(out, indent, "int stride; /* from one number to the next */");
+    } else if (!strcmp(name, "design start")) {
+        line(out, indent, "self->start[0][%s_design[body].place + i%s] = %s_design[body].q[i];", g->model->name,
+             g->plan->lanes ? pool_print(g->pool, " * %s_design[body].stride", g->model->name) : "", g->model->name);
     } else if (!strcmp(name, "classes")) {
         write_classes(g, out);
     } else if (!strcmp(name, "pieces")) {

@@ -40,6 +40,15 @@ void insert_subset(void *context, const char *name, Text *out, int indent);
 void write_class_constants(Generation *g, Text *out);
 /* Which member of a class a subset is. */
 
+/* generate_lanes.c: of a plan in lanes. Vectors; links of subsets side by side; the function of class g->class; its
+ * call, where a subset is the first of its row. */
+void write_lane_types(Generation *g, Text *out);
+void write_lane_links(Generation *g, Text *out);
+void write_lane_class(Generation *g, Text *out);
+void write_lane_call(const Generation *g, Text *out, int indent, int subset);
+/* Numbers of one subset as an array without gaps: where they stand, or copied to `room`. */
+const char *alone_text(const Generation *g, const char *room, const char *array, int offset, int stride, int count);
+
 /* generate_tables.c: what the descriptor points to. */
 void write_tables(Generation *g, Text *out);
 

@@ -103,7 +103,9 @@ typedef uint32_t Ex;
     X(OP_TABLE, 1, "", "function") \
     X(OP_ROAD, 2, "", "function") \
     X(OP_ROAD_PART, 1, "", "") \
-    X(OP_FRICTION, 2, "road_friction(self, time, %0, %1)", "function")
+    X(OP_FRICTION, 2, "road_friction(self, time, %0, %1)", "function") \
+    X(OP_LANE, 1, "", "") \
+    X(OP_LANE_SUM, 1, "LANE_SUM(%0)", "")
 
 typedef enum Op {
 #define OP_ENUM(name, arity, text, counted) name,
@@ -117,7 +119,9 @@ typedef enum Level { LEVEL_LITERAL, LEVEL_CONSTANT, LEVEL_VARIABLE } Level;
 
 typedef struct Node {
     uint8_t op, level;
-    Ex arg[3];        /* OP_ROAD_PART: arg[1] is 0, 1 or 2 for h, dh/dx, dh/dy; OP_TABLE: arg[1] is the table's index */
+    uint8_t wide;     /* lanes of a vector; 0: one number */
+    Ex arg[3];        /* OP_ROAD_PART: arg[1] is 0, 1 or 2 for h, dh/dx, dh/dy; OP_TABLE: arg[1] is the table's index;
+                         OP_LANE: arg[1] is the lane */
     const char *name; /* OP_INPUT: the C expression that reads it */
 } Node;
 
@@ -126,6 +130,7 @@ typedef struct Node {
 typedef struct Dag {
     Pool *pool;
     int members, samples;
+    int lanes; /* of vectors, one a member: constants are such; 0: there are none */
     int nodes, room;
     Node *node;
     double *value; /* [nodes][samples] */
@@ -159,6 +164,11 @@ double ex_value(const Dag *dag, Ex e, int sample);
 void ex_set_sample(Dag *dag, Ex input, int sample, double value);
 /* Recompute samples first .. first + count - 1 of every node after inputs changed. */
 void dag_evaluate(Dag *dag, int first, int count);
+/* A vector read from memory by a C expression, of a graph with lanes; one lane of a vector; the sum of all. What is no
+ * vector is the same in all lanes. */
+Ex ex_vector(Dag *dag, const char *text);
+Ex ex_lane(Dag *dag, Ex vector, int lane);
+Ex ex_lane_sum(Dag *dag, Ex vector);
 /* What an operation does to numbers. */
 double op_value(Op op, double a, double b, double c);
 /* sin and cos without libm: the same digits on every machine. */
@@ -175,6 +185,8 @@ typedef struct Count {
 } Count;
 
 Count dag_count(const Dag *dag, const Ex *root, int roots);
+/* Of these the ones on vectors. */
+Count dag_count_wide(const Dag *dag, const Ex *root, int roots);
 /* The same where some nodes are given. */
 Count dag_count_above(const Dag *dag, const Ex *root, int roots, const Ex *given, int givens);
 /* [nodes] which nodes are needed for some roots. */
@@ -284,8 +296,8 @@ enum {
 
 /* The base itself: at rest at the origin. */
 void motion_base(Dag *dag, Motion *motion);
-/* A motion read from memory at the C expression `array` ("m0"), numbers from `offset` on. */
-void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int deps);
+/* A motion read from memory at the C expression `array` ("m0"), one number every `stride` from `offset` on. */
+void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int stride, int deps);
 /* The number at a place in memory. */
 Ex *motion_number(Motion *motion, int place);
 /* The same at rest: position and rotation alone. */
@@ -380,6 +392,8 @@ void block_store(Block *block, Ex value, const char *format, ...) __attribute__(
 void block_check(Block *block, Ex value, bool magnitude, double least, const char *status);
 void block_loads(Block *block, const Ex *load, int count);
 Count block_count(const Block *block);
+/* Of these the operations on vectors. */
+Count block_count_wide(const Block *block);
 /* Of these operations those that are left where its loads are given. */
 Count block_count_above_loads(const Block *block);
 /* All inputs that it reads, by name. */
@@ -478,8 +492,12 @@ typedef struct Plan {
     Solve solve;
     Formula **formula; /* [classes] */
     const double (*origin)[3];
+    int lanes;                          /* of vectors at most, of a plan in lanes; 0: numbers one by one */
+    int pack;                           /* of these in the equations of motion; 0: none */
+    int *class_lanes;                   /* [classes] of those that are solved side by side; 0: one by one */
     int *start_offset, *inertia_offset; /* [subsets] */
     int *motion_offset;                 /* [bodies] */
+    int *stride;                        /* [subsets] from one of its numbers to the next, in all three */
     int multipliers;                    /* kept for outputs; 0: none needs them */
     int *multiplier_offset;             /* [bodies] six places a body; those of a subset's bodies are its equations' */
     int *derived_offset;                /* [subsets] where d[] begins in derived[] */
@@ -694,6 +712,15 @@ typedef struct Formulation {
 /* From an assembled model. Models that can't be formulated end in diag_fail. */
 const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery);
 
+/* The blocks of a formulation, from its plan. */
+void formulation_blocks(Pool *pool, Formulation *f);
+
+/* lanes.c: the same formulation for code that solves the members of a class side by side in vectors of up to `most`
+ * lanes, a power of 2: their numbers stand in rows, one lane a column. */
+const Formulation *formulation_lanes(Pool *pool, const Formulation *formulation, int most);
+/* How many rows of members a class has; where it has no lanes, how many members. */
+int class_rows(const Plan *plan, int class);
+
 /* Are there reactions to find after the accelerations? The augmented form has them already. */
 bool formulation_reacts(const Formulation *f);
 
@@ -726,6 +753,9 @@ typedef struct Style {
     bool doubles;         /* numbers are plain: 0.5; else of either type: R(0.5) */
     bool whole_self_test; /* else it measures constraints alone */
     bool lanes; /* numbers are vectors with one vehicle a lane: a check that fails concerns its lanes, and goes on */
+    int width;  /* with `lanes`: they are vectors of so many, with one subset a lane; 0: with one vehicle a lane */
+    const int *known_stride; /* [knowns] with a width: numbers from one number of a known to the next, each a row of it;
+                              * negative: one body is the known of all lanes */
 } Style;
 
 extern const Style style_readable, style_direct, style_lanes;

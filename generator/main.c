@@ -23,7 +23,8 @@ static const char usage[] =
     "\n"
     "options:\n"
     "  -o FILE          where to write; FILE.c gets a FILE.h beside it; `-` is standard output\n"
-    "  --lanes W        with --batch: vehicles in one vector, a power of 2 up to 16 (default 4)\n"
+    "  --lanes W        alike parts of the vehicle side by side in vectors of up to W numbers, a power of 2 up to 16;\n"
+    "                   with --batch: vehicles in one vector (default 4). The code is for gcc and clang\n"
     "  --solve FORM     of the equations of motion: reduced (default) or augmented, with all multipliers\n"
     "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
     "  --scene FILE     also with --report: what the scene saves, and why\n"
@@ -86,7 +87,7 @@ static int whole_argument(const char *option, const char *word, int most)
 
 static Options read_options(int count, char **word)
 {
-    Options options = {.task = TASK_GENERATE, .batch = {.lanes = 4}};
+    Options options = {.task = TASK_GENERATE};
     for (int i = 1; i < count; ++i) {
         const char *w = word[i];
         if (!strcmp(w, "-h") || !strcmp(w, "--help")) {
@@ -144,6 +145,12 @@ static Options read_options(int count, char **word)
         usage_error("no model given", NULL);
     if (options.scene && options.task != TASK_GENERATE && options.task != TASK_REPORT)
         usage_error("--scene is for code and --report", NULL);
+    if (options.batch.lanes && options.task != TASK_GENERATE && options.task != TASK_BATCH)
+        usage_error("--lanes is for code", NULL);
+    if (options.batch.lanes && options.scene && options.task == TASK_GENERATE)
+        usage_error("--lanes and --scene are not for the same code", NULL);
+    if (!options.batch.lanes && options.task == TASK_BATCH)
+        options.batch.lanes = 4;
     return options;
 }
 
@@ -168,7 +175,8 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         generate_batch(pool, formulation, &options->batch, options->templates, pool_print(pool, "%s.h", model->name),
                        name, &c, &h);
     else
-        generate(pool, formulation, &style_readable, options->templates, name, &c, &h);
+        generate(pool, options->batch.lanes ? formulation_lanes(pool, formulation, options->batch.lanes) : formulation,
+                 &style_readable, options->templates, name, &c, &h);
     if (!strcmp(path, "-")) {
         text_add(&h, c.s, c.size);
         file_write(path, h.s, h.size);

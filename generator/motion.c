@@ -11,28 +11,43 @@ void motion_base(Dag *dag, Motion *motion)
         motion->A[4 * i] = ex_literal(dag, 1);
 }
 
-static void read_numbers(Dag *dag, const char *array, int offset, int count, Ex *out)
+/* Numbers of a motion from its `first` on. */
+typedef struct Reading {
+    Dag *dag;
+    const char *array;
+    int offset, stride;
+} Reading;
+
+static void read_numbers(const Reading *from, int first, int count, Ex *out)
 {
-    for (int i = 0; i < count; ++i)
-        out[i] = ex_input(dag, pool_print(dag->pool, "%s[%d]", array, offset + i), NULL);
+    for (int i = 0; i < count; ++i) {
+        int index = from->offset + from->stride * (first + i);
+        out[i] = ex_input(from->dag, pool_print(from->dag->pool, "%s[%d]", from->array, index), NULL);
+    }
+}
+
+static void read_pose(const Reading *from, Motion *motion)
+{
+    read_numbers(from, MOTION_C, 3, motion->c);
+    read_numbers(from, MOTION_A, 9, motion->A);
 }
 
 void motion_input_pose(Dag *dag, Motion *motion, const char *array, int offset)
 {
-    read_numbers(dag, array, offset + MOTION_C, 3, motion->c);
-    read_numbers(dag, array, offset + MOTION_A, 9, motion->A);
+    read_pose(&(Reading){dag, array, offset, 1}, motion);
 }
 
-void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int deps)
+void motion_input(Dag *dag, Motion *motion, const char *array, int offset, int stride, int deps)
 {
-    motion_input_pose(dag, motion, array, offset);
-    read_numbers(dag, array, offset + MOTION_OMEGA, 3, motion->omega);
-    read_numbers(dag, array, offset + MOTION_VELOCITY, 3, motion->velocity);
-    read_numbers(dag, array, offset + MOTION_ALPHA, 3, motion->alpha);
-    read_numbers(dag, array, offset + MOTION_ACCELERATION, 3, motion->acceleration);
+    const Reading from = {dag, array, offset, stride};
+    read_pose(&from, motion);
+    read_numbers(&from, MOTION_OMEGA, 3, motion->omega);
+    read_numbers(&from, MOTION_VELOCITY, 3, motion->velocity);
+    read_numbers(&from, MOTION_ALPHA, 3, motion->alpha);
+    read_numbers(&from, MOTION_ACCELERATION, 3, motion->acceleration);
     motion->deps = deps;
     motion->S = pool_alloc(dag->pool, (size_t)(6 * deps) * sizeof *motion->S);
-    read_numbers(dag, array, offset + MOTION_S, 6 * deps, motion->S);
+    read_numbers(&from, MOTION_S, 6 * deps, motion->S);
 }
 
 Ex *motion_number(Motion *motion, int place)

@@ -218,7 +218,7 @@ static void make_motions(Work *w)
     w->known = pool_alloc(w->pool, (size_t)(first->knowns + 1) * sizeof *w->known);
     for (int i = 0; i < first->knowns; ++i) {
         const Subset *own = &w->sequence->subset[w->sequence->body_subset[first->known[i]]];
-        motion_input(w->dag, &w->known[i], pool_print(w->pool, "m%d", i), 0, own->deps);
+        motion_input(w->dag, &w->known[i], pool_print(w->pool, "m%d", i), 0, 1, own->deps);
         order_by_deps(w, i);
     }
     w->q = make_inputs(w, "q", 7 * first->bodies);
@@ -666,7 +666,7 @@ static void settle_knowns(Work *w, Formula *const *formula)
 {
     for (int i = 0; i < w->first->knowns; ++i) {
         const Subset *own = &w->sequence->subset[w->sequence->body_subset[w->first->known[i]]];
-        motion_input(w->dag, &w->known[i], pool_print(w->pool, "m%d", i), 0, own->deps);
+        motion_input(w->dag, &w->known[i], pool_print(w->pool, "m%d", i), 0, 1, own->deps);
         subset_settle(w, formula, i, &w->known[i]);
         order_by_deps(w, i);
     }

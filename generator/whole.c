@@ -35,6 +35,7 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve s
                    .motion_offset = pool_alloc(pool, bodies * sizeof(int)),
                    .multiplier_offset = pool_alloc(pool, bodies * sizeof(int)),
                    .derived_offset = pool_alloc(pool, subsets * sizeof(int)),
+                   .stride = pool_alloc(pool, subsets * sizeof(int)),
                    .derived = pool_alloc(pool, sizeof(Derived)),
                    .coordinate_state = pool_alloc(pool, coordinates * sizeof(int)),
                    .coordinate_rate = pool_alloc(pool, coordinates * sizeof(int)),
@@ -51,6 +52,7 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve s
         if (subset->class < 0)
             continue;
         const Layout *layout = &formula[subset->class]->layout;
+        plan->stride[s] = 1;
         plan->start_offset[s] = plan->start_size;
         plan->inertia_offset[s] = plan->inertia_size;
         plan->start_size += layout->start_size;
@@ -121,7 +123,8 @@ static void body_motion(Whole *whole, int body)
     const Formula *formula = plan->formula[subset->class];
     const int member = class_place(&plan->sequence->class[subset->class], plan -> sequence -> body_subset[body]);
     Motion *motion = &whole->motion[body];
-    motion_input(whole->dag, motion, "m", plan->motion_offset[body], subset->deps);
+    motion_input(whole->dag, motion, "m", plan->motion_offset[body], plan->stride[plan->sequence->body_subset[body]],
+                 subset->deps);
     for (int i = 0; i < formula->layout.motion_size; ++i) {
         const Ex found = *motion_number(&formula->motion[subset_place(subset, body)], i);
         if (formula_settled(formula, found))

@@ -1,0 +1,364 @@
+/* SPDX-License-Identifier: MIT
+ * Code in which members of a class are solved side by side, in the lanes of vectors: lanes.c says where their numbers
+ * stand. */
+#include "generate.h"
+
+#include <string.h>
+
+/* ---- types ---------------------------------------------------------------------------------------------------- */
+
+/* The functions whose text depends on the number of lanes. */
+static void insert_width(void *context, const char *name, Text *out, int indent)
+{
+    const int lanes = *(const int *)context;
+    if (!strcmp(name, "spread")) {
+        text_print(out, "%*sconst gic_lane_%d all = {", indent, "", lanes);
+        for (int l = 0; l < lanes; ++l)
+            text_print(out, l ? ", x" : "x");
+        text_print(out, "};\n");
+        line(out, indent, "return all;");
+    } else if (!strcmp(name, "set")) {
+        text_print(out, "LANE_FUNCTION gic_lane_%d lane_%d_set(", lanes, lanes);
+        for (int l = 0; l < lanes; ++l)
+            text_print(out, "%sgic_real x%d", l ? ", " : "", l);
+        text_print(out, ")\n{\n    const gic_lane_%d all = {", lanes);
+        for (int l = 0; l < lanes; ++l)
+            text_print(out, "%sx%d", l ? ", " : "", l);
+        text_print(out, "};\n    return all;\n}\n\n");
+    } else if (!strcmp(name, "sum")) {
+        text_print(out, "%*sreturn ", indent, "");
+        for (int l = 0; l < lanes / 2; ++l)
+            text_print(out, "%s(x[%d] + x[%d])", l ? " + " : "", l, l + lanes / 2);
+        text_print(out, ";\n");
+    }
+}
+
+static bool has_width(const Plan *plan, int lanes)
+{
+    bool has = lanes == plan->pack;
+    for (int c = 0; c < plan->sequence->classes; ++c)
+        has = has || plan->class_lanes[c] == lanes;
+    return has;
+}
+
+void write_lane_types(Generation *g, Text *out)
+{
+    template_expand(g->pool, out, g->templates, "lanes.c.in", g->model->name, NULL, insert_width, NULL);
+    for (int lanes = 2; lanes <= g->plan->lanes; lanes *= 2)
+        if (has_width(g->plan, lanes))
+            template_expand(g->pool, out, g->templates, "lanes_width.c.in", g->model->name,
+                            pool_print(g->pool, "%d", lanes), insert_width, &lanes);
+}
+
+void write_lane_links(Generation *g, Text *out)
+{
+    for (int lanes = 2; lanes <= g->plan->lanes; lanes *= 2) {
+        if (!has_width(g->plan, lanes))
+            continue;
+        line(out, 0, "/* The same of %d subsets side by side. */", lanes);
+        line(out, 0, "typedef struct %s_links_%d {", g->model->name, lanes);
+        line(out, 4, "const gic_real *known[%s_KNOWN_ROOM];", g->upper);
+        line(out, 4,
+             "gic_lane_%d x[%s_DEPENDENCE_ROOM], rate[%s_DEPENDENCE_ROOM], change[%s_DEPENDENCE_ROOM], turn[3];", lanes,
+             g->upper, g->upper, g->upper);
+        if (g->model->tuning)
+            line(out, 4, "const gic_lane_%d *derived;", lanes);
+        line(out, 4, "int cold;");
+        line(out, 0, "} %s_links_%d;\n", g->model->name, lanes);
+    }
+}
+
+/* ---- where the lanes of a row find what they are connected to ---------------------------------------------------- */
+
+typedef struct LaneRow {
+    const Generation *g;
+    const Class *class;
+    int index, first, lanes;
+} LaneRow;
+
+/* Subset of a lane; behind the last member once more that. */
+static const Subset *row_subset(const LaneRow *row, int lane)
+{
+    int member = row->first + lane;
+    member = member < row->class->members ? member : row->class->members - 1;
+    return &row->g->sequence->subset[row->class->member[member]];
+}
+
+static int known_offset(const LaneRow *row, int lane, int known)
+{
+    return row->g->plan->motion_offset[row_subset(row, lane)->known[known]];
+}
+
+static int known_stride(const LaneRow *row, int lane, int known)
+{
+    int subset = row->g->sequence->body_subset[row_subset(row, lane)->known[known]];
+    return row->g->plan->stride[subset];
+}
+
+/* How a row finds a known: as in Style; 0: in a copy of its own. */
+static int known_reading(const LaneRow *row, int known)
+{
+    int stride = known_stride(row, 0, known), offset = known_offset(row, 0, known);
+    bool same = true, beside = stride % row->lanes == 0;
+    for (int l = 1; l < row->lanes; ++l) {
+        if (known_stride(row, l, known) != stride)
+            return 0;
+        same = same && known_offset(row, l, known) == offset;
+        beside = beside && known_offset(row, l, known) == offset + l;
+    }
+    return same ? -stride : beside ? stride : 0;
+}
+
+static LaneRow row_of(const Generation *g, int class, int index)
+{
+    int lanes = g->plan->class_lanes[class];
+    return (LaneRow){g, &g->sequence->class[class], index, lanes * index, lanes};
+}
+
+/* The same for all rows of a class. */
+static int class_reading(const Generation *g, int class, int known)
+{
+    int reading = 0;
+    for (int r = 0; r < class_rows(g->plan, class); ++r) {
+        const LaneRow row = row_of(g, class, r);
+        int one = known_reading(&row, known);
+        if (r && one != reading)
+            return 0;
+        reading = one;
+    }
+    return reading;
+}
+
+/* ---- functions of classes ------------------------------------------------------------------------------------------
+ */
+
+static bool solve_reads(const Formula *f, const char *array)
+{
+    return block_reads(&f->predict, array) || block_reads(&f->chord, array) || block_reads(&f->solve, array);
+}
+
+static void write_arguments(const Generation *g, Text *out, int indent)
+{
+    static const char *const part[] = {"x", "rate", "change"};
+    const Formula *f = g->plan->formula[g->class];
+    const Subset *first = &g->sequence->subset[g->sequence->class[g->class].member[0]];
+    const int lanes = g->style->width;
+    if (solve_reads(f, "d"))
+        line(out, indent, "const gic_lane_%d *const d = links->derived;", lanes);
+    for (int i = 0; i < first->knowns; ++i) {
+        const char *name = g->model->body[first->known[i]].name;
+        if (!solve_reads(f, pool_print(g->pool, "m%d", i)))
+            continue;
+        if (g->style->known_stride[i] < 0)
+            line(out, indent, "const gic_real *const m%d = links->known[%d]; /* %s */", i, i, name);
+        else
+            line(out, indent, "const gic_row_%d *const m%d = ROW_%d(links->known[%d]); /* %s */", lanes, i, lanes, i,
+                 name);
+    }
+    for (int i = 0; i < 3; ++i)
+        if (solve_reads(f, part[i]))
+            line(out, indent, "const gic_lane_%d *const %s = links->%s;", lanes, part[i], part[i]);
+    line(out, indent, "const gic_lane_%d *const turn = links->turn;", lanes);
+    if (solve_reads(f, "s"))
+        line(out, indent, "const gic_row_%d *const s = old + %d; /* unit velocities at the start */", lanes,
+             f->layout.start_S);
+    if (solve_reads(f, "f"))
+        line(out, indent, "const gic_row_%d *const f = old + %d; /* factors at the start */", lanes,
+             f->layout.start_factors);
+    if (!f->closed)
+        line(out, indent, "gic_row_%d q[%d];", lanes, 7 * f->layout.bodies);
+}
+
+static void insert_lane_class(void *context, const char *name, Text *out, int indent)
+{
+    Generation *g = context;
+    const Layout *layout = &g->plan->formula[g->class]->layout;
+    const char *class = g->sequence->class[g->class].name;
+    if (!strcmp(name, "solve arguments")) {
+        write_arguments(g, out, indent);
+    } else if (!strcmp(name, "kept")) {
+        line(out, indent, "enum { %s_Q = %d, %s_START = %d, %s_MOTION = %d, %s_INERTIA = %d };", class,
+             7 * layout->bodies, class, layout->start_size, class, layout->bodies * layout->motion_size, class,
+             room(layout->inertia_size));
+        line(out, indent, "struct {");
+        line(out, indent + 4, "gic_row_%d q[%s_Q], start[%s_START], motion[%s_MOTION], inertia[%s_INERTIA];",
+             g->style->width, class, class, class, class);
+        line(out, indent, "} kept;");
+    } else {
+        insert_subset(context, name, out, indent);
+    }
+}
+
+/* Copy a text with the number of lanes for LANEWIDTH. */
+static void write_with_width(Text *out, const char *s, int lanes)
+{
+    static const char word[] = "LANEWIDTH";
+    for (const char *at; (at = strstr(s, word)) != NULL; s = at + sizeof word - 1)
+        text_print(out, "%.*s%d", (int)(at - s), s, lanes);
+    text_print(out, "%s", s);
+}
+
+/* Constants of the members of a class, row by row: the same of all lanes one after another. */
+static void write_row_constants(const Generation *g, Text *out, const Constants *k)
+{
+    const Dag *dag = g->plan->formula[g->class]->dag;
+    const Class *class = &g->sequence->class[g->class];
+    const int rows = class_rows(g->plan, g->class), lanes = g->style->width, each = dag->samples / dag->members;
+    line(out, 0, "static const gic_real %s_row_%s[%d][%d][%d] = {", g->model->name, class->name, rows, room(k->count),
+         lanes);
+    for (int r = 0; r < rows; ++r) {
+        line(out, 4, "{");
+        for (int i = 0; i < room(k->count); ++i) {
+            text_print(out, "        {");
+            for (int l = 0; l < lanes; ++l) {
+                int member = r * lanes + l < class->members ? r * lanes + l : class->members - 1;
+                double value = k->count ? ex_value(dag, k->e[i], member * each) : 0;
+                text_print(out, "%s%s", l ? ", " : "", emit_number(g->pool, value));
+            }
+            text_print(out, "},\n");
+        }
+        line(out, 4, "},");
+    }
+    line(out, 0, "};\n");
+}
+
+void write_lane_class(Generation *g, Text *out)
+{
+    const Class *class = &g->sequence->class[g->class];
+    const Subset *first = &g->sequence->subset[class->member[0]];
+    const bool closed = g->plan->formula[g->class]->closed;
+    const Style *const usual = g->style;
+    const Constants alone = g->constants[g->class];
+    int stride[room(first->knowns)];
+    for (int i = 0; i < first->knowns; ++i) {
+        int reading = class_reading(g, g->class, i);
+        stride[i] = reading ? reading : g->plan->class_lanes[g->class];
+    }
+    Style style = style_lanes;
+    style.width = g->plan->class_lanes[g->class];
+    style.known_stride = stride;
+    Text body = {.pool = g->pool};
+    g->style = &style;
+    g->constants[g->class] = (Constants){0};
+    template_expand(g->pool, &body, g->templates, closed ? "lanes_closed.c.in" : "lanes_subset.c.in", g->model->name,
+                    class->name, insert_lane_class, g);
+    write_row_constants(g, out, &g->constants[g->class]); /* known now that all blocks are text */
+    write_with_width(out, body.s, style.width);
+    g->constants[g->class] = alone;
+    g->style = usual;
+}
+
+/* ---- calls
+ * ------------------------------------------------------------------------------------------------------------ */
+
+/* A number a lane, of an array. */
+static const char *numbers_text(const LaneRow *row, const char *array, const int *place)
+{
+    Pool *pool = row->g->pool;
+    bool beside = true;
+    for (int l = 1; l < row->lanes; ++l)
+        beside = beside && place[l] == place[0] + l;
+    if (beside)
+        return pool_print(pool, "lane_%d_at(%s + %d)", row->lanes, array, place[0]);
+    Text text = {.pool = pool};
+    text_print(&text, "lane_%d_set(", row->lanes);
+    for (int l = 0; l < row->lanes; ++l)
+        text_print(&text, "%s%s[%d]", l ? ", " : "", array, place[l]);
+    text_print(&text, ")");
+    return text.s;
+}
+
+static void write_known(const LaneRow *row, Text *out, int indent, int known)
+{
+    const Generation *g = row->g;
+    const Subset *first = row_subset(row, 0);
+    const char *name = g->model->body[first->known[known]].name;
+    if (class_reading(g, (int)(row->class - g->sequence->class), known)) {
+        line(out, indent, "row.known[%d] = self->motion + %d; /* %s */", known, known_offset(row, 0, known), name);
+        return;
+    }
+    int class = g->sequence->subset[g->sequence->body_subset[first->known[known]]].class;
+    int count = g->plan->formula[class]->layout.motion_size;
+    line(out, indent, "gic_lane_%d known%d[%d]; /* %s */", row->lanes, known, count, name);
+    line(out, indent, "for (i = 0; i < %d; ++i) {", count);
+    for (int l = 0; l < row->lanes; ++l)
+        line(out, indent + 4, "known%d[i][%d] = self->motion[%d + %d * i];", known, l, known_offset(row, l, known),
+             known_stride(row, l, known));
+    line(out, indent, "}");
+    line(out, indent, "row.known[%d] = (const gic_real *)known%d;", known, known);
+}
+
+static void write_coordinates(const LaneRow *row, Text *out, int indent, bool closed)
+{
+    for (int j = 0; j < row_subset(row, 0)->deps; ++j) {
+        int place[row->lanes];
+        for (int l = 0; l < row->lanes; ++l)
+            place[l] = row_subset(row, l)->dep[j];
+        line(out, indent, "row.x[%d] = %s;", j, numbers_text(row, "start", place));
+        line(out, indent, "row.rate[%d] = %s;", j, numbers_text(row, "xd", place));
+        if (!closed)
+            line(out, indent, "row.change[%d] = row.x[%d] - %s;", j, j, numbers_text(row, "old", place));
+    }
+}
+
+static void write_derived(const LaneRow *row, Text *out, int indent, int count)
+{
+    line(out, indent, "gic_lane_%d derived[%d];", row->lanes, count);
+    line(out, indent, "for (i = 0; i < %d; ++i) {", count);
+    for (int l = 0; l < row->lanes; ++l) {
+        int subset = (int)(row_subset(row, l) - row->g->sequence->subset);
+        line(out, indent + 4, "derived[i][%d] = self->derived[%d + i];", l, row->g->plan->derived_offset[subset]);
+    }
+    line(out, indent, "}");
+    line(out, indent, "row.derived = derived;");
+}
+
+void write_lane_call(const Generation *g, Text *out, int indent, int subset)
+{
+    const Plan *plan = g->plan;
+    const int c = g->sequence->subset[subset].class, place = class_place(&g->sequence->class[c], subset);
+    const LaneRow row = row_of(g, c, place / plan->class_lanes[c]);
+    const Formula *formula = plan->formula[c];
+    const char *model = g->model->name, *class = row.class->name;
+    const int members = row.class->members - row.first, lanes = row.lanes;
+    if (place != row.first)
+        return;
+    text_print(out, "%*s/* stage %d:", indent, "", g->sequence->subset[subset].stage);
+    for (int l = 0; l < lanes && l < members; ++l)
+        text_print(out, "%s %s", l ? "," : "", subset_title(g->pool, g->model, row_subset(&row, l)));
+    text_print(out, " */\n%*s{\n", indent, "");
+    indent += 4;
+    line(out, indent, "%s_links_%d row;", model, lanes);
+    line(out, indent, "int i, lane;");
+    line(out, indent, "for (i = 0; i < 3; ++i)");
+    line(out, indent + 4, "row.turn[i] = LANE_%d(links->turn[i]);", lanes);
+    line(out, indent, "row.cold = links->cold;");
+    for (int i = 0; i < row_subset(&row, 0)->knowns; ++i)
+        write_known(&row, out, indent, i);
+    write_coordinates(&row, out, indent, formula->closed);
+    if (formula->derived)
+        write_derived(&row, out, indent, formula->derived);
+    line(out, indent, "status = %s_solve_%s(self, ROW_%d(%s_row_%s[%d]), &row,", model, class, lanes, model, class,
+         row.index);
+    if (!formula->closed)
+        line(out, indent + 4, "ROW_%d(old + %d),", lanes, plan->start_offset[subset]);
+    line(out, indent + 4, "ROW_%d(start + %d), ROW_%d(self->motion + %d), ROW_%d(self->inertia + %d), %d, &lane);",
+         lanes, plan->start_offset[subset], lanes, plan->motion_offset[row_subset(&row, 0)->body[0]], lanes,
+         plan->inertia_offset[subset], members < lanes ? members : lanes);
+    line(out, indent, "if (status != GIC_OK) {");
+    text_print(out, "%*sstatic const int32_t solved[%d] = {", indent + 4, "", lanes);
+    for (int l = 0; l < lanes; ++l)
+        text_print(out, "%s%d", l ? ", " : "", (int)(row_subset(&row, l) - g->sequence->subset));
+    text_print(out, "};\n");
+    line(out, indent + 4, "self->head.subset = solved[lane];");
+    line(out, indent + 4, "return status;");
+    line(out, indent, "}");
+    line(out, indent - 4, "}");
+}
+
+const char *alone_text(const Generation *g, const char *room, const char *array, int offset, int stride, int count)
+{
+    if (stride == 1)
+        return pool_print(g->pool, "%s + %d", array, offset);
+    return pool_print(g->pool, "%s_alone(%s, %s + %d, %d, %d)", g->model->name, room, array, offset, stride, count);
+}

@@ -1,0 +1,88 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_side_by_side.sh GICGEN: code that solves alike parts of a vehicle in lanes (gicgen --lanes W) against code that
+# solves them one by one: states, rates, outputs and self-test after 200 steps, counts of corrections, and what happens
+# when one coordinate after another goes half a metre or radian too far: status, subset, and a state that has not moved.
+# The recovery has the same bits; where the equations of motion are in lanes, sums have another order, and results are
+# compared within 1e-11, or 1e-4 in single precision, which is a thousand roundings of numbers up to 100.
+gicgen=$(realpath "$1")
+root=$(cd "$(dirname "$0")/.." && pwd)
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+passed=0
+failed=0
+
+check() {
+    if [ "$1" -eq 0 ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAIL $2"
+    fi
+}
+
+mkdir "$work/alone" "$work/lanes"
+cd "$work" || exit 1
+
+# equal TOLERANCE: numbers of both courses; states after a failed step have every bit
+equal() {
+    awk -v tolerance="$1" '
+        NR == FNR { line[FNR] = $0; lines = FNR; next }
+        { split(line[FNR], other); bound = tolerance * (1 + ($3 < 0 ? -$3 : $3)) }
+        $1 ~ /^(state|rate|output)$/ && $3 - other[3] <= bound && other[3] - $3 <= bound { next }
+        $1 == "moved" && $3 - other[3] <= bound && other[3] - $3 <= bound { next }
+        $1 == "self-test" && $2 == other[2] && $3 < tolerance + 0 { next }
+        $1 == "self-test" && $2 == other[2] && $3 == other[3] { next }
+        $0 != line[FNR] { print "  " line[FNR] " but in lanes " $0; bad = 1 }
+        END { exit bad || lines != FNR || !lines }' alone/out lanes/out
+}
+
+# agrees MODEL.veh LANES OPTIONS TOLERANCE COMPILER...
+agrees() {
+    file=$1
+    lanes=$2
+    options=$3
+    tolerance=$4
+    shift 4
+    name=$(sed -n 's/^model: *//p' "$file")
+    good=0
+    # shellcheck disable=SC2086  # a list of words
+    "$gicgen" $options "$file" -o "alone/$name.c" && "$gicgen" $options --lanes "$lanes" "$file" -o "lanes/$name.c" ||
+        good=1
+    for way in alone lanes; do
+        "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -ffp-contract=off -DMODEL="${name}_model" -I$way \
+            -I"$root/runtime" "$root/tests/embed/course.c" "$way/$name.c" "$root/runtime/gic_runtime.c" -lm -o course \
+            2>err && ./course >$way/out || good=1
+    done
+    [ $good -eq 0 ] && equal "$tolerance"
+    check $? "$file --lanes $lanes $options: $* $(cat err)"
+}
+
+for model in "$root"/models/*.veh "$root/tests/tuning/car.veh"; do
+    agrees "$model" 4 '' 1e-11 gcc -std=c11 -O0
+done
+
+hmmwv=$root/models/hmmwv.veh
+agrees "$hmmwv" 2 '' 1e-11 gcc -std=c11 -O2
+agrees "$hmmwv" 8 '--recovery newton' 1e-11 gcc -std=c11 -O1
+agrees "$hmmwv" 4 '--recovery newton' 1e-11 clang -std=c11 -O1
+agrees "$hmmwv" 16 '--solve augmented' 1e-11 clang -std=c11 -O1
+agrees "$root/models/hmmwv14.veh" 4 '--recovery newton' 1e-11 gcc -std=c11 -O1 -march=native
+agrees "$hmmwv" 4 '' 1e-4 gcc -std=c11 -O1 -DGIC_FLOAT -Wdouble-promotion
+agrees "$hmmwv" 8 '' 1e-4 clang -std=c11 -O1 -DGIC_FLOAT
+for how in 'g++ -std=c++11' 'clang++ -std=c++11 -DGIC_FLOAT'; do
+    $how -x c++ -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -O1 -Ilanes -I"$root/runtime" \
+        -c lanes/hmmwv.c -o x.o 2>err
+    check $? "$how hmmwv.c: $(cat err)"
+done
+"$gicgen" --lanes 8 "$hmmwv" -o again.c && sed 's/again.h/hmmwv.h/' again.c | cmp - lanes/hmmwv.c
+check $? "the same input gives other bytes"
+printf '#undef __GNUC__\n' | cat - lanes/hmmwv.c >other.c
+! gcc -std=c11 -Ilanes -I"$root/runtime" -c other.c -o x.o 2>err && grep -q 'needs the vector extensions of gcc or clang' err
+check $? "another compiler is not told what it lacks: $(cat err)"
+"$gicgen" --lanes 3 "$hmmwv" -o three.c 2>err
+[ $? -eq 2 ] && grep -q 'lanes takes 2, 4, 8 or 16, not: 3' err
+check $? "three lanes"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
