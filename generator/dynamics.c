@@ -222,6 +222,21 @@ void whole_store_rates(Whole *whole, Block *block, const Ex *z)
         }
 }
 
+/* Those coordinates first that are alike in several parts: they are eliminated side by side. NULL: cheapest first. */
+static const int *elimination_order(const Whole *whole)
+{
+    const Plan *plan = whole->plan;
+    int *order = NULL, count = 0;
+    for (int alike = 1; plan->pack && alike >= 0; --alike) {
+        for (int i = 0; !alike && whole->model->free_base && i < 6; ++i)
+            *POOL_PUSH(whole->dag->pool, order, count) = i;
+        for (int w = 0; w < whole->model->coordinates; ++w)
+            if (plan->coordinate_unknown[w] >= 0 && (plan->coordinate_track[w] >= 0) == alike)
+                *POOL_PUSH(whole->dag->pool, order, count) = plan->coordinate_unknown[w];
+    }
+    return order;
+}
+
 Block *dynamics_block(Whole *whole)
 {
     /* A pivot this small against its diagonal entry is rounding: no inertia is left along that coordinate. */
@@ -240,7 +255,7 @@ Block *dynamics_block(Whole *whole)
     block_loads(block, loads->force, 3);
     block_loads(block, loads->along, whole->model->coordinates);
     right_hand_side(whole, &c, loads, whole_driven_accelerations(whole), z);
-    Factors *factors = linear_factor_symmetric(dag, n, M, NULL);
+    Factors *factors = linear_factor_symmetric(dag, n, M, elimination_order(whole));
     for (int k = 0; k < n; ++k) {
         Ex diagonal = M[n * factors->row[k] + factors->row[k]];
         if (dag->node[factors->pivot[k]].level == LEVEL_VARIABLE)

@@ -210,6 +210,17 @@ Ex ex_input(Dag *dag, const char *name, const double *sample)
     return intern(dag, &(Node){.op = OP_INPUT, .level = LEVEL_VARIABLE, .name = name}, sample ? sample : zero);
 }
 
+Ex ex_number(Dag *dag, double value)
+{
+    return ex_input(dag, emit_number(dag->pool, value), &value);
+}
+
+bool ex_is_number(const Dag *dag, Ex e)
+{
+    const Node *node = &dag->node[e];
+    return node->op == OP_INPUT && !strncmp(node->name, "R(", 2);
+}
+
 Ex ex_vector(Dag *dag, const char *text)
 {
     double zero[dag->samples];

@@ -39,7 +39,9 @@ void formulation_blocks(Pool *pool, Formulation *f)
 {
     const Plan *plan = f->plan;
     const bool reduced = plan->solve == SOLVE_REDUCED;
-    f->dynamics = (reduced ? dynamics_block : augmented_block)(whole_new(pool, plan));
+    Whole *whole = whole_new(pool, plan);
+    whole->open = plan->pack;
+    f->dynamics = (reduced ? dynamics_block : augmented_block)(whole);
     f->outputs = outputs_block(whole_new(pool, plan));
     f->poses = poses_block(whole_new(pool, plan));
     f->inverse = inverse_block(whole_new(pool, plan));

@@ -679,7 +679,7 @@ void insert_code(void *context, const char *name, Text *out, int indent)
                   {"energy", g->formulation->energy},     {"wrenches", g->formulation->wrenches}};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
         if (!strcmp(name, blocks[i].name)) {
-            block_emit(out, blocks[i].block, g->style, &none, indent);
+            block_emit(out, blocks[i].block, g->style, i ? &none : &g->packed, indent);
             return;
         }
     if (!strcmp(name, "banner")) {
@@ -691,6 +691,10 @@ void insert_code(void *context, const char *name, Text *out, int indent)
         insert_template(g, out, "bounds.c.in");
         if (g->plan->lanes)
             write_lane_types(g, out);
+    } else if (!strcmp(name, "lane constants")) {
+        if (g->packed.count)
+            line(out, indent, "const gic_row_%d *const k = ROW_%d(%s_lane_constant);", g->plan->pack, g->plan->pack,
+                 g->model->name);
     } else if (!strcmp(name, "design stride")) {
         if (g->plan->lanes)
             line(out, indent, "int stride; /* from one number to the next */");
@@ -715,6 +719,9 @@ void insert_code(void *context, const char *name, Text *out, int indent)
     } else if (!strcmp(name, "road")) {
         if (g->model->wheels && (!g->formulation->narrowing || g->formulation->narrowing->road))
             insert_template(g, out, "road.c.in");
+        if (g->model->wheels && g->plan->pack)
+            template_expand(g->pool, out, g->templates, "lanes_road.c.in", g->model->name,
+                            pool_print(g->pool, "%d", g->plan->pack), insert_nothing, NULL);
     } else if (!strcmp(name, "reactions")) {
         if (formulation_reacts(g->formulation))
             template_expand(g->pool, out, g->templates, "reactions.c.in", g->model->name, NULL, insert_code, g);
@@ -727,6 +734,8 @@ void insert_code(void *context, const char *name, Text *out, int indent)
                  g->model->name);
         }
     } else if (!strcmp(name, "dynamics comment")) {
+        if (g->plan->pack)
+            write_packed(g, out);
         if (g->plan->solve == SOLVE_AUGMENTED)
             text_print(out, "/* Applied forces, multipliers of all constraints once the bodies are eliminated, "
                             "accelerations.\n * rate = d state / dt; lambda: the multipliers that outputs need. */\n");

@@ -16,6 +16,7 @@ typedef struct Generation {
     const char *templates, *header, *upper;
     int class;            /* the one whose template is being expanded */
     Constants *constants; /* [classes] */
+    Constants packed;     /* of the equations of motion in lanes */
 } Generation;
 
 /* generate.c: one line of text. */
@@ -46,6 +47,8 @@ void write_lane_types(Generation *g, Text *out);
 void write_lane_links(Generation *g, Text *out);
 void write_lane_class(Generation *g, Text *out);
 void write_lane_call(const Generation *g, Text *out, int indent, int subset);
+/* What the equations of motion in lanes need in front of them. */
+void write_packed(Generation *g, Text *out);
 /* Numbers of one subset as an array without gaps: where they stand, or copied to `room`. */
 const char *alone_text(const Generation *g, const char *room, const char *array, int offset, int stride, int count);
 

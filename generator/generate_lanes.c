@@ -25,6 +25,23 @@ static void insert_width(void *context, const char *name, Text *out, int indent)
         for (int l = 0; l < lanes; ++l)
             text_print(out, "%sx%d", l ? ", " : "", l);
         text_print(out, "};\n    return all;\n}\n\n");
+    } else if (!strcmp(name, "halves") && lanes > 2) {
+        text_print(out, "/* From half as many here and half as many there. */\n");
+        text_print(out, "LANE_FUNCTION gic_lane_%d lane_%d_halves(const gic_real *x, const gic_real *y)\n{\n", lanes,
+                   lanes);
+        line(out, 0, "#if defined(__clang__) || __GNUC__ >= 12");
+        line(out, 4,
+             "typedef gic_real half __attribute__((vector_size(%d * sizeof(gic_real)), "
+             "aligned(sizeof(gic_real)), may_alias));",
+             lanes / 2);
+        text_print(out,
+                   "    return __builtin_shufflevector(*(const half *)(const void *)x, *(const half *)(const void *)y");
+        for (int l = 0; l < lanes; ++l)
+            text_print(out, ", %d", l);
+        text_print(out, ");\n#else\n    return lane_%d_set(", lanes);
+        for (int l = 0; l < lanes; ++l)
+            text_print(out, "%s%s[%d]", l ? ", " : "", l < lanes / 2 ? "x" : "y", l % (lanes / 2));
+        text_print(out, ");\n#endif\n}\n\n");
     } else if (!strcmp(name, "sum")) {
         text_print(out, "%*sreturn ", indent, "");
         for (int l = 0; l < lanes / 2; ++l)
@@ -361,4 +378,25 @@ const char *alone_text(const Generation *g, const char *room, const char *array,
     if (stride == 1)
         return pool_print(g->pool, "%s + %d", array, offset);
     return pool_print(g->pool, "%s_alone(%s, %s + %d, %d, %d)", g->model->name, room, array, offset, stride, count);
+}
+
+/* ---- equations of motion
+ * --------------------------------------------------------------------------------------------- */
+
+void write_packed(Generation *g, Text *out)
+{
+    const Dag *dag = g->formulation->dynamics->dag;
+    const int lanes = g->plan->pack;
+    Text unused = {.pool = g->pool};
+    block_emit(&unused, g->formulation->dynamics, g->style, &g->packed, 0); /* which constants it has */
+    if (!g->packed.count)
+        return;
+    line(out, 0, "static const gic_real %s_lane_constant[%d][%d] = {", g->model->name, g->packed.count, lanes);
+    for (int i = 0; i < g->packed.count; ++i) {
+        text_print(out, "    {");
+        for (int l = 0; l < lanes; ++l)
+            text_print(out, "%s%s", l ? ", " : "", emit_number(g->pool, ex_value(dag, g->packed.e[i], l)));
+        text_print(out, "},\n");
+    }
+    line(out, 0, "};\n");
 }

@@ -140,7 +140,9 @@ typedef struct Dag {
 
 Dag *dag_new(Pool *pool, int members, int samples);
 Ex ex_literal(Dag *dag, double value);
-Ex ex_constant(Dag *dag, const double *value);                 /* [members] */
+Ex ex_constant(Dag *dag, const double *value); /* [members] */
+Ex ex_number(Dag *dag, double value);          /* a literal that is never folded: an input R(value) */
+bool ex_is_number(const Dag *dag, Ex e);
 Ex ex_input(Dag *dag, const char *name, const double *sample); /* [samples], or NULL: not needed */
 Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c);                   /* unused arguments: 0 */
 Ex ex_neg(Dag *dag, Ex a);
@@ -494,6 +496,7 @@ typedef struct Plan {
     const double (*origin)[3];
     int lanes;                          /* of vectors at most, of a plan in lanes; 0: numbers one by one */
     int pack;                           /* of these in the equations of motion; 0: none */
+    int *coordinate_track;              /* [coordinates] with `pack`: which part of those alike it is of; -1: of none */
     int *class_lanes;                   /* [classes] of those that are solved side by side; 0: one by one */
     int *start_offset, *inertia_offset; /* [subsets] */
     int *motion_offset;                 /* [bodies] */
@@ -531,6 +534,7 @@ typedef struct Whole {
     Ex turn[3];                /* angular velocity of the base, base frame */
     Ex gravity[3];             /* base frame */
     Ex *x, *xd;                /* [coordinates] */
+    bool open;                 /* numbers of the model stay inputs, whatever they are, for block_pack to compare */
 } Whole;
 
 Whole *whole_new(Pool *pool, const Plan *plan);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The formulas of a model whose classes are solved in lanes. Where members of a class stand side by side, so do their
  * numbers in memory: the same number of all of them in one row, a lane a column. */
-#include "gicgen.h"
+#include "pack.h"
+
+#include <string.h>
 
 /* Vectors of so many lanes hold that many members, or several of them do. Alone: 0. */
 static int lanes_of(int members, int most)
@@ -61,11 +63,167 @@ static Plan *plan_lanes(Pool *pool, const Plan *plan, int most)
     return rows;
 }
 
+/* ---- tracks: what hangs together from the members of a class on ---------------------------------------------------
+ */
+
+/* Tracks of the subsets: the members of the largest class begin one each, and what is attached to one track alone
+ * belongs to it. */
+typedef struct Tracks {
+    int count, lanes;
+    int *of;   /* [subsets] -1: none */
+    int *slot; /* [subsets] place in its track */
+} Tracks;
+
+static int track_of_knowns(const Sequence *sequence, const Subset *subset, const int *of)
+{
+    int track = -1;
+    for (int i = 0; i < subset->knowns; ++i) {
+        int own = of[sequence->body_subset[subset->known[i]]];
+        if (own >= 0 && track >= 0 && own != track)
+            return -1;
+        track = own >= 0 ? own : track;
+    }
+    return track;
+}
+
+static Tracks find_tracks(Pool *pool, const Plan *plan)
+{
+    const Sequence *sequence = plan->sequence;
+    const Class *largest = NULL;
+    Tracks tracks = {.of = pool_alloc(pool, ((size_t)sequence->subsets + 1) * sizeof(int)),
+                     .slot = pool_alloc(pool, ((size_t)sequence->subsets + 1) * sizeof(int))};
+    for (int s = 0; s < sequence->subsets; ++s)
+        tracks.of[s] = -1;
+    for (int c = 0; c < sequence->classes; ++c)
+        if (sequence->class[c].members > (largest ? largest->members : 1))
+            largest = &sequence->class[c];
+    if (!largest)
+        return tracks;
+    tracks.count = largest->members;
+    tracks.lanes = lanes_of(tracks.count, plan->lanes);
+    int *length = pool_alloc(pool, (size_t)tracks.count * sizeof *length);
+    for (int i = 0; i < largest->members; ++i)
+        tracks.of[largest->member[i]] = i;
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        if (subset->class < 0)
+            continue;
+        const Class *class = &sequence->class[subset->class];
+        if (tracks.of[s] < 0)
+            tracks.of[s] = track_of_knowns(sequence, subset, tracks.of);
+        if (tracks.of[s] < 0 && !subset->knowns && class->members > 1 && class->members <= tracks.count)
+            for (int i = 0; i < class->members; ++i)
+                tracks.of[s] = class->member[i] == s ? i : tracks.of[s];
+        if (tracks.of[s] >= 0)
+            tracks.slot[s] = length[tracks.of[s]]++;
+    }
+    return tracks;
+}
+
+/* Kinds of inputs, and what makes one of them the same thing in another track. */
+enum { INPUT_MOTION = 1, INPUT_INERTIA, INPUT_VALUE, INPUT_RATE, INPUT_GRIP };
+
+typedef struct Inputs {
+    Pool *pool;
+    const Tracks *tracks;
+    int count;
+    LaneInput *input;
+} Inputs;
+
+static void add_input(Inputs *all, int subset, int kind, int number, const char *array, int index)
+{
+    const Tracks *tracks = all->tracks;
+    const uint64_t slot = (uint64_t)tracks->slot[subset] * 512 + (uint64_t)kind;
+    *POOL_PUSH(all->pool, all->input, all->count) = (LaneInput){
+        pool_print(all->pool, "%s[%d]", array, index), (slot << 32) + (uint64_t)number + 1, tracks->of[subset]};
+}
+
+/* Which of a track's coordinates the j-th dependence of a subset is, or which one of all. */
+static int dependence(const Inputs *all, const Plan *plan, int s, int j)
+{
+    const Sequence *sequence = plan->sequence;
+    const Tracks *tracks = all->tracks;
+    const int coordinate = sequence->subset[s].dep[j];
+    for (int o = 0; o < sequence->subsets; ++o)
+        for (int i = 0; tracks->of[o] == tracks->of[s] && i < sequence->subset[o].coordinates; ++i)
+            if (sequence->subset[o].coordinate[i] == coordinate)
+                return 2 * (8 * tracks->slot[o] + i);
+    return 2 * coordinate + 1;
+}
+
+/* Numbers that belong to a dependence, or to two. */
+static int dependent(int first, int second, int number)
+{
+    return ((first + 1) * 256 + second + 1) * 1024 + number;
+}
+
+static void add_inertia(Inputs *all, const Plan *plan, int s)
+{
+    const int deps = plan->sequence->subset[s].deps, offset = plan->inertia_offset[s], stride = plan->stride[s];
+    for (int i = 0; i < INERTIA_COORDINATE; ++i)
+        add_input(all, s, INPUT_INERTIA, i, "n", offset + stride * i);
+    for (int j = 0; j < deps; ++j) {
+        const int own = dependence(all, plan, s, j);
+        for (int i = 0; i < 7; ++i)
+            add_input(all, s, INPUT_INERTIA, dependent(own, 0, i), "n",
+                      offset + stride * (INERTIA_COORDINATE + 7 * j + i));
+        for (int k = j; k < deps; ++k) {
+            const int other = dependence(all, plan, s, k);
+            add_input(all, s, INPUT_INERTIA, dependent(own < other ? own : other, 1 + (own < other ? other : own), 0),
+                      "n", offset + stride * inertia_mass(deps, j, k));
+        }
+    }
+}
+
+static void add_motion(Inputs *all, const Plan *plan, int s, int b)
+{
+    const Subset *subset = &plan->sequence->subset[s];
+    const int offset = plan->motion_offset[subset->body[b]], stride = plan->stride[s];
+    for (int i = 0; i < MOTION_S + 6 * subset->deps; ++i) {
+        const int number = i < MOTION_S ? i : dependent(dependence(all, plan, s, (i - MOTION_S) / 6), 0, i % 6);
+        add_input(all, s, INPUT_MOTION + 8 * b, number, "m", offset + stride * i);
+    }
+}
+
+static void add_subset(Inputs *all, const Plan *plan, int s)
+{
+    const Subset *subset = &plan->sequence->subset[s];
+    for (int b = 0; b < subset->bodies; ++b)
+        add_motion(all, plan, s, b);
+    if (plan->formula[subset->class]->layout.inertia_size)
+        add_inertia(all, plan, s);
+    for (int i = 0; i < subset->coordinates; ++i) {
+        add_input(all, s, INPUT_VALUE, i, "x", subset->coordinate[i]);
+        add_input(all, s, INPUT_RATE, i, "xd", subset->coordinate[i]);
+    }
+    for (int w = 0; w < plan->model->wheels; ++w) {
+        const Wheel *wheel = &plan->model->wheel[w];
+        if (wheel->tire >= 0 && plan->sequence->body_subset[wheel->body] == s)
+            for (int i = 0; i < GRIP_NUMBERS; ++i)
+                add_input(all, s, INPUT_GRIP, i, "self->grip", GRIP_NUMBERS * wheel_rolling(plan->model, w) + i);
+    }
+}
+
 const Formulation *formulation_lanes(Pool *pool, const Formulation *formulation, int most)
 {
     Formulation *f = pool_alloc(pool, sizeof *f);
+    Plan *plan = plan_lanes(pool, formulation->plan, most);
+    const Tracks tracks = find_tracks(pool, plan);
+    Inputs inputs = {.pool = pool, .tracks = &tracks};
+    plan->pack = tracks.lanes;
+    plan->coordinate_track = pool_alloc(pool, ((size_t)plan->model->coordinates + 1) * sizeof(int));
+    for (int w = 0; w < plan->model->coordinates; ++w)
+        plan->coordinate_track[w] = -1;
+    for (int s = 0; s < plan->sequence->subsets; ++s)
+        for (int i = 0; i < plan->sequence->subset[s].coordinates; ++i)
+            plan->coordinate_track[plan->sequence->subset[s].coordinate[i]] = tracks.of[s];
     *f = *formulation;
-    f->plan = plan_lanes(pool, formulation->plan, most);
+    f->plan = plan;
     formulation_blocks(pool, f);
+    for (int s = 0; s < plan->sequence->subsets; ++s)
+        if (tracks.of[s] >= 0)
+            add_subset(&inputs, plan, s);
+    if (plan->pack)
+        f->dynamics = block_pack(pool, f->dynamics, inputs.input, inputs.count, plan->pack);
     return f;
 }

@@ -59,7 +59,10 @@ Ex whole_law(Whole *whole, const Law *law, const Ex *local)
     for (int i = 0; i < 3 && law->arg[i]; ++i)
         arg[i] = whole_law(whole, law->arg[i], local);
     switch (law->op) {
-    case LAW_NUMBER: return whole_number(whole, &law->number);
+    case LAW_NUMBER: {
+        const Ex number = whole_number(whole, &law->number);
+        return ex_is_number(dag, number) ? ex_literal(dag, law->number) : number;
+    }
     case LAW_INPUT: return ex_input(dag, pool_print(dag->pool, "u[%d]", law->index), NULL);
     case LAW_VALUE: return whole->x[law->index];
     case LAW_RATE: return whole->xd[law->index];

@@ -189,7 +189,7 @@ static Ex derived_number(Whole *whole, Ex formula, double value)
     Derived *derived = whole->plan->derived;
     int i = 0;
     if (!formula)
-        return ex_literal(whole->dag, value);
+        return whole->open ? ex_number(whole->dag, value) : ex_literal(whole->dag, value);
     while (i < derived->count && derived->formula[i] != formula)
         ++i;
     if (i == derived->count)

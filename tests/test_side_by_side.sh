@@ -3,8 +3,9 @@
 # test_side_by_side.sh GICGEN: code that solves alike parts of a vehicle in lanes (gicgen --lanes W) against code that
 # solves them one by one: states, rates, outputs and self-test after 200 steps, counts of corrections, and what happens
 # when one coordinate after another goes half a metre or radian too far: status, subset, and a state that has not moved.
-# The recovery has the same bits; where the equations of motion are in lanes, sums have another order, and results are
-# compared within 1e-11, or 1e-4 in single precision, which is a thousand roundings of numbers up to 100.
+# The equations of motion add up in another order, so numbers are compared within 1e-11 of 1 and their size, in single
+# precision within 1e-3, which is some ten thousand roundings: 400 right-hand sides amplify the first ones. Counts of
+# corrections may differ by a hundredth, for what is small enough hangs on roundings.
 gicgen=$(realpath "$1")
 root=$(cd "$(dirname "$0")/.." && pwd)
 work=$(mktemp -d) || exit 1
@@ -33,6 +34,7 @@ equal() {
         $1 == "moved" && $3 - other[3] <= bound && other[3] - $3 <= bound { next }
         $1 == "self-test" && $2 == other[2] && $3 < tolerance + 0 { next }
         $1 == "self-test" && $2 == other[2] && $3 == other[3] { next }
+        $1 == "counts" && $2 == other[2] && $3 == other[3] && $4 < 1.01 * other[4] + 1 && other[4] < 1.01 * $4 + 1 { next }
         $0 != line[FNR] { print "  " line[FNR] " but in lanes " $0; bad = 1 }
         END { exit bad || lines != FNR || !lines }' alone/out lanes/out
 }
@@ -68,8 +70,8 @@ agrees "$hmmwv" 8 '--recovery newton' 1e-11 gcc -std=c11 -O1
 agrees "$hmmwv" 4 '--recovery newton' 1e-11 clang -std=c11 -O1
 agrees "$hmmwv" 16 '--solve augmented' 1e-11 clang -std=c11 -O1
 agrees "$root/models/hmmwv14.veh" 4 '--recovery newton' 1e-11 gcc -std=c11 -O1 -march=native
-agrees "$hmmwv" 4 '' 1e-4 gcc -std=c11 -O1 -DGIC_FLOAT -Wdouble-promotion
-agrees "$hmmwv" 8 '' 1e-4 clang -std=c11 -O1 -DGIC_FLOAT
+agrees "$hmmwv" 4 '' 1e-3 gcc -std=c11 -O1 -DGIC_FLOAT -Wdouble-promotion
+agrees "$hmmwv" 8 '' 1e-3 clang -std=c11 -O1 -DGIC_FLOAT
 for how in 'g++ -std=c++11' 'clang++ -std=c++11 -DGIC_FLOAT'; do
     $how -x c++ -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -O1 -Ilanes -I"$root/runtime" \
         -c lanes/hmmwv.c -o x.o 2>err
