@@ -32,7 +32,7 @@ benchmark := $(wildcard runtime/bench_*.c)
 sweep := runtime/gicsweep.c $(wildcard runtime/sweep_*.c)
 runtime := $(filter-out runtime/gicrun.c runtime/gicbench.c $(benchmark) $(sweep),$(wildcard runtime/*.c))
 # gicgen carries what it copies into its output, gicrun what it compiles with it
-embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_runtime.c runtime/gic_batch.h
+embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_runtime.c runtime/gic_batch.h runtime/gic_lanes.h
 
 generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
@@ -285,7 +285,7 @@ install: all $(BUILD)/install/libgic_runtime.a
 	install -d $(prefix)/bin $(prefix)/include $(prefix)/lib/pkgconfig $(prefix)/share/man/man1 \
 	    $(addprefix $(share)/,$(sort $(dir $(installed_models))))
 	install -m 755 $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(prefix)/bin
-	install -m 644 runtime/gic_runtime.h runtime/gic_road.h runtime/gic_batch.h $(prefix)/include
+	install -m 644 runtime/gic_runtime.h runtime/gic_road.h runtime/gic_batch.h runtime/gic_lanes.h $(prefix)/include
 	install -m 644 $(BUILD)/install/libgic_runtime.a $(prefix)/lib
 	install -m 644 runtime/gic_runtime.c runtime/gic_road.c $(share)
 	for file in $(installed_models); do install -m 644 $$file $(share)/$$file || exit 1; done
@@ -296,7 +296,7 @@ install: all $(BUILD)/install/libgic_runtime.a
 
 uninstall:
 	rm -f $(addprefix $(prefix)/bin/,gicgen gicrun gicsweep gicbench) \
-	    $(addprefix $(prefix)/include/,gic_runtime.h gic_road.h gic_batch.h) \
+	    $(addprefix $(prefix)/include/,gic_runtime.h gic_road.h gic_batch.h gic_lanes.h) \
 	    $(prefix)/lib/libgic_runtime.a $(prefix)/lib/pkgconfig/gicgen.pc \
 	    $(addprefix $(prefix)/share/man/man1/,$(notdir $(manuals)))
 	rm -rf $(share)

@@ -173,6 +173,8 @@ static void write_text(Emitter *m, Text *line, Ex e, int strength);
 static bool must_spread(const Emitter *m, Ex e)
 {
     const Node *node = &m->dag->node[e];
+    if (m->style->lane_constants && node->op != OP_LITERAL)
+        return false;
     if (m->style->lanes)
         return node->level < LEVEL_VARIABLE && !(m->style->width && node->op == OP_CONSTANT);
     return !node->wide;
@@ -195,9 +197,9 @@ static const char *form_text(const Emitter *m, Ex e, Text *line)
     const char *text = op_form[op].text;
     if (!is_vector(m, e))
         return text;
-    if (op == OP_POSITIVE) {
+    if (op == OP_POSITIVE || op == OP_FRICTION) {
         text_print(line, "%s", function_name(width_of(m, e)));
-        return "_POSITIVE(%0, %1, %2)";
+        return op == OP_POSITIVE ? "_POSITIVE(%0, %1, %2)" : "_FRICTION(%0, %1)";
     }
     if (strncmp(text, "GIC_", 4) != 0)
         return text;

@@ -71,6 +71,15 @@ void write_wheel_sizes(Generation *g, Text *out, int indent);
 void write_wheel_members(Generation *g, Text *out, int indent); /* of the instance */
 void wheel_counts(Generation *g, Text *out, const Figures *figures);
 
+/* generate_wheel_lanes.c: in how many lanes the wheels of a class are computed, 1: one after another. */
+int wheel_lanes(const Generation *g, const WheelClass *class);
+/* The types and functions of all widths, before the classes; a class's function with its constants; the calls of it. */
+void write_wheel_vectors(Generation *g, Text *out);
+void write_wheel_class_lanes(Generation *g, Text *out, const WheelClass *class);
+void write_wheel_lane_calls(Generation *g, Text *out, int indent, const WheelClass *class);
+/* What the numbers of a class's arrays are, as a comment. */
+void write_wheel_comment(const Generation *g, Text *out, const WheelClass *class);
+
 /* generate_powertrain.c: nothing where there is none. */
 void write_powertrain(Generation *g, Text *out);              /* its functions, after those of each wheel */
 void write_drive(Generation *g, Text *out, int indent);       /* the call of them after all wheels */

@@ -15,22 +15,27 @@ typedef struct Expansion {
     Constants constants;
 } Expansion;
 
+void write_wheel_comment(const Generation *g, Text *out, const WheelClass *class)
+{
+    const Model *model = g->model;
+    text_print(out, "/* Wheels with the tire '%s':", model->tire[model->wheel[class->member[0]].tire].name);
+    for (int i = 0; i < class->members; ++i)
+        text_print(out, "%s %s", i ? "," : "", model->wheel[class->member[i]].name);
+    text_print(out,
+               ".\n * torque: of drive and brake. rate: of spin, slips, brake. grip: force 0 and torque 3 on the "
+               "carrier,\n * drive and brake 6 7, load, deflection, its rate, road height 8 to 11, Fx Fy Mx My Mz "
+               "12, slips and camber 17\n * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26. */\n");
+}
+
 static void insert_class(void *context, const char *name, Text *out, int indent)
 {
     Expansion *x = context;
-    const Model *model = x->g->model;
     const WheelClass *class = x->class;
     const Block *block = !strcmp(name, "contact") ? &class->contact
                          : !strcmp(name, "tire")  ? &class->tire
                                                   : &class->balance;
     if (!strcmp(name, "comment")) {
-        text_print(out, "/* Wheels with the tire '%s':", model->tire[model->wheel[class->member[0]].tire].name);
-        for (int i = 0; i < class->members; ++i)
-            text_print(out, "%s %s", i ? "," : "", model->wheel[class->member[i]].name);
-        text_print(
-            out, ".\n * torque: of drive and brake. rate: of spin, slips, brake. grip: force 0 and torque 3 on the "
-                 "carrier,\n * drive and brake 6 7, load, deflection, its rate, road height 8 to 11, Fx Fy Mx My Mz "
-                 "12, slips and camber 17\n * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26. */\n");
+        write_wheel_comment(x->g, out, class);
     } else if (!strcmp(name, "arrays")) {
         line(out, indent,
              "gic_real hub[%d]; /* Fz, kappa, tan alpha, camber, friction, V_x, deflection, loaded radius,",
@@ -49,8 +54,13 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
 static void write_classes(Generation *g, Text *out)
 {
     const Wheels *wheels = g->formulation->wheels;
+    write_wheel_vectors(g, out);
     for (int c = 0; c < wheels->classes; ++c) {
         const WheelClass *class = &wheels->class[c];
+        if (wheel_lanes(g, class) > 1) {
+            write_wheel_class_lanes(g, out, class);
+            continue;
+        }
         Expansion x = {.g = g, .class = class};
         Text body = {.pool = g->pool};
         const char *member[class->members];
@@ -72,6 +82,10 @@ static void write_calls(Generation *g, Text *out, int indent)
     const char *name = g->model->name;
     for (int c = 0; c < wheels->classes; ++c) {
         const WheelClass *class = &wheels->class[c];
+        if (wheel_lanes(g, class) > 1) {
+            write_wheel_lane_calls(g, out, indent, class);
+            continue;
+        }
         for (int i = 0; i < class->members; ++i) {
             const Wheel *wheel = &g->model->wheel[class->member[i]];
             int place = wheel_rolling(g->model, class->member[i]);

@@ -719,8 +719,10 @@ const Formulation *formulate(Pool *pool, const Model *model, const Sequence *seq
 /* The blocks of a formulation, from its plan. */
 void formulation_blocks(Pool *pool, Formulation *f);
 
-/* lanes.c: the same formulation for code that solves the members of a class side by side in vectors of up to `most`
- * lanes, a power of 2: their numbers stand in rows, one lane a column. */
+/* lanes.c: the number of lanes, 2, 4, 8 or 16, that a word means; 0: none of these. */
+int lanes_of(const char *word);
+/* The same formulation for code that solves the members of a class side by side in vectors of up to `most` lanes, a
+ * power of 2: their numbers stand in rows, one lane a column. */
 const Formulation *formulation_lanes(Pool *pool, const Formulation *formulation, int most);
 /* How many rows of members a class has; where it has no lanes, how many members. */
 int class_rows(const Plan *plan, int class);
@@ -760,6 +762,7 @@ typedef struct Style {
     int width;  /* with `lanes`: they are vectors of so many, with one subset a lane; 0: with one vehicle a lane */
     const int *known_stride; /* [knowns] with a width: numbers from one number of a known to the next, each a row of it;
                               * negative: one body is the known of all lanes */
+    bool lane_constants; /* with `lanes`: constants of members are vectors too, not only numbers of all lanes */
 } Style;
 
 extern const Style style_readable, style_direct, style_lanes;

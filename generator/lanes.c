@@ -3,10 +3,18 @@
  * numbers in memory: the same number of all of them in one row, a lane a column. */
 #include "pack.h"
 
+#include <stdlib.h>
 #include <string.h>
 
+int lanes_of(const char *word)
+{
+    char *end;
+    const long lanes = strtol(word, &end, 10);
+    return *end || (lanes != 2 && lanes != 4 && lanes != 8 && lanes != 16) ? 0 : (int)lanes;
+}
+
 /* Vectors of so many lanes hold that many members, or several of them do. Alone: 0. */
-static int lanes_of(int members, int most)
+static int lanes_for(int members, int most)
 {
     int lanes = 2;
     while (lanes < members && lanes < most)
@@ -56,7 +64,7 @@ static Plan *plan_lanes(Pool *pool, const Plan *plan, int most)
     rows->inertia_size = rows->motion_size = 0;
     for (int c = 0; c < sequence->classes; ++c) {
         const Class *class = &sequence->class[c];
-        int lanes = rows->class_lanes[c] = lanes_of(class->members, most);
+        int lanes = rows->class_lanes[c] = lanes_for(class->members, most);
         for (int first = 0; first < class->members; first += lanes ? lanes : 1)
             place_row(rows, class, first, lanes);
     }
@@ -100,7 +108,7 @@ static Tracks find_tracks(Pool *pool, const Plan *plan)
     if (!largest)
         return tracks;
     tracks.count = largest->members;
-    tracks.lanes = lanes_of(tracks.count, plan->lanes);
+    tracks.lanes = lanes_for(tracks.count, plan->lanes);
     int *length = pool_alloc(pool, (size_t)tracks.count * sizeof *length);
     for (int i = 0; i < largest->members; ++i)
         tracks.of[largest->member[i]] = i;

@@ -106,10 +106,9 @@ static Options read_options(int count, char **word)
             options.batch.vehicles =
                 whole_argument("--batch takes a number of vehicles up to 65536, not", argument(count, word, &i), 65536);
         } else if (!strcmp(w, "--lanes")) {
-            static const char remark[] = "--lanes takes 2, 4, 8 or 16, not";
-            options.batch.lanes = whole_argument(remark, argument(count, word, &i), 16);
-            if (options.batch.lanes == 1 || (options.batch.lanes & (options.batch.lanes - 1)))
-                usage_error(remark, word[i]);
+            options.batch.lanes = lanes_of(argument(count, word, &i));
+            if (!options.batch.lanes)
+                usage_error("--lanes takes 2, 4, 8 or 16, not", word[i]);
         } else if (!strcmp(w, "--solve")) {
             const char *form = argument(count, word, &i);
             options.solve = solve_of(form);
@@ -149,7 +148,7 @@ static Options read_options(int count, char **word)
         usage_error("--lanes is for code", NULL);
     if (options.batch.lanes && options.scene && options.task == TASK_GENERATE)
         usage_error("--lanes and --scene are not for the same code", NULL);
-    if (!options.batch.lanes && options.task == TASK_BATCH)
+    if (options.task == TASK_BATCH && !options.batch.lanes)
         options.batch.lanes = 4;
     return options;
 }
@@ -167,6 +166,8 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
     const Formulation *formulation =
         formulate_narrow(pool, model, sequence, options->solve, options->recovery, facts);
+    if (!batch && options->batch.lanes)
+        formulation = formulation_lanes(pool, formulation, options->batch.lanes);
     name = strcmp(path, "-") ? name : NULL;
     if (batch && batch_missing(formulation))
         diag_fail((Place){model->source, 0, 0}, "simulate such a model vehicle by vehicle, in threads of your own",

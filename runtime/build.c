@@ -266,8 +266,9 @@ static Build build_new(Pool *pool, const Formulation *formulation, const EngineO
 static const Formulation *formulation_of(Pool *pool, const Model *model, const EngineOptions *options)
 {
     const Sequence *sequence = sequence_find(pool, model);
-    return formulate_narrow(pool, model_assemble(pool, model, sequence), sequence, options->solve, options->recovery,
-                            options->facts);
+    const Formulation *f = formulate_narrow(pool, model_assemble(pool, model, sequence), sequence, options->solve,
+                                            options->recovery, options->facts);
+    return options->lanes ? formulation_lanes(pool, f, options->lanes) : f;
 }
 
 static void check_command(const EngineOptions *options)

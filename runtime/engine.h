@@ -65,6 +65,7 @@ bool engine_known(const char *name);
 typedef struct EngineOptions {
     Solve solve;
     Recovery recovery;
+    int lanes;            /* of vectors at most, of the engine cc; 0: numbers one by one */
     const char *compiler; /* command, perhaps with options */
     const char *flags;    /* more options, behind ours */
     const char *object;   /* path where a compiled object is left too; NULL: nowhere */

@@ -43,6 +43,8 @@ static const char help[] = "usage: gicrun MODEL.veh SCENE [-o results.csv] [--pl
                            "                     is one; auto (default), whichever takes fewer operations\n"
                            "      --general      generated code as for any scene; without it a run has code for its scene\n"
                            "                     alone, which leaves out what that doesn't need\n"
+                           "      --lanes W      with --engine cc, by gcc or clang: wheels with the same tire side\n"
+                           "                     by side in vectors of up to W numbers: 2, 4, 8 or 16\n"
                            "      --cc COMMAND   C compiler of cc and auto, perhaps with options; default: $CC or cc\n"
                            "      --cflags FLAGS more options for it, behind ours, all in one word\n"
                            "  -q, --quiet        neither progress nor summary\n"
@@ -88,6 +90,7 @@ static Request read_command_line(int count, char **word)
         SOLVE,
         RECOVERY,
         GENERAL,
+        LANES,
         COMPILER,
         FLAGS,
         INTEGRATOR,
@@ -107,6 +110,7 @@ static Request read_command_line(int count, char **word)
         {"solve", required_argument, NULL, SOLVE},
         {"recovery", required_argument, NULL, RECOVERY},
         {"general", no_argument, NULL, GENERAL},
+        {"lanes", required_argument, NULL, LANES},
         {"cc", required_argument, NULL, COMPILER},
         {"cflags", required_argument, NULL, FLAGS},
         {"quiet", no_argument, NULL, 'q'},
@@ -137,6 +141,11 @@ static Request read_command_line(int count, char **word)
                 usage_fail("gicrun", "--recovery takes auto, newton or closed, not", optarg);
             break;
         case GENERAL: request.general = true; break;
+        case LANES:
+            request.lanes = lanes_of(optarg);
+            if (!request.lanes)
+                usage_fail("gicrun", "--lanes takes 2, 4, 8 or 16, not", optarg);
+            break;
         case COMPILER: request.compiler = optarg; break;
         case FLAGS: request.flags = optarg; break;
         case 'q': request.quiet = true; break;
@@ -158,6 +167,8 @@ static Request read_command_line(int count, char **word)
     request.scene = files > 1 ? word[optind + 1] : NULL;
     if (!strcmp(request.model, "-"))
         usage_fail("gicrun", "the model must be a file", NULL);
+    if (request.lanes && strcmp(request.engine, "cc") != 0)
+        usage_fail("gicrun", "--lanes goes with --engine cc, not with", request.engine);
     if (request.integrator && integrator_method(request.integrator) < 0)
         usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
     if (request.picture && !runs)
@@ -199,6 +210,7 @@ int main(int count, char **word)
         pool, request.engine, model,
         &(EngineOptions){.solve = request.solve,
                          .recovery = request.recovery,
+                         .lanes = request.lanes,
                          .compiler = request.compiler,
                          .flags = request.flags,
                          /* a page shows whatever outputs tell */

@@ -7,7 +7,7 @@
 # residuals at the same states. Each form within half of 1e-12 of the reference: so they agree with each other to 1e-12.
 # With tires within 2e-12, for tires are stiff: at some states they make 1e-12 of the last digit of a pose, whichever way
 # that is found. Once more on waves with a patch of little friction, where 100 m from the origin heights of a road whose
-# slope reaches 0.1 are known to 1e-15 m.
+# slope reaches 0.1 are known to 1e-15 m; there also with wheels side by side in lanes.
 gicgen=$1
 gicrun=$2
 states=$3
@@ -88,6 +88,17 @@ for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" "$work/steered.veh
         failed=$((failed + 1))
         echo "FAIL $(basename "$model") on waves"
     fi
+    # wheels side by side: the same tolerance
+    for lanes in '2' '4 --cflags -march=native\ -ffp-contract=fast'; do
+        if eval "'$gicrun'" --engine cc --lanes "$lanes" --eval '"$work/states" "$work/variant.veh" "$work/waves.scene"' \
+            -o '"$work/results"' &&
+            "$agree" "$work/dump" "$work/accelerations" "$work/results" --reactions --wheels --tolerance 2e-12; then
+            passed=$((passed + 1))
+        else
+            failed=$((failed + 1))
+            echo "FAIL $(basename "$model") with --lanes $lanes"
+        fi
+    done
 done
 
 echo "$passed passed, $failed failed"

@@ -34,13 +34,14 @@ road() {
     printf 'gicscene: 1\nduration: 1\nstep: 0.1\nroad: {type: flat, friction: {value: %s}}\n' "$1" >road.scene
 }
 
-# against RADIUS FRICTION ENGINE WHEEL...: those wheels, whose tires are of that radius
+# against RADIUS FRICTION ENGINE WHEEL...: those wheels, whose tires are of that radius; ENGINE perhaps with options
 against() {
     radius=$1 friction=$2 engine=$3
     shift 3
     road "$friction"
+    # shellcheck disable=SC2086  # a list of words
     python3 "$here/tires/compare.py" states "$radius" >states.csv &&
-        "$gicrun" --engine "$engine" --eval states.csv rig.veh road.scene -o results.csv &&
+        "$gicrun" --engine $engine --eval states.csv rig.veh road.scene -o results.csv &&
         python3 "$here/tires/compare.py" check . "$friction" "$@" <results.csv >said || echo "no comparison" >said
     count said
 }
@@ -48,10 +49,10 @@ against() {
 against 0.4699 1 cc truck truck_right easy
 against 0.317 1 cc car car_right car_0 car_1 car_2 car_3
 against 0.31 1 cc plain
-for engine in tape gic; do
-    against 0.4699 0.35 $engine truck truck_right easy
-    against 0.317 0.35 $engine car car_right car_0 car_1 car_2 car_3
-    against 0.31 0.35 $engine plain
+for engine in tape gic 'cc --lanes 2'; do
+    against 0.4699 0.35 "$engine" truck truck_right easy
+    against 0.317 0.35 "$engine" car car_right car_0 car_1 car_2 car_3
+    against 0.31 0.35 "$engine" plain
 done
 
 road 1

@@ -1,0 +1,97 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_wheel_lanes.sh GICGEN GICRUN: wheels side by side in lanes. The code compiles without a warning by gcc and clang,
+# as C99 and C++, with either number type; runs behave as those of single wheels must (tests/tires/runs.py: lock-up,
+# standstill, parking, a jump); along a run of the complete vehicle results are those of single wheels to 1e-9 of their
+# size, which is what some thousand steps make of a few units of the last place; a wheel alone in the air next to three on
+# the ground, and a road that ends under one wheel, are right; the same input gives the same bytes.
+gicgen=$(realpath "$1")
+gicrun=$(realpath "$2")
+here=$(cd "$(dirname "$0")" && pwd)
+models=$(cd "$here/../models" && pwd)
+. "$here/checking.sh"
+cd "$work" || exit 1
+: >out
+: >err
+cp "$here"/../runtime/gic_runtime.[ch] "$here/../runtime/gic_lanes.h" .
+
+compiles() {
+    "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion -Werror -ffp-contract=off -I. -c "$code.c" \
+        -o x.o >out 2>&1
+}
+for code in hmmwv_tires hmmwv_tmeasy hmmwv_vehicle; do
+    for lanes in 2 4 16; do
+        "$gicgen" --lanes $lanes "$models/$code.veh"
+        check "$code, $lanes lanes, gcc" compiles gcc -std=c99 -O1
+        check "$code, $lanes lanes, clang, float" compiles clang -std=c99 -O1 -DGIC_FLOAT
+    done
+    check "$code, g++" compiles g++ -std=c++11 -x c++ -O1 -DGIC_FLOAT
+    check "$code, clang++" compiles clang++ -std=c++11 -x c++ -O1
+done
+cp hmmwv_vehicle.c before.c
+"$gicgen" --lanes 16 "$models/hmmwv_vehicle.veh"
+check "the same bytes again" cmp before.c hmmwv_vehicle.c
+"$gicgen" --lanes 4 "$models/hmmwv.veh"
+check "no vectors without tires" sh -c '! grep -q gic_lanes hmmwv.c'
+
+# the runs of test_wheel_runs.sh
+# whatever engine it is told
+cat >lanes <<END
+#!/bin/sh
+count=\$#
+while [ \$count -gt 0 ]; do
+    if [ "\$1" = --engine ]; then
+        count=\$((count - 1))
+        shift
+    else
+        set -- "\$@" "\$1"
+    fi
+    shift
+    count=\$((count - 1))
+done
+exec "$gicrun" --engine cc --lanes 4 "\$@"
+END
+chmod +x lanes
+python3 "$here/tires/runs.py" "$gicgen" ./lanes "$models" "$work" >said 2>err
+check "runs come to their ends" [ $? -eq 0 ]
+grep -v '^ok' said
+passed=$((passed + $(grep -c '^ok' said)))
+failed=$((failed + $(grep -c '^FAIL' said)))
+
+# alike TOLERANCE: two tables of results, relative to the largest of the column and 1
+alike() {
+    paste -d, single.csv lanes.csv | awk -F, -v tolerance="$1" '
+        NR == 1 { columns = NF / 2; next }
+        { for (i = 1; i <= columns; ++i) {
+              size = $i < 0 ? -$i : $i
+              difference = $i - $(columns + i)
+              if (size > largest[i]) largest[i] = size
+              if (difference < 0) difference = -difference
+              if (!(difference <= worst[i])) worst[i] = difference } }
+        END { for (i = 1; i <= columns; ++i) {
+                  if (!(worst[i] <= tolerance * (1 + largest[i]))) bad = 1
+                  relative = worst[i] / (1 + largest[i])
+                  if (relative > all) all = relative }
+              print "largest difference " all >"out"
+              exit bad || NR < 3 }'
+}
+sed 's/^duration:.*/duration: 3/' "$models/scenes/full_run.scene" >run.scene
+"$gicrun" -q --engine cc "$models/hmmwv_vehicle.veh" run.scene -o single.csv
+for how in '2' '4' '8'; do
+    "$gicrun" -q --engine cc --lanes "$how" "$models/hmmwv_vehicle.veh" run.scene -o lanes.csv
+    check "3 s of the vehicle, $how lanes" alike 1e-9
+done
+"$gicrun" -q --engine cc --lanes 4 --cc clang --cflags '-O3 -ffp-contract=fast' "$models/hmmwv_vehicle.veh" run.scene \
+    -o lanes.csv
+check "3 s of the vehicle, clang, fused" alike 1e-9
+
+# usage
+"$gicrun" --lanes 3 x.veh >out 2>err
+check "three lanes" [ $? -eq 2 ]
+check "three lanes: why" says "--lanes takes 2, 4, 8 or 16, not '3'"
+"$gicrun" --lanes 4 x.veh x.scene >out 2>err
+check "lanes of another engine" [ $? -eq 2 ]
+check "lanes of another engine: why" says "--lanes goes with --engine cc, not with 'auto'"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
