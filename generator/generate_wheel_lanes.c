@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Wheels with the same tire side by side in the lanes of vectors. */
 #include "generate.h"
+#include "narrow.h"
 #include "wheel.h"
 
 #include <string.h>
@@ -15,27 +16,42 @@ int wheel_lanes(const Generation *g, const WheelClass *class)
     return lanes;
 }
 
-/* Templates whose insertion points are none. */
-static void insert_nothing(void *context, const char *name, Text *out, int indent)
+/* ---- types, and what wheels look up -------------------------------------------------------------------------------
+ */
+
+typedef struct Vectors {
+    const Generation *g;
+    const char *lanes; /* how many, as text */
+} Vectors;
+
+/* The parts of the vectors' template that code for one scene may not need. */
+static void insert_vectors(void *context, const char *name, Text *out, int indent)
 {
-    (void)context, (void)name, (void)out, (void)indent;
+    const Vectors *v = context;
+    const Narrowing *narrowing = v->g->formulation->narrowing;
+    const bool road = !strcmp(name, "road");
+    (void)indent;
+    if (!narrowing || (road ? narrowing->road : narrowing->friction))
+        template_expand(v->g->pool, out, v->g->templates,
+                        road ? "wheel_vectors_road.c.in" : "wheel_vectors_friction.c.in", v->g->model->name, v->lanes,
+                        insert_vectors, context);
 }
 
 void write_wheel_vectors(Generation *g, Text *out)
 {
     const Wheels *wheels = g->formulation->wheels;
-    bool any = false;
+    Vectors v = {.g = g};
     for (int lanes = 2; lanes <= g->plan->lanes; lanes *= 2) {
         bool used = false;
         for (int c = 0; c < wheels->classes; ++c)
             used = used || wheel_lanes(g, &wheels->class[c]) == lanes;
-        if (used && !any)
-            template_expand(g->pool, out, g->templates, "wheel_places.c.in", g->model->name, NULL, insert_nothing,
-                            NULL);
-        any = any || used;
-        if (used)
-            template_expand(g->pool, out, g->templates, "wheel_vectors.c.in", g->model->name,
-                            pool_print(g->pool, "%d", lanes), insert_nothing, NULL);
+        if (used && !v.lanes)
+            template_expand(g->pool, out, g->templates, "wheel_places.c.in", g->model->name, NULL, insert_vectors, &v);
+        if (used) {
+            v.lanes = pool_print(g->pool, "%d", lanes);
+            template_expand(g->pool, out, g->templates, "wheel_vectors.c.in", g->model->name, v.lanes, insert_vectors,
+                            &v);
+        }
     }
 }
 
