@@ -71,7 +71,7 @@ static int lane_member(const Expansion *x, int row, int lane)
     return member < x->class->members ? member : x->lanes * row;
 }
 
-static int class_rows(const Expansion *x)
+static int wheel_rows(const Expansion *x)
 {
     return (x->class->members + x->lanes - 1) / x->lanes;
 }
@@ -148,8 +148,8 @@ static void write_rows(const Expansion *x, Text *out)
     const Dag *dag = class->contact.dag;
     const int each = dag->samples / dag->members, count = room(x->constants.count);
     line(out, 0, "static const gic_lane%d %s_k_wheel_%s[%d][%d] = {", x->lanes, g->model->name, class->name,
-         class_rows(x), count);
-    for (int r = 0; r < class_rows(x); ++r) {
+         wheel_rows(x), count);
+    for (int r = 0; r < wheel_rows(x); ++r) {
         line(out, 4, "{");
         for (int k = 0; k < count; ++k) {
             text_print(out, "        {");
@@ -164,8 +164,8 @@ static void write_rows(const Expansion *x, Text *out)
     }
     line(out, 0, "};\n");
     line(out, 0, "static const %s_wheel_place %s_at_%s[%d][%d] = {", g->model->name, g->model->name, class->name,
-         class_rows(x), x->lanes);
-    for (int r = 0; r < class_rows(x); ++r) {
+         wheel_rows(x), x->lanes);
+    for (int r = 0; r < wheel_rows(x); ++r) {
         line(out, 4, "{");
         for (int l = 0; l < x->lanes; ++l) {
             const int index = class->member[lane_member(x, r, l)], place = wheel_rolling(g->model, index);
@@ -193,7 +193,7 @@ void write_wheel_lane_calls(Generation *g, Text *out, int indent, const WheelCla
 {
     const char *name = g->model->name;
     const Expansion x = {.g = g, .class = class, .lanes = wheel_lanes(g, class)};
-    for (int r = 0; r < class_rows(&x); ++r) {
+    for (int r = 0; r < wheel_rows(&x); ++r) {
         text_print(out, "%*sif (status == GIC_OK) /*", indent, "");
         for (int l = 0; l < x.lanes && x.lanes * r + l < class->members; ++l)
             text_print(out, "%s %s", l ? "," : "", g->model->wheel[class->member[x.lanes * r + l]].name);

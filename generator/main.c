@@ -176,8 +176,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         generate_batch(pool, formulation, &options->batch, options->templates, pool_print(pool, "%s.h", model->name),
                        name, &c, &h);
     else
-        generate(pool, options->batch.lanes ? formulation_lanes(pool, formulation, options->batch.lanes) : formulation,
-                 &style_readable, options->templates, name, &c, &h);
+        generate(pool, formulation, &style_readable, options->templates, name, &c, &h);
     if (!strcmp(path, "-")) {
         text_add(&h, c.s, c.size);
         file_write(path, h.s, h.size);
