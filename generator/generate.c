@@ -23,8 +23,8 @@ const char *quoted(Pool *pool, const char *s)
 {
     Text out = {.pool = pool};
     text_print(&out, "\"");
-    for (; *s; ++s)
-        text_print(&out, *s == '"' || *s == '\\' || (*s == '?' && s[1] == '?') ? "\\%c" : "%c", *s);
+    for (char before = 0; *s; before = *s++) /* "??/" would be a backslash */
+        text_print(&out, *s == '"' || *s == '\\' || (*s == '?' && before == '?') ? "\\%c" : "%c", *s);
     text_print(&out, "\"");
     return out.s;
 }

@@ -179,8 +179,10 @@ bool mentions_parameter(const Reader *reader, const Item *item);
  * tunable parameters end in diag_fail. */
 double number_read(Reader *reader, const Item *item, const char *what, Ex *tuned);
 void vector_read(Reader *reader, const Item *item, const char *what, double *out, int size, Ex *tuned);
-/* The prefix of all generated names must be an identifier that C and C++ leave free. */
+/* The prefix of all generated names must be an identifier that C, C++ and their libraries leave free. */
 void model_name_check(const char *name, Place at);
+/* reserved.c: why a name is none of those ("is reserved in C or C++"), or NULL. */
+const char *name_reserved(const char *name);
 /* A text that ends up in a comment and in a string of the generated code: one line. */
 void text_check(const char *text, const char *what, Place at);
 /* `vector` divided by its norm, without overflow; false when it is zero. */

@@ -63,22 +63,6 @@ const char *const kind_words[KEY_KINDS][2] = {
     [KEY_SIDE] = {"left", "right"},
 };
 
-/* Keywords of C11 and C++20: the runtime compiles as either. */
-static const char *const keyword[] = {
-    "alignas",     "alignof",      "and",       "and_eq",   "asm",       "auto",         "bitand",   "bitor",
-    "bool",        "break",        "case",      "catch",    "char",      "char16_t",     "char32_t", "char8_t",
-    "class",       "co_await",     "co_return", "co_yield", "compl",     "concept",      "const",    "const_cast",
-    "consteval",   "constexpr",    "constinit", "continue", "decltype",  "default",      "delete",   "do",
-    "double",      "dynamic_cast", "else",      "enum",     "explicit",  "export",       "extern",   "false",
-    "float",       "for",          "friend",    "goto",     "if",        "inline",       "int",      "long",
-    "main",        "mutable",      "namespace", "new",      "noexcept",  "not",          "not_eq",   "nullptr",
-    "operator",    "or",           "or_eq",     "private",  "protected", "public",       "register", "reinterpret_cast",
-    "requires",    "restrict",     "return",    "short",    "signed",    "sizeof",       "static",   "static_assert",
-    "static_cast", "struct",       "switch",    "template", "this",      "thread_local", "throw",    "true",
-    "try",         "typedef",      "typeid",    "typename", "union",     "unsigned",     "using",    "virtual",
-    "void",        "volatile",     "wchar_t",   "while",    "xor",       "xor_eq",
-};
-
 void name_check(const char *name, const char *what, Place at)
 {
     size_t length = strlen(name);
@@ -95,11 +79,9 @@ void name_check(const char *name, const char *what, Place at)
 void model_name_check(const char *name, Place at)
 {
     name_check(name, "the model", at);
-    for (size_t i = 0; i < sizeof keyword / sizeof *keyword; ++i)
-        if (!strcmp(name, keyword[i]))
-            diag_fail(at, "take another name, such as my_model", "the model name '%s' is reserved in C or C++", name);
-    if (!strcmp(name, "gic") || !strncmp(name, "gic_", 4))
-        diag_fail(at, "take a name that does not begin with gic", "the model name '%s' belongs to the runtime", name);
+    const char *reserved = name_reserved(name);
+    if (reserved)
+        diag_fail(at, "take another name, such as my_model", "the model name '%s' %s", name, reserved);
 }
 
 void text_check(const char *text, const char *what, Place at)
