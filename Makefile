@@ -213,7 +213,7 @@ test:
 list-tests:
 	@echo $(filter test_%,$(programs) $(variants))
 
-stress: test-programs
+stress: test-programs fuzz
 	BUILD=$(BUILD) sh tests/stress/run.sh
 
 # ---- what people ask for

@@ -64,6 +64,9 @@ attack hang 'echo "hang | car | 1 | 1 | 0 | 0 | ok"' 'sleep 60'
 pretend hang
 check "a hang" finds 'takes longer than 2 s'
 
+make -C "$(dirname "$0")/.." --no-print-directory -s -j2 WERROR=-Werror BUILD="$(realpath "${BUILD:-build}")" fuzz \
+    >"$work/out" 2>&1
+check "make fuzz" [ $? -eq 0 ]
 STRESS=short sh "$frame" >"$work/out" 2>&1
 check "attacks find nothing" [ $? -eq 0 ]
 grep '^\[\|^ ' "$work/out"
