@@ -170,5 +170,7 @@ void bench_drive(const Bench *bench);
 void bench_scenes(const Bench *bench);
 /* bench_rhs.c: one right-hand side of every variant of the code, against the limit. scene: NULL for none. */
 void bench_rhs(const Bench *bench);
+/* Can this compiler be started? */
+bool bench_installed(Pool *pool, const char *compiler);
 
 #endif

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * A scene as it stands, with its step and ratio: the third experiment of Serban and Haug 2000, section 5, the complete
- * vehicle for 30 s. CPU time, and what of a step goes into multibody system, tires and powertrain. */
+ * vehicle for 30 s. CPU time, and what of a step goes into multibody system, tires and powertrain; beside the engine cc
+ * as it stands its code at fast flags, one by one and with wheels in lanes. */
 #include "bench.h"
 
+#include <math.h>
 #include <string.h>
 
 /* AB3 begins with steps of RK4, which are no part of steady operation. */
@@ -14,9 +16,27 @@ enum { MULTIBODY, TIRES, POWERTRAIN, STEP, PARTS };
 /* An engine, the same for the model without its powertrain (NULL: it has none, or its rates can't be compared), and
  * seconds by part: [repetitions] each; of STEP CPU time, of the others elapsed time. */
 typedef struct Driven {
+    const char *name;
     const Engine *engine, *plain;
+    gic_head *self;
     double *second[PARTS];
+    double *state; /* in which a run ends: FORMAT.md section 10 */
 } Driven;
+
+/* More ways to make the engine cc. */
+typedef struct Way {
+    const char *name, *compiler, *flags; /* compiler: NULL: that of the command line */
+    int lanes;
+} Way;
+
+#define FASTEST "-O3 -march=native -ffp-contract=fast"
+static const Way way[] = {
+    {"cc, fast", NULL, FASTEST, 0},
+    {"cc, fast, 4 lanes", NULL, FASTEST, 4},
+    {"clang, fast", "clang", FASTEST, 0},
+    {"clang, fast, 4 lanes", "clang", FASTEST, 4},
+};
+enum { WAYS = sizeof way / sizeof *way };
 
 /* The model without its powertrain. */
 static const Model *without_powertrain(Pool *pool, const Model *model)
@@ -135,15 +155,16 @@ static void time_parts(const Driven *driven, gic_head *self, const Scene *scene,
     pool_free(pool);
 }
 
-static Driven driven_by(const Bench *bench, const Engine *engine)
+static Driven driven_by(const Bench *bench, const char *name, const Engine *engine, const EngineOptions *options)
 {
     Pool *pool = bench->pool;
-    Driven driven = {.engine = engine};
+    Driven driven = {.name = name, .engine = engine, .self = instance_new(pool, engine)};
     for (int k = 0; k < PARTS; ++k)
         driven.second[k] = pool_alloc(pool, sizeof(double) * (size_t)bench->repetitions);
+    driven.state = pool_alloc(pool, sizeof(double) * (size_t)(engine->standard_count + 1));
     if (!bench->model->powertrain)
         return driven;
-    driven.plain = engine_open(pool, engine->name, without_powertrain(pool, bench->model), &bench->options);
+    driven.plain = engine_open(pool, engine->name, without_powertrain(pool, bench->model), options);
     if (driven.plain->code->link_count != engine->code->link_count) {
         engine_close(driven.plain);
         driven.plain = NULL;
@@ -151,7 +172,27 @@ static Driven driven_by(const Bench *bench, const Engine *engine)
     return driven;
 }
 
-static void drive_row(const Bench *bench, Sheet *table, const Driven *driven)
+/* The engine cc in other ways. */
+static Driven driven_way(const Bench *bench, const Way *w)
+{
+    EngineOptions options = bench->options;
+    options.flags = pool_print(bench->pool, "%s %s", w->flags, options.flags);
+    options.compiler = w->compiler ? w->compiler : options.compiler;
+    options.lanes = w->lanes;
+    options.quiet = true;
+    return driven_by(bench, w->name, engine_open(bench->pool, "cc", bench->model, &options), &options);
+}
+
+/* Largest difference of two numbers of the states in which runs end, relative to 1 + |x|. */
+static double difference(const Driven *a, const Driven *b)
+{
+    double largest = 0;
+    for (int i = 0; i < a->engine->standard_count; ++i)
+        largest = fmax(largest, fabs(a->state[i] - b->state[i]) / (1 + fabs(a->state[i])));
+    return largest;
+}
+
+static void drive_row(const Bench *bench, Sheet *table, const Driven *driven, const Driven *first)
 {
     Pool *pool = bench->pool;
     const double steps = (double)steps_of(bench->scene);
@@ -161,7 +202,7 @@ static void drive_row(const Bench *bench, Sheet *table, const Driven *driven)
         part[k] = spread_of(pool, driven->second[k], bench->repetitions).median;
         rest -= part[k];
     }
-    table_cell(pool, table, "%s", driven->engine->name);
+    table_cell(pool, table, "%s", driven->name);
     spread_cells(pool, table, all, 1);
     table_cell(pool, table, "%.4g", steps * bench->scene->step / all.median);
     table_cell(pool, table, "%.3g", 1e6 * all.median / steps);
@@ -170,6 +211,8 @@ static void drive_row(const Bench *bench, Sheet *table, const Driven *driven)
     table_cell(pool, table, driven->plain || !bench->model->powertrain ? "%.2g" : "with tires", 1e6 * part[POWERTRAIN]);
     table_cell(pool, table, "%.2g", 1e6 * rest);
     table_cell(pool, table, "%.0f", 100 * steps * (part[TIRES] + part[POWERTRAIN]) / all.median);
+    spread_cells(pool, table, spread_of_ratio(pool, first->second[STEP], driven->second[STEP], bench->repetitions), 1);
+    table_cell(pool, table, "%.1g", difference(first, driven));
 }
 
 void bench_drive(const Bench *bench)
@@ -180,24 +223,32 @@ void bench_drive(const Bench *bench)
     if (!scene->per_output || steps_of(scene) <= START)
         diag_fail(at, "write `integrator: ab3` and a step",
                   "a scene is timed with constant steps, and more than %d of them", START);
-    Driven *driven = pool_alloc(pool, sizeof *driven * (size_t)bench->engines);
-    for (int e = 0; e < bench->engines; ++e)
-        driven[e] = driven_by(bench, bench->engine[e]);
+    Driven *driven = pool_alloc(pool, sizeof *driven * (size_t)(bench->engines + WAYS));
+    int subjects = 0;
+    bool compiled = false;
+    for (int e = 0; e < bench->engines; ++e) {
+        const Engine *engine = bench->engine[e];
+        driven[subjects++] = driven_by(bench, engine->name, engine, &bench->options);
+        compiled = compiled || !strcmp(engine->name, "cc");
+    }
+    for (int w = 0; compiled && w < WAYS; ++w)
+        if (!way[w].compiler || bench_installed(pool, way[w].compiler))
+            driven[subjects++] = driven_way(bench, &way[w]);
     for (int r = 0; r < bench->repetitions; ++r)
-        for (int e = 0; e < bench->engines; ++e) {
-            const Engine *engine = bench->engine[e];
-            gic_head *self = bench->instance[e];
+        for (Driven *d = driven; d < driven + subjects; ++d) {
             int status;
-            bench_progress("repetition %d of %d, %s", r + 1, bench->repetitions, engine->name);
-            driven[e].second[STEP][r] = run(engine, self, scene, &status);
+            bench_progress("repetition %d of %d, %s", r + 1, bench->repetitions, d->name);
+            d->second[STEP][r] = run(d->engine, d->self, scene, &status);
+            if (status == GIC_OK)
+                status = engine_look(d->engine, d->self, d->state, NULL);
             if (status != GIC_OK)
                 diag_fail(at, "a benchmark needs a scene that runs to its end",
-                          "with %s the run ends at t = %.6g s: %s", engine->name, gic_time(self),
-                          instance_status(pool, engine->code, self, status));
+                          "with %s the run ends at t = %.6g s: %s", d->name, gic_time(d->self),
+                          instance_status(pool, d->engine->code, d->self, status));
             double part[STEP];
-            time_parts(&driven[e], self, scene, part);
+            time_parts(d, d->self, scene, part);
             for (int k = 0; k < STEP; ++k)
-                driven[e].second[k][r] = part[k];
+                d->second[k][r] = part[k];
         }
     report_heading(bench->report, "The scene as it stands");
     report_text(bench->report,
@@ -212,14 +263,18 @@ void bench_drive(const Bench *bench)
         "is the recovery of dependent coordinates, a right-hand side without the rates of the fast states, and "
         "the motion of wheels at the step's end; tires and powertrain are those rates, once for each fast step, "
         "the powertrain being what they take beyond those of the same model without it. The rest of the step "
-        "is the integrator's, the inputs' and the driver's.");
+        "is the integrator's, the inputs' and the driver's. Ratio: of the first row's CPU time to this one's, "
+        "repetition by "
+        "repetition; difference: of a number x of the state at the end from the first row's, relative to 1 + |x|. "
+        "Fast: "
+        "flags " FASTEST "; lanes: all wheels with the same tire in one vector (--lanes 4).");
     Sheet *table =
         report_table(bench->report, "drive", "Where the time of a step goes [us]",
                      "engine|CPU time [s]|lowest|highest|times real time|step [us]|multibody [us]|tires [us]|"
-                     "powertrain [us]|rest [us]|tires and powertrain [%]");
-    for (int e = 0; e < bench->engines; ++e) {
-        drive_row(bench, table, &driven[e]);
-        if (driven[e].plain)
-            engine_close(driven[e].plain);
+                     "powertrain [us]|rest [us]|tires and powertrain [%]|ratio|lowest|highest|difference");
+    for (Driven *d = driven; d < driven + subjects; ++d) {
+        drive_row(bench, table, d, driven);
+        if (d->plain)
+            engine_close(d->plain);
     }
 }

@@ -148,7 +148,7 @@ static double road_friction(const void *road, int32_t lane, double time, double 
 
 /* ---- who: variants at work ---------------------------------------------------------------------------------- */
 
-static bool installed(Pool *pool, const char *compiler)
+bool bench_installed(Pool *pool, const char *compiler)
 {
     const char *said;
     char *argv[] = {pool_print(pool, "%s", compiler), "--version", NULL};
@@ -168,7 +168,7 @@ static bool available(const Bench *bench, const Variant *variant)
         return wanted;
     const size_t length = strcspn(bench->options.compiler, " ");
     return (strlen(variant->compiler) != length || strncmp(variant->compiler, bench->options.compiler, length)) &&
-           installed(bench->pool, variant->compiler);
+           bench_installed(bench->pool, variant->compiler);
 }
 
 static void open_subject(Course *course, const Variant *variant)

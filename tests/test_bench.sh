@@ -215,6 +215,11 @@ check 'it is printed too' grep -q 'Where the time of a step goes' "$work/out"
 check 'parts are positive and together about a step' awk -F, '
     NR > 1 {++n; parts = $7 + $8 + $9; if (!($2 > 0 && $7 > 0 && $8 > 0 && parts > $6 / 2 && parts < 2 * $6)) bad = 1}
     END {exit bad || n != 2}' "$work/drive/drive.csv"
+printf 'gicscene: 1\nduration: 0.2\nstep: 0.004\nratio: 4\ninitial: {velocity: [10, 0, 0]}\n' >"$work/box.scene"
+"$gicbench" --drive --quick --engines cc -o "$work/lanes" "$work/box.veh" "$work/box.scene" >"$work/out" 2>"$work/err"
+check 'wheels in lanes beside wheels one by one, with the same results' awk -F, '
+    NR > 1 {++n; lanes += /lanes/; if (!($2 > 0 && $12 > 0 && $15 <= 1e-9)) bad = 1}
+    END {exit bad || n < 3 || !lanes}' "$work/lanes/drive.csv"
 drive "$work/soft.veh" "$work/cart.scene"
 check 'a model without wheels: multibody alone' grep -q '^tape .* 0 *0 *[-0-9.e]* *0$' "$work/out"
 # ---- in lanes
