@@ -81,6 +81,7 @@ static void points_read(Reader *reader, const Item *map)
     for (int i = 0; i < reader->points; ++i) {
         reader->point[i].name = entry[i].name;
         vector_read(reader, entry[i].item, entry[i].what, reader->point[i].x, 3, reader->point[i].tuned);
+        point_check(entry[i].item, entry[i].what, reader->point[i].x);
     }
 }
 

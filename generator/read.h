@@ -179,6 +179,9 @@ bool mentions_parameter(const Reader *reader, const Item *item);
  * tunable parameters end in diag_fail. */
 double number_read(Reader *reader, const Item *item, const char *what, Ex *tuned);
 void vector_read(Reader *reader, const Item *item, const char *what, double *out, int size, Ex *tuned);
+/* Is a number what its key asks for, and is a point where models are: FORMAT.md section 14? */
+void bound_check(const Key *key, const Item *item, const char *what, double number);
+void point_check(const Item *item, const char *what, const double x[3]);
 /* The prefix of all generated names must be an identifier that C, C++ and their libraries leave free. */
 void model_name_check(const char *name, Place at);
 /* reserved.c: why a name is none of those ("is reserved in C or C++"), or NULL. */

@@ -243,6 +243,17 @@ void vector_read(Reader *reader, const Item *item, const char *what, double *out
     }
 }
 
+/* FORMAT.md section 14: within it the generated code keeps the accuracy that is stated there. */
+static const double largest_number = 1e15, smallest_number = 1e-15, farthest_point = 1e6;
+
+void point_check(const Item *item, const char *what, const double x[3])
+{
+    for (int i = 0; i < 3; ++i)
+        if (fabs(x[i]) > farthest_point)
+            diag_fail(item->at, "write it in metres, with the design near the origin",
+                      "%s: that is more than %g m from the origin", what, farthest_point);
+}
+
 static void read_point(Reader *reader, const Item *item, const char *what, double x[3], Ex tuned[3])
 {
     if (item->kind == ITEM_SCALAR) {
@@ -253,6 +264,7 @@ static void read_point(Reader *reader, const Item *item, const char *what, doubl
         memcpy(tuned, reader->point[i].tuned, sizeof reader->point[i].tuned);
     } else
         vector_read(reader, item, what, x, 3, tuned);
+    point_check(item, what, x);
 }
 
 static void read_axis(Reader *reader, const Item *item, const char *what, double u[3], Ex tuned[3])
@@ -263,12 +275,15 @@ static void read_axis(Reader *reader, const Item *item, const char *what, double
         diag_fail(item->at, "write a direction, such as [0, 0, 1]", "%s has no direction: it is zero", what);
 }
 
-static void bound_check(const Key *key, const Item *item, const char *what, double number)
+void bound_check(const Key *key, const Item *item, const char *what, double number)
 {
     if (key->bound == BOUND_POSITIVE && !(number > 0))
         diag_fail(item->at, "write a positive number", "%s must be greater than zero, not %s", what, item->text);
     if (key->bound == BOUND_NOT_NEGATIVE && number < 0)
         diag_fail(item->at, "write zero or a positive number", "%s must not be negative (%s)", what, item->text);
+    if (fabs(number) > largest_number || (number != 0 && fabs(number) < smallest_number))
+        diag_fail(item->at, "use SI units: m, kg, s, N, rad", "%s is %s, which is not zero or from %g to %g in size",
+                  what, item->text, smallest_number, largest_number);
 }
 
 static void read_number(Reader *reader, const Key *key, const Item *item, const char *what, Value *value)

@@ -218,10 +218,7 @@ static const Law *spring_law(Reader *reader, const Entry *entry, const Value *va
     if (!isfinite(number))
         diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number",
                   what);
-    if (force_key[key].bound == BOUND_NOT_NEGATIVE && number < 0)
-        diag_fail(item->at, "write zero or a positive number", "%s must not be negative (%s)", what, item->text);
-    if (force_key[key].bound == BOUND_POSITIVE && !(number > 0))
-        diag_fail(item->at, "write a positive number", "%s must be greater than zero, not %s", what, item->text);
+    bound_check(&force_key[key], item, what, number);
     return law;
 }
 
