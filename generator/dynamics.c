@@ -237,6 +237,36 @@ static const int *elimination_order(const Whole *whole)
     return order;
 }
 
+/* Equations and unknowns that go with each other added up: P^T M P and P^T b, for z = P u. */
+static void reduce(Dag *dag, const Reduction *r, int n, Ex **M, Ex **b)
+{
+    const int m = r->unknowns;
+    Ex *sum = pool_alloc(dag->pool, ((size_t)m * (size_t)m + 1) * sizeof *sum);
+    Ex *right = pool_alloc(dag->pool, ((size_t)m + 1) * sizeof *right);
+    for (int i = 0; i < n; ++i) {
+        if (r->of[i] < 0)
+            continue;
+        Ex *own = &right[r->of[i]];
+        *own = ex_add(dag, *own, ex_mul(dag, ex_literal(dag, r->sign[i]), (*b)[i]));
+        for (int j = 0; j < n; ++j) {
+            if (r->of[j] < r->of[i])
+                continue;
+            Ex *entry = &sum[m * r->of[i] + r->of[j]], part = (*M)[i < j ? n * i + j : n * j + i];
+            *entry = ex_add(dag, *entry, ex_mul(dag, ex_literal(dag, r->sign[i] * r->sign[j]), part));
+        }
+    }
+    *M = sum;
+    *b = right;
+}
+
+static Ex *expand(Dag *dag, const Reduction *r, int n, const Ex *u)
+{
+    Ex *z = pool_alloc(dag->pool, ((size_t)n + 1) * sizeof *z);
+    for (int i = 0; i < n; ++i)
+        z[i] = r->of[i] < 0 ? 0 : ex_mul(dag, ex_literal(dag, r->sign[i]), u[r->of[i]]);
+    return z;
+}
+
 Block *dynamics_block(Whole *whole)
 {
     /* A pivot this small against its diagonal entry is rounding: no inertia is left along that coordinate. */
@@ -255,6 +285,10 @@ Block *dynamics_block(Whole *whole)
     block_loads(block, loads->force, 3);
     block_loads(block, loads->along, whole->model->coordinates);
     right_hand_side(whole, &c, loads, whole_driven_accelerations(whole), z);
+    if (plan->reduction) {
+        reduce(dag, plan->reduction, n, &M, &z);
+        n = plan->reduction->unknowns;
+    }
     Factors *factors = linear_factor_symmetric(dag, n, M, elimination_order(whole));
     for (int k = 0; k < n; ++k) {
         Ex diagonal = M[n * factors->row[k] + factors->row[k]];
@@ -263,7 +297,7 @@ Block *dynamics_block(Whole *whole)
                         0, "GIC_ERROR_MASS");
     }
     linear_solve(dag, factors, z, z);
-    whole_store_rates(whole, block, z);
+    whole_store_rates(whole, block, plan->reduction ? expand(dag, plan->reduction, plan->unknowns, z) : z);
     return block;
 }
 

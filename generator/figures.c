@@ -11,13 +11,15 @@ void count_add(Count *sum, Count more, int times)
     sum->function += times * more.function;
 }
 
-static void wheel_figures(Pool *pool, Figures *figures, const Wheels *wheels, bool drives)
+static void wheel_figures(Pool *pool, Figures *figures, const Formulation *f)
 {
+    const Wheels *wheels = f->wheels;
+    figures->wheel_times = pool_alloc(pool, (size_t)wheels->classes * sizeof(int));
     figures->link = block_count(&wheels->link);
     figures->torque = block_count(&wheels->torque);
     figures->wheel = pool_alloc(pool, (size_t)wheels->classes * sizeof *figures->wheel);
     figures->fast = figures->torque;
-    if (drives) {
+    if (f->model->powertrain) {
         figures->drive = block_count(&wheels->drive);
         count_add(&figures->fast, figures->drive, 1);
     }
@@ -26,7 +28,9 @@ static void wheel_figures(Pool *pool, Figures *figures, const Wheels *wheels, bo
         count_add(&figures->wheel[c], block_count(&class->contact), 1);
         count_add(&figures->wheel[c], block_count(&class->tire), 1);
         count_add(&figures->wheel[c], block_count(&class->balance), 1);
-        count_add(&figures->fast, figures->wheel[c], class->members);
+        for (int i = 0; i < class->members; ++i)
+            figures->wheel_times[c] += !narrowing_wheel_image(f->narrowing, class->member[i]);
+        count_add(&figures->fast, figures->wheel[c], figures->wheel_times[c]);
     }
 }
 
@@ -50,9 +54,10 @@ const Figures *figures_new(Pool *pool, const Formulation *f)
     }
     for (int s = 0; s < f->sequence->subsets; ++s)
         if (f->sequence->subset[s].class >= 0)
-            figures->times[f->sequence->subset[s].class] += !narrowing_steady(f->narrowing, s);
+            figures->times[f->sequence->subset[s].class] +=
+                !narrowing_steady(f->narrowing, s) && !narrowing_image(f->narrowing, s);
     if (f->wheels)
-        wheel_figures(pool, figures, f->wheels, f->model->powertrain);
+        wheel_figures(pool, figures, f);
     if (!formulation_reacts(f))
         return figures;
     figures->wrenches = block_count(f->wrenches);

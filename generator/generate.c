@@ -332,12 +332,24 @@ static bool in_lanes(const Generation *g, int class)
     return g->plan->lanes && g->plan->class_lanes[class];
 }
 
+/* Has the class a member that is no other one's image? */
+static bool is_called(const Generation *g, int c)
+{
+    const Class *class = &g->sequence->class[c];
+    for (int i = 0; i < class->members; ++i)
+        if (!narrowing_image(g->formulation->narrowing, class->member[i]))
+            return true;
+    return false;
+}
+
 static void write_classes(Generation *g, Text *out)
 {
     if (g->plan->lanes)
         write_lane_links(g, out);
     for (g->class = 0; g->class < g->sequence->classes; ++g->class) {
         Text body = {.pool = g->pool};
+        if (!is_called(g, g->class))
+            continue;
         const char *way = g->plan->formula[g->class]->closed ? "closed.c.in" : "subset.c.in";
         if (in_lanes(g, g->class))
             write_lane_class(g, out);
@@ -440,6 +452,8 @@ static void write_calls(Generation *g, Text *out, int indent)
             continue;
         }
         const Class *class = &sequence->class[subset->class];
+        if (narrowing_image(g->formulation->narrowing, s))
+            continue;
         const bool closed = g->plan->formula[subset->class]->closed;
         const bool steady = narrowing_steady(g->formulation->narrowing, s), keeps = !steady && plan_keeps(g->plan, s);
         if (steady)
@@ -483,7 +497,7 @@ static void write_residuals(Generation *g, Text *out, int indent)
     write_rooms(g, out, indent);
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
-        if (subset->class < 0)
+        if (subset->class < 0 || narrowing_image(g->formulation->narrowing, s))
             continue;
         const Class *class = &sequence->class[subset->class];
         write_knowns(g, out, indent, subset);
@@ -782,7 +796,9 @@ void insert_code(void *context, const char *name, Text *out, int indent)
     } else if (!strcmp(name, "assumptions")) {
         write_assumptions(g, out);
     } else if (!strcmp(name, "assume")) {
-        write_assume(g, out, indent);
+        write_assume(g, out, indent, ABOUT_CALLER);
+    } else if (!strcmp(name, "assume state")) {
+        write_assume(g, out, indent, ABOUT_STATE);
     } else if (!strcmp(name, "condition")) {
         write_condition(g, out, indent);
     } else if (!strcmp(name, "wheels")) {

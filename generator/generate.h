@@ -59,8 +59,9 @@ void write_tables(Generation *g, Text *out);
 int conditions(const Generation *g);                         /* texts of conditions and assumptions */
 void write_assumption_texts(Generation *g, Text *out);       /* behind those of conditions */
 void write_narrowing(Generation *g, Text *out);              /* for the comment in front */
-void write_assumptions(Generation *g, Text *out);            /* the function that checks them */
-void write_assume(Generation *g, Text *out, int indent);     /* the call of it */
+void write_assumptions(Generation *g, Text *out);            /* the functions that check them */
+void write_assume(Generation *g, Text *out, int indent, AssumptionAbout about); /* the call of it */
+void write_images(Generation *g, Text *out, int indent);     /* what wheels do whose images are computed */
 void write_condition(Generation *g, Text *out, int indent);  /* which text the last status is about */
 
 /* generate_wheels.c: nothing where no wheel has a tire, but for the end of the descriptor. */

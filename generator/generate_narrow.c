@@ -34,29 +34,83 @@ void write_narrowing(Generation *g, Text *out)
     text_print(out, " *\n");
 }
 
+static const char *const state_name[] = {[ABOUT_STATE] = "y", [ABOUT_FAST] = "fast"};
+
+typedef struct Checks {
+    const Generation *g;
+    AssumptionAbout about;
+} Checks;
+
 static void insert_checks(void *context, const char *name, Text *out, int indent)
 {
-    const Generation *g = context;
-    const Narrowing *narrowing = g->formulation->narrowing;
+    const Checks *checks = context;
+    const Narrowing *narrowing = checks->g->formulation->narrowing;
     (void)name;
-    for (int i = 0; i < narrowing->assumptions; ++i) {
-        line(out, indent, "if (%s)", narrowing->assumption[i].broken);
-        line(out, indent + 4, "broken = %d;", first_assumption(g) + i);
-    }
+    for (int i = 0; i < narrowing->assumptions; ++i)
+        if (narrowing->assumption[i].about == checks->about) {
+            line(out, indent, "if (%s)", narrowing->assumption[i].broken);
+            line(out, indent + 4, "broken = %d;", first_assumption(checks->g) + i);
+        }
+}
+
+/* Does anything that is taken for granted concern that? */
+static bool assumes(const Generation *g, AssumptionAbout about)
+{
+    const Narrowing *narrowing = g->formulation->narrowing;
+    for (int i = 0; narrowing && i < narrowing->assumptions; ++i)
+        if (narrowing->assumption[i].about == about)
+            return true;
+    return false;
 }
 
 void write_assumptions(Generation *g, Text *out)
 {
-    if (g->formulation->narrowing)
-        template_expand(g->pool, out, g->templates, "assume.c.in", g->model->name, NULL, insert_checks, g);
+    Checks checks = {g, ABOUT_CALLER};
+    if (assumes(g, ABOUT_CALLER))
+        template_expand(g->pool, out, g->templates, "assume.c.in", g->model->name, NULL, insert_checks, &checks);
+    for (checks.about = ABOUT_STATE; checks.about <= ABOUT_FAST; ++checks.about)
+        if (assumes(g, checks.about))
+            template_expand(g->pool, out, g->templates, "assume_state.c.in", g->model->name, state_name[checks.about],
+                            insert_checks, &checks);
 }
 
-void write_assume(Generation *g, Text *out, int indent)
+void write_assume(Generation *g, Text *out, int indent, AssumptionAbout about)
 {
-    if (!g->formulation->narrowing)
+    if (!assumes(g, about))
         return;
-    line(out, indent, "if (%s_assume(self) != GIC_OK)", g->model->name);
+    const char *name = state_name[about];
+    if (about == ABOUT_CALLER)
+        line(out, indent, "if (%s_assume(self) != GIC_OK)", g->model->name);
+    else
+        line(out, indent, "if (%s_assume_%s(self, %s) != GIC_OK)", g->model->name, name, name);
     line(out, indent + 4, "return self->head.status;");
+}
+
+static void write_image(Text *out, int indent, const char *array, int at, int of, double sign)
+{
+    line(out, indent, "%s[%d] = %s%s[%d];", array, at, sign < 0 ? "-" : "", array, of);
+}
+
+void write_images(Generation *g, Text *out, int indent)
+{
+    const Model *model = g->model;
+    for (int w = 0; w < model->wheels; ++w) {
+        if (!narrowing_wheel_image(g->formulation->narrowing, w))
+            continue;
+        const int leader = g->formulation->narrowing->wheel[w], at = GRIP_NUMBERS * wheel_rolling(model, w);
+        const int of = GRIP_NUMBERS * wheel_rolling(model, leader), link = LINK_NUMBERS * wheel_rolling(model, w);
+        line(out, indent, "if (status == GIC_OK) { /* %s is the image of %s */", model->wheel[w].name,
+             model->wheel[leader].name);
+        for (int i = 0; i < wheel_fast_states(&model->wheel[w]); ++i)
+            write_image(out, indent + 4, "rate", model->wheel[w].fast + i, model->wheel[leader].fast + i,
+                        wheel_fast_sign(i));
+        for (int i = 0; i < GRIP_NUMBERS; ++i)
+            if (i != GRIP_POINT + 1)
+                write_image(out, indent + 4, "grip", at + i, of + i, wheel_grip_sign(i));
+        line(out, indent + 4, "grip[%d] = link[%d] + link[%d] - grip[%d];", at + GRIP_POINT + 1, link + LINK_C + 1,
+             LINK_NUMBERS * wheel_rolling(model, leader) + LINK_C + 1, of + GRIP_POINT + 1);
+        line(out, indent, "}");
+    }
 }
 
 void write_condition(Generation *g, Text *out, int indent)

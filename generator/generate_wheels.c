@@ -88,6 +88,8 @@ static void write_calls(Generation *g, Text *out, int indent)
         }
         for (int i = 0; i < class->members; ++i) {
             const Wheel *wheel = &g->model->wheel[class->member[i]];
+            if (narrowing_wheel_image(g->formulation->narrowing, class->member[i]))
+                continue;
             int place = wheel_rolling(g->model, class->member[i]);
             line(out, indent, "if (status == GIC_OK) /* %s */", wheel->name);
             line(out, indent + 4,
@@ -115,6 +117,10 @@ static void insert_wheels(void *context, const char *name, Text *out, int indent
         write_calls(g, out, indent);
     else if (!strcmp(name, "drive"))
         write_drive(g, out, indent);
+    else if (!strcmp(name, "images"))
+        write_images(g, out, indent);
+    else if (!strcmp(name, "assume fast"))
+        write_assume(g, out, indent, ABOUT_FAST);
     else
         block_emit(out, !strcmp(name, "link") ? &wheels->link : &wheels->torque, g->style, &none, indent);
 }
@@ -133,7 +139,7 @@ static void insert_rolling(void *context, const char *name, Text *out, int inden
 {
     Generation *g = context;
     if (!strcmp(name, "assume")) {
-        write_assume(g, out, indent);
+        write_assume(g, out, indent, ABOUT_CALLER);
         return;
     }
     for (int i = 0; i < g->model->wheels; ++i) {
@@ -199,7 +205,7 @@ void wheel_counts(Generation *g, Text *out, const Figures *figures)
     count_line(out, "motion of the wheels", figures->link);
     count_line(out, "drives and brakes", figures->torque);
     for (int c = 0; c < wheels->classes; ++c)
-        count_line(out, pool_print(g->pool, "wheel '%s' (%d times)", wheels->class[c].name, wheels->class[c].members),
+        count_line(out, pool_print(g->pool, "wheel '%s' (%d times)", wheels->class[c].name, figures->wheel_times[c]),
                    figures->wheel[c]);
     if (g->model->powertrain)
         count_line(out, "powertrain", figures->drive);

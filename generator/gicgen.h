@@ -487,6 +487,13 @@ const Model *model_assemble(Pool *pool, const Model *drawn, const Sequence *sequ
 
 /* ---- whole.c: the whole mechanism, once all subsets are recovered ---------------------------------------------- */
 
+/* Unknowns of the equations of motion that go with each other: unknown i is sign[i] times number of[i] of fewer ones, or
+ * 0 where that is -1. */
+typedef struct Reduction {
+    int unknowns, *of;
+    double *sign;
+} Reduction;
+
 /* Where the numbers of every subset stand in the work space, and where states stand in the state. */
 typedef struct Plan {
     const Model *model;
@@ -511,6 +518,7 @@ typedef struct Plan {
     int states;                              /* r e w v omega w', or w w'; fast states behind them do not count */
     int unknowns;                            /* accelerations: alpha and a of a free base, then the free coordinates */
     int *coordinate_unknown;                 /* [coordinates] -1: driven */
+    const Reduction *reduction;              /* NULL: every unknown is one of its own */
 } Plan;
 
 Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Formula **formula,
@@ -812,7 +820,8 @@ typedef struct Figures {
     Count loads;        /* of these, for applied forces alone */
     Count link, torque; /* of wheels with tires: their motion; what drives and brakes them */
     Count drive;        /* of the powertrain */
-    Count *wheel;       /* [classes of wheels] one wheel on the road */
+    Count *wheel;       /* [classes of wheels] one wheel on the road; so many are computed: */
+    int *wheel_times;
     Count fast;         /* a fast step: torque, all wheels, powertrain */
     Count outputs;      /* of what outputs are made of; where they need multipliers that the dynamics don't give: */
     Count wrenches;     /* what they follow from */

@@ -1,29 +1,15 @@
 /* SPDX-License-Identifier: MIT
  * Formulas of a model for one scene: what the scene doesn't need is taken out of the model, what is known is folded into
  * the blocks, and what generated code must check is written down. */
-#include "narrow.h"
+#include "narrow_work.h"
 
 #include "powertrain.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct Narrower {
-    Pool *pool;
-    const Facts *facts;
-    const Model *model;
-    const Formulation *general;
-    Formulation *out;
-    Plan *plan;
-    Narrowing *narrowing;
-    Givens *whole; /* of all graphs but those of classes */
-    const bool *steady;                                /* [coordinates] that keep `at` */
-    const double *at;                                  /* [coordinates] */
-    bool *known_motion, *known_inertia;                /* [plan's sizes] constant, with these values: */
-    double *motion, *inertia;
-} Narrower;
-
-static void *array_copy(Pool *pool, const void *array, size_t count, size_t size)
+void *narrow_copy(Pool *pool, const void *array, size_t count, size_t size)
 {
     return pool_grow(pool, (void *)array, count * size, (count + 1) * size);
 }
@@ -55,9 +41,9 @@ static bool keeps_geometry(const Model *model, const double *parameter)
 
 static const Model *narrow_model(Pool *pool, const Model *model, const Facts *facts)
 {
-    Model *narrow = array_copy(pool, model, 1, sizeof *narrow);
-    narrow->input = array_copy(pool, model->input, (size_t)model->inputs, sizeof *model->input);
-    narrow->parameter = array_copy(pool, model->parameter, (size_t)model->parameters, sizeof *model->parameter);
+    Model *narrow = narrow_copy(pool, model, 1, sizeof *narrow);
+    narrow->input = narrow_copy(pool, model->input, (size_t)model->inputs, sizeof *model->input);
+    narrow->parameter = narrow_copy(pool, model->parameter, (size_t)model->parameters, sizeof *model->parameter);
     if (facts->wanted)
         keep_wanted(pool, narrow, facts->wanted);
     for (int i = 0; i < model->inputs; ++i)
@@ -74,7 +60,7 @@ static const Model *narrow_model(Pool *pool, const Model *model, const Facts *fa
         }
     }
     if (facts->neutral) {
-        narrow->powertrain = array_copy(pool, model->powertrain, 1, sizeof *model->powertrain);
+        narrow->powertrain = narrow_copy(pool, model->powertrain, 1, sizeof *model->powertrain);
         narrow->powertrain->start_gear = 0;
     }
     return narrow;
@@ -99,6 +85,16 @@ static void find_steady(Narrower *n)
     }
     n->steady = steady;
     n->at = at;
+}
+
+/* Free coordinates that are odd stay where their image is. */
+static void hold_odd(Narrower *n)
+{
+    for (int w = 0; w < n->model->coordinates; ++w)
+        if (n->mirror->coordinate[w] == w && n->mirror->sign[w] < 0) {
+            n->steady[w] = true;
+            n->at[w] = n->model->coordinate[w].design;
+        }
 }
 
 static bool alike(const Narrower *n, const Subset *a, const Subset *b)
@@ -145,8 +141,8 @@ static void split_class(Narrower *n, Sequence *sequence, int c)
 
 static const Sequence *split_classes(Narrower *n, const Sequence *sequence)
 {
-    Sequence *split = array_copy(n->pool, sequence, 1, sizeof *split);
-    split->subset = array_copy(n->pool, sequence->subset, (size_t)sequence->subsets, sizeof *split->subset);
+    Sequence *split = narrow_copy(n->pool, sequence, 1, sizeof *split);
+    split->subset = narrow_copy(n->pool, sequence->subset, (size_t)sequence->subsets, sizeof *split->subset);
     split->class = pool_grow(n->pool, sequence->class, (size_t)sequence->classes * sizeof *split->class,
                              ((size_t)sequence->subsets + 1) * sizeof *split->class);
     for (int c = 0; c < split->classes; ++c)
@@ -196,6 +192,8 @@ static Givens *class_givens(Narrower *n, const Class *class, const Formula *form
     const Sequence *sequence = n->plan->sequence;
     const Subset *first = &sequence->subset[class->member[0]];
     Givens *givens = givens_new(n->pool);
+    for (int i = 0; n->mirror && i < 3; i += 2) /* it pitches, and no more */
+        givens_number(givens, 0, "turn[%d]", i);
     for (int j = 0; j < first->deps; ++j) {
         give_members(n, givens, class, steady_rate, j, 0, pool_print(n->pool, "rate[%d]", j));
         if (formula->closed) /* others follow the coordinate from the design */
@@ -209,8 +207,7 @@ static Givens *class_givens(Narrower *n, const Class *class, const Formula *form
     return givens;
 }
 
-/* Index of a target of that array, -1: it is of another. */
-static int target_index(const char *target, const char *array)
+int narrow_target(const char *target, const char *array)
 {
     const size_t length = strlen(array);
     return !strncmp(target, array, length) && target[length] == '[' ? atoi(target + length + 1) : -1;
@@ -223,7 +220,7 @@ static void remember(Narrower *n, const Class *class, const Formula *formula)
     bool *steady = n->narrowing->steady, all = formula->closed && !formula->solve.checks && !formula->layout.start_size;
     for (int i = 0; i < formula->solve.stores; ++i) {
         const Store *store = &formula->solve.store[i];
-        const int motion = target_index(store->target, "motion"), inertia = target_index(store->target, "inertia");
+        const int motion = narrow_target(store->target, "motion"), inertia = narrow_target(store->target, "inertia");
         all = all && dag->node[store->value].level < LEVEL_VARIABLE;
         if (dag->node[store->value].level == LEVEL_VARIABLE)
             continue;
@@ -247,7 +244,7 @@ static void narrow_class(Narrower *n, int c)
 {
     const Class *class = &n->plan->sequence->class[c];
     const Formula *general = n->general->plan->formula[c];
-    Formula *formula = array_copy(n->pool, general, 1, sizeof *formula);
+    Formula *formula = narrow_copy(n->pool, general, 1, sizeof *formula);
     Partial p = partial_new(n->pool, general->dag, class_givens(n, class, general), NULL, n->model);
     formula->dag = p.to;
     formula->predict = partial_block(&p, &general->predict);
@@ -275,9 +272,15 @@ static void narrow_subsets(Narrower *n)
 
 /* ---- the rest ------------------------------------------------------------------------------------------------------- */
 
+void narrow_assume(Narrower *n, AssumptionAbout about, const char *text, const char *broken)
+{
+    *POOL_PUSH(n->pool, n->narrowing->assumption, n->narrowing->assumptions) = (Assumption){about, text, broken};
+}
+
+/* About what belongs to the caller. */
 static void assume(Narrower *n, const char *text, const char *broken)
 {
-    *POOL_PUSH(n->pool, n->narrowing->assumption, n->narrowing->assumptions) = (Assumption){text, broken};
+    narrow_assume(n, ABOUT_CALLER, text, broken);
 }
 
 static const char *number_text(Pool *pool, double value)
@@ -291,6 +294,7 @@ static void give_fixed(Narrower *n, const char *kind, const char *name, const ch
                        double value)
 {
     givens_number(n->whole, value, "%s[%d]", array, index);
+    givens_number(n->fast, value, "%s[%d]", array, index);
     assume(n, pool_print(n->pool, "%s '%s' is %s", kind, name, number_text(n->pool, value)),
            pool_print(n->pool, "self->%s[%d] != %s", member, index, emit_number(n->pool, value)));
 }
@@ -320,6 +324,8 @@ static void give_whole(Narrower *n)
         if (n->steady[w]) {
             givens_number(n->whole, n->at[w], "x[%d]", w);
             givens_number(n->whole, 0, "xd[%d]", w);
+            givens_number(n->fast, n->at[w], "x[%d]", w);
+            givens_number(n->fast, 0, "xd[%d]", w);
         }
     for (int i = 0; facts->parameter && i < model->parameters; ++i)
         if (model->parameter[i].tunable && !model->parameter[i].geometric)
@@ -328,7 +334,7 @@ static void give_whole(Narrower *n)
     if (facts->idle)
         give_ports(n);
     for (int i = 0; facts->neutral && i < GEAR_NUMBERS; ++i)
-        givens_number(n->whole, 0, "gear[%d]", i);
+        givens_number(n->fast, 0, "gear[%d]", i);
     if (facts->neutral) {
         const int gear = model->free_base;
         assume(n, "the transmission is in neutral",
@@ -354,12 +360,12 @@ static void give_subsets(Narrower *n)
             givens_number(n->whole, n->inertia[i], "n[%d]", i);
 }
 
-static const Block *narrow_block(Narrower *n, const Block *block)
+static const Block *narrow_block(Narrower *n, const Givens *givens, const Block *block)
 {
     Block *out = pool_alloc(n->pool, sizeof *out);
     if (!block)
         return NULL;
-    Partial p = partial_new(n->pool, block->dag, n->whole, n->facts->plane, n->model);
+    Partial p = partial_new(n->pool, block->dag, givens, n->facts->plane, n->model);
     *out = partial_block(&p, block);
     return out;
 }
@@ -409,6 +415,25 @@ static bool powertrain_seen(const Model *model)
     return false;
 }
 
+/* What a powertrain does to a wheel whose image is computed comes with the image. */
+static void drop_images(Narrower *n, Block *drive)
+{
+    int stores = 0;
+    for (int i = 0; i < drive->stores; ++i) {
+        bool image = false;
+        for (int w = 0; n->mirror && w < n->model->wheels; ++w) {
+            const Wheel *wheel = &n->model->wheel[w];
+            const int rate = narrow_target(drive->store[i].target, "rate") - wheel->fast;
+            const int grip = narrow_target(drive->store[i].target, "grip") - GRIP_NUMBERS * wheel_rolling(n->model, w);
+            image = image || (n->narrowing->wheel[w] >= 0 &&
+                              ((rate >= 0 && rate < wheel_fast_states(wheel)) || (grip >= 0 && grip < GRIP_NUMBERS)));
+        }
+        if (!image)
+            drive->store[stores++] = drive->store[i];
+    }
+    drive->stores = stores;
+}
+
 /* What nobody sees of a powertrain that drives nothing stands still. */
 static void rest_powertrain(Narrower *n, Block *drive)
 {
@@ -416,9 +441,9 @@ static void rest_powertrain(Narrower *n, Block *drive)
     int stores = 0;
     for (int i = 0; i < drive->stores; ++i) {
         Store store = drive->store[i];
-        if (target_index(store.target, "watch") >= 0)
+        if (narrow_target(store.target, "watch") >= 0)
             continue;
-        if (n->facts->neutral && target_index(store.target, "rate") == speed)
+        if (n->facts->neutral && narrow_target(store.target, "rate") == speed)
             store.value = ex_literal(drive->dag, 0);
         drive->store[stores++] = store;
     }
@@ -429,15 +454,16 @@ static const Wheels *narrow_wheels(Narrower *n)
 {
     if (!n->general->wheels)
         return NULL;
-    Wheels *wheels = array_copy(n->pool, n->general->wheels, 1, sizeof *wheels);
-    wheels->link = *narrow_block(n, &wheels->link);
-    wheels->torque = *narrow_block(n, &wheels->torque);
-    wheels->class = array_copy(n->pool, wheels->class, (size_t)wheels->classes, sizeof *wheels->class);
+    Wheels *wheels = narrow_copy(n->pool, n->general->wheels, 1, sizeof *wheels);
+    wheels->link = *narrow_block(n, n->whole, &wheels->link);
+    wheels->torque = *narrow_block(n, n->fast, &wheels->torque);
+    wheels->class = narrow_copy(n->pool, wheels->class, (size_t)wheels->classes, sizeof *wheels->class);
     for (int c = 0; c < wheels->classes; ++c)
         narrow_wheel_class(n, &wheels->torque, &wheels->class[c]);
     if (n->model->powertrain) {
-        wheels->drive = *narrow_block(n, &wheels->drive);
-        wheels->shift = *narrow_block(n, &wheels->shift);
+        wheels->drive = *narrow_block(n, n->fast, &wheels->drive);
+        wheels->shift = *narrow_block(n, n->fast, &wheels->shift);
+        drop_images(n, &wheels->drive);
         if (!powertrain_seen(n->model))
             rest_powertrain(n, &wheels->drive);
     }
@@ -447,12 +473,12 @@ static const Wheels *narrow_wheels(Narrower *n)
 static void narrow_rest(Narrower *n)
 {
     const Formulation *f = n->general;
-    n->out->dynamics = narrow_block(n, f->dynamics);
-    n->out->outputs = narrow_block(n, f->outputs);
-    n->out->poses = narrow_block(n, f->poses);
-    n->out->inverse = narrow_block(n, f->inverse);
-    n->out->energy = narrow_block(n, f->energy);
-    n->out->wrenches = narrow_block(n, f->wrenches);
+    n->out->dynamics = narrow_block(n, n->whole, n->mirror ? narrow_dynamics(n) : f->dynamics);
+    n->out->outputs = narrow_block(n, n->whole, f->outputs);
+    n->out->poses = narrow_block(n, n->whole, f->poses);
+    n->out->inverse = narrow_block(n, n->whole, f->inverse);
+    n->out->energy = narrow_block(n, n->whole, f->energy);
+    n->out->wrenches = narrow_block(n, n->whole, f->wrenches);
     n->out->wheels = narrow_wheels(n);
 }
 
@@ -479,31 +505,116 @@ bool narrowing_steady(const Narrowing *narrowing, int subset)
     return narrowing && narrowing->steady[subset];
 }
 
+bool narrowing_image(const Narrowing *narrowing, int subset)
+{
+    return narrowing && narrowing->image && narrowing->image[subset] >= 0;
+}
+
+bool narrowing_wheel_image(const Narrowing *narrowing, int wheel)
+{
+    return narrowing && narrowing->wheel && narrowing->wheel[wheel] >= 0;
+}
+
+static bool has_reactions(const Model *model)
+{
+    for (int i = 0; i < model->outputs; ++i)
+        if (model->output[i].type == OUTPUT_REACTION)
+            return true;
+    return false;
+}
+
+static bool starts_even(const Narrower *n, const Mirror *mirror)
+{
+    const Model *model = n->model;
+    const Facts *facts = n->facts;
+    for (int w = 0; w < model->coordinates; ++w) {
+        const int image = mirror->coordinate[w];
+        const double value = facts->value[image] - mirror->sign[w] * facts->value[w];
+        const double rate = facts->rate[image] - mirror->sign[w] * facts->rate[w];
+        if (!model->coordinate[w].driven && !(fabs(value) <= NARROW_ROUNDING && fabs(rate) <= NARROW_ROUNDING))
+            return false;
+    }
+    for (int i = 0; i < model->wheels; ++i) {
+        const Wheel *wheel = &model->wheel[i];
+        for (int k = 0; k < wheel_fast_states(wheel); ++k) {
+            const double own = facts->state[wheel->fast + k], other = facts->state[model->wheel[mirror->wheel[i]].fast + k];
+            if (!(isnan(own) && isnan(other)) && other != wheel_fast_sign(k) * own)
+                return false;
+        }
+    }
+    return true;
+}
+
+/* Both sides of the same kind, and known to be, as far as bodies and joints go. */
+static const Mirror *find_mirror(Narrower *n, Solve solve)
+{
+    const char **why = &n->narrowing->asymmetry;
+    *why = n->facts->asymmetry;
+    if (!*why && !n->model->free_base)
+        *why = "the base is fixed";
+    if (!*why && n->model->tuning)
+        *why = "geometric parameters are not those of the file";
+    if (!*why && solve != SOLVE_REDUCED)
+        *why = "the equations of motion are in the augmented form";
+    if (!*why && has_reactions(n->model))
+        *why = "reaction forces of joints are asked for";
+    const Mirror *mirror = *why ? NULL : mirror_find(n->pool, n->model, why);
+    for (int w = 0; mirror && w < n->model->coordinates; ++w)
+        if (n->model->coordinate[w].driven &&
+            (!n->steady[w] || n->at[mirror->coordinate[w]] != mirror->sign[w] * n->at[w])) {
+            *why = pool_print(n->pool, "the driven coordinate '%s' moves, or not as its image does",
+                              n->model->coordinate[w].name);
+            return NULL;
+        }
+    if (mirror && !starts_even(n, mirror))
+        *why = "the initial state is not the same on both sides";
+    return *why ? NULL : mirror;
+}
+
+static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve solve, Recovery recovery)
+{
+    n->whole = givens_new(n->pool);
+    n->fast = givens_new(n->pool);
+    n->general = formulate(n->pool, n->model, split_classes(n, sequence), solve, recovery);
+    const Plan *plan = n->general->plan;
+    n->plan = narrow_copy(n->pool, plan, 1, sizeof *n->plan);
+    n->plan->formula =
+        narrow_copy(n->pool, plan->formula, (size_t)n->general->sequence->classes, sizeof *plan->formula);
+    n->known_motion = pool_alloc(n->pool, (size_t)plan->motion_size + 1);
+    n->known_inertia = pool_alloc(n->pool, (size_t)plan->inertia_size + 1);
+    n->motion = pool_alloc(n->pool, ((size_t)plan->motion_size + 1) * sizeof *n->motion);
+    n->inertia = pool_alloc(n->pool, ((size_t)plan->inertia_size + 1) * sizeof *n->inertia);
+    n->narrowing->steady = pool_alloc(n->pool, (size_t)plan->sequence->subsets + 1);
+    n->out = narrow_copy(n->pool, n->general, 1, sizeof *n->out);
+    n->out->plan = n->plan;
+    n->out->narrowing = n->narrowing;
+    narrow_subsets(n);
+    give_whole(n);
+    give_subsets(n);
+    if (n->mirror)
+        narrow_mirror(n);
+    narrow_rest(n);
+    find_uses(n->out, n->narrowing);
+    return n->out;
+}
+
 const Formulation *formulate_narrow(Pool *pool, const Model *model, const Sequence *sequence, Solve solve,
                                     Recovery recovery, const Facts *facts)
 {
     if (!facts)
         return formulate(pool, model, sequence, solve, recovery);
-    Narrower n = {.pool = pool, .facts = facts, .model = narrow_model(pool, model, facts), .whole = givens_new(pool)};
-    find_steady(&n);
-    n.general = formulate(pool, n.model, split_classes(&n, sequence), solve, recovery);
-    const Plan *plan = n.general->plan;
-    n.plan = array_copy(pool, plan, 1, sizeof *n.plan);
-    n.plan->formula = array_copy(pool, plan->formula, (size_t)n.general->sequence->classes, sizeof *plan->formula);
-    n.known_motion = pool_alloc(pool, (size_t)plan->motion_size + 1);
-    n.known_inertia = pool_alloc(pool, (size_t)plan->inertia_size + 1);
-    n.motion = pool_alloc(pool, ((size_t)plan->motion_size + 1) * sizeof *n.motion);
-    n.inertia = pool_alloc(pool, ((size_t)plan->inertia_size + 1) * sizeof *n.inertia);
+    Narrower n = {.pool = pool, .facts = facts, .model = narrow_model(pool, model, facts)};
     n.narrowing = pool_alloc(pool, sizeof *n.narrowing);
     n.narrowing->facts = facts;
-    n.narrowing->steady = pool_alloc(pool, (size_t)plan->sequence->subsets + 1);
-    n.out = array_copy(pool, n.general, 1, sizeof *n.out);
-    n.out->plan = n.plan;
-    n.out->narrowing = n.narrowing;
-    narrow_subsets(&n);
-    give_whole(&n);
-    give_subsets(&n);
-    narrow_rest(&n);
-    find_uses(n.out, n.narrowing);
-    return n.out;
+    find_steady(&n);
+    n.mirror = find_mirror(&n, solve);
+    if (n.mirror)
+        hold_odd(&n);
+    const Formulation *out = narrow(&n, sequence, solve, recovery);
+    if (!n.mirror || narrow_is_even(&n))
+        return out;
+    n.mirror = NULL;
+    find_steady(&n);
+    *n.narrowing = (Narrowing){.facts = facts, .asymmetry = "forces are not the same on both sides"};
+    return narrow(&n, sequence, solve, recovery);
 }

@@ -63,10 +63,16 @@ typedef struct Facts {
     bool idle;               /* nobody uses ports */
     bool neutral;            /* the transmission is in neutral all along */
     const Plane *plane;      /* the road; NULL: any */
+    const char *asymmetry;   /* what is not the same to both sides; NULL: the base's motion and the road are */
+    const double *value, *rate, *state; /* [coordinates] [fast states] at the beginning; state NAN: as wheels roll */
 } Facts;
+
+/* What the condition of an assumption reads: what belongs to the caller, the slow state `y`, the fast one `fast`. */
+typedef enum AssumptionAbout { ABOUT_CALLER, ABOUT_STATE, ABOUT_FAST } AssumptionAbout;
 
 /* What generated code checks: for people, and a condition in C that is true where it is broken. */
 typedef struct Assumption {
+    AssumptionAbout about;
     const char *text, *broken;
 } Assumption;
 
@@ -74,12 +80,25 @@ struct Narrowing {
     const Facts *facts;
     int assumptions;
     Assumption *assumption;
+    const int *image;      /* [subsets] the one whose mirror image it is, -1: none's; NULL: both sides are computed */
+    const int *wheel;      /* [wheels] the same */
+    const char *asymmetry; /* why both are; NULL: they are not */
     bool *steady; /* [subsets] nothing about it ever changes: recovered at set-up */
     bool road, friction, tables; /* are they still looked up? */
 };
 
-/* Is a subset recovered at set-up alone? narrowing may be NULL. */
+/* Is a subset recovered at set-up alone; is it, or a wheel, the image of another? narrowing may be NULL. */
 bool narrowing_steady(const Narrowing *narrowing, int subset);
+bool narrowing_image(const Narrowing *narrowing, int subset);
+bool narrowing_wheel_image(const Narrowing *narrowing, int wheel);
+
+/* narrow_mirror.c: what a mirror makes of a wheel's fast state, of a number of its grip[] (but the contact point's y):
+ * its sign. */
+double wheel_fast_sign(int state);
+double wheel_grip_sign(int number);
+
+/* How far an initial state may be from being its own mirror image, where it is made one. */
+#define NARROW_ROUNDING 1e-9
 
 /* As formulate, of an assembled model and its sequence; facts NULL: the same. */
 const Formulation *formulate_narrow(Pool *pool, const Model *model, const Sequence *sequence, Solve solve,

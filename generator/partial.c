@@ -107,7 +107,8 @@ static Ex make_input(Partial *p, Ex e)
     double own[from->samples];
     for (int s = 0; s < from->samples; ++s)
         own[s] = given->negative ? -sample[s] : sample[s];
-    const Ex other = ex_input(p->to, given->other, own);
+    const Given *further = givens_find(p->givens, given->other);
+    const Ex other = further && further->value ? ex_constant(p->to, further->value) : ex_input(p->to, given->other, own);
     return given->negative ? ex_neg(p->to, other) : other;
 }
 

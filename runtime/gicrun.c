@@ -204,7 +204,7 @@ int main(int count, char **word)
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
     const bool runs = !request.states && !request.rests && !request.modes;
     if (runs)
-        scene = equilibrium_start(pool, model, scene, request.solve);
+        scene = scene_even(pool, model, equilibrium_start(pool, model, scene, request.solve));
     const bool drawn = request.picture;
     const Engine *engine = engine_open(
         pool, request.engine, model,

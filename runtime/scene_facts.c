@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What a scene says beforehand about its whole run: the facts that code for it alone may rest on. */
+#include "../generator/mirror.h"
 #include "driver.h"
 
 #include <math.h>
@@ -131,6 +132,56 @@ static const Plane *plane_of(Pool *pool, const gic_road *road)
     return plane;
 }
 
+/* ---- symmetry ------------------------------------------------------------------------------------------------------- */
+
+static bool is_small(double x)
+{
+    return fabs(x) <= NARROW_ROUNDING;
+}
+
+/* What of the base's motion and the road is not the same to both sides; NULL: nothing. */
+static const char *asymmetry_of(const Model *model, const Scene *scene, const Plane *plane)
+{
+    if (!is_small(scene->euler[1]) || !is_small(scene->euler[3]))
+        return "the vehicle is turned about x or z at the beginning";
+    if (!is_small(scene->velocity[1]) || !is_small(scene->angular_velocity[0]) || !is_small(scene->angular_velocity[2]))
+        return "the vehicle does not move straight ahead at the beginning";
+    if (model->wheels && !plane)
+        return "the road is no plane";
+    return model->wheels && plane->slope[1] != 0 ? "the road falls to one side" : NULL;
+}
+
+const Scene *scene_even(Pool *pool, const Model *model, const Scene *given)
+{
+    const char *why = NULL;
+    const Mirror *mirror = model->free_base ? mirror_find(pool, model, &why) : NULL;
+    if (!mirror || asymmetry_of(model, given, &(const Plane){.friction = 1}))
+        return given;
+    Scene *scene = pool_alloc(pool, sizeof *scene);
+    *scene = *given;
+    const double norm = hypot(scene->euler[0], scene->euler[2]);
+    scene->euler[0] /= norm;
+    scene->euler[2] /= norm;
+    scene->euler[1] = scene->euler[3] = scene->velocity[1] = 0;
+    scene->angular_velocity[0] = scene->angular_velocity[2] = 0;
+    scene->value = memcpy(pool_alloc(pool, sizeof(double) * (size_t)(model->coordinates + 1)), scene->value,
+                          sizeof(double) * (size_t)model->coordinates);
+    scene->rate = memcpy(pool_alloc(pool, sizeof(double) * (size_t)(model->coordinates + 1)), scene->rate,
+                         sizeof(double) * (size_t)model->coordinates);
+    scene_along(scene);
+    for (int w = 0; w < model->coordinates; ++w) {
+        const int of = mirror->coordinate[w];
+        const double sign = mirror->sign[w];
+        const bool odd = of == w && sign < 0;
+        const double value = odd ? 0 : sign * scene->value[of], rate = odd ? 0 : sign * scene->rate[of];
+        if (of <= w && is_small(scene->value[w] - value) && is_small(scene->rate[w] - rate)) {
+            scene->value[w] = value;
+            scene->rate[w] = rate;
+        }
+    }
+    return scene;
+}
+
 const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, const char *path, bool drawn)
 {
     Facts *facts = pool_alloc(pool, sizeof *facts);
@@ -141,6 +192,10 @@ const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, con
     facts->idle = true; /* scenes have nothing that could use one */
     facts->plane = plane_of(pool, scene->road);
     fix_inputs(pool, model, scene, facts);
+    facts->asymmetry = asymmetry_of(model, scene, facts->plane);
+    facts->value = scene->value;
+    facts->rate = scene->rate;
+    facts->state = scene->fast;
     facts->neutral = stays_neutral(pool, model, scene, facts);
     return facts;
 }

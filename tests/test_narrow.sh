@@ -37,6 +37,8 @@ same() {
 
 same hmmwv_vehicle "$root/tests/narrow/coast.scene" --cflags -O1
 same hmmwv_vehicle "$root/tests/narrow/steer.scene" --cflags -O1
+same hmmwv_vehicle "$root/tests/narrow/straight.scene" --cflags -O1
+same hmmwv "$root/tests/narrow/bounce.scene" --cflags -O1
 same quarter_car "$models/scenes/quarter_car.scene" --cflags -O1
 same pendulum "$models/scenes/pendulum.scene" --cflags -O1
 
