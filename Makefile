@@ -37,7 +37,7 @@ embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_ru
 generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 # what gicgen reads scenes with
-scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_outputs scene_rest scene_road \
+scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_outputs scene_rest scene_rig scene_road \
     scene_road_file driver spline csv descriptor process gic_runtime gic_road)
 
 .PHONY: all test test-programs list-tests stress demo bench generated debug fuzz deps install uninstall clean

@@ -485,6 +485,13 @@ bool drive_wanted(const Model *model, int coordinate);
  * nothing moves. Ends in diag_fail when there is no way there. */
 const Model *model_assemble(Pool *pool, const Model *drawn, const Sequence *sequence);
 
+/* ---- hold.c: models as on a rig; without a tuning ------------------------------------------------------------------ */
+
+/* The model with its base held where its body frame is at `position` and `euler`, world. */
+const Model *model_hold(Pool *pool, const Model *model, const double position[3], const double euler[4]);
+/* The model with these free coordinates driven, by inputs behind those that it has. */
+const Model *model_drive(Pool *pool, const Model *model, const int *coordinate, int count);
+
 /* ---- whole.c: the whole mechanism, once all subsets are recovered ---------------------------------------------- */
 
 /* Unknowns of the equations of motion that go with each other: unknown i is sign[i] times number of[i] of fewer ones, or
@@ -532,7 +539,7 @@ bool plan_keeps(const Plan *plan, int subset);
 
 /* Inputs of every global block, as C names: y state, e recovered Euler parameters of the base, x and xd values and
  * rates of all coordinates, u inputs, m motions, n inertias, lambda multipliers (Plan.multiplier_offset). Fixed base:
- * r, v, turn are 0 and R the identity. */
+ * r, e and R are numbers, v and turn 0. */
 typedef struct Whole {
     const Plan *plan;
     const Model *model;

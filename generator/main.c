@@ -217,8 +217,11 @@ int main(int count, char **word)
     Pool *pool = pool_new();
     const Model *model = model_read(pool, options.model);
     const Facts *facts = NULL;
-    if (options.scene)
-        facts = scene_facts(pool, model, scene_read(pool, options.scene, model, NULL, 0), options.scene, false);
+    if (options.scene) {
+        const Scene *scene = scene_read(pool, options.scene, model, NULL, 0);
+        model = scene_rig(pool, model, &scene);
+        facts = scene_facts(pool, model, scene, options.scene, false);
+    }
     const Sequence *sequence = sequence_find(pool, model);
     model = model_assemble(pool, model, sequence);
     Text text = {.pool = pool};

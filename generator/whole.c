@@ -175,9 +175,11 @@ Whole *whole_new(Pool *pool, const Plan *plan)
             whole->e[i] = indexed(whole, "e", i);
         ex_rotation(dag, whole->e, whole->R);
     } else {
-        whole->e[0] = ex_literal(dag, 1);
         for (int i = 0; i < 3; ++i)
-            whole->R[4 * i] = ex_literal(dag, 1);
+            whole->r[i] = ex_literal(dag, model->body[BODY_BASE].position[i]);
+        for (int i = 0; i < 4; ++i)
+            whole->e[i] = ex_literal(dag, model->body[BODY_BASE].euler[i]);
+        ex_rotation(dag, whole->e, whole->R);
     }
     ex_apply_transposed(dag, whole->R, gravity, whole->gravity);
     return whole;
@@ -211,7 +213,7 @@ Vector whole_point(Whole *whole, int body, const double s[3])
 {
     Dag *dag = whole->dag;
     Ex local[3];
-    if (body == BODY_GROUND && whole->model->free_base) {
+    if (body == BODY_GROUND) {
         /* fixed in the world: seen from the base it moves against the base's own motion */
         Vector vector = {.point = true};
         Ex world[3], velocity[3];

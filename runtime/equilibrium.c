@@ -466,5 +466,5 @@ const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scen
     if (!scene->equilibrium)
         return scene;
     const bool moves = !equilibrium_stands(model, scene);
-    return equilibrium_scene(pool, scene, equilibrium_find(pool, model, scene, solve, moves));
+    return scene_even(pool, model, equilibrium_scene(pool, scene, equilibrium_find(pool, model, scene, solve, moves)));
 }

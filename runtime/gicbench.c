@@ -132,6 +132,7 @@ static void make_folder(const char *folder)
 static const Scene *read_scene(const Bench *bench, const char *path)
 {
     const Scene *scene = scene_read(bench->pool, path, bench->model, NULL, 0);
+    scene_no_rig(scene);
     return equilibrium_start(bench->pool, bench->model, scene, bench->options.solve);
 }
 

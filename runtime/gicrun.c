@@ -202,9 +202,10 @@ int main(int count, char **word)
     const Model *model = model_read(pool, request.model);
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
+    model = scene_rig(pool, model, &scene);
     const bool runs = !request.states && !request.rests && !request.modes;
     if (runs)
-        scene = scene_even(pool, model, equilibrium_start(pool, model, scene, request.solve));
+        scene = equilibrium_start(pool, model, scene, request.solve);
     const bool drawn = request.picture;
     const Engine *engine = engine_open(
         pool, request.engine, model,

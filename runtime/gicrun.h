@@ -97,6 +97,8 @@ typedef struct Scene {
     const gic_signal *signal;
     int *column, *curve, (*panel)[2];
     bool plotted; /* does the scene say what is drawn? */
+    bool held;    /* the base, at `position` and `euler` */
+    int driven, *drive; /* free coordinates of the model that are driven, by the last profiles */
 } Scene;
 
 /* Read a scene for a model. Any mistake ends in diag_fail. integrator: instead of the scene's, or NULL; tolerance: the
@@ -218,6 +220,13 @@ void animation_write(Animation *animation, const char *path);
 
 /* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
 int scene_start(const Engine *engine, const Scene *scene, gic_head *self);
+/* All that can be written and drawn, as in Scene. */
+gic_signal *scene_signals(Pool *pool, const Model *model);
+/* scene_rig.c: the keys of rigs. Then the model as the scene has it, and the scene for that; NULL: no scene. Those who
+ * can't: fail where it is a rig's. */
+void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene);
+const Model *scene_rig(Pool *pool, const Model *model, const Scene **scene);
+void scene_no_rig(const Scene *scene);
 /* The present value of signal[i] of a scene, of an instance whose outputs are computed. */
 double scene_value(const gic_model *code, gic_head *self, int i);
 /* Part of that: wheels roll, but for fast states that the scene (NULL: none) gives. Returns a status. */

@@ -206,6 +206,7 @@ int main(int count, char **word)
     Options o = read_command_line(pool, count, word);
     const Model *model = model_read(pool, o.model);
     const Scene *scene = scene_read(pool, o.scene, model, NULL, 0);
+    scene_no_rig(scene);
     scene = equilibrium_start(pool, model, scene, o.code.solve);
     Sweep sweep = {.pool = pool, .model = model, .scene = scene, .plan = &o.plan, .quiet = o.quiet};
     sweep.engine = open_code(pool, &o, model, scene, &sweep.many);

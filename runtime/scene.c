@@ -536,7 +536,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     Scene *scene = pool_alloc(pool, sizeof *scene);
     Reader reader = {pool, model, scene};
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
-               "steady", "sleep", "output_step", "initial", "road", "inputs", "driver", "parameters", "outputs",
+               "steady", "sleep", "base", "driven", "output_step", "initial", "road", "inputs", "driver", "parameters", "outputs",
                "plot");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
@@ -578,6 +578,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
             scene->parameter[model->parameter[i].index] = model->parameter[i].value;
     if (doc_find(root, "parameters"))
         read_parameters(&reader, doc_find(root, "parameters"));
+    rig_read(pool, root, model, scene);
     scene_read_outputs(pool, root, model, scene);
     return scene;
 }

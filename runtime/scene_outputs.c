@@ -13,7 +13,7 @@ typedef struct Names {
 } Names;
 
 /* Inputs are told from outputs of the same name by their beginning. */
-static gic_signal *all_signals(Pool *pool, const Model *model)
+gic_signal *scene_signals(Pool *pool, const Model *model)
 {
     gic_signal *signal = pool_alloc(pool, sizeof *signal * (size_t)(model->output_components + model->inputs + 1));
     gic_signal *next = signal;
@@ -108,7 +108,7 @@ static void default_curves(Pool *pool, const Model *model, Scene *scene)
 void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene *scene)
 {
     const Item *outputs = doc_find(root, "outputs"), *plot = doc_find(root, "plot");
-    scene->signal = all_signals(pool, model);
+    scene->signal = scene_signals(pool, model);
     const Names names = all_names(pool, model, scene->signal);
     if (outputs)
         check_list(outputs, "outputs");
