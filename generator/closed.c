@@ -281,7 +281,8 @@ static void add_arm(Closed *z, Hold *hold, const Ex s[3], const Ex image[3])
     memcpy(hold->image[hold->arms++], image, 3 * sizeof *image);
 }
 
-/* Axes that stay parallel, with the directions across them at the design. */
+/* Axes that stay parallel, with the directions across them at the design, or with others across one that never turns:
+ * only a lock says which belong together. */
 static void add_triad(const Closed *z, Hold *hold, const Connection *tie, int end)
 {
     const Fixture *fixture = &tie->fixture;
@@ -292,6 +293,8 @@ static void add_triad(const Closed *z, Hold *hold, const Connection *tie, int en
         memcpy(hold->own[i], own[i], sizeof hold->own[i]);
         axis_at(z, tie, 1 - end, other[i], hold->known[i]);
     }
+    if (tie->still)
+        memcpy(hold->known[1], tie->across, sizeof tie->across);
 }
 
 /* Everything that joints to resolved bodies say at once. */

@@ -444,19 +444,21 @@ int inertia_mass(int deps, int j, int k); /* place of M_jk, j <= k */
 typedef struct Formula {
     Dag *dag;
     Layout layout;
-    double size;     /* largest distance between points of a subset, m */
-    double distance; /* largest of its reference points from the base's origin at the design, relative to size */
-    bool closed;     /* poses in closed form, by `solve` alone: predict and chord are empty, nothing is remembered */
-    Motion *motion;  /* [bodies] what `solve` finds */
-    Ex *inertia;     /* [inertia_size] likewise */
-    Block predict;   /* q from the start and `change`; reach: squared relative size of that move */
-    Block chord;     /* one correction of q with the start's factors; step: its squared relative size */
-    Block solve;     /* factors, S, last correction, motion and inertia */
-    Block residual;  /* worst: largest constraint residual of the motion, relative to size */
-    Block react;     /* multipliers w from the wrenches w that the bodies need, f being those at their place; what
-                        the joints put on the knowns is taken from theirs, w0, w1, ...; only what outputs need */
-    int derived;     /* numbers d[] that follow tunable parameters */
-    Ex *derived_of;  /* [derived][members] their formulas */
+    double size;        /* largest distance between points of a subset, m */
+    double distance;    /* largest of its reference points from the base's origin at the design, relative to size */
+    bool closed;        /* poses in closed form, by `solve` alone: predict and chord are empty, nothing is remembered */
+    Motion *motion;     /* [bodies] what `solve` finds */
+    Ex *inertia;        /* [inertia_size] likewise */
+    Ex (*across)[2][3]; /* [joints] directions, base frame, that multipliers belong to in place of those at the design
+                           which are fixed in the first body; 0: those */
+    Block predict;      /* q from the start and `change`; reach: squared relative size of that move */
+    Block chord;        /* one correction of q with the start's factors; step: its squared relative size */
+    Block solve;        /* factors, S, last correction, motion and inertia */
+    Block residual;     /* worst: largest constraint residual of the motion, relative to size */
+    Block react;        /* multipliers w from the wrenches w that the bodies need, f being those at their place; what
+                           the joints put on the knowns is taken from theirs, w0, w1, ...; only what outputs need */
+    int derived;        /* numbers d[] that follow tunable parameters */
+    Ex *derived_of;     /* [derived][members] their formulas */
 } Formula;
 
 /* All classes [classes]. Fills the sampling on the way. Members that need other pivots than their class's first one get

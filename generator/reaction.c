@@ -90,6 +90,28 @@ Ex whole_drive_reaction(Whole *whole, int index)
     return ex_neg(dag, ex_mul(dag, row.dual, lambda));
 }
 
+/* What the recovery took for the directions across the first body's axis. */
+static void add_across(Whole *whole, int index, const Fixture *fixture, Motion *first)
+{
+    const Sequence *sequence = whole->plan->sequence;
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        for (int i = 0; i < subset->joints; ++i) {
+            if (subset->joint[i] != index)
+                continue;
+            const Formula *formula = whole->plan->formula[subset->class];
+            const int member = class_place(&sequence->class[subset->class], s);
+            for (int j = 0; j < 2; ++j) {
+                Ex side[3];
+                for (int k = 0; k < 3; ++k)
+                    side[k] = ex_literal(whole->dag, formula_value(formula, formula->across[i][j][k], member));
+                if (side[0] || side[1] || side[2])
+                    motion_image(whole->dag, first, fixture->side[j][0], side);
+            }
+        }
+    }
+}
+
 void whole_reaction(Whole *whole, int index, Ex force[3], Ex torque[3])
 {
     Dag *dag = whole->dag;
@@ -97,7 +119,8 @@ void whole_reaction(Whole *whole, int index, Ex force[3], Ex torque[3])
     const Joint *joint = &whole->model->joint[index];
     /* with the joint's point as the second body's reference point, the torque is about that */
     Motion second = whole->motion[joint->body[1]];
-    const Motion *const end[2] = {&whole->motion[joint->body[0]], &second};
+    Motion first = whole->motion[joint->body[0]];
+    const Motion *const end[2] = {&first, &second};
     Vector point = whole_point(whole, joint->body[1], joint->point[1]);
     memcpy(second.c, point.v, sizeof second.c);
     double(*origin)[3] = pool_alloc(dag->pool, (size_t)whole->model->bodies * sizeof *origin);
@@ -106,6 +129,8 @@ void whole_reaction(Whole *whole, int index, Ex force[3], Ex torque[3])
     tuning_copy(whole->model, origin[joint->body[0]], plan->origin[joint->body[0]], 3);
     tuning_copy(whole->model, origin[joint->body[1]], joint->point[1], 3);
     Fixture fixture = whole_joint_fixture(whole, joint, (const double(*)[3])origin);
+    if (plan->solve == SOLVE_REDUCED)
+        add_across(whole, index, &fixture, &first);
     Row row[ROWS_MAX];
     int rows = joint_rows(dag, joint->type, &fixture, end, row), place = multiplier_place(plan, false, index);
     ex_zero3(dag, force);

@@ -32,12 +32,30 @@ const int joint_parts[JOINT_TYPES] = {
     [JOINT_PERPENDICULAR] = PART_CROSS,
 };
 
+/* Differences and unit vectors come with the rounding of what made them: what is 0 or 1 but for that is so. */
+static const double few_roundings = 1e-15;
+
+static void subtract_clean(const double a[3], const double b[3], double out[3])
+{
+    for (int i = 0; i < 3; ++i) {
+        out[i] = a[i] - b[i];
+        if (fabs(out[i]) <= few_roundings * vec_norm(a))
+            out[i] = 0;
+    }
+}
+
+static void clean_unit(double u[3])
+{
+    for (int i = 0; i < 3; ++i)
+        if (fabs(u[i] - round(u[i])) <= few_roundings)
+            u[i] = round(u[i]);
+}
+
 static void relative_points(const int body[2], const double point[2][3], const double (*origin)[3],
                             double number[FIXTURE_NUMBERS])
 {
     for (int end = 0; end < 2; ++end)
-        for (int i = 0; i < 3; ++i)
-            number[NUMBER_POINT + 3 * end + i] = point[end][i] - origin[body[end]][i];
+        subtract_clean(point[end], origin[body[end]], number + NUMBER_POINT + 3 * end);
 }
 
 void fixture_of_joint(const Joint *joint, const double (*origin)[3], double number[FIXTURE_NUMBERS])
@@ -49,6 +67,9 @@ void fixture_of_joint(const Joint *joint, const double (*origin)[3], double numb
     for (int end = 0; end < 2; ++end) {
         memcpy(number + NUMBER_SIDE + 3 * end, joint->side[end], sizeof joint->side[end]);
         vec_cross(joint->axis[end], joint->side[end], number + NUMBER_SIDE + 6 + 3 * end);
+        clean_unit(number + NUMBER_AXIS + 3 * end);
+        clean_unit(number + NUMBER_SIDE + 3 * end);
+        clean_unit(number + NUMBER_SIDE + 6 + 3 * end);
     }
     number[NUMBER_SQUARE] = joint->length * joint->length;
     number[NUMBER_OFFSET] = joint->offset;
@@ -64,6 +85,10 @@ void fixture_of_coordinate(const Coordinate *coordinate, const double (*origin)[
     memcpy(number + NUMBER_SIDE, coordinate->reference[0], sizeof coordinate->reference[0]);
     memcpy(number + NUMBER_SIDE + 3, coordinate->reference[1], sizeof coordinate->reference[1]);
     vec_cross(coordinate->axis, coordinate->reference[0], number + NUMBER_SIDE + 6);
+    clean_unit(number + NUMBER_AXIS);
+    clean_unit(number + NUMBER_SIDE);
+    clean_unit(number + NUMBER_SIDE + 3);
+    clean_unit(number + NUMBER_SIDE + 6);
     /* what is taken from w: its value at design, less the geometric offset */
     number[NUMBER_OFFSET] = coordinate->design - (coordinate->type == COORDINATE_TRANSLATION ? coordinate->offset : 0);
 }

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Numbers of a subset that are the same in every configuration: an arm's hinge stays where it is, and so does its axis.
  * Whoever goes on from there takes them as constants and not from memory. */
+#include "rows.h"
 #include "subset.h"
 
+#include <math.h>
 #include <stdio.h>
 
 bool formula_settled(const Formula *f, Ex e)
@@ -46,6 +48,54 @@ void subset_settle(Work *w, Formula *const *formula, int known, Motion *m)
         }
         if (settled)
             *motion_number(m, number) = ex_constant(w->dag, value);
+    }
+}
+
+/* A direction perpendicular to a unit vector, for good if that is an axis of the frame. */
+static void across(const double u[3], double out[3])
+{
+    const double *const least = fabs(u[0]) <= fabs(u[1]) && fabs(u[0]) <= fabs(u[2]) ? u
+                                : fabs(u[1]) <= fabs(u[2])                           ? u + 1
+                                                                                     : u + 2;
+    double axis[3] = {0};
+    axis[least - u] = 1;
+    vec_cross(u, axis, out);
+    const double norm = vec_norm(out);
+    for (int i = 0; i < 3; ++i)
+        out[i] /= norm;
+}
+
+static void find_across(Work *w, Connection *tie, const Ex axis[3])
+{
+    const int members = w->class->members;
+    double side[members][2][3], value[members];
+    for (int i = 0; i < members; ++i) {
+        double u[3];
+        for (int j = 0; j < 3; ++j)
+            u[j] = ex_value(w->dag, axis[j], i * w->configurations);
+        across(u, side[i][0]);
+        vec_cross(u, side[i][0], side[i][1]);
+    }
+    for (int j = 0; j < 6; ++j) {
+        for (int i = 0; i < members; ++i)
+            value[i] = side[i][j / 3][j % 3];
+        tie->across[j / 3][j % 3] = ex_constant(w->dag, value);
+    }
+}
+
+void subset_find_still(Work *w)
+{
+    for (int i = 0; i < w->connections; ++i) {
+        Connection *tie = &w->connection[i];
+        if (tie->is_coordinate || tie->end[0].known < 0)
+            continue;
+        const int parts = joint_parts[w->model->joint[tie->index].type];
+        const Vector axis = vector_axis(w->dag, &w->known[tie->end[0].known], tie->fixture.axis[0]);
+        tie->still = parts & PART_PARALLEL && !(parts & (PART_LOCK | PART_LINE));
+        for (int j = 0; j < 3; ++j)
+            tie->still = tie->still && w->dag->node[axis.v[j]].level < LEVEL_VARIABLE;
+        if (tie->still)
+            find_across(w, tie, axis.v);
     }
 }
 

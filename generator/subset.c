@@ -246,7 +246,14 @@ static void make_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
     for (int i = 0; i < w->connections; ++i) {
         const Connection *tie = &w->connection[i];
         const Motion *end[2] = {subset_motion(w, unknown, tie->end[0]), subset_motion(w, unknown, tie->end[1])};
+        Motion turned;
         int made = 1;
+        if (tie->still) {
+            turned = *end[0];
+            for (int j = 0; j < 2; ++j)
+                motion_image(w->dag, &turned, tie->fixture.side[j][0], tie->across[j]);
+            end[0] = &turned;
+        }
         if (tie->is_coordinate)
             row[rows] = coordinate_row(w->dag, w->model->coordinate[tie->index].type, &tie->fixture, end,
                                        w->x[tie->dep], w->rate[tie->dep]);
@@ -327,10 +334,14 @@ static Ex relative_square(Work *w, const Ex *twist)
 
 static void store_moved(Work *w, Block *block, const Ex *twist, Ex *moved_q)
 {
+    static const Ex zero[3];
     for (int b = 0; b < w->first->bodies; ++b) {
         moved(w, w->q + 7 * b, twist + 6 * b, moved_q + 7 * b);
-        for (int i = 0; i < 7; ++i)
-            block_store(block, moved_q[7 * b + i], "q[%d]", 7 * b + i);
+        if (!memcmp(twist + 6 * b, zero, sizeof zero))
+            memcpy(moved_q + 7 * b + 3, w->q + 7 * b + 3, 4 * sizeof *moved_q);
+        for (int i = 7 * b; i < 7 * b + 7; ++i)
+            if (moved_q[i] != w->q[i])
+                block_store(block, moved_q[i], "q[%d]", i);
     }
 }
 
@@ -338,8 +349,9 @@ static void make_predict(Work *w, Formula *formula)
 {
     Ex *s = make_inputs(w, "s", w->n * w->first->deps), twist[w->n], q[7 * w->first->bodies];
     for (int i = 0; i < w->n; ++i) {
+        const bool stays = (i % 6 < 3 ? subset_holds_rotation : subset_holds_point)(w, i / 6);
         twist[i] = 0;
-        for (int j = 0; j < w->first->deps; ++j)
+        for (int j = 0; j < w->first->deps && !stays; ++j)
             twist[i] =
                 ex_add(w->dag, twist[i], ex_mul(w->dag, s[(i / 6 * w->first->deps + j) * 6 + i % 6], w->change[j]));
     }
@@ -572,6 +584,12 @@ static Row *rows_from_memory(Work *w, const Formula *formula)
     return row;
 }
 
+static Motion *copy_motions(const Work *w, const Motion *motion)
+{
+    size_t bodies = (size_t)w->first->bodies;
+    return memcpy(pool_alloc(w->pool, bodies * sizeof *motion), motion, bodies * sizeof *motion);
+}
+
 /* What both ways of recovery end with: motions, inertia, factors that are remembered, residual, multipliers. */
 static void finish(Work *w, Formula *formula, Solve solve, const Factors *factors, const Motion *motion)
 {
@@ -580,8 +598,10 @@ static void finish(Work *w, Formula *formula, Solve solve, const Factors *factor
     Factors *remembered = factors_from_memory(w, factors, stored, &count);
     Layout *layout = &formula->layout;
     *layout = make_layout(w, count, solve, formula->closed);
-    formula->motion = pool_alloc(w->pool, (size_t)layout->bodies * sizeof *motion);
-    memcpy(formula->motion, motion, (size_t)layout->bodies * sizeof *motion);
+    formula->motion = copy_motions(w, motion);
+    formula->across = pool_alloc(w->pool, (size_t)(w->connections + 1) * sizeof *formula->across);
+    for (int i = 0; i < w->connections; ++i)
+        memcpy(formula->across[i], w->connection[i].across, sizeof formula->across[i]);
     const Row *row = rows_from_memory(w, formula);
     make_residual(w, formula, row);
     if (solve == SOLVE_REDUCED)
@@ -606,23 +626,55 @@ static void finish(Work *w, Formula *formula, Solve solve, const Factors *factor
     formula->derived_of = w->derived_of;
 }
 
+/* The same class with the unknowns at poses [bodies] of other expressions; its equations are still to be made. */
+static Work elsewhere(const Work *w, Motion *pose)
+{
+    size_t n = (size_t)w->n;
+    Work found = *w;
+    found.pose = pose;
+    found.row = pool_alloc(w->pool, n * sizeof *found.row);
+    found.J = pool_alloc(w->pool, n * n * sizeof *found.J);
+    return found;
+}
+
+/* The equations at q, derivatives where what joints to known bodies say is fulfilled. */
+static Work held(Work *w)
+{
+    Row *row = pool_alloc(w->pool, (size_t)w->n * sizeof *row);
+    Motion *exact = copy_motions(w, w->pose), *toward = copy_motions(w, w->pose);
+    Work found = elsewhere(w, toward);
+    subset_hold(w, exact, false);
+    make_rows(w, exact, row, found.row_of);
+    subset_drop_held(w, row, found.row_of);
+    subset_hold(w, toward, true);
+    make_rows(w, toward, found.row, found.row_of);
+    make_jacobian(&found, found.row, found.row_of, found.J);
+    for (int r = 0; r < w->n; ++r) {
+        found.row[r].value = row[r].value;
+        found.row[r].guard = row[r].guard;
+    }
+    return found;
+}
+
 static Formula *formulate_newton(Work *w, Solve solve)
 {
     int bodies = w->first->bodies;
     Formula *formula = formula_new(w, false);
-    Factors *factors = factor(w);
+    Work found = held(w);
+    Factors *factors = factor(&found);
     Ex *q = pool_alloc(w->pool, (size_t)(7 * bodies) * sizeof *q);
-    make_predict(w, formula);
-    check_pivots(w, formula, factors, true);
-    make_step(w, factors, &formula->solve, q);
+    make_predict(&found, formula);
+    check_pivots(&found, formula, factors, true);
+    make_step(&found, factors, &formula->solve, q);
     Motion *motion = pool_alloc(w->pool, (size_t)bodies * sizeof *motion);
-    make_motion(w, factors, motion);
+    make_motion(&found, factors, motion);
     for (int b = 0; b < bodies; ++b) {
         /* S and the rates belong to q, which the last correction moves by less than they can show */
         memcpy(motion[b].c, q + 7 * b, sizeof motion[b].c);
         ex_rotation(w->dag, q + 7 * b + 3, motion[b].A);
     }
-    finish(w, formula, solve, factors, motion);
+    subset_hold(w, motion, true);
+    finish(&found, formula, solve, factors, motion);
     return formula;
 }
 
@@ -630,11 +682,8 @@ static Formula *formulate_newton(Work *w, Solve solve)
 static Formula *formulate_closed(Work *w, Solve solve)
 {
     Formula *formula = formula_new(w, true);
-    Work found = *w; /* the same with the unknowns at other expressions */
-    size_t n = (size_t)w->n, bodies = (size_t)w->first->bodies;
-    found.pose = pool_alloc(w->pool, bodies * sizeof *found.pose);
-    found.row = pool_alloc(w->pool, n * sizeof *found.row);
-    found.J = pool_alloc(w->pool, n * n * sizeof *found.J);
+    size_t bodies = (size_t)w->first->bodies;
+    Work found = elsewhere(w, pool_alloc(w->pool, bodies * sizeof *found.pose));
     if (!subset_closed(w, found.pose, &formula->solve))
         return NULL;
     make_rows(&found, found.pose, found.row, found.row_of);
@@ -670,6 +719,7 @@ static void settle_knowns(Work *w, Formula *const *formula)
         subset_settle(w, formula, i, &w->known[i]);
         order_by_deps(w, i);
     }
+    subset_find_still(w);
     make_rows(w, w->pose, w->row, w->row_of);
     memset(w->J, 0, (size_t)(w->n * w->n) * sizeof *w->J);
     make_jacobian(w, w->row, w->row_of, w->J);
@@ -685,66 +735,7 @@ static Formula *formulate_class(Work *w, Formula *const *made, Solve solve, Reco
     return closed && recovery_cost(closed) < recovery_cost(newton) ? closed : newton;
 }
 
-/* ---- classes whose members need different pivots
- * -------------------------------------------------------------------------- */
-
-/* Is there one pivot order for these members of a class, at the design? */
-static bool share_pivots(Work *w, const bool *with)
-{
-    double column_scale[w->n];
-    bool row_left[w->n], usable[w->dag->samples];
-    int rank;
-    for (int j = 0; j < w->n; ++j)
-        column_scale[j] = j % 6 < 3 ? w->size : 1;
-    for (int s = 0; s < w->dag->samples; ++s)
-        usable[s] = s % w->configurations == 0 && with[s / w->configurations];
-    return linear_factor(w->dag, w->n, w->J, column_scale, usable, &rank, row_left);
-}
-
-static const char *split_name(Pool *pool, const Sequence *sequence, const char *name)
-{
-    for (int number = 2;; ++number) {
-        const char *candidate = pool_print(pool, "%.36s_%d", name, number);
-        bool taken = false;
-        for (int c = 0; c < sequence->classes; ++c)
-            taken = taken || !strcmp(sequence->class[c].name, candidate);
-        if (!taken)
-            return candidate;
-    }
-}
-
-/* Leave in class c the members that share pivots with its first one, and make a class of the others. False when all of
- * them do. */
-static bool split_class(Pool *pool, Sequence *sequence, int c, Work *w)
-{
-    Class *class = &sequence->class[c];
-    bool with[class->members];
-    for (int i = 0; i < class->members; ++i)
-        with[i] = true;
-    if (class->members == 1 || share_pivots(w, with))
-        return false;
-    memset(with, 0, sizeof with);
-    for (int i = 0; i < class->members; ++i) {
-        with[i] = true;
-        with[i] = i == 0 || share_pivots(w, with);
-    }
-    Class *other = &sequence->class[sequence->classes];
-    *other = (Class){.name = split_name(pool, sequence, class->name),
-                     .member = pool_alloc(pool, (size_t) class->members * sizeof(int))};
-    int kept = 0, *member = pool_alloc(pool, (size_t) class->members * sizeof *member);
-    for (int i = 0; i < class->members; ++i) {
-        if (with[i]) {
-            member[kept++] = class->member[i];
-        } else {
-            other->member[other->members++] = class->member[i];
-            sequence->subset[class->member[i]].class = sequence->classes;
-        }
-    }
-    class->member = member;
-    class->members = kept;
-    ++sequence->classes;
-    return true;
-}
+/* ---- all classes -------------------------------------------------------------------------------------------- */
 
 /* A copy in which classes can be split: there are never more of them than subsets. */
 static Sequence *copy_sequence(Pool *pool, const Sequence *sequence)
@@ -779,7 +770,7 @@ Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **seq
     follow_all(split, work, sampling);
     bool any = false;
     for (int c = 0; c < split->classes; ++c)
-        if (split_class(pool, split, c, work[c])) {
+        if (class_split(pool, split, c, work[c])) {
             int last = split->classes - 1;
             any = true;
             work[c] = subset_open(pool, model, split, &split->class[c], origin, sampling);

@@ -17,7 +17,9 @@ typedef struct Connection {
     int index; /* joint or coordinate of the first member */
     End end[2];
     Fixture fixture;
-    int dep; /* coordinate: its place among the deps */
+    int dep;         /* coordinate: its place among the deps */
+    bool still;      /* the first end's axis never turns: */
+    Ex across[2][3]; /* directions perpendicular to it, base frame, which stand for `side` */
 } Connection;
 
 typedef struct Work {
@@ -79,6 +81,10 @@ void subsets_scan(Pool *pool, const Model *model, const Sequence *sequence, Work
 /* singular.c: end with a message when a subset is singular at the design configuration. */
 void subset_explain_singular(Work *w, const Sampling *sampling, int subset);
 
+/* split.c: leave in class c the members that share pivots with its first one, and make a class of the others. False
+ * when all of them do. */
+bool class_split(Pool *pool, Sequence *sequence, int c, Work *w);
+
 /* A class with its connections, inputs and equations, ready to be followed. */
 Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, const Class *class,
                   const double (*origin)[3], const Sampling *sampling);
@@ -88,9 +94,18 @@ int subset_index(const Work *w, int subset);
 /* How an end of a connection moves, the unknowns moving as given. */
 const Motion *subset_motion(const Work *w, const Motion *unknown, End end);
 
-/* settled.c: put constants of the class in place of those numbers of a known's motion, in the order of its own deps, that
- * are the same in every configuration. formula: [classes] those made so far, or NULL. */
+/* held.c: put what joints to known bodies say into poses [bodies]: c and A where they follow, with `directions` also
+ * which way hinges point; and make 0 what remains of the equations [n] of joints that c and A fulfil. */
+void subset_hold(Work *w, Motion *pose, bool directions);
+bool subset_holds_point(const Work *w, int body);
+bool subset_holds_rotation(const Work *w, int body);
+void subset_drop_held(const Work *w, Row *row, const int *row_of);
+
+/* settled.c: put constants of the class in place of those numbers of a known's motion, in the order of its own deps,
+ * that are the same in every configuration. formula: [classes] those made so far, or NULL. */
 void subset_settle(Work *w, Formula *const *formula, int known, Motion *motion);
+/* Find joints about an axis of a known body that never turns. */
+void subset_find_still(Work *w);
 /* Store no numbers any more that nobody reads because they are settled. formula: [classes] all. */
 void subsets_forget(Pool *pool, const Model *model, const Sequence *sequence, Formula *const *formula);
 
