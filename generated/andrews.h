@@ -43,11 +43,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'K1' (1 times, closed form)                        21        58       2      1         2
- *   subset 'K2_K3' (1 times)                                 596       789       6      0         0
- *   subset 'K5_K4' (2 times)                                 722       921       6      0         0
- *   forces and equations of motion                            24        25       2      1         0
- *   all together                                            2085      2714      22      2         2
- *   outputs, when asked for                                  201       361       0      1        18
+ *   subset 'K2_K3' (1 times)                                 285       395       2      0         0
+ *   subset 'K5_K4' (2 times)                                 487       642       4      0         0
+ *   forces and equations of motion                            18        15       2      1         0
+ *   all together                                            1298      1752      14      2         2
+ *   outputs, when asked for                                   98       182       0      1        10
  */
 #ifndef ANDREWS_H
 #define ANDREWS_H
@@ -89,7 +89,7 @@ enum {
     ANDREWS_DISCRETE_ROOM = 1,
     ANDREWS_COORDINATE_ROOM = 1,
     ANDREWS_UNKNOWN_ROOM = 1,
-    ANDREWS_START_ROOM = 181,
+    ANDREWS_START_ROOM = 137,
     ANDREWS_MOTION_ROOM = 210,
     ANDREWS_INERTIA_ROOM = 92,
     ANDREWS_MULTIPLIER_ROOM = 1,

@@ -65,9 +65,9 @@
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (2 times, closed form)                   69       110       1      1         0
  *   subset 'wheel_r_l' (2 times)                             594       679       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
  *   forces and equations of motion                           703       657      11      0         4
- *   all together                                            2656      3078      35      6         4
+ *   all together                                            2652      3074      35      6         4
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H

@@ -70,10 +70,10 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                103       166       3      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 87       128       2      1         0
  *   forces and equations of motion                           681       587      10      0         4
- *   all together                                            1790      2202      30     10         4
+ *   all together                                            1754      2122      28     10         4
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #include "hmmwv.h"
@@ -231,19 +231,19 @@ static const gic_real hmmwv_k_lca_f_l[4][27] = {
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
         R(-0.05607209753299996), R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428),
         R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(0.307086),
-        R(0.509778), R(-17.83418213330566), R(51.57660077184113), R(209.3566321652691),
+        R(0.509778), R(-17.834182133305656), R(51.57660077184113), R(209.3566321652691),
         R(-209.35663216526908), R(51.576600771841136), R(-51.57660077184113), R(209.35663216526908),
         R(3.0379110359107786e-06), R(0.24689200985615367), R(1.688965), R(40.476046225),
-        R(0.01121887479261392), R(0.2403881036540444), R(7.892375927523102),
+        R(0.01121887479261392), R(0.2403881036540444), R(7.8923759275231005),
     },
     { /* lca_f_r */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
         R(-0.05607209753299996), R(0.038649583990999964), R(-0.05607209753299996), R(-50.90547521989428),
         R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(-0.307086),
-        R(-0.509778), R(17.83418213330566), R(-51.57660077184113), R(209.3566321652691),
+        R(-0.509778), R(17.834182133305656), R(-51.57660077184113), R(209.3566321652691),
         R(-209.35663216526908), R(-51.576600771841136), R(51.57660077184113), R(209.35663216526908),
         R(3.0379110359107786e-06), R(-0.24689200985615367), R(1.688965), R(40.476046225),
-        R(0.01121887479261392), R(-0.2403881036540444), R(7.892375927523102),
+        R(0.01121887479261392), R(-0.2403881036540444), R(7.8923759275231005),
     },
     { /* lca_r_l */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
@@ -252,7 +252,7 @@ static const gic_real hmmwv_k_lca_f_l[4][27] = {
         R(0.5015738), R(-14.363650103908768), R(39.86479513590535), R(161.81677595488463),
         R(-161.8167759548846), R(39.864795135905354), R(-39.86479513590535), R(161.8167759548846),
         R(-3.0379110358344508e-06), R(0.246867347245056), R(-1.688965), R(-40.476046225),
-        R(0.011218874792613923), R(0.24038810365404442), R(6.355965194292886),
+        R(0.011218874792613923), R(0.24038810365404442), R(6.355965194292885),
     },
     { /* lca_r_r */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
@@ -261,7 +261,7 @@ static const gic_real hmmwv_k_lca_f_l[4][27] = {
         R(-0.5015738), R(14.363650103908768), R(-39.86479513590535), R(161.81677595488463),
         R(-161.8167759548846), R(-39.864795135905354), R(39.86479513590535), R(161.8167759548846),
         R(-3.0379110358344508e-06), R(-0.246867347245056), R(-1.688965), R(-40.476046225),
-        R(0.011218874792613923), R(-0.24038810365404442), R(6.355965194292886),
+        R(0.011218874792613923), R(-0.24038810365404442), R(6.355965194292885),
     },
 };
 
@@ -276,7 +276,7 @@ static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, cons
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.010110666875399986);
+        const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = k[1] - t1 * t1;
         if (!(t2 > R(0.0)))
             return GIC_ERROR_NEWTON;
@@ -432,11 +432,11 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(6.938893903907228e-18) * m1[8] + k[0] * m1[7];
-        const gic_real t2 = k[1] + t1;
+        const gic_real t1 = k[0] * m1[7];
+        const gic_real t2 = t1 + k[1];
         const gic_real t3 = k[2] - t2;
         const gic_real t4 = R(0.9665541626242249) * t3 - k[3];
-        const gic_real t5 = R(6.938893903907228e-18) * m1[11] + k[0] * m1[10];
+        const gic_real t5 = k[0] * m1[10];
         const gic_real t6 = R(0.23411769999999998) - t5;
         const gic_real t7 = R(-0.012812720436325503) - R(0.9665541626242249) * t6;
         const gic_real t8 = k[4] * t6 - R(0.21526024724178433) * t3;
@@ -726,40 +726,37 @@ static GIC_COLD gic_real hmmwv_residual_wheel_f_l(const gic_real *GIC_RESTRICT k
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = (motion[1] - (k[1] + (R(6.938893903907228e-18) * m1[8] + k[0] * m1[7]))) * R(2.928075656552032);
-        const gic_real t2 = GIC_FABS((motion[2] - (R(6.938893903907228e-18) * m1[11] + k[0] * m1[10])) * R(2.928075656552032));
-        const gic_real t3 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[12] * motion[10] + R(-0.14025880000000002) * motion[9]));
-        const gic_real t4 = t3 - R(0.05422899999999997);
-        const gic_real t5 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[12] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t6 = t5 - (k[6] + m0[1]);
-        const gic_real t7 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[12] * motion[4] + R(-0.14025880000000002) * motion[3]));
-        const gic_real t8 = t7 - R(1.438648);
-        const gic_real t9 = t4 * t4 + (t6 * t6 + t8 * t8) - R(0.14941089924212003);
-        const gic_real t10 = GIC_MAX(GIC_MAX(GIC_MAX(R(0.0), GIC_FABS(t1)), t2), GIC_FABS(t9 * R(3.9285226675160785)));
-        const gic_real t11 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[13] * motion[10] + R(-0.017475200000000024) * motion[9]));
-        const gic_real t12 = t11 - R(0.23411769999999998);
-        const gic_real t13 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[13] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t14 = t13 - k[2];
-        const gic_real t15 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[13] * motion[4] + R(-0.017475200000000024) * motion[3]));
-        const gic_real t16 = t15 - R(1.593883);
-        const gic_real t17 = t12 * t12 + (t14 * t14 + t16 * t16) - R(0.07115456010869);
-        const gic_real t18 = R(0.21526024724178433) * t12 + (k[4] * t14 + R(0.9665541626242249) * t16) - R(4.3116545195287515e-08);
-        const gic_real t19 = GIC_MAX(GIC_MAX(t10, GIC_FABS(t17 * R(5.571891251504317))), GIC_FABS(t18 * R(3.029396354366955)));
-        worst = t19;
+        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m1[7] + k[1])) * R(2.928075656552032)));
+        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[12] * motion[10] + R(-0.14025880000000002) * motion[9]));
+        const gic_real t3 = t2 - R(0.05422899999999997);
+        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[12] * motion[7] + R(-0.14025880000000002) * motion[6]));
+        const gic_real t5 = t4 - (k[6] + m0[1]);
+        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[12] * motion[4] + R(-0.14025880000000002) * motion[3]));
+        const gic_real t7 = t6 - R(1.438648);
+        const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
+        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m1[10]) * R(2.928075656552032))), GIC_FABS(t8 * R(3.9285226675160785)));
+        const gic_real t10 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[13] * motion[10] + R(-0.017475200000000024) * motion[9]));
+        const gic_real t11 = t10 - R(0.23411769999999998);
+        const gic_real t12 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[13] * motion[7] + R(-0.017475200000000024) * motion[6]));
+        const gic_real t13 = t12 - k[2];
+        const gic_real t14 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[13] * motion[4] + R(-0.017475200000000024) * motion[3]));
+        const gic_real t15 = t14 - R(1.593883);
+        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
+        const gic_real t17 = R(0.21526024724178433) * t11 + (k[4] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
+        const gic_real t18 = GIC_MAX(GIC_MAX(t9, GIC_FABS(t16 * R(5.571891251504317))), GIC_FABS(t17 * R(3.029396354366955)));
+        worst = t18;
     }
     return worst;
 }
 
-static const gic_real hmmwv_k_wheel_r_l[2][9] = {
+static const gic_real hmmwv_k_wheel_r_l[2][8] = {
     { /* wheel_r_l */
-        R(-0.23920559337529682), R(0.49375935710120966), R(0.307086), R(0.462153),
-        R(0.23920559337529687), R(-0.07099299999999997), R(-1.0), R(11.91437806979548),
-        R(0.08910630000000008),
+        R(0.49375935710120966), R(0.307086), R(0.462153), R(-0.07099299999999997),
+        R(-1.0), R(0.07099299999999997), R(-11.914378069795442), R(0.08910630000000008),
     },
     { /* wheel_r_r */
-        R(0.23920559337529682), R(-0.49375935710120966), R(-0.307086), R(-0.462153),
-        R(-0.23920559337529687), R(0.07099299999999997), R(1.0), R(-11.91437806979548),
-        R(-0.08910630000000008),
+        R(-0.49375935710120966), R(-0.307086), R(-0.462153), R(0.07099299999999997),
+        R(1.0), R(-0.07099299999999997), R(11.914378069795442), R(-0.08910630000000008),
     },
 };
 
@@ -774,158 +771,145 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(0.9709689408513391) * m0[11] + k[0] * m0[10];
-        const gic_real t2 = R(6.938893903907228e-18) * m0[11] + k[1] * m0[10];
-        const gic_real t3 = R(0.22567900000000007) - t2;
-        const gic_real t4 = R(0.9709689408513391) * m0[8] + k[0] * m0[7];
-        const gic_real t5 = R(6.938893903907228e-18) * m0[8] + k[1] * m0[7];
-        const gic_real t6 = k[2] + t5;
-        const gic_real t7 = k[3] - t6;
-        const gic_real t8 = t1 * t3 + t4 * t7;
-        const gic_real t9 = k[4] * m0[11] + R(0.9709689408513393) * m0[10];
-        const gic_real t10 = k[4] * m0[8] + R(0.9709689408513393) * m0[7];
-        const gic_real t11 = t9 * t3 + t10 * t7;
-        const gic_real t12 = k[5] * t8 - R(0.33401) * t11;
-        const gic_real t13 = R(0.33401) * t8 + k[5] * t11;
-        const gic_real t14 = t12 * t12 + t13 * t13;
-        const gic_real t15 = R(0.5) * (t3 * t3 + (t7 * t7 + R(0.031522582115999995)) + R(0.020790651966999973));
-        const gic_real t16 = t14 - t15 * t15;
-        if (!(t16 > R(0.0)))
+        const gic_real t1 = k[0] * m0[7];
+        const gic_real t2 = t1 + k[1];
+        const gic_real t3 = t2 - k[2];
+        const gic_real t4 = k[0] * m0[10];
+        const gic_real t5 = R(0.22567900000000007) - t4;
+        const gic_real t6 = k[3] * t3 - R(0.33401) * t5;
+        const gic_real t7 = R(0.33401) * t3 + k[3] * t5;
+        const gic_real t8 = t6 * t6 + t7 * t7;
+        const gic_real t9 = k[2] - t2;
+        const gic_real t10 = R(0.5) * (t5 * t5 + (t9 * t9 + R(0.031522582115999995)) + R(0.020790651966999973));
+        const gic_real t11 = t8 - t10 * t10;
+        if (!(t11 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t16 - t14 * R(0.0001) > R(0.0)))
+        if (!(t11 - t8 * R(0.0001) > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t17 = R(1.0) / t14;
-        const gic_real t18 = GIC_SQRT(t16) * k[6];
-        const gic_real t19 = t17 * (t15 * t13 - t12 * t18);
-        const gic_real t20 = t17 * (t13 * t18 + t15 * t12);
-        const gic_real t21 = t19 * (k[5] * t10 + R(0.33401) * t4) + t20 * (k[5] * t4 + t10 * R(-0.33401));
-        const gic_real t22 = t19 * (k[5] * t9 + R(0.33401) * t1) + t20 * (k[5] * t1 + t9 * R(-0.33401));
-        const gic_real t23 = t2 + t22 - R(0.22567900000000007);
-        const gic_real t24 = t6 + t21 - k[3];
-        const gic_real t25 = t21 * t23 - t22 * t24;
-        if (!(GIC_FABS(t25) > R(8.650478159472867e-08)))
+        const gic_real t12 = R(1.0) / t8;
+        const gic_real t13 = GIC_SQRT(t11) * k[4];
+        const gic_real t14 = t12 * (t10 * t7 - t6 * t13);
+        const gic_real t15 = t12 * (t7 * t13 + t10 * t6);
+        const gic_real t16 = R(-0.33401) * t14 + k[5] * t15;
+        const gic_real t17 = k[3] * t14 + R(-0.33401) * t15;
+        const gic_real t18 = t4 + t17 - R(0.22567900000000007);
+        const gic_real t19 = t2 + t16 - k[2];
+        const gic_real t20 = t16 * t18 - t17 * t19;
+        if (!(GIC_FABS(t20) > R(8.650478159472878e-08)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t26 = t10 * R(0.9999999999999996);
-        if (!(GIC_FABS(t26) > R(9.999999999999993e-07)))
+        if (!(t20 * k[6] > R(0.001)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t27 = t9 * R(0.9999999999999996) * (t4 * R(0.9999999999999996) * (R(1.0) / t26)) - t1 * R(0.9999999999999996);
-        if (!(GIC_FABS(t27) > R(1.0138372856525834e-06)))
-            return GIC_ERROR_SINGULAR;
-        if (!(t27 * (t26 * t25) * k[7] > R(0.001)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t28 = t10 * t19 + t4 * t20;
-        const gic_real t29 = t4 * t19 - t10 * t20;
-        const gic_real t30 = t9 * t19 + t1 * t20;
-        const gic_real t31 = t1 * t19 - t9 * t20;
-        const gic_real t32 = R(1.0) / t25;
-        const gic_real t33 = m0[24] * t2;
-        const gic_real t34 = m0[24] * t5;
-        const gic_real t35 = t32 * (t24 * t33 - t23 * t34);
-        const gic_real t36 = rate[0] * t35;
-        const gic_real t37 = rate[0] * t33;
-        const gic_real t38 = rate[0] * t34;
-        const gic_real t39 = t22 * t36;
-        const gic_real t40 = t21 * t36;
-        const gic_real t41 = t38 + t40;
-        const gic_real t42 = t37 + t39;
-        const gic_real t43 = t23 * (t36 * t39) + t24 * (t36 * t40) - (t41 * t41 + t42 * t42);
-        const gic_real t44 = m0[12] * (m0[12] * t5) + m0[18] * t2;
-        const gic_real t45 = m0[18] * t5 - m0[12] * (m0[12] * t2);
-        const gic_real t46 = t32 * (t43 + t44 * t24 - t45 * t23);
-        const gic_real t47 = t29 * R(0.09182100000000004) + t28 * k[8];
-        const gic_real t48 = t6 + t47;
-        const gic_real t49 = R(90.555) * t48;
-        const gic_real t50 = t31 * R(0.09182100000000004) + t30 * k[8];
-        const gic_real t51 = t2 + t50;
-        const gic_real t52 = R(90.555) * t51;
-        const gic_real t53 = t48 * t49;
-        const gic_real t54 = t51 * t52;
-        const gic_real t55 = t28 * R(2.8083995);
-        const gic_real t56 = R(4.7728205) + t28 * t55;
-        const gic_real t57 = R(4.7728205) + t30 * (t30 * R(2.8083995));
-        const gic_real t58 = t30 * t55;
-        const gic_real t59 = t36 * t47;
-        const gic_real t60 = t38 + t59;
-        const gic_real t61 = t60 + (t60 + (turn[0] * t48 - R(-1.653405) * turn[1]));
-        const gic_real t62 = t36 * t50;
-        const gic_real t63 = t37 + t62;
-        const gic_real t64 = R(-1.653405) * turn[2] - turn[0] * t51 - t63 - t63;
-        const gic_real t65 = R(90.555) * (turn[1] * t61 - turn[2] * t64);
-        const gic_real t66 = turn[1] * t51 - turn[2] * t48;
-        const gic_real t67 = turn[2] * t66 - turn[0] * t61 - t36 * t59 - t46 * t50;
-        const gic_real t68 = t67 - t44;
-        const gic_real t69 = R(90.555) * t68;
-        const gic_real t70 = turn[0] * t64 - turn[1] * t66 - t36 * t62 + t46 * t47;
-        const gic_real t71 = t45 + t70;
-        const gic_real t72 = R(90.555) * t71;
-        const gic_real t73 = turn[2] * t57 + turn[1] * t58;
-        const gic_real t74 = turn[2] * t58 + turn[1] * t56;
-        const gic_real t75 = t46 * R(4.8947505) + (turn[1] * t73 - turn[2] * t74);
-        const gic_real t76 = t36 * turn[2];
-        const gic_real t77 = t36 * turn[1];
-        const gic_real t78 = t36 + turn[0];
-        const gic_real t79 = R(4.8947505) * t78;
-        const gic_real t80 = t56 * t76 - t58 * t77 + (turn[2] * t79 - t78 * t73);
-        const gic_real t81 = t58 * t76 - t57 * t77 + (t78 * t74 - turn[1] * t79);
-        const gic_real t82 = t33 + t35 * t50;
-        const gic_real t83 = R(90.555) * t82;
-        const gic_real t84 = t34 + t35 * t47;
-        const gic_real t85 = R(90.555) * t84;
-        const gic_real t86 = t35 * R(4.8947505);
-        const gic_real t87 = -t37;
-        const gic_real t88 = -t44;
-        const gic_real t89 = -t33;
-        const gic_real t90 = R(4.8947505) + (t53 + t54);
-        const gic_real t91 = t56 + (R(247.5545586544339) + t54);
-        const gic_real t92 = t57 + (R(247.5545586544339) + t53);
-        const gic_real t93 = -(t48 * R(-149.724089775));
-        const gic_real t94 = -(t51 * R(-149.724089775));
-        const gic_real t95 = t58 - t51 * t49;
-        const gic_real t96 = t75 + (t48 * t72 - t51 * t69);
-        const gic_real t97 = t80 + (t51 * t65 - R(-149.724089775) * t71);
-        const gic_real t98 = t81 + (R(-149.724089775) * t68 - t48 * t65);
-        const gic_real t99 = -t83;
-        const gic_real t100 = t86 + (t51 * t83 + t48 * t85);
-        const gic_real t101 = -(R(-149.724089775) * t84);
-        const gic_real t102 = -(R(-149.724089775) * t82);
-        const gic_real t103 = t35 * t75 + (t72 * t84 - t69 * t82);
-        const gic_real t104 = t35 * t86 + (t84 * t85 + t82 * t83);
-        motion[1] = t6;
-        motion[2] = t2;
-        motion[7] = t28;
-        motion[8] = t29;
-        motion[10] = t30;
-        motion[11] = t31;
-        motion[12] = t36;
-        motion[16] = t87;
-        motion[17] = t38;
-        motion[18] = t46;
-        motion[22] = t88;
-        motion[23] = t45;
-        motion[24] = t35;
-        motion[28] = t89;
-        motion[29] = t34;
-        inertia[1] = t49;
-        inertia[2] = t52;
-        inertia[3] = t90;
-        inertia[4] = t91;
-        inertia[5] = t92;
-        inertia[6] = t93;
-        inertia[7] = t94;
-        inertia[8] = t95;
-        inertia[9] = t65;
-        inertia[10] = t69;
-        inertia[11] = t72;
-        inertia[12] = t96;
-        inertia[13] = t97;
-        inertia[14] = t98;
-        inertia[16] = t99;
-        inertia[17] = t85;
-        inertia[18] = t100;
-        inertia[19] = t101;
-        inertia[20] = t102;
-        inertia[21] = t103;
-        inertia[22] = t104;
+        const gic_real t21 = -t15;
+        const gic_real t22 = R(1.0) / t20;
+        const gic_real t23 = m0[24] * t4;
+        const gic_real t24 = m0[24] * t1;
+        const gic_real t25 = t22 * (t19 * t23 - t18 * t24);
+        const gic_real t26 = rate[0] * t25;
+        const gic_real t27 = rate[0] * t23;
+        const gic_real t28 = rate[0] * t24;
+        const gic_real t29 = t17 * t26;
+        const gic_real t30 = t16 * t26;
+        const gic_real t31 = t28 + t30;
+        const gic_real t32 = t27 + t29;
+        const gic_real t33 = t18 * (t26 * t29) + t19 * (t26 * t30) - (t31 * t31 + t32 * t32);
+        const gic_real t34 = m0[12] * (m0[12] * t1) + m0[18] * t4;
+        const gic_real t35 = m0[18] * t1 - m0[12] * (m0[12] * t4);
+        const gic_real t36 = t22 * (t33 + t34 * t19 - t35 * t18);
+        const gic_real t37 = t14 * R(0.09182100000000004) + t15 * k[7];
+        const gic_real t38 = t2 - t37;
+        const gic_real t39 = R(90.555) * t38;
+        const gic_real t40 = t14 * k[7] - t15 * R(0.09182100000000004);
+        const gic_real t41 = t4 + t40;
+        const gic_real t42 = R(90.555) * t41;
+        const gic_real t43 = t38 * t39;
+        const gic_real t44 = t41 * t42;
+        const gic_real t45 = t15 * R(2.8083995);
+        const gic_real t46 = R(4.7728205) + t15 * t45;
+        const gic_real t47 = R(4.7728205) + t14 * (t14 * R(2.8083995));
+        const gic_real t48 = t14 * t45;
+        const gic_real t49 = t26 * t37;
+        const gic_real t50 = t28 - t49;
+        const gic_real t51 = t50 + (t50 + (turn[0] * t38 - R(-1.653405) * turn[1]));
+        const gic_real t52 = t26 * t40;
+        const gic_real t53 = t27 + t52;
+        const gic_real t54 = R(-1.653405) * turn[2] - turn[0] * t41 - t53 - t53;
+        const gic_real t55 = R(90.555) * (turn[1] * t51 - turn[2] * t54);
+        const gic_real t56 = turn[1] * t41 - turn[2] * t38;
+        const gic_real t57 = turn[2] * t56 - turn[0] * t51 + t26 * t49 - t36 * t40;
+        const gic_real t58 = t57 - t34;
+        const gic_real t59 = R(90.555) * t58;
+        const gic_real t60 = turn[0] * t54 - turn[1] * t56 - t26 * t52 - t36 * t37;
+        const gic_real t61 = t35 + t60;
+        const gic_real t62 = R(90.555) * t61;
+        const gic_real t63 = turn[2] * t47 - turn[1] * t48;
+        const gic_real t64 = turn[1] * t46 - turn[2] * t48;
+        const gic_real t65 = t36 * R(4.8947505) + (turn[1] * t63 - turn[2] * t64);
+        const gic_real t66 = t26 * turn[1];
+        const gic_real t67 = t26 * turn[2];
+        const gic_real t68 = t26 + turn[0];
+        const gic_real t69 = R(4.8947505) * t68;
+        const gic_real t70 = t48 * t66 + t46 * t67 + (turn[2] * t69 - t68 * t63);
+        const gic_real t71 = t68 * t64 - turn[1] * t69 - (t47 * t66 + t48 * t67);
+        const gic_real t72 = t23 + t25 * t40;
+        const gic_real t73 = R(90.555) * t72;
+        const gic_real t74 = t24 - t25 * t37;
+        const gic_real t75 = R(90.555) * t74;
+        const gic_real t76 = t25 * R(4.8947505);
+        const gic_real t77 = -t14;
+        const gic_real t78 = -t27;
+        const gic_real t79 = -t34;
+        const gic_real t80 = -t23;
+        const gic_real t81 = R(4.8947505) + (t43 + t44);
+        const gic_real t82 = t46 + (R(247.5545586544339) + t44);
+        const gic_real t83 = t47 + (R(247.5545586544339) + t43);
+        const gic_real t84 = -(t38 * R(-149.724089775));
+        const gic_real t85 = -(t41 * R(-149.724089775));
+        const gic_real t86 = -(t48 + t41 * t39);
+        const gic_real t87 = t65 + (t38 * t62 - t41 * t59);
+        const gic_real t88 = t70 + (t41 * t55 - R(-149.724089775) * t61);
+        const gic_real t89 = t71 + (R(-149.724089775) * t58 - t38 * t55);
+        const gic_real t90 = -t73;
+        const gic_real t91 = t76 + (t41 * t73 + t38 * t75);
+        const gic_real t92 = -(R(-149.724089775) * t74);
+        const gic_real t93 = -(R(-149.724089775) * t72);
+        const gic_real t94 = t25 * t65 + (t62 * t74 - t59 * t72);
+        const gic_real t95 = t25 * t76 + (t74 * t75 + t72 * t73);
+        motion[1] = t2;
+        motion[2] = t4;
+        motion[7] = t21;
+        motion[8] = t77;
+        motion[10] = t14;
+        motion[11] = t21;
+        motion[12] = t26;
+        motion[16] = t78;
+        motion[17] = t28;
+        motion[18] = t36;
+        motion[22] = t79;
+        motion[23] = t35;
+        motion[24] = t25;
+        motion[28] = t80;
+        motion[29] = t24;
+        inertia[1] = t39;
+        inertia[2] = t42;
+        inertia[3] = t81;
+        inertia[4] = t82;
+        inertia[5] = t83;
+        inertia[6] = t84;
+        inertia[7] = t85;
+        inertia[8] = t86;
+        inertia[9] = t55;
+        inertia[10] = t59;
+        inertia[11] = t62;
+        inertia[12] = t87;
+        inertia[13] = t88;
+        inertia[14] = t89;
+        inertia[16] = t90;
+        inertia[17] = t75;
+        inertia[18] = t91;
+        inertia[19] = t92;
+        inertia[20] = t93;
+        inertia[21] = t94;
+        inertia[22] = t95;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -939,12 +923,12 @@ static GIC_COLD gic_real hmmwv_residual_wheel_r_l(const gic_real *GIC_RESTRICT k
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = (motion[1] - (k[2] + (R(6.938893903907228e-18) * m0[8] + k[1] * m0[7]))) * R(2.928503331078754);
-        const gic_real t2 = GIC_FABS((motion[2] - (R(6.938893903907228e-18) * m0[11] + k[1] * m0[10])) * R(2.928503331078754));
-        const gic_real t3 = motion[2] + (R(0.33401) * motion[11] + k[5] * motion[10]) - R(0.22567900000000007);
-        const gic_real t4 = motion[1] + (R(0.33401) * motion[8] + k[5] * motion[7]) - k[3];
-        const gic_real t5 = (t3 * t3 + (R(0.031522582115999995) + t4 * t4) - R(0.095812034182)) * R(5.77921838272602);
-        const gic_real t6 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(R(0.0), GIC_FABS(t1)), t2), R(0.0)), R(0.0)), GIC_FABS(t5));
+        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m0[7] + k[1])) * R(2.928503331078754)));
+        const gic_real t2 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m0[10]) * R(2.928503331078754))), R(0.0));
+        const gic_real t3 = motion[2] + (R(0.33401) * motion[11] + k[3] * motion[10]) - R(0.22567900000000007);
+        const gic_real t4 = motion[1] + (R(0.33401) * motion[8] + k[3] * motion[7]) - k[2];
+        const gic_real t5 = (t3 * t3 + (R(0.031522582115999995) + t4 * t4) - R(0.095812034182)) * R(5.7792183827260155);
+        const gic_real t6 = GIC_MAX(GIC_MAX(t2, R(0.0)), GIC_FABS(t5));
         worst = t6;
     }
     return worst;
@@ -1794,7 +1778,7 @@ static int hmmwv_measure(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t160 = m[41] * t158 + m[40] * t159;
         const gic_real t161 = y[17] * t160 + y[16] * (m[38] * t158 + m[37] * t159);
         const gic_real t162 = m[42] + y[15];
-        const gic_real t163 = y[17] * (t157 + y[16] * t160) + (y[16] * t161 + t162 * (t162 * R(0.4468999999999998)));
+        const gic_real t163 = y[17] * (t157 + y[16] * t160) + (y[16] * t161 + t162 * (t162 * R(0.4469)));
         const gic_real t164 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
         const gic_real t165 = R(0.307086) + t164;
         const gic_real t166 = R(1.688965) * y[16];
@@ -1814,7 +1798,7 @@ static int hmmwv_measure(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t180 = m[71] * t178 + m[70] * t179;
         const gic_real t181 = y[17] * t180 + y[16] * (m[68] * t178 + m[67] * t179);
         const gic_real t182 = m[72] + y[15];
-        const gic_real t183 = y[17] * (t177 + y[16] * t180) + (y[16] * t181 + t182 * (R(0.4468999999999998) * t182));
+        const gic_real t183 = y[17] * (t177 + y[16] * t180) + (y[16] * t181 + t182 * (R(0.4469) * t182));
         const gic_real t184 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t185 = R(-0.307086) + t184;
         const gic_real t186 = m[72] * t184 + (y[15] * t185 - t166);
@@ -1892,7 +1876,7 @@ static int hmmwv_measure(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t258 = m[101] * t256 + m[100] * t257;
         const gic_real t259 = y[17] * t258 + y[16] * (m[98] * t256 + m[97] * t257);
         const gic_real t260 = m[102] + y[15];
-        const gic_real t261 = y[17] * (t255 + y[16] * t258) + (y[16] * t259 + t260 * (R(0.4468999999999998) * t260));
+        const gic_real t261 = y[17] * (t255 + y[16] * t258) + (y[16] * t259 + t260 * (R(0.4469) * t260));
         const gic_real t262 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
         const gic_real t263 = R(0.307086) + t262;
         const gic_real t264 = R(-1.688965) * y[16];
@@ -1912,7 +1896,7 @@ static int hmmwv_measure(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t278 = m[131] * t276 + m[130] * t277;
         const gic_real t279 = y[17] * t278 + y[16] * (m[128] * t276 + m[127] * t277);
         const gic_real t280 = m[132] + y[15];
-        const gic_real t281 = y[17] * (t275 + y[16] * t278) + (y[16] * t279 + t280 * (R(0.4468999999999998) * t280));
+        const gic_real t281 = y[17] * (t275 + y[16] * t278) + (y[16] * t279 + t280 * (R(0.4469) * t280));
         const gic_real t282 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
         const gic_real t283 = R(-0.307086) + t282;
         const gic_real t284 = m[132] * t282 + (y[15] * t283 - t264);
@@ -1929,7 +1913,7 @@ static int hmmwv_measure(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t295 = m[233] * t293 + m[232] * t294;
         const gic_real t296 = y[17] * t295 + y[16] * (m[230] * t293 + m[229] * t294);
         const gic_real t297 = m[234] + y[15];
-        const gic_real t298 = y[17] * (t292 + y[16] * t295) + (y[16] * t296 + t297 * (t297 * R(4.894750499999996)));
+        const gic_real t298 = y[17] * (t292 + y[16] * t295) + (y[16] * t296 + t297 * (R(4.8947505) * t297));
         const gic_real t299 = t59 + m[229] * R(0.08910630000000008);
         const gic_real t300 = m[223] + t299;
         const gic_real t301 = m[239] + m[234] * t299 + (y[15] * t300 - t115);
@@ -1948,7 +1932,7 @@ static int hmmwv_measure(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t314 = m[263] * t312 + m[262] * t313;
         const gic_real t315 = y[17] * t314 + y[16] * (m[260] * t312 + m[259] * t313);
         const gic_real t316 = m[264] + y[15];
-        const gic_real t317 = y[17] * (t311 + y[16] * t314) + (y[16] * t315 + t316 * (R(4.894750499999996) * t316));
+        const gic_real t317 = y[17] * (t311 + y[16] * t314) + (y[16] * t315 + t316 * (R(4.8947505) * t316));
         const gic_real t318 = t71 + m[259] * R(-0.08910630000000008);
         const gic_real t319 = m[253] + t318;
         const gic_real t320 = m[269] + m[264] * t318 + (y[15] * t319 - t115);
@@ -2131,11 +2115,11 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (m[37] + R(0.9999999999999998)));
-        const gic_real t31 = R(1.0) + (m[37] - (m[41] + R(0.9999999999999998)));
+        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
+        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
         const gic_real t32 = m[37] + m[41];
-        const gic_real t33 = R(1.0) + (R(0.9999999999999998) - t32);
-        const gic_real t34 = R(1.0) + (R(0.9999999999999998) + t32);
+        const gic_real t33 = R(1.0) + (R(1.0) - t32);
+        const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
         const gic_real t36 = GIC_MAX(t31, t35);
         const gic_real t37 = t30 - t36;
@@ -2159,11 +2143,11 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
         const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
         const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(0.9999999999999998) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(0.9999999999999998) + m[71]));
+        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
+        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
         const gic_real t60 = m[67] + m[71];
-        const gic_real t61 = R(1.0) + (R(0.9999999999999998) - t60);
-        const gic_real t62 = R(1.0) + (R(0.9999999999999998) + t60);
+        const gic_real t61 = R(1.0) + (R(1.0) - t60);
+        const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
         const gic_real t64 = GIC_MAX(t59, t63);
         const gic_real t65 = t58 - t64;
@@ -2264,11 +2248,11 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t160 = R(-1.688965) * t12;
         const gic_real t161 = R(-1.688965) * t19;
         const gic_real t162 = R(-1.688965) * t23;
-        const gic_real t163 = R(1.0) + (m[101] - (R(0.9999999999999998) + m[97]));
-        const gic_real t164 = R(1.0) + (m[97] - (R(0.9999999999999998) + m[101]));
+        const gic_real t163 = R(1.0) + (m[101] - (R(1.0) + m[97]));
+        const gic_real t164 = R(1.0) + (m[97] - (R(1.0) + m[101]));
         const gic_real t165 = m[97] + m[101];
-        const gic_real t166 = R(1.0) + (R(0.9999999999999998) - t165);
-        const gic_real t167 = R(1.0) + (R(0.9999999999999998) + t165);
+        const gic_real t166 = R(1.0) + (R(1.0) - t165);
+        const gic_real t167 = R(1.0) + (R(1.0) + t165);
         const gic_real t168 = GIC_MAX(t166, t167);
         const gic_real t169 = GIC_MAX(t164, t168);
         const gic_real t170 = t163 - t169;
@@ -2292,11 +2276,11 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t188 = e[1] * t181 - e[2] * t183 + (e[3] * t176 + e[0] * t180);
         const gic_real t189 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
         const gic_real t190 = R(-0.307086) + (m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056));
-        const gic_real t191 = R(1.0) + (m[131] - (R(0.9999999999999998) + m[127]));
-        const gic_real t192 = R(1.0) + (m[127] - (R(0.9999999999999998) + m[131]));
+        const gic_real t191 = R(1.0) + (m[131] - (R(1.0) + m[127]));
+        const gic_real t192 = R(1.0) + (m[127] - (R(1.0) + m[131]));
         const gic_real t193 = m[127] + m[131];
-        const gic_real t194 = R(1.0) + (R(0.9999999999999998) - t193);
-        const gic_real t195 = R(1.0) + (R(0.9999999999999998) + t193);
+        const gic_real t194 = R(1.0) + (R(1.0) - t193);
+        const gic_real t195 = R(1.0) + (R(1.0) + t193);
         const gic_real t196 = GIC_MAX(t194, t195);
         const gic_real t197 = GIC_MAX(t192, t196);
         const gic_real t198 = t191 - t197;
@@ -2323,11 +2307,11 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t219 = R(-1.653405) * t12;
         const gic_real t220 = R(-1.653405) * t19;
         const gic_real t221 = R(-1.653405) * t23;
-        const gic_real t222 = R(1.0) + (m[233] - (m[229] + R(0.9999999999999996)));
-        const gic_real t223 = R(1.0) + (m[229] - (m[233] + R(0.9999999999999996)));
+        const gic_real t222 = R(1.0) + (m[233] - (R(1.0) + m[229]));
+        const gic_real t223 = R(1.0) + (m[229] - (R(1.0) + m[233]));
         const gic_real t224 = m[229] + m[233];
-        const gic_real t225 = R(1.0) + (R(0.9999999999999996) - t224);
-        const gic_real t226 = R(1.0) + (R(0.9999999999999996) + t224);
+        const gic_real t225 = R(1.0) + (R(1.0) - t224);
+        const gic_real t226 = R(1.0) + (R(1.0) + t224);
         const gic_real t227 = GIC_MAX(t225, t226);
         const gic_real t228 = GIC_MAX(t223, t227);
         const gic_real t229 = t222 - t228;
@@ -2351,11 +2335,11 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t247 = e[1] * t240 - e[2] * t242 + (e[3] * t235 + e[0] * t239);
         const gic_real t248 = m[254] + (m[263] * R(0.09182100000000004) + m[262] * R(-0.08910630000000008));
         const gic_real t249 = m[253] + (m[260] * R(0.09182100000000004) + m[259] * R(-0.08910630000000008));
-        const gic_real t250 = R(1.0) + (m[263] - (R(0.9999999999999996) + m[259]));
-        const gic_real t251 = R(1.0) + (m[259] - (R(0.9999999999999996) + m[263]));
+        const gic_real t250 = R(1.0) + (m[263] - (R(1.0) + m[259]));
+        const gic_real t251 = R(1.0) + (m[259] - (R(1.0) + m[263]));
         const gic_real t252 = m[259] + m[263];
-        const gic_real t253 = R(1.0) + (R(0.9999999999999996) - t252);
-        const gic_real t254 = R(1.0) + (R(0.9999999999999996) + t252);
+        const gic_real t253 = R(1.0) + (R(1.0) - t252);
+        const gic_real t254 = R(1.0) + (R(1.0) + t252);
         const gic_real t255 = GIC_MAX(t253, t254);
         const gic_real t256 = GIC_MAX(t251, t255);
         const gic_real t257 = t250 - t256;
@@ -2934,7 +2918,7 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t20 = y[17] * t16 + y[16] * t19;
         const gic_real t21 = m[38] * t17 + m[37] * t18;
         const gic_real t22 = y[17] * t19 + y[16] * t21;
-        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4468999999999998) * (m[48] + acc[0] + m[54] * acc[6]);
+        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4469) * (m[48] + acc[0] + m[54] * acc[6]);
         const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
         const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
         const gic_real t26 = m[42] * t25;
@@ -2962,7 +2946,7 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t48 = y[17] * t44 + y[16] * t47;
         const gic_real t49 = m[68] * t45 + m[67] * t46;
         const gic_real t50 = y[17] * t47 + y[16] * t49;
-        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4468999999999998) * (m[78] + acc[0] + m[84] * acc[7]);
+        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4469) * (m[78] + acc[0] + m[84] * acc[7]);
         const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
         const gic_real t54 = m[72] * t53;
@@ -3096,7 +3080,7 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t182 = y[17] * t178 + y[16] * t181;
         const gic_real t183 = m[98] * t179 + m[97] * t180;
         const gic_real t184 = y[17] * t181 + y[16] * t183;
-        const gic_real t185 = y[16] * t182 - y[17] * t184 + R(0.4468999999999998) * (m[108] + acc[0] + m[114] * acc[8]);
+        const gic_real t185 = y[16] * t182 - y[17] * t184 + R(0.4469) * (m[108] + acc[0] + m[114] * acc[8]);
         const gic_real t186 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
         const gic_real t187 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
         const gic_real t188 = m[102] * t187;
@@ -3124,7 +3108,7 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t210 = y[17] * t206 + y[16] * t209;
         const gic_real t211 = m[128] * t207 + m[127] * t208;
         const gic_real t212 = y[17] * t209 + y[16] * t211;
-        const gic_real t213 = y[16] * t210 - y[17] * t212 + R(0.4468999999999998) * (m[138] + acc[0] + m[144] * acc[9]);
+        const gic_real t213 = y[16] * t210 - y[17] * t212 + R(0.4469) * (m[138] + acc[0] + m[144] * acc[9]);
         const gic_real t214 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
         const gic_real t215 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
         const gic_real t216 = m[132] * t215;
@@ -3147,7 +3131,7 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t233 = y[17] * t229 + y[16] * t232;
         const gic_real t234 = m[230] * t230 + m[229] * t231;
         const gic_real t235 = y[17] * t232 + y[16] * t234;
-        const gic_real t236 = y[16] * t233 - y[17] * t235 + R(4.894750499999996) * (m[240] + acc[0] + m[246] * acc[8]);
+        const gic_real t236 = y[16] * t233 - y[17] * t235 + R(4.8947505) * (m[240] + acc[0] + m[246] * acc[8]);
         const gic_real t237 = m[230] * R(0.09182100000000004);
         const gic_real t238 = t237 + m[229] * R(0.08910630000000008);
         const gic_real t239 = m[233] * R(0.09182100000000004);
@@ -3182,7 +3166,7 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t268 = y[17] * t264 + y[16] * t267;
         const gic_real t269 = m[260] * t265 + m[259] * t266;
         const gic_real t270 = y[17] * t267 + y[16] * t269;
-        const gic_real t271 = y[16] * t268 - y[17] * t270 + R(4.894750499999996) * (m[270] + acc[0] + m[276] * acc[9]);
+        const gic_real t271 = y[16] * t268 - y[17] * t270 + R(4.8947505) * (m[270] + acc[0] + m[276] * acc[9]);
         const gic_real t272 = m[260] * R(0.09182100000000004);
         const gic_real t273 = t272 + m[259] * R(-0.08910630000000008);
         const gic_real t274 = m[263] * R(0.09182100000000004);
@@ -3365,13 +3349,13 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t443 = acc[5] + (y[15] * t407 - y[16] * t4 - acc[1] * R(0.056));
         const gic_real t444 = y[17] * t442 - y[15] * t1 + acc[1] * R(2955.66) + (t408 * R(444.4287600000002) - t443 * R(116.84512));
         const gic_real t445 = m[42] + y[15];
-        const gic_real t446 = R(0.4468999999999998) * t445;
+        const gic_real t446 = R(0.4469) * t445;
         const gic_real t447 = acc[2] - m[42] * y[16];
         const gic_real t448 = acc[1] + m[42] * y[17];
         const gic_real t449 = y[17] * t446 - t445 * t20 + (t19 * t447 + t21 * t448);
         const gic_real t450 = t444 + (acc[1] + (t410 * R(0.4919654879999997) - t11 * R(13.051414655999999))) + (t449 + t25 * t414 - t33 * R(40.476046225));
         const gic_real t451 = m[72] + y[15];
-        const gic_real t452 = R(0.4468999999999998) * t451;
+        const gic_real t452 = R(0.4469) * t451;
         const gic_real t453 = acc[2] - m[72] * y[16];
         const gic_real t454 = acc[1] + m[72] * y[17];
         const gic_real t455 = y[17] * t452 - t451 * t48 + (t47 * t453 + t49 * t454);
@@ -3383,25 +3367,25 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t461 = t125 * t460 - t134 * t135 + (t129 * t140 + (t136 * t142 + t137 * t145));
         const gic_real t462 = t461 + (t155 * t425 - t152 * t168);
         const gic_real t463 = m[102] + y[15];
-        const gic_real t464 = R(0.4468999999999998) * t463;
+        const gic_real t464 = R(0.4469) * t463;
         const gic_real t465 = acc[2] - m[102] * y[16];
         const gic_real t466 = acc[1] + m[102] * y[17];
         const gic_real t467 = y[17] * t464 - t463 * t182 + (t181 * t465 + t183 * t466);
         const gic_real t468 = t459 + (t462 + (m[188] * t425 - R(149.724089775) * t167)) + (t467 + t187 * t429 - t195 * R(-40.476046225));
         const gic_real t469 = m[132] + y[15];
-        const gic_real t470 = R(0.4468999999999998) * t469;
+        const gic_real t470 = R(0.4469) * t469;
         const gic_real t471 = acc[2] - m[132] * y[16];
         const gic_real t472 = acc[1] + m[132] * y[17];
         const gic_real t473 = y[17] * t470 - t469 * t210 + (t209 * t471 + t211 * t472);
         const gic_real t474 = m[234] + y[15];
-        const gic_real t475 = R(4.894750499999996) * t474;
+        const gic_real t475 = R(4.8947505) * t474;
         const gic_real t476 = acc[2] - m[234] * y[16];
         const gic_real t477 = acc[1] + m[234] * y[17];
         const gic_real t478 = y[17] * t475 - t474 * t233 + (t232 * t476 + t234 * t477);
         const gic_real t479 = t478 + t240 * t434 + (m[224] * t434 - t251 * R(-149.724089775));
         const gic_real t480 = t468 + (t473 + t215 * t432 - R(-40.476046225) * t221) + t479;
         const gic_real t481 = m[264] + y[15];
-        const gic_real t482 = R(4.894750499999996) * t481;
+        const gic_real t482 = R(4.8947505) * t481;
         const gic_real t483 = acc[2] - m[264] * y[16];
         const gic_real t484 = acc[1] + m[264] * y[17];
         const gic_real t485 = y[17] * t482 - t481 * t268 + (t267 * t483 + t269 * t484);
@@ -3562,7 +3546,7 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t76 = m[41] * t74 + m[40] * t75;
         const gic_real t77 = rate[16] + m[42] * y[17];
         const gic_real t78 = t76 * t72 + (m[38] * t74 + m[37] * t75) * t77;
-        const gic_real t79 = (m[42] + y[15]) * (R(0.4468999999999998) * (m[48] + rate[15] + m[54] * rate[18]));
+        const gic_real t79 = (m[42] + y[15]) * (R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]));
         const gic_real t80 = y[17] * (t73 + t76 * t77) + (y[16] * t78 + t79);
         const gic_real t81 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t82 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
@@ -3588,7 +3572,7 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t102 = m[71] * t100 + m[70] * t101;
         const gic_real t103 = rate[16] + m[72] * y[17];
         const gic_real t104 = t102 * t98 + (m[68] * t100 + m[67] * t101) * t103;
-        const gic_real t105 = (m[72] + y[15]) * (R(0.4468999999999998) * (m[78] + rate[15] + m[84] * rate[19]));
+        const gic_real t105 = (m[72] + y[15]) * (R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]));
         const gic_real t106 = y[17] * (t99 + t102 * t103) + (y[16] * t104 + t105);
         const gic_real t107 = t39 + t40 + (t49 + t50) + (t71 + t80) + (t97 + t106);
         const gic_real t108 = m[155] * R(0.09182100000000004);
@@ -3737,7 +3721,7 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t251 = m[101] * t249 + m[100] * t250;
         const gic_real t252 = rate[16] + m[102] * y[17];
         const gic_real t253 = t251 * t247 + (m[98] * t249 + m[97] * t250) * t252;
-        const gic_real t254 = (m[102] + y[15]) * (R(0.4468999999999998) * (m[108] + rate[15] + m[114] * rate[20]));
+        const gic_real t254 = (m[102] + y[15]) * (R(0.4469) * (m[108] + rate[15] + m[114] * rate[20]));
         const gic_real t255 = y[17] * (t248 + t251 * t252) + (y[16] * t253 + t254);
         const gic_real t256 = t107 + (t144 + t166) + (t203 + t225) + (t246 + t255);
         const gic_real t257 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
@@ -3764,7 +3748,7 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t278 = m[131] * t276 + m[130] * t277;
         const gic_real t279 = rate[16] + m[132] * y[17];
         const gic_real t280 = t278 * t274 + (m[128] * t276 + m[127] * t277) * t279;
-        const gic_real t281 = (m[132] + y[15]) * (R(0.4468999999999998) * (m[138] + rate[15] + m[144] * rate[21]));
+        const gic_real t281 = (m[132] + y[15]) * (R(0.4469) * (m[138] + rate[15] + m[144] * rate[21]));
         const gic_real t282 = y[17] * (t275 + t278 * t279) + (y[16] * t280 + t281);
         const gic_real t283 = m[230] * R(0.09182100000000004);
         const gic_real t284 = t283 + m[229] * R(0.08910630000000008);
@@ -3800,7 +3784,7 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t314 = m[233] * t312 + m[232] * t313;
         const gic_real t315 = rate[16] + m[234] * y[17];
         const gic_real t316 = t314 * t310 + (m[230] * t312 + m[229] * t313) * t315;
-        const gic_real t317 = (m[234] + y[15]) * (R(4.894750499999996) * (m[240] + rate[15] + m[246] * rate[20]));
+        const gic_real t317 = (m[234] + y[15]) * (R(4.8947505) * (m[240] + rate[15] + m[246] * rate[20]));
         const gic_real t318 = y[17] * (t311 + t314 * t315) + (y[16] * t316 + t317);
         const gic_real t319 = m[260] * R(0.09182100000000004);
         const gic_real t320 = t319 + m[259] * R(-0.08910630000000008);
@@ -3832,7 +3816,7 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t346 = m[263] * t344 + m[262] * t345;
         const gic_real t347 = rate[16] + m[264] * y[17];
         const gic_real t348 = t346 * t342 + (m[260] * t344 + m[259] * t345) * t347;
-        const gic_real t349 = (m[264] + y[15]) * (R(4.894750499999996) * (m[270] + rate[15] + m[276] * rate[21]));
+        const gic_real t349 = (m[264] + y[15]) * (R(4.8947505) * (m[270] + rate[15] + m[276] * rate[21]));
         const gic_real t350 = y[17] * (t343 + t346 * t347) + (y[16] * t348 + t349);
         const gic_real t351 = t256 + (t273 + t282) + (t309 + t318) + (t341 + t350);
         const gic_real t352 = t115 + (m[157] * R(0.12319000000000002) + t116);

@@ -70,10 +70,10 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                103       166       3      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 87       128       2      1         0
  *   forces and equations of motion                           681       587      10      0         4
- *   all together                                            1790      2202      30     10         4
+ *   all together                                            1754      2122      28     10         4
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #ifndef HMMWV_H

@@ -72,11 +72,11 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
- *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        524       660       6      2         0
- *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        438       551       6      2         0
+ *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        511       647       6      2         0
+ *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        425       538       6      2         0
  *   forces and equations of motion                           855       777      15      4         4
- *   all together                                            3070      3664      43     16         4
- *   outputs, when asked for                                  933      1185       4      4        19
+ *   all together                                            3018      3612      43     16         4
+ *   outputs, when asked for                                  933      1137       4      4        19
  */
 #ifndef HMMWV14_H
 #define HMMWV14_H

@@ -70,10 +70,10 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                103       166       3      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 87       128       2      1         0
  *   forces and equations of motion                           821       715      14      4        24
- *   all together                                            1930      2330      34     14        24
+ *   all together                                            1894      2250      32     14        24
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #include "hmmwv_full.h"
@@ -231,19 +231,19 @@ static const gic_real hmmwv_full_k_lca_f_l[4][27] = {
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
         R(-0.05607209753299996), R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428),
         R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(0.307086),
-        R(0.509778), R(-17.83418213330566), R(51.57660077184113), R(209.3566321652691),
+        R(0.509778), R(-17.834182133305656), R(51.57660077184113), R(209.3566321652691),
         R(-209.35663216526908), R(51.576600771841136), R(-51.57660077184113), R(209.35663216526908),
         R(3.0379110359107786e-06), R(0.24689200985615367), R(1.688965), R(40.476046225),
-        R(0.01121887479261392), R(0.2403881036540444), R(7.892375927523102),
+        R(0.01121887479261392), R(0.2403881036540444), R(7.8923759275231005),
     },
     { /* lca_f_r */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
         R(-0.05607209753299996), R(0.038649583990999964), R(-0.05607209753299996), R(-50.90547521989428),
         R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(-0.307086),
-        R(-0.509778), R(17.83418213330566), R(-51.57660077184113), R(209.3566321652691),
+        R(-0.509778), R(17.834182133305656), R(-51.57660077184113), R(209.3566321652691),
         R(-209.35663216526908), R(-51.576600771841136), R(51.57660077184113), R(209.35663216526908),
         R(3.0379110359107786e-06), R(-0.24689200985615367), R(1.688965), R(40.476046225),
-        R(0.01121887479261392), R(-0.2403881036540444), R(7.892375927523102),
+        R(0.01121887479261392), R(-0.2403881036540444), R(7.8923759275231005),
     },
     { /* lca_r_l */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
@@ -252,7 +252,7 @@ static const gic_real hmmwv_full_k_lca_f_l[4][27] = {
         R(0.5015738), R(-14.363650103908768), R(39.86479513590535), R(161.81677595488463),
         R(-161.8167759548846), R(39.864795135905354), R(-39.86479513590535), R(161.8167759548846),
         R(-3.0379110358344508e-06), R(0.246867347245056), R(-1.688965), R(-40.476046225),
-        R(0.011218874792613923), R(0.24038810365404442), R(6.355965194292886),
+        R(0.011218874792613923), R(0.24038810365404442), R(6.355965194292885),
     },
     { /* lca_r_r */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
@@ -261,7 +261,7 @@ static const gic_real hmmwv_full_k_lca_f_l[4][27] = {
         R(-0.5015738), R(14.363650103908768), R(-39.86479513590535), R(161.81677595488463),
         R(-161.8167759548846), R(-39.864795135905354), R(39.86479513590535), R(161.8167759548846),
         R(-3.0379110358344508e-06), R(-0.246867347245056), R(-1.688965), R(-40.476046225),
-        R(0.011218874792613923), R(-0.24038810365404442), R(6.355965194292886),
+        R(0.011218874792613923), R(-0.24038810365404442), R(6.355965194292885),
     },
 };
 
@@ -276,7 +276,7 @@ static int hmmwv_full_solve_lca_f_l(hmmwv_full *self, const gic_real *GIC_RESTRI
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.010110666875399986);
+        const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = k[1] - t1 * t1;
         if (!(t2 > R(0.0)))
             return GIC_ERROR_NEWTON;
@@ -432,11 +432,11 @@ static int hmmwv_full_solve_wheel_f_l(hmmwv_full *self, const gic_real *GIC_REST
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(6.938893903907228e-18) * m1[8] + k[0] * m1[7];
-        const gic_real t2 = k[1] + t1;
+        const gic_real t1 = k[0] * m1[7];
+        const gic_real t2 = t1 + k[1];
         const gic_real t3 = k[2] - t2;
         const gic_real t4 = R(0.9665541626242249) * t3 - k[3];
-        const gic_real t5 = R(6.938893903907228e-18) * m1[11] + k[0] * m1[10];
+        const gic_real t5 = k[0] * m1[10];
         const gic_real t6 = R(0.23411769999999998) - t5;
         const gic_real t7 = R(-0.012812720436325503) - R(0.9665541626242249) * t6;
         const gic_real t8 = k[4] * t6 - R(0.21526024724178433) * t3;
@@ -726,40 +726,37 @@ static GIC_COLD gic_real hmmwv_full_residual_wheel_f_l(const gic_real *GIC_RESTR
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = (motion[1] - (k[1] + (R(6.938893903907228e-18) * m1[8] + k[0] * m1[7]))) * R(2.928075656552032);
-        const gic_real t2 = GIC_FABS((motion[2] - (R(6.938893903907228e-18) * m1[11] + k[0] * m1[10])) * R(2.928075656552032));
-        const gic_real t3 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[12] * motion[10] + R(-0.14025880000000002) * motion[9]));
-        const gic_real t4 = t3 - R(0.05422899999999997);
-        const gic_real t5 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[12] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t6 = t5 - (k[6] + m0[1]);
-        const gic_real t7 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[12] * motion[4] + R(-0.14025880000000002) * motion[3]));
-        const gic_real t8 = t7 - R(1.438648);
-        const gic_real t9 = t4 * t4 + (t6 * t6 + t8 * t8) - R(0.14941089924212003);
-        const gic_real t10 = GIC_MAX(GIC_MAX(GIC_MAX(R(0.0), GIC_FABS(t1)), t2), GIC_FABS(t9 * R(3.9285226675160785)));
-        const gic_real t11 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[13] * motion[10] + R(-0.017475200000000024) * motion[9]));
-        const gic_real t12 = t11 - R(0.23411769999999998);
-        const gic_real t13 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[13] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t14 = t13 - k[2];
-        const gic_real t15 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[13] * motion[4] + R(-0.017475200000000024) * motion[3]));
-        const gic_real t16 = t15 - R(1.593883);
-        const gic_real t17 = t12 * t12 + (t14 * t14 + t16 * t16) - R(0.07115456010869);
-        const gic_real t18 = R(0.21526024724178433) * t12 + (k[4] * t14 + R(0.9665541626242249) * t16) - R(4.3116545195287515e-08);
-        const gic_real t19 = GIC_MAX(GIC_MAX(t10, GIC_FABS(t17 * R(5.571891251504317))), GIC_FABS(t18 * R(3.029396354366955)));
-        worst = t19;
+        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m1[7] + k[1])) * R(2.928075656552032)));
+        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[12] * motion[10] + R(-0.14025880000000002) * motion[9]));
+        const gic_real t3 = t2 - R(0.05422899999999997);
+        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[12] * motion[7] + R(-0.14025880000000002) * motion[6]));
+        const gic_real t5 = t4 - (k[6] + m0[1]);
+        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[12] * motion[4] + R(-0.14025880000000002) * motion[3]));
+        const gic_real t7 = t6 - R(1.438648);
+        const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
+        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m1[10]) * R(2.928075656552032))), GIC_FABS(t8 * R(3.9285226675160785)));
+        const gic_real t10 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[13] * motion[10] + R(-0.017475200000000024) * motion[9]));
+        const gic_real t11 = t10 - R(0.23411769999999998);
+        const gic_real t12 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[13] * motion[7] + R(-0.017475200000000024) * motion[6]));
+        const gic_real t13 = t12 - k[2];
+        const gic_real t14 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[13] * motion[4] + R(-0.017475200000000024) * motion[3]));
+        const gic_real t15 = t14 - R(1.593883);
+        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
+        const gic_real t17 = R(0.21526024724178433) * t11 + (k[4] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
+        const gic_real t18 = GIC_MAX(GIC_MAX(t9, GIC_FABS(t16 * R(5.571891251504317))), GIC_FABS(t17 * R(3.029396354366955)));
+        worst = t18;
     }
     return worst;
 }
 
-static const gic_real hmmwv_full_k_wheel_r_l[2][9] = {
+static const gic_real hmmwv_full_k_wheel_r_l[2][8] = {
     { /* wheel_r_l */
-        R(-0.23920559337529682), R(0.49375935710120966), R(0.307086), R(0.462153),
-        R(0.23920559337529687), R(-0.07099299999999997), R(-1.0), R(11.91437806979548),
-        R(0.08910630000000008),
+        R(0.49375935710120966), R(0.307086), R(0.462153), R(-0.07099299999999997),
+        R(-1.0), R(0.07099299999999997), R(-11.914378069795442), R(0.08910630000000008),
     },
     { /* wheel_r_r */
-        R(0.23920559337529682), R(-0.49375935710120966), R(-0.307086), R(-0.462153),
-        R(-0.23920559337529687), R(0.07099299999999997), R(1.0), R(-11.91437806979548),
-        R(-0.08910630000000008),
+        R(-0.49375935710120966), R(-0.307086), R(-0.462153), R(0.07099299999999997),
+        R(1.0), R(-0.07099299999999997), R(11.914378069795442), R(-0.08910630000000008),
     },
 };
 
@@ -774,158 +771,145 @@ static int hmmwv_full_solve_wheel_r_l(hmmwv_full *self, const gic_real *GIC_REST
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(0.9709689408513391) * m0[11] + k[0] * m0[10];
-        const gic_real t2 = R(6.938893903907228e-18) * m0[11] + k[1] * m0[10];
-        const gic_real t3 = R(0.22567900000000007) - t2;
-        const gic_real t4 = R(0.9709689408513391) * m0[8] + k[0] * m0[7];
-        const gic_real t5 = R(6.938893903907228e-18) * m0[8] + k[1] * m0[7];
-        const gic_real t6 = k[2] + t5;
-        const gic_real t7 = k[3] - t6;
-        const gic_real t8 = t1 * t3 + t4 * t7;
-        const gic_real t9 = k[4] * m0[11] + R(0.9709689408513393) * m0[10];
-        const gic_real t10 = k[4] * m0[8] + R(0.9709689408513393) * m0[7];
-        const gic_real t11 = t9 * t3 + t10 * t7;
-        const gic_real t12 = k[5] * t8 - R(0.33401) * t11;
-        const gic_real t13 = R(0.33401) * t8 + k[5] * t11;
-        const gic_real t14 = t12 * t12 + t13 * t13;
-        const gic_real t15 = R(0.5) * (t3 * t3 + (t7 * t7 + R(0.031522582115999995)) + R(0.020790651966999973));
-        const gic_real t16 = t14 - t15 * t15;
-        if (!(t16 > R(0.0)))
+        const gic_real t1 = k[0] * m0[7];
+        const gic_real t2 = t1 + k[1];
+        const gic_real t3 = t2 - k[2];
+        const gic_real t4 = k[0] * m0[10];
+        const gic_real t5 = R(0.22567900000000007) - t4;
+        const gic_real t6 = k[3] * t3 - R(0.33401) * t5;
+        const gic_real t7 = R(0.33401) * t3 + k[3] * t5;
+        const gic_real t8 = t6 * t6 + t7 * t7;
+        const gic_real t9 = k[2] - t2;
+        const gic_real t10 = R(0.5) * (t5 * t5 + (t9 * t9 + R(0.031522582115999995)) + R(0.020790651966999973));
+        const gic_real t11 = t8 - t10 * t10;
+        if (!(t11 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t16 - t14 * R(0.0001) > R(0.0)))
+        if (!(t11 - t8 * R(0.0001) > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t17 = R(1.0) / t14;
-        const gic_real t18 = GIC_SQRT(t16) * k[6];
-        const gic_real t19 = t17 * (t15 * t13 - t12 * t18);
-        const gic_real t20 = t17 * (t13 * t18 + t15 * t12);
-        const gic_real t21 = t19 * (k[5] * t10 + R(0.33401) * t4) + t20 * (k[5] * t4 + t10 * R(-0.33401));
-        const gic_real t22 = t19 * (k[5] * t9 + R(0.33401) * t1) + t20 * (k[5] * t1 + t9 * R(-0.33401));
-        const gic_real t23 = t2 + t22 - R(0.22567900000000007);
-        const gic_real t24 = t6 + t21 - k[3];
-        const gic_real t25 = t21 * t23 - t22 * t24;
-        if (!(GIC_FABS(t25) > R(8.646996244896166e-08)))
+        const gic_real t12 = R(1.0) / t8;
+        const gic_real t13 = GIC_SQRT(t11) * k[4];
+        const gic_real t14 = t12 * (t10 * t7 - t6 * t13);
+        const gic_real t15 = t12 * (t7 * t13 + t10 * t6);
+        const gic_real t16 = R(-0.33401) * t14 + k[5] * t15;
+        const gic_real t17 = k[3] * t14 + R(-0.33401) * t15;
+        const gic_real t18 = t4 + t17 - R(0.22567900000000007);
+        const gic_real t19 = t2 + t16 - k[2];
+        const gic_real t20 = t16 * t18 - t17 * t19;
+        if (!(GIC_FABS(t20) > R(8.646996244896178e-08)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t26 = t10 * R(0.9999999999999996);
-        if (!(GIC_FABS(t26) > R(9.999999999999993e-07)))
+        if (!(t20 * k[6] > R(0.001)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t27 = t9 * R(0.9999999999999996) * (t4 * R(0.9999999999999996) * (R(1.0) / t26)) - t1 * R(0.9999999999999996);
-        if (!(GIC_FABS(t27) > R(1.1250269614846688e-06)))
-            return GIC_ERROR_SINGULAR;
-        if (!(t27 * (t26 * t25) * k[7] > R(0.001)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t28 = t10 * t19 + t4 * t20;
-        const gic_real t29 = t4 * t19 - t10 * t20;
-        const gic_real t30 = t9 * t19 + t1 * t20;
-        const gic_real t31 = t1 * t19 - t9 * t20;
-        const gic_real t32 = R(1.0) / t25;
-        const gic_real t33 = m0[24] * t2;
-        const gic_real t34 = m0[24] * t5;
-        const gic_real t35 = t32 * (t24 * t33 - t23 * t34);
-        const gic_real t36 = rate[0] * t35;
-        const gic_real t37 = rate[0] * t33;
-        const gic_real t38 = rate[0] * t34;
-        const gic_real t39 = t22 * t36;
-        const gic_real t40 = t21 * t36;
-        const gic_real t41 = t38 + t40;
-        const gic_real t42 = t37 + t39;
-        const gic_real t43 = t23 * (t36 * t39) + t24 * (t36 * t40) - (t41 * t41 + t42 * t42);
-        const gic_real t44 = m0[12] * (m0[12] * t5) + m0[18] * t2;
-        const gic_real t45 = m0[18] * t5 - m0[12] * (m0[12] * t2);
-        const gic_real t46 = t32 * (t43 + t44 * t24 - t45 * t23);
-        const gic_real t47 = t29 * R(0.09182100000000004) + t28 * k[8];
-        const gic_real t48 = t6 + t47;
-        const gic_real t49 = R(90.555) * t48;
-        const gic_real t50 = t31 * R(0.09182100000000004) + t30 * k[8];
-        const gic_real t51 = t2 + t50;
-        const gic_real t52 = R(90.555) * t51;
-        const gic_real t53 = t48 * t49;
-        const gic_real t54 = t51 * t52;
-        const gic_real t55 = t28 * R(2.8083995);
-        const gic_real t56 = R(4.7728205) + t28 * t55;
-        const gic_real t57 = R(4.7728205) + t30 * (t30 * R(2.8083995));
-        const gic_real t58 = t30 * t55;
-        const gic_real t59 = t36 * t47;
-        const gic_real t60 = t38 + t59;
-        const gic_real t61 = t60 + (t60 + (turn[0] * t48 - R(-1.653405) * turn[1]));
-        const gic_real t62 = t36 * t50;
-        const gic_real t63 = t37 + t62;
-        const gic_real t64 = R(-1.653405) * turn[2] - turn[0] * t51 - t63 - t63;
-        const gic_real t65 = R(90.555) * (turn[1] * t61 - turn[2] * t64);
-        const gic_real t66 = turn[1] * t51 - turn[2] * t48;
-        const gic_real t67 = turn[2] * t66 - turn[0] * t61 - t36 * t59 - t46 * t50;
-        const gic_real t68 = t67 - t44;
-        const gic_real t69 = R(90.555) * t68;
-        const gic_real t70 = turn[0] * t64 - turn[1] * t66 - t36 * t62 + t46 * t47;
-        const gic_real t71 = t45 + t70;
-        const gic_real t72 = R(90.555) * t71;
-        const gic_real t73 = turn[2] * t57 + turn[1] * t58;
-        const gic_real t74 = turn[2] * t58 + turn[1] * t56;
-        const gic_real t75 = t46 * R(4.8947505) + (turn[1] * t73 - turn[2] * t74);
-        const gic_real t76 = t36 * turn[2];
-        const gic_real t77 = t36 * turn[1];
-        const gic_real t78 = t36 + turn[0];
-        const gic_real t79 = R(4.8947505) * t78;
-        const gic_real t80 = t56 * t76 - t58 * t77 + (turn[2] * t79 - t78 * t73);
-        const gic_real t81 = t58 * t76 - t57 * t77 + (t78 * t74 - turn[1] * t79);
-        const gic_real t82 = t33 + t35 * t50;
-        const gic_real t83 = R(90.555) * t82;
-        const gic_real t84 = t34 + t35 * t47;
-        const gic_real t85 = R(90.555) * t84;
-        const gic_real t86 = t35 * R(4.8947505);
-        const gic_real t87 = -t37;
-        const gic_real t88 = -t44;
-        const gic_real t89 = -t33;
-        const gic_real t90 = R(4.8947505) + (t53 + t54);
-        const gic_real t91 = t56 + (R(247.5545586544339) + t54);
-        const gic_real t92 = t57 + (R(247.5545586544339) + t53);
-        const gic_real t93 = -(t48 * R(-149.724089775));
-        const gic_real t94 = -(t51 * R(-149.724089775));
-        const gic_real t95 = t58 - t51 * t49;
-        const gic_real t96 = t75 + (t48 * t72 - t51 * t69);
-        const gic_real t97 = t80 + (t51 * t65 - R(-149.724089775) * t71);
-        const gic_real t98 = t81 + (R(-149.724089775) * t68 - t48 * t65);
-        const gic_real t99 = -t83;
-        const gic_real t100 = t86 + (t51 * t83 + t48 * t85);
-        const gic_real t101 = -(R(-149.724089775) * t84);
-        const gic_real t102 = -(R(-149.724089775) * t82);
-        const gic_real t103 = t35 * t75 + (t72 * t84 - t69 * t82);
-        const gic_real t104 = t35 * t86 + (t84 * t85 + t82 * t83);
-        motion[1] = t6;
-        motion[2] = t2;
-        motion[7] = t28;
-        motion[8] = t29;
-        motion[10] = t30;
-        motion[11] = t31;
-        motion[12] = t36;
-        motion[16] = t87;
-        motion[17] = t38;
-        motion[18] = t46;
-        motion[22] = t88;
-        motion[23] = t45;
-        motion[24] = t35;
-        motion[28] = t89;
-        motion[29] = t34;
-        inertia[1] = t49;
-        inertia[2] = t52;
-        inertia[3] = t90;
-        inertia[4] = t91;
-        inertia[5] = t92;
-        inertia[6] = t93;
-        inertia[7] = t94;
-        inertia[8] = t95;
-        inertia[9] = t65;
-        inertia[10] = t69;
-        inertia[11] = t72;
-        inertia[12] = t96;
-        inertia[13] = t97;
-        inertia[14] = t98;
-        inertia[16] = t99;
-        inertia[17] = t85;
-        inertia[18] = t100;
-        inertia[19] = t101;
-        inertia[20] = t102;
-        inertia[21] = t103;
-        inertia[22] = t104;
+        const gic_real t21 = -t15;
+        const gic_real t22 = R(1.0) / t20;
+        const gic_real t23 = m0[24] * t4;
+        const gic_real t24 = m0[24] * t1;
+        const gic_real t25 = t22 * (t19 * t23 - t18 * t24);
+        const gic_real t26 = rate[0] * t25;
+        const gic_real t27 = rate[0] * t23;
+        const gic_real t28 = rate[0] * t24;
+        const gic_real t29 = t17 * t26;
+        const gic_real t30 = t16 * t26;
+        const gic_real t31 = t28 + t30;
+        const gic_real t32 = t27 + t29;
+        const gic_real t33 = t18 * (t26 * t29) + t19 * (t26 * t30) - (t31 * t31 + t32 * t32);
+        const gic_real t34 = m0[12] * (m0[12] * t1) + m0[18] * t4;
+        const gic_real t35 = m0[18] * t1 - m0[12] * (m0[12] * t4);
+        const gic_real t36 = t22 * (t33 + t34 * t19 - t35 * t18);
+        const gic_real t37 = t14 * R(0.09182100000000004) + t15 * k[7];
+        const gic_real t38 = t2 - t37;
+        const gic_real t39 = R(90.555) * t38;
+        const gic_real t40 = t14 * k[7] - t15 * R(0.09182100000000004);
+        const gic_real t41 = t4 + t40;
+        const gic_real t42 = R(90.555) * t41;
+        const gic_real t43 = t38 * t39;
+        const gic_real t44 = t41 * t42;
+        const gic_real t45 = t15 * R(2.8083995);
+        const gic_real t46 = R(4.7728205) + t15 * t45;
+        const gic_real t47 = R(4.7728205) + t14 * (t14 * R(2.8083995));
+        const gic_real t48 = t14 * t45;
+        const gic_real t49 = t26 * t37;
+        const gic_real t50 = t28 - t49;
+        const gic_real t51 = t50 + (t50 + (turn[0] * t38 - R(-1.653405) * turn[1]));
+        const gic_real t52 = t26 * t40;
+        const gic_real t53 = t27 + t52;
+        const gic_real t54 = R(-1.653405) * turn[2] - turn[0] * t41 - t53 - t53;
+        const gic_real t55 = R(90.555) * (turn[1] * t51 - turn[2] * t54);
+        const gic_real t56 = turn[1] * t41 - turn[2] * t38;
+        const gic_real t57 = turn[2] * t56 - turn[0] * t51 + t26 * t49 - t36 * t40;
+        const gic_real t58 = t57 - t34;
+        const gic_real t59 = R(90.555) * t58;
+        const gic_real t60 = turn[0] * t54 - turn[1] * t56 - t26 * t52 - t36 * t37;
+        const gic_real t61 = t35 + t60;
+        const gic_real t62 = R(90.555) * t61;
+        const gic_real t63 = turn[2] * t47 - turn[1] * t48;
+        const gic_real t64 = turn[1] * t46 - turn[2] * t48;
+        const gic_real t65 = t36 * R(4.8947505) + (turn[1] * t63 - turn[2] * t64);
+        const gic_real t66 = t26 * turn[1];
+        const gic_real t67 = t26 * turn[2];
+        const gic_real t68 = t26 + turn[0];
+        const gic_real t69 = R(4.8947505) * t68;
+        const gic_real t70 = t48 * t66 + t46 * t67 + (turn[2] * t69 - t68 * t63);
+        const gic_real t71 = t68 * t64 - turn[1] * t69 - (t47 * t66 + t48 * t67);
+        const gic_real t72 = t23 + t25 * t40;
+        const gic_real t73 = R(90.555) * t72;
+        const gic_real t74 = t24 - t25 * t37;
+        const gic_real t75 = R(90.555) * t74;
+        const gic_real t76 = t25 * R(4.8947505);
+        const gic_real t77 = -t14;
+        const gic_real t78 = -t27;
+        const gic_real t79 = -t34;
+        const gic_real t80 = -t23;
+        const gic_real t81 = R(4.8947505) + (t43 + t44);
+        const gic_real t82 = t46 + (R(247.5545586544339) + t44);
+        const gic_real t83 = t47 + (R(247.5545586544339) + t43);
+        const gic_real t84 = -(t38 * R(-149.724089775));
+        const gic_real t85 = -(t41 * R(-149.724089775));
+        const gic_real t86 = -(t48 + t41 * t39);
+        const gic_real t87 = t65 + (t38 * t62 - t41 * t59);
+        const gic_real t88 = t70 + (t41 * t55 - R(-149.724089775) * t61);
+        const gic_real t89 = t71 + (R(-149.724089775) * t58 - t38 * t55);
+        const gic_real t90 = -t73;
+        const gic_real t91 = t76 + (t41 * t73 + t38 * t75);
+        const gic_real t92 = -(R(-149.724089775) * t74);
+        const gic_real t93 = -(R(-149.724089775) * t72);
+        const gic_real t94 = t25 * t65 + (t62 * t74 - t59 * t72);
+        const gic_real t95 = t25 * t76 + (t74 * t75 + t72 * t73);
+        motion[1] = t2;
+        motion[2] = t4;
+        motion[7] = t21;
+        motion[8] = t77;
+        motion[10] = t14;
+        motion[11] = t21;
+        motion[12] = t26;
+        motion[16] = t78;
+        motion[17] = t28;
+        motion[18] = t36;
+        motion[22] = t79;
+        motion[23] = t35;
+        motion[24] = t25;
+        motion[28] = t80;
+        motion[29] = t24;
+        inertia[1] = t39;
+        inertia[2] = t42;
+        inertia[3] = t81;
+        inertia[4] = t82;
+        inertia[5] = t83;
+        inertia[6] = t84;
+        inertia[7] = t85;
+        inertia[8] = t86;
+        inertia[9] = t55;
+        inertia[10] = t59;
+        inertia[11] = t62;
+        inertia[12] = t87;
+        inertia[13] = t88;
+        inertia[14] = t89;
+        inertia[16] = t90;
+        inertia[17] = t75;
+        inertia[18] = t91;
+        inertia[19] = t92;
+        inertia[20] = t93;
+        inertia[21] = t94;
+        inertia[22] = t95;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -939,12 +923,12 @@ static GIC_COLD gic_real hmmwv_full_residual_wheel_r_l(const gic_real *GIC_RESTR
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = (motion[1] - (k[2] + (R(6.938893903907228e-18) * m0[8] + k[1] * m0[7]))) * R(2.928503331078754);
-        const gic_real t2 = GIC_FABS((motion[2] - (R(6.938893903907228e-18) * m0[11] + k[1] * m0[10])) * R(2.928503331078754));
-        const gic_real t3 = motion[2] + (R(0.33401) * motion[11] + k[5] * motion[10]) - R(0.22567900000000007);
-        const gic_real t4 = motion[1] + (R(0.33401) * motion[8] + k[5] * motion[7]) - k[3];
-        const gic_real t5 = (t3 * t3 + (R(0.031522582115999995) + t4 * t4) - R(0.095812034182)) * R(5.77921838272602);
-        const gic_real t6 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(R(0.0), GIC_FABS(t1)), t2), R(0.0)), R(0.0)), GIC_FABS(t5));
+        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m0[7] + k[1])) * R(2.928503331078754)));
+        const gic_real t2 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m0[10]) * R(2.928503331078754))), R(0.0));
+        const gic_real t3 = motion[2] + (R(0.33401) * motion[11] + k[3] * motion[10]) - R(0.22567900000000007);
+        const gic_real t4 = motion[1] + (R(0.33401) * motion[8] + k[3] * motion[7]) - k[2];
+        const gic_real t5 = (t3 * t3 + (R(0.031522582115999995) + t4 * t4) - R(0.095812034182)) * R(5.7792183827260155);
+        const gic_real t6 = GIC_MAX(GIC_MAX(t2, R(0.0)), GIC_FABS(t5));
         worst = t6;
     }
     return worst;
@@ -1659,11 +1643,11 @@ static int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const gic_real *
         const gic_real t338 = R(-0.006807199999999902) * t256;
         const gic_real t339 = t256 * R(-0.002199670439359969) - R(1.792978) * t257 + (R(-0.002199670439359969) * t266 - R(1.792978) * t267);
         const gic_real t340 = t339 + (t276 * R(0.002199670439359969) - R(-1.792978) * t277) + (R(0.002199670439359969) * t286 - R(-1.792978) * t287);
-        const gic_real t341 = R(0.09720579999999995) * t257 - t248 * t338 + (t340 + R(1.688965) * t257);
-        const gic_real t342 = R(0.09720579999999995) * t267 - t258 * t337 + (t341 + R(1.688965) * t267);
+        const gic_real t341 = R(0.09720579999999998) * t257 - t248 * t338 + (t340 + R(1.688965) * t257);
+        const gic_real t342 = R(0.09720579999999998) * t267 - t258 * t337 + (t341 + R(1.688965) * t267);
         const gic_real t343 = t336 + (t342 + (m[152] * t335 - R(1.653405) * t247)) + (m[188] * t333 - R(1.653405) * t225);
-        const gic_real t344 = R(-0.09720579999999995) * t277 - t268 * t332 + (t334 + t343 + R(-1.688965) * t277);
-        const gic_real t345 = R(-0.09720579999999995) * t287 - t278 * t331 + (t344 + R(-1.688965) * t287);
+        const gic_real t344 = R(-0.09720579999999998) * t277 - t268 * t332 + (t334 + t343 + R(-1.688965) * t277);
+        const gic_real t345 = R(-0.09720579999999998) * t287 - t278 * t331 + (t344 + R(-1.688965) * t287);
         const gic_real t346 = t190 * t330 + (t345 + (m[224] * t330 - R(-1.653405) * t203));
         const gic_real t347 = t162 * t329 + (t346 + (m[254] * t329 - R(-1.653405) * t186));
         const gic_real t348 = n[13] + n[36] + n[59] + n[82] + n[105] + n[128] + n[160];
@@ -1680,11 +1664,11 @@ static int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const gic_real *
         const gic_real t359 = t227 * t310 - t226 * t335;
         const gic_real t360 = R(1.792978) * t314 - t256 * R(-0.003388550642239951) + (R(1.792978) * t312 - t266 * R(0.003388550642239951));
         const gic_real t361 = t360 + (R(-1.792978) * t295 - R(0.003388550642239951) * t276) + (R(-1.792978) * t302 - R(-0.003388550642239951) * t286);
-        const gic_real t362 = t250 * t338 - R(0.09720579999999995) * t314 + (t361 + (t256 * R(-0.00209039581919997) - R(1.688965) * t314));
-        const gic_real t363 = t260 * t337 - R(0.09720579999999995) * t312 + (t362 + (t266 * R(0.00209039581919997) - R(1.688965) * t312));
+        const gic_real t362 = t250 * t338 - R(0.09720579999999998) * t314 + (t361 + (t256 * R(-0.00209039581919997) - R(1.688965) * t314));
+        const gic_real t363 = t260 * t337 - R(0.09720579999999998) * t312 + (t362 + (t266 * R(0.00209039581919997) - R(1.688965) * t312));
         const gic_real t364 = t359 + (t363 + (R(1.653405) * t310 - m[151] * t335)) + (R(1.653405) * t308 - m[187] * t333);
-        const gic_real t365 = t270 * t332 - R(-0.09720579999999995) * t295 + (t358 + t364 + (t276 * R(0.00209039581919997) - R(-1.688965) * t295));
-        const gic_real t366 = t280 * t331 - R(-0.09720579999999995) * t302 + (t365 + (t286 * R(-0.00209039581919997) - R(-1.688965) * t302));
+        const gic_real t365 = t270 * t332 - R(-0.09720579999999998) * t295 + (t358 + t364 + (t276 * R(0.00209039581919997) - R(-1.688965) * t295));
+        const gic_real t366 = t280 * t331 - R(-0.09720579999999998) * t302 + (t365 + (t286 * R(-0.00209039581919997) - R(-1.688965) * t302));
         const gic_real t367 = t366 + (R(-1.653405) * t297 - m[223] * t330) - t187 * t330;
         const gic_real t368 = t367 + (R(-1.653405) * t304 - m[253] * t329) - t156 * t329;
         const gic_real t369 = n[14] + n[37] + n[60] + n[83] + n[106] + n[129] + n[161];
@@ -1946,7 +1930,7 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t152 = m[41] * t150 + m[40] * t151;
         const gic_real t153 = y[17] * t152 + y[16] * (m[38] * t150 + m[37] * t151);
         const gic_real t154 = m[42] + y[15];
-        const gic_real t155 = y[17] * (t149 + y[16] * t152) + (y[16] * t153 + t154 * (t154 * R(0.4468999999999998)));
+        const gic_real t155 = y[17] * (t149 + y[16] * t152) + (y[16] * t153 + t154 * (t154 * R(0.4469)));
         const gic_real t156 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
         const gic_real t157 = R(0.307086) + t156;
         const gic_real t158 = R(1.688965) * y[16];
@@ -1966,7 +1950,7 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t172 = m[71] * t170 + m[70] * t171;
         const gic_real t173 = y[17] * t172 + y[16] * (m[68] * t170 + m[67] * t171);
         const gic_real t174 = m[72] + y[15];
-        const gic_real t175 = y[17] * (t169 + y[16] * t172) + (y[16] * t173 + t174 * (R(0.4468999999999998) * t174));
+        const gic_real t175 = y[17] * (t169 + y[16] * t172) + (y[16] * t173 + t174 * (R(0.4469) * t174));
         const gic_real t176 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t177 = R(-0.307086) + t176;
         const gic_real t178 = m[72] * t176 + (y[15] * t177 - t158);
@@ -2044,7 +2028,7 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t250 = m[101] * t248 + m[100] * t249;
         const gic_real t251 = y[17] * t250 + y[16] * (m[98] * t248 + m[97] * t249);
         const gic_real t252 = m[102] + y[15];
-        const gic_real t253 = y[17] * (t247 + y[16] * t250) + (y[16] * t251 + t252 * (R(0.4468999999999998) * t252));
+        const gic_real t253 = y[17] * (t247 + y[16] * t250) + (y[16] * t251 + t252 * (R(0.4469) * t252));
         const gic_real t254 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
         const gic_real t255 = R(0.307086) + t254;
         const gic_real t256 = R(-1.688965) * y[16];
@@ -2064,7 +2048,7 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t270 = m[131] * t268 + m[130] * t269;
         const gic_real t271 = y[17] * t270 + y[16] * (m[128] * t268 + m[127] * t269);
         const gic_real t272 = m[132] + y[15];
-        const gic_real t273 = y[17] * (t267 + y[16] * t270) + (y[16] * t271 + t272 * (R(0.4468999999999998) * t272));
+        const gic_real t273 = y[17] * (t267 + y[16] * t270) + (y[16] * t271 + t272 * (R(0.4469) * t272));
         const gic_real t274 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
         const gic_real t275 = R(-0.307086) + t274;
         const gic_real t276 = m[132] * t274 + (y[15] * t275 - t256);
@@ -2081,7 +2065,7 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t287 = m[233] * t285 + m[232] * t286;
         const gic_real t288 = y[17] * t287 + y[16] * (m[230] * t285 + m[229] * t286);
         const gic_real t289 = m[234] + y[15];
-        const gic_real t290 = y[17] * (t284 + y[16] * t287) + (y[16] * t288 + t289 * (t289 * R(4.894750499999996)));
+        const gic_real t290 = y[17] * (t284 + y[16] * t287) + (y[16] * t288 + t289 * (R(4.8947505) * t289));
         const gic_real t291 = t59 + m[229] * R(0.08910630000000008);
         const gic_real t292 = m[223] + t291;
         const gic_real t293 = m[239] + m[234] * t291 + (y[15] * t292 - t107);
@@ -2100,7 +2084,7 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t306 = m[263] * t304 + m[262] * t305;
         const gic_real t307 = y[17] * t306 + y[16] * (m[260] * t304 + m[259] * t305);
         const gic_real t308 = m[264] + y[15];
-        const gic_real t309 = y[17] * (t303 + y[16] * t306) + (y[16] * t307 + t308 * (R(4.894750499999996) * t308));
+        const gic_real t309 = y[17] * (t303 + y[16] * t306) + (y[16] * t307 + t308 * (R(4.8947505) * t308));
         const gic_real t310 = t71 + m[259] * R(-0.08910630000000008);
         const gic_real t311 = m[253] + t310;
         const gic_real t312 = m[269] + m[264] * t310 + (y[15] * t311 - t107);
@@ -2344,11 +2328,11 @@ static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gi
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (m[37] + R(0.9999999999999998)));
-        const gic_real t31 = R(1.0) + (m[37] - (m[41] + R(0.9999999999999998)));
+        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
+        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
         const gic_real t32 = m[37] + m[41];
-        const gic_real t33 = R(1.0) + (R(0.9999999999999998) - t32);
-        const gic_real t34 = R(1.0) + (R(0.9999999999999998) + t32);
+        const gic_real t33 = R(1.0) + (R(1.0) - t32);
+        const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
         const gic_real t36 = GIC_MAX(t31, t35);
         const gic_real t37 = t30 - t36;
@@ -2372,11 +2356,11 @@ static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gi
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
         const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
         const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(0.9999999999999998) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(0.9999999999999998) + m[71]));
+        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
+        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
         const gic_real t60 = m[67] + m[71];
-        const gic_real t61 = R(1.0) + (R(0.9999999999999998) - t60);
-        const gic_real t62 = R(1.0) + (R(0.9999999999999998) + t60);
+        const gic_real t61 = R(1.0) + (R(1.0) - t60);
+        const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
         const gic_real t64 = GIC_MAX(t59, t63);
         const gic_real t65 = t58 - t64;
@@ -2477,11 +2461,11 @@ static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gi
         const gic_real t160 = R(-1.688965) * t12;
         const gic_real t161 = R(-1.688965) * t19;
         const gic_real t162 = R(-1.688965) * t23;
-        const gic_real t163 = R(1.0) + (m[101] - (R(0.9999999999999998) + m[97]));
-        const gic_real t164 = R(1.0) + (m[97] - (R(0.9999999999999998) + m[101]));
+        const gic_real t163 = R(1.0) + (m[101] - (R(1.0) + m[97]));
+        const gic_real t164 = R(1.0) + (m[97] - (R(1.0) + m[101]));
         const gic_real t165 = m[97] + m[101];
-        const gic_real t166 = R(1.0) + (R(0.9999999999999998) - t165);
-        const gic_real t167 = R(1.0) + (R(0.9999999999999998) + t165);
+        const gic_real t166 = R(1.0) + (R(1.0) - t165);
+        const gic_real t167 = R(1.0) + (R(1.0) + t165);
         const gic_real t168 = GIC_MAX(t166, t167);
         const gic_real t169 = GIC_MAX(t164, t168);
         const gic_real t170 = t163 - t169;
@@ -2505,11 +2489,11 @@ static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gi
         const gic_real t188 = e[1] * t181 - e[2] * t183 + (e[3] * t176 + e[0] * t180);
         const gic_real t189 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
         const gic_real t190 = R(-0.307086) + (m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056));
-        const gic_real t191 = R(1.0) + (m[131] - (R(0.9999999999999998) + m[127]));
-        const gic_real t192 = R(1.0) + (m[127] - (R(0.9999999999999998) + m[131]));
+        const gic_real t191 = R(1.0) + (m[131] - (R(1.0) + m[127]));
+        const gic_real t192 = R(1.0) + (m[127] - (R(1.0) + m[131]));
         const gic_real t193 = m[127] + m[131];
-        const gic_real t194 = R(1.0) + (R(0.9999999999999998) - t193);
-        const gic_real t195 = R(1.0) + (R(0.9999999999999998) + t193);
+        const gic_real t194 = R(1.0) + (R(1.0) - t193);
+        const gic_real t195 = R(1.0) + (R(1.0) + t193);
         const gic_real t196 = GIC_MAX(t194, t195);
         const gic_real t197 = GIC_MAX(t192, t196);
         const gic_real t198 = t191 - t197;
@@ -2536,11 +2520,11 @@ static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gi
         const gic_real t219 = R(-1.653405) * t12;
         const gic_real t220 = R(-1.653405) * t19;
         const gic_real t221 = R(-1.653405) * t23;
-        const gic_real t222 = R(1.0) + (m[233] - (m[229] + R(0.9999999999999996)));
-        const gic_real t223 = R(1.0) + (m[229] - (m[233] + R(0.9999999999999996)));
+        const gic_real t222 = R(1.0) + (m[233] - (R(1.0) + m[229]));
+        const gic_real t223 = R(1.0) + (m[229] - (R(1.0) + m[233]));
         const gic_real t224 = m[229] + m[233];
-        const gic_real t225 = R(1.0) + (R(0.9999999999999996) - t224);
-        const gic_real t226 = R(1.0) + (R(0.9999999999999996) + t224);
+        const gic_real t225 = R(1.0) + (R(1.0) - t224);
+        const gic_real t226 = R(1.0) + (R(1.0) + t224);
         const gic_real t227 = GIC_MAX(t225, t226);
         const gic_real t228 = GIC_MAX(t223, t227);
         const gic_real t229 = t222 - t228;
@@ -2564,11 +2548,11 @@ static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gi
         const gic_real t247 = e[1] * t240 - e[2] * t242 + (e[3] * t235 + e[0] * t239);
         const gic_real t248 = m[254] + (m[263] * R(0.09182100000000004) + m[262] * R(-0.08910630000000008));
         const gic_real t249 = m[253] + (m[260] * R(0.09182100000000004) + m[259] * R(-0.08910630000000008));
-        const gic_real t250 = R(1.0) + (m[263] - (R(0.9999999999999996) + m[259]));
-        const gic_real t251 = R(1.0) + (m[259] - (R(0.9999999999999996) + m[263]));
+        const gic_real t250 = R(1.0) + (m[263] - (R(1.0) + m[259]));
+        const gic_real t251 = R(1.0) + (m[259] - (R(1.0) + m[263]));
         const gic_real t252 = m[259] + m[263];
-        const gic_real t253 = R(1.0) + (R(0.9999999999999996) - t252);
-        const gic_real t254 = R(1.0) + (R(0.9999999999999996) + t252);
+        const gic_real t253 = R(1.0) + (R(1.0) - t252);
+        const gic_real t254 = R(1.0) + (R(1.0) + t252);
         const gic_real t255 = GIC_MAX(t253, t254);
         const gic_real t256 = GIC_MAX(t251, t255);
         const gic_real t257 = t250 - t256;
@@ -3155,7 +3139,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t20 = y[17] * t16 + y[16] * t19;
         const gic_real t21 = m[38] * t17 + m[37] * t18;
         const gic_real t22 = y[17] * t19 + y[16] * t21;
-        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4468999999999998) * (m[48] + acc[0] + m[54] * acc[6]);
+        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4469) * (m[48] + acc[0] + m[54] * acc[6]);
         const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
         const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
         const gic_real t26 = m[42] * t25;
@@ -3183,7 +3167,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t48 = y[17] * t44 + y[16] * t47;
         const gic_real t49 = m[68] * t45 + m[67] * t46;
         const gic_real t50 = y[17] * t47 + y[16] * t49;
-        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4468999999999998) * (m[78] + acc[0] + m[84] * acc[7]);
+        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4469) * (m[78] + acc[0] + m[84] * acc[7]);
         const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
         const gic_real t54 = m[72] * t53;
@@ -3317,7 +3301,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t182 = y[17] * t178 + y[16] * t181;
         const gic_real t183 = m[98] * t179 + m[97] * t180;
         const gic_real t184 = y[17] * t181 + y[16] * t183;
-        const gic_real t185 = y[16] * t182 - y[17] * t184 + R(0.4468999999999998) * (m[108] + acc[0] + m[114] * acc[8]);
+        const gic_real t185 = y[16] * t182 - y[17] * t184 + R(0.4469) * (m[108] + acc[0] + m[114] * acc[8]);
         const gic_real t186 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
         const gic_real t187 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
         const gic_real t188 = m[102] * t187;
@@ -3345,7 +3329,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t210 = y[17] * t206 + y[16] * t209;
         const gic_real t211 = m[128] * t207 + m[127] * t208;
         const gic_real t212 = y[17] * t209 + y[16] * t211;
-        const gic_real t213 = y[16] * t210 - y[17] * t212 + R(0.4468999999999998) * (m[138] + acc[0] + m[144] * acc[9]);
+        const gic_real t213 = y[16] * t210 - y[17] * t212 + R(0.4469) * (m[138] + acc[0] + m[144] * acc[9]);
         const gic_real t214 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
         const gic_real t215 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
         const gic_real t216 = m[132] * t215;
@@ -3368,7 +3352,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t233 = y[17] * t229 + y[16] * t232;
         const gic_real t234 = m[230] * t230 + m[229] * t231;
         const gic_real t235 = y[17] * t232 + y[16] * t234;
-        const gic_real t236 = y[16] * t233 - y[17] * t235 + R(4.894750499999996) * (m[240] + acc[0] + m[246] * acc[8]);
+        const gic_real t236 = y[16] * t233 - y[17] * t235 + R(4.8947505) * (m[240] + acc[0] + m[246] * acc[8]);
         const gic_real t237 = m[230] * R(0.09182100000000004);
         const gic_real t238 = t237 + m[229] * R(0.08910630000000008);
         const gic_real t239 = m[233] * R(0.09182100000000004);
@@ -3403,7 +3387,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t268 = y[17] * t264 + y[16] * t267;
         const gic_real t269 = m[260] * t265 + m[259] * t266;
         const gic_real t270 = y[17] * t267 + y[16] * t269;
-        const gic_real t271 = y[16] * t268 - y[17] * t270 + R(4.894750499999996) * (m[270] + acc[0] + m[276] * acc[9]);
+        const gic_real t271 = y[16] * t268 - y[17] * t270 + R(4.8947505) * (m[270] + acc[0] + m[276] * acc[9]);
         const gic_real t272 = m[260] * R(0.09182100000000004);
         const gic_real t273 = t272 + m[259] * R(-0.08910630000000008);
         const gic_real t274 = m[263] * R(0.09182100000000004);
@@ -3643,13 +3627,13 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t500 = acc[5] + (y[15] * t459 - y[16] * t4 - acc[1] * R(0.056));
         const gic_real t501 = y[17] * t499 - y[15] * t1 + acc[1] * R(2955.66) + (t460 * R(444.4287600000002) - t500 * R(116.84512));
         const gic_real t502 = m[42] + y[15];
-        const gic_real t503 = R(0.4468999999999998) * t502;
+        const gic_real t503 = R(0.4469) * t502;
         const gic_real t504 = acc[2] - m[42] * y[16];
         const gic_real t505 = acc[1] + m[42] * y[17];
         const gic_real t506 = y[17] * t503 - t502 * t20 + (t19 * t504 + t21 * t505);
         const gic_real t507 = t501 + (acc[1] + (t462 * R(0.4919654879999997) - t11 * R(13.051414655999999))) + (t506 + t25 * t466 - t33 * R(40.476046225));
         const gic_real t508 = m[72] + y[15];
-        const gic_real t509 = R(0.4468999999999998) * t508;
+        const gic_real t509 = R(0.4469) * t508;
         const gic_real t510 = acc[2] - m[72] * y[16];
         const gic_real t511 = acc[1] + m[72] * y[17];
         const gic_real t512 = y[17] * t509 - t508 * t48 + (t47 * t510 + t49 * t511);
@@ -3661,25 +3645,25 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t518 = t125 * t517 - t134 * t135 + (t129 * t140 + (t136 * t142 + t137 * t145));
         const gic_real t519 = t518 + (t155 * t477 - t152 * t168);
         const gic_real t520 = m[102] + y[15];
-        const gic_real t521 = R(0.4468999999999998) * t520;
+        const gic_real t521 = R(0.4469) * t520;
         const gic_real t522 = acc[2] - m[102] * y[16];
         const gic_real t523 = acc[1] + m[102] * y[17];
         const gic_real t524 = y[17] * t521 - t520 * t182 + (t181 * t522 + t183 * t523);
         const gic_real t525 = t516 + (t519 + (m[188] * t477 - R(149.724089775) * t167)) + (t524 + t187 * t481 - t195 * R(-40.476046225));
         const gic_real t526 = m[132] + y[15];
-        const gic_real t527 = R(0.4468999999999998) * t526;
+        const gic_real t527 = R(0.4469) * t526;
         const gic_real t528 = acc[2] - m[132] * y[16];
         const gic_real t529 = acc[1] + m[132] * y[17];
         const gic_real t530 = y[17] * t527 - t526 * t210 + (t209 * t528 + t211 * t529);
         const gic_real t531 = m[234] + y[15];
-        const gic_real t532 = R(4.894750499999996) * t531;
+        const gic_real t532 = R(4.8947505) * t531;
         const gic_real t533 = acc[2] - m[234] * y[16];
         const gic_real t534 = acc[1] + m[234] * y[17];
         const gic_real t535 = y[17] * t532 - t531 * t233 + (t232 * t533 + t234 * t534);
         const gic_real t536 = t535 + t240 * t486 + (m[224] * t486 - t251 * R(-149.724089775));
         const gic_real t537 = t525 + (t530 + t215 * t484 - R(-40.476046225) * t221) + t536;
         const gic_real t538 = m[264] + y[15];
-        const gic_real t539 = R(4.894750499999996) * t538;
+        const gic_real t539 = R(4.8947505) * t538;
         const gic_real t540 = acc[2] - m[264] * y[16];
         const gic_real t541 = acc[1] + m[264] * y[17];
         const gic_real t542 = y[17] * t539 - t538 * t268 + (t267 * t540 + t269 * t541);
@@ -3688,11 +3672,11 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t545 = t409 * t492 - t405 * t425;
         const gic_real t546 = t448 * R(-0.002199670439359969) - R(1.792978) * t450 + (R(-0.002199670439359969) * t436 - R(1.792978) * t438);
         const gic_real t547 = t546 + (t376 * R(0.002199670439359969) - R(-1.792978) * t378) + (R(0.002199670439359969) * t364 - R(-1.792978) * t366);
-        const gic_real t548 = R(0.09720579999999995) * t450 - t440 * t493 + (t547 + R(1.688965) * t450);
-        const gic_real t549 = R(0.09720579999999995) * t438 - t428 * t494 + (t548 + R(1.688965) * t438);
+        const gic_real t548 = R(0.09720579999999998) * t450 - t440 * t493 + (t547 + R(1.688965) * t450);
+        const gic_real t549 = R(0.09720579999999998) * t438 - t428 * t494 + (t548 + R(1.688965) * t438);
         const gic_real t550 = t545 + (t549 + (m[152] * t492 - R(1.653405) * t425)) + (m[188] * t491 - R(1.653405) * t401);
-        const gic_real t551 = R(-0.09720579999999995) * t378 - t368 * t495 + (t544 + t550 + R(-1.688965) * t378);
-        const gic_real t552 = R(-0.09720579999999995) * t366 - t356 * t496 + (t551 + R(-1.688965) * t366);
+        const gic_real t551 = R(-0.09720579999999998) * t378 - t368 * t495 + (t544 + t550 + R(-1.688965) * t378);
+        const gic_real t552 = R(-0.09720579999999998) * t366 - t356 * t496 + (t551 + R(-1.688965) * t366);
         const gic_real t553 = t340 * t490 + (t552 + (m[224] * t490 - R(-1.653405) * t353));
         const gic_real t554 = t308 * t489 + (t553 + (m[254] * t489 - R(-1.653405) * t334));
         const gic_real t555 = t15 * R(9.072);
@@ -3723,11 +3707,11 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t580 = t405 * t426 - t404 * t492;
         const gic_real t581 = R(1.792978) * t449 - t448 * R(-0.003388550642239951) + (R(1.792978) * t437 - t436 * R(0.003388550642239951));
         const gic_real t582 = t581 + (R(-1.792978) * t377 - R(0.003388550642239951) * t376) + (R(-1.792978) * t365 - R(-0.003388550642239951) * t364);
-        const gic_real t583 = t441 * t493 - R(0.09720579999999995) * t449 + (t582 + (t448 * R(-0.00209039581919997) - R(1.688965) * t449));
-        const gic_real t584 = t429 * t494 - R(0.09720579999999995) * t437 + (t583 + (t436 * R(0.00209039581919997) - R(1.688965) * t437));
+        const gic_real t583 = t441 * t493 - R(0.09720579999999998) * t449 + (t582 + (t448 * R(-0.00209039581919997) - R(1.688965) * t449));
+        const gic_real t584 = t429 * t494 - R(0.09720579999999998) * t437 + (t583 + (t436 * R(0.00209039581919997) - R(1.688965) * t437));
         const gic_real t585 = t580 + (t584 + (R(1.653405) * t426 - m[151] * t492)) + (R(1.653405) * t402 - m[187] * t491);
-        const gic_real t586 = t369 * t495 - R(-0.09720579999999995) * t377 + (t579 + t585 + (t376 * R(0.00209039581919997) - R(-1.688965) * t377));
-        const gic_real t587 = t357 * t496 - R(-0.09720579999999995) * t365 + (t586 + (t364 * R(-0.00209039581919997) - R(-1.688965) * t365));
+        const gic_real t586 = t369 * t495 - R(-0.09720579999999998) * t377 + (t579 + t585 + (t376 * R(0.00209039581919997) - R(-1.688965) * t377));
+        const gic_real t587 = t357 * t496 - R(-0.09720579999999998) * t365 + (t586 + (t364 * R(-0.00209039581919997) - R(-1.688965) * t365));
         const gic_real t588 = t587 + (R(-1.653405) * t354 - m[223] * t490) - t337 * t490;
         const gic_real t589 = t588 + (R(-1.653405) * t335 - m[253] * t489) - t294 * t489;
         const gic_real t590 = t500 * R(2086.52) + t12 + t34 + t60 + t112 + t168;
@@ -3858,7 +3842,7 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t74 = m[41] * t72 + m[40] * t73;
         const gic_real t75 = rate[16] + m[42] * y[17];
         const gic_real t76 = t74 * t70 + (m[38] * t72 + m[37] * t73) * t75;
-        const gic_real t77 = (m[42] + y[15]) * (R(0.4468999999999998) * (m[48] + rate[15] + m[54] * rate[18]));
+        const gic_real t77 = (m[42] + y[15]) * (R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]));
         const gic_real t78 = y[17] * (t71 + t74 * t75) + (y[16] * t76 + t77);
         const gic_real t79 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t80 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
@@ -3884,7 +3868,7 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t100 = m[71] * t98 + m[70] * t99;
         const gic_real t101 = rate[16] + m[72] * y[17];
         const gic_real t102 = t100 * t96 + (m[68] * t98 + m[67] * t99) * t101;
-        const gic_real t103 = (m[72] + y[15]) * (R(0.4468999999999998) * (m[78] + rate[15] + m[84] * rate[19]));
+        const gic_real t103 = (m[72] + y[15]) * (R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]));
         const gic_real t104 = y[17] * (t97 + t100 * t101) + (y[16] * t102 + t103);
         const gic_real t105 = t37 + t38 + (t47 + t48) + (t69 + t78) + (t95 + t104);
         const gic_real t106 = m[155] * R(0.09182100000000004);
@@ -4033,7 +4017,7 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t249 = m[101] * t247 + m[100] * t248;
         const gic_real t250 = rate[16] + m[102] * y[17];
         const gic_real t251 = t249 * t245 + (m[98] * t247 + m[97] * t248) * t250;
-        const gic_real t252 = (m[102] + y[15]) * (R(0.4468999999999998) * (m[108] + rate[15] + m[114] * rate[20]));
+        const gic_real t252 = (m[102] + y[15]) * (R(0.4469) * (m[108] + rate[15] + m[114] * rate[20]));
         const gic_real t253 = y[17] * (t246 + t249 * t250) + (y[16] * t251 + t252);
         const gic_real t254 = t105 + (t142 + t164) + (t201 + t223) + (t244 + t253);
         const gic_real t255 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
@@ -4060,7 +4044,7 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t276 = m[131] * t274 + m[130] * t275;
         const gic_real t277 = rate[16] + m[132] * y[17];
         const gic_real t278 = t276 * t272 + (m[128] * t274 + m[127] * t275) * t277;
-        const gic_real t279 = (m[132] + y[15]) * (R(0.4468999999999998) * (m[138] + rate[15] + m[144] * rate[21]));
+        const gic_real t279 = (m[132] + y[15]) * (R(0.4469) * (m[138] + rate[15] + m[144] * rate[21]));
         const gic_real t280 = y[17] * (t273 + t276 * t277) + (y[16] * t278 + t279);
         const gic_real t281 = m[230] * R(0.09182100000000004);
         const gic_real t282 = t281 + m[229] * R(0.08910630000000008);
@@ -4096,7 +4080,7 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t312 = m[233] * t310 + m[232] * t311;
         const gic_real t313 = rate[16] + m[234] * y[17];
         const gic_real t314 = t312 * t308 + (m[230] * t310 + m[229] * t311) * t313;
-        const gic_real t315 = (m[234] + y[15]) * (R(4.894750499999996) * (m[240] + rate[15] + m[246] * rate[20]));
+        const gic_real t315 = (m[234] + y[15]) * (R(4.8947505) * (m[240] + rate[15] + m[246] * rate[20]));
         const gic_real t316 = y[17] * (t309 + t312 * t313) + (y[16] * t314 + t315);
         const gic_real t317 = m[260] * R(0.09182100000000004);
         const gic_real t318 = t317 + m[259] * R(-0.08910630000000008);
@@ -4128,7 +4112,7 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t344 = m[263] * t342 + m[262] * t343;
         const gic_real t345 = rate[16] + m[264] * y[17];
         const gic_real t346 = t344 * t340 + (m[260] * t342 + m[259] * t343) * t345;
-        const gic_real t347 = (m[264] + y[15]) * (R(4.894750499999996) * (m[270] + rate[15] + m[276] * rate[21]));
+        const gic_real t347 = (m[264] + y[15]) * (R(4.8947505) * (m[270] + rate[15] + m[276] * rate[21]));
         const gic_real t348 = y[17] * (t341 + t344 * t345) + (y[16] * t346 + t347);
         const gic_real t349 = t254 + (t271 + t280) + (t307 + t316) + (t339 + t348);
         const gic_real t350 = gic_table_value(&table[2], GIC_MAX(R(0.15) - x[0], R(0.0)));

@@ -70,15 +70,15 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                103       166       3      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 87       128       2      1         0
  *   forces and equations of motion                           591       507       9      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         1       0      0         0
  *   wheel 'tire_f_l' (4 times)                               194       313      23     12        37
  *   powertrain                                                47        68       6      0         4
  *   a fast step: all of these                                823      1321      98     48       152
- *   all together                                            2722      3645     127     58       152
+ *   all together                                            2686      3565     125     58       152
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #include "hmmwv_vehicle.h"
@@ -236,19 +236,19 @@ static const gic_real hmmwv_vehicle_k_lca_f_l[4][27] = {
         R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.038649583990999964),
         R(-0.056072097532999944), R(-0.038649583990999964), R(0.056072097532999944), R(50.90547521989429),
         R(10.049655409199135), R(-10.049655409199135), R(0.19748499999999997), R(0.307086),
-        R(0.509778), R(-17.834182133305664), R(51.57660077184115), R(209.3566321652692),
+        R(0.509778), R(-17.834182133305656), R(51.57660077184115), R(209.3566321652692),
         R(-209.35663216526913), R(51.57660077184116), R(-51.57660077184115), R(209.35663216526913),
         R(3.0379110359107786e-06), R(0.24689200985615367), R(1.688965), R(40.476046225),
-        R(0.01121887479261392), R(0.2403881036540444), R(7.892375927523102),
+        R(0.01121887479261392), R(0.2403881036540444), R(7.8923759275231005),
     },
     { /* lca_f_r */
         R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.038649583990999964),
         R(-0.056072097532999944), R(0.038649583990999964), R(-0.056072097532999944), R(-50.90547521989429),
         R(10.049655409199135), R(-10.049655409199135), R(0.19748499999999997), R(-0.307086),
-        R(-0.509778), R(17.834182133305664), R(-51.57660077184115), R(209.3566321652692),
+        R(-0.509778), R(17.834182133305656), R(-51.57660077184115), R(209.3566321652692),
         R(-209.35663216526913), R(-51.57660077184116), R(51.57660077184115), R(209.35663216526913),
         R(3.0379110359107786e-06), R(-0.24689200985615367), R(1.688965), R(40.476046225),
-        R(0.01121887479261392), R(-0.2403881036540444), R(7.892375927523102),
+        R(0.01121887479261392), R(-0.2403881036540444), R(7.8923759275231005),
     },
     { /* lca_r_l */
         R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(0.033962503042599984),
@@ -281,7 +281,7 @@ static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.010110666875399986);
+        const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = k[1] - t1 * t1;
         if (!(t2 > R(0.0)))
             return GIC_ERROR_NEWTON;
@@ -437,11 +437,11 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(6.938893903907228e-18) * m1[8] + k[0] * m1[7];
-        const gic_real t2 = k[1] + t1;
+        const gic_real t1 = k[0] * m1[7];
+        const gic_real t2 = t1 + k[1];
         const gic_real t3 = k[2] - t2;
         const gic_real t4 = R(0.9665541626242249) * t3 - k[3];
-        const gic_real t5 = R(6.938893903907228e-18) * m1[11] + k[0] * m1[10];
+        const gic_real t5 = k[0] * m1[10];
         const gic_real t6 = R(0.23411769999999993) - t5;
         const gic_real t7 = R(-0.012812720436325503) - R(0.9665541626242249) * t6;
         const gic_real t8 = k[4] * t6 - R(0.21526024724178433) * t3;
@@ -506,7 +506,7 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t55 = R(1.0) / t51;
         const gic_real t56 = (k[4] * t23 - R(0.9665541626242249) * t22 - t47 * t53) * t55;
         const gic_real t57 = R(0.9665541626242249) * t19 - R(0.21526024724178433) * t23 - t52 * t53 - t54 * t56;
-        if (!(GIC_FABS(t57) > R(3.535665395436722e-07)))
+        if (!(GIC_FABS(t57) > R(3.5356653954367223e-07)))
             return GIC_ERROR_SINGULAR;
         if (!(t57 * (t41 * t51) * R(-669.5366201272495) > R(0.001)))
             return GIC_ERROR_SINGULAR;
@@ -731,40 +731,37 @@ static GIC_COLD gic_real hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RE
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = (motion[1] - (k[1] + (R(6.938893903907228e-18) * m1[8] + k[0] * m1[7]))) * R(2.9280756565520325);
-        const gic_real t2 = GIC_FABS((motion[2] - (R(6.938893903907228e-18) * m1[11] + k[0] * m1[10])) * R(2.9280756565520325));
-        const gic_real t3 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[12] * motion[10] + R(-0.14025880000000002) * motion[9]));
-        const gic_real t4 = t3 - R(0.054228999999999916);
-        const gic_real t5 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[12] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t6 = t5 - (k[6] + m0[1]);
-        const gic_real t7 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[12] * motion[4] + R(-0.14025880000000002) * motion[3]));
-        const gic_real t8 = t7 - R(1.438648);
-        const gic_real t9 = t4 * t4 + (t6 * t6 + t8 * t8) - R(0.14941089924212003);
-        const gic_real t10 = GIC_MAX(GIC_MAX(GIC_MAX(R(0.0), GIC_FABS(t1)), t2), GIC_FABS(t9 * R(3.9285226675160794)));
-        const gic_real t11 = motion[2] + (R(0.3336036) * motion[11] + (k[13] * motion[10] + R(-0.017475200000000024) * motion[9]));
-        const gic_real t12 = t11 - R(0.23411769999999993);
-        const gic_real t13 = motion[1] + (R(0.3336036) * motion[8] + (k[13] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t14 = t13 - k[2];
-        const gic_real t15 = R(1.653405) + (R(0.3336036) * motion[5] + (k[13] * motion[4] + R(-0.017475200000000024) * motion[3]));
-        const gic_real t16 = t15 - R(1.593883);
-        const gic_real t17 = t12 * t12 + (t14 * t14 + t16 * t16) - R(0.07115456010869);
-        const gic_real t18 = R(0.21526024724178433) * t12 + (k[4] * t14 + R(0.9665541626242249) * t16) - R(4.3116545195287515e-08);
-        const gic_real t19 = GIC_MAX(GIC_MAX(t10, GIC_FABS(t17 * R(5.571891251504318))), GIC_FABS(t18 * R(3.029396354366956)));
-        worst = t19;
+        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m1[7] + k[1])) * R(2.9280756565520325)));
+        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[12] * motion[10] + R(-0.14025880000000002) * motion[9]));
+        const gic_real t3 = t2 - R(0.054228999999999916);
+        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[12] * motion[7] + R(-0.14025880000000002) * motion[6]));
+        const gic_real t5 = t4 - (k[6] + m0[1]);
+        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[12] * motion[4] + R(-0.14025880000000002) * motion[3]));
+        const gic_real t7 = t6 - R(1.438648);
+        const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
+        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m1[10]) * R(2.9280756565520325))), GIC_FABS(t8 * R(3.9285226675160794)));
+        const gic_real t10 = motion[2] + (R(0.3336036) * motion[11] + (k[13] * motion[10] + R(-0.017475200000000024) * motion[9]));
+        const gic_real t11 = t10 - R(0.23411769999999993);
+        const gic_real t12 = motion[1] + (R(0.3336036) * motion[8] + (k[13] * motion[7] + R(-0.017475200000000024) * motion[6]));
+        const gic_real t13 = t12 - k[2];
+        const gic_real t14 = R(1.653405) + (R(0.3336036) * motion[5] + (k[13] * motion[4] + R(-0.017475200000000024) * motion[3]));
+        const gic_real t15 = t14 - R(1.593883);
+        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
+        const gic_real t17 = R(0.21526024724178433) * t11 + (k[4] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
+        const gic_real t18 = GIC_MAX(GIC_MAX(t9, GIC_FABS(t16 * R(5.571891251504318))), GIC_FABS(t17 * R(3.029396354366956)));
+        worst = t18;
     }
     return worst;
 }
 
-static const gic_real hmmwv_vehicle_k_wheel_r_l[2][9] = {
+static const gic_real hmmwv_vehicle_k_wheel_r_l[2][8] = {
     { /* wheel_r_l */
-        R(-0.23920559337529682), R(0.49375935710120966), R(0.307086), R(0.462153),
-        R(0.23920559337529687), R(-0.07099299999999997), R(-1.0), R(11.914378069795484),
-        R(0.08910630000000008),
+        R(0.49375935710120966), R(0.307086), R(0.462153), R(-0.07099299999999997),
+        R(-1.0), R(0.07099299999999997), R(-11.914378069795443), R(0.08910630000000008),
     },
     { /* wheel_r_r */
-        R(0.23920559337529682), R(-0.49375935710120966), R(-0.307086), R(-0.462153),
-        R(-0.23920559337529687), R(0.07099299999999997), R(1.0), R(-11.914378069795484),
-        R(-0.08910630000000008),
+        R(-0.49375935710120966), R(-0.307086), R(-0.462153), R(0.07099299999999997),
+        R(1.0), R(-0.07099299999999997), R(11.914378069795443), R(-0.08910630000000008),
     },
 };
 
@@ -779,158 +776,145 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(0.9709689408513391) * m0[11] + k[0] * m0[10];
-        const gic_real t2 = R(6.938893903907228e-18) * m0[11] + k[1] * m0[10];
-        const gic_real t3 = R(0.22567900000000002) - t2;
-        const gic_real t4 = R(0.9709689408513391) * m0[8] + k[0] * m0[7];
-        const gic_real t5 = R(6.938893903907228e-18) * m0[8] + k[1] * m0[7];
-        const gic_real t6 = k[2] + t5;
-        const gic_real t7 = k[3] - t6;
-        const gic_real t8 = t1 * t3 + t4 * t7;
-        const gic_real t9 = k[4] * m0[11] + R(0.9709689408513393) * m0[10];
-        const gic_real t10 = k[4] * m0[8] + R(0.9709689408513393) * m0[7];
-        const gic_real t11 = t9 * t3 + t10 * t7;
-        const gic_real t12 = k[5] * t8 - R(0.3340099999999999) * t11;
-        const gic_real t13 = R(0.3340099999999999) * t8 + k[5] * t11;
-        const gic_real t14 = t12 * t12 + t13 * t13;
-        const gic_real t15 = R(0.5) * (t3 * t3 + (t7 * t7 + R(0.031522582115999995)) + R(0.020790651966999946));
-        const gic_real t16 = t14 - t15 * t15;
-        if (!(t16 > R(0.0)))
+        const gic_real t1 = k[0] * m0[7];
+        const gic_real t2 = t1 + k[1];
+        const gic_real t3 = t2 - k[2];
+        const gic_real t4 = k[0] * m0[10];
+        const gic_real t5 = R(0.22567900000000002) - t4;
+        const gic_real t6 = k[3] * t3 - R(0.3340099999999999) * t5;
+        const gic_real t7 = R(0.3340099999999999) * t3 + k[3] * t5;
+        const gic_real t8 = t6 * t6 + t7 * t7;
+        const gic_real t9 = k[2] - t2;
+        const gic_real t10 = R(0.5) * (t5 * t5 + (t9 * t9 + R(0.031522582115999995)) + R(0.020790651966999946));
+        const gic_real t11 = t8 - t10 * t10;
+        if (!(t11 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t16 - t14 * R(0.0001) > R(0.0)))
+        if (!(t11 - t8 * R(0.0001) > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t17 = R(1.0) / t14;
-        const gic_real t18 = GIC_SQRT(t16) * k[6];
-        const gic_real t19 = t17 * (t15 * t13 - t12 * t18);
-        const gic_real t20 = t17 * (t13 * t18 + t15 * t12);
-        const gic_real t21 = t19 * (k[5] * t10 + R(0.3340099999999999) * t4) + t20 * (k[5] * t4 + t10 * R(-0.3340099999999999));
-        const gic_real t22 = t19 * (k[5] * t9 + R(0.3340099999999999) * t1) + t20 * (k[5] * t1 + t9 * R(-0.3340099999999999));
-        const gic_real t23 = t2 + t22 - R(0.22567900000000002);
-        const gic_real t24 = t6 + t21 - k[3];
-        const gic_real t25 = t21 * t23 - t22 * t24;
-        if (!(GIC_FABS(t25) > R(8.609794593596222e-08)))
+        const gic_real t12 = R(1.0) / t8;
+        const gic_real t13 = GIC_SQRT(t11) * k[4];
+        const gic_real t14 = t12 * (t10 * t7 - t6 * t13);
+        const gic_real t15 = t12 * (t7 * t13 + t10 * t6);
+        const gic_real t16 = R(-0.3340099999999999) * t14 + k[5] * t15;
+        const gic_real t17 = k[3] * t14 + R(-0.3340099999999999) * t15;
+        const gic_real t18 = t4 + t17 - R(0.22567900000000002);
+        const gic_real t19 = t2 + t16 - k[2];
+        const gic_real t20 = t16 * t18 - t17 * t19;
+        if (!(GIC_FABS(t20) > R(8.609794593596228e-08)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t26 = t10 * R(0.9999999999999996);
-        if (!(GIC_FABS(t26) > R(9.999999999999993e-07)))
+        if (!(t20 * k[6] > R(0.001)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t27 = t9 * R(0.9999999999999996) * (t4 * R(0.9999999999999996) * (R(1.0) / t26)) - t1 * R(0.9999999999999996);
-        if (!(GIC_FABS(t27) > R(1.0554930994335743e-06)))
-            return GIC_ERROR_SINGULAR;
-        if (!(t27 * (t26 * t25) * k[7] > R(0.001)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t28 = t10 * t19 + t4 * t20;
-        const gic_real t29 = t4 * t19 - t10 * t20;
-        const gic_real t30 = t9 * t19 + t1 * t20;
-        const gic_real t31 = t1 * t19 - t9 * t20;
-        const gic_real t32 = R(1.0) / t25;
-        const gic_real t33 = m0[24] * t2;
-        const gic_real t34 = m0[24] * t5;
-        const gic_real t35 = t32 * (t24 * t33 - t23 * t34);
-        const gic_real t36 = rate[0] * t35;
-        const gic_real t37 = rate[0] * t33;
-        const gic_real t38 = rate[0] * t34;
-        const gic_real t39 = t22 * t36;
-        const gic_real t40 = t21 * t36;
-        const gic_real t41 = t38 + t40;
-        const gic_real t42 = t37 + t39;
-        const gic_real t43 = t23 * (t36 * t39) + t24 * (t36 * t40) - (t41 * t41 + t42 * t42);
-        const gic_real t44 = m0[12] * (m0[12] * t5) + m0[18] * t2;
-        const gic_real t45 = m0[18] * t5 - m0[12] * (m0[12] * t2);
-        const gic_real t46 = t32 * (t43 + t44 * t24 - t45 * t23);
-        const gic_real t47 = t29 * R(0.09182099999999999) + t28 * k[8];
-        const gic_real t48 = t6 + t47;
-        const gic_real t49 = R(90.555) * t48;
-        const gic_real t50 = t31 * R(0.09182099999999999) + t30 * k[8];
-        const gic_real t51 = t2 + t50;
-        const gic_real t52 = R(90.555) * t51;
-        const gic_real t53 = t48 * t49;
-        const gic_real t54 = t51 * t52;
-        const gic_real t55 = t28 * R(-4.5794204999999994);
-        const gic_real t56 = R(4.7728205) + t28 * t55;
-        const gic_real t57 = R(4.7728205) + t30 * (t30 * R(-4.5794204999999994));
-        const gic_real t58 = t30 * t55;
-        const gic_real t59 = t36 * t47;
-        const gic_real t60 = t38 + t59;
-        const gic_real t61 = t60 + (t60 + (turn[0] * t48 - R(-1.653405) * turn[1]));
-        const gic_real t62 = t36 * t50;
-        const gic_real t63 = t37 + t62;
-        const gic_real t64 = R(-1.653405) * turn[2] - turn[0] * t51 - t63 - t63;
-        const gic_real t65 = R(90.555) * (turn[1] * t61 - turn[2] * t64);
-        const gic_real t66 = turn[1] * t51 - turn[2] * t48;
-        const gic_real t67 = turn[2] * t66 - turn[0] * t61 - t36 * t59 - t46 * t50;
-        const gic_real t68 = t67 - t44;
-        const gic_real t69 = R(90.555) * t68;
-        const gic_real t70 = turn[0] * t64 - turn[1] * t66 - t36 * t62 + t46 * t47;
-        const gic_real t71 = t45 + t70;
-        const gic_real t72 = R(90.555) * t71;
-        const gic_real t73 = turn[2] * t57 + turn[1] * t58;
-        const gic_real t74 = turn[2] * t58 + turn[1] * t56;
-        const gic_real t75 = t46 * R(4.8947505) + (turn[1] * t73 - turn[2] * t74);
-        const gic_real t76 = t36 * turn[2];
-        const gic_real t77 = t36 * turn[1];
-        const gic_real t78 = t36 + turn[0];
-        const gic_real t79 = R(4.8947505) * t78;
-        const gic_real t80 = t56 * t76 - t58 * t77 + (turn[2] * t79 - t78 * t73);
-        const gic_real t81 = t58 * t76 - t57 * t77 + (t78 * t74 - turn[1] * t79);
-        const gic_real t82 = t33 + t35 * t50;
-        const gic_real t83 = R(90.555) * t82;
-        const gic_real t84 = t34 + t35 * t47;
-        const gic_real t85 = R(90.555) * t84;
-        const gic_real t86 = t35 * R(4.8947505);
-        const gic_real t87 = -t37;
-        const gic_real t88 = -t44;
-        const gic_real t89 = -t33;
-        const gic_real t90 = R(4.8947505) + (t53 + t54);
-        const gic_real t91 = t56 + (R(247.5545586544339) + t54);
-        const gic_real t92 = t57 + (R(247.5545586544339) + t53);
-        const gic_real t93 = -(t48 * R(-149.724089775));
-        const gic_real t94 = -(t51 * R(-149.724089775));
-        const gic_real t95 = t58 - t51 * t49;
-        const gic_real t96 = t75 + (t48 * t72 - t51 * t69);
-        const gic_real t97 = t80 + (t51 * t65 - R(-149.724089775) * t71);
-        const gic_real t98 = t81 + (R(-149.724089775) * t68 - t48 * t65);
-        const gic_real t99 = -t83;
-        const gic_real t100 = t86 + (t51 * t83 + t48 * t85);
-        const gic_real t101 = -(R(-149.724089775) * t84);
-        const gic_real t102 = -(R(-149.724089775) * t82);
-        const gic_real t103 = t35 * t75 + (t72 * t84 - t69 * t82);
-        const gic_real t104 = t35 * t86 + (t84 * t85 + t82 * t83);
-        motion[1] = t6;
-        motion[2] = t2;
-        motion[7] = t28;
-        motion[8] = t29;
-        motion[10] = t30;
-        motion[11] = t31;
-        motion[12] = t36;
-        motion[16] = t87;
-        motion[17] = t38;
-        motion[18] = t46;
-        motion[22] = t88;
-        motion[23] = t45;
-        motion[24] = t35;
-        motion[28] = t89;
-        motion[29] = t34;
-        inertia[1] = t49;
-        inertia[2] = t52;
-        inertia[3] = t90;
-        inertia[4] = t91;
-        inertia[5] = t92;
-        inertia[6] = t93;
-        inertia[7] = t94;
-        inertia[8] = t95;
-        inertia[9] = t65;
-        inertia[10] = t69;
-        inertia[11] = t72;
-        inertia[12] = t96;
-        inertia[13] = t97;
-        inertia[14] = t98;
-        inertia[16] = t99;
-        inertia[17] = t85;
-        inertia[18] = t100;
-        inertia[19] = t101;
-        inertia[20] = t102;
-        inertia[21] = t103;
-        inertia[22] = t104;
+        const gic_real t21 = -t15;
+        const gic_real t22 = R(1.0) / t20;
+        const gic_real t23 = m0[24] * t4;
+        const gic_real t24 = m0[24] * t1;
+        const gic_real t25 = t22 * (t19 * t23 - t18 * t24);
+        const gic_real t26 = rate[0] * t25;
+        const gic_real t27 = rate[0] * t23;
+        const gic_real t28 = rate[0] * t24;
+        const gic_real t29 = t17 * t26;
+        const gic_real t30 = t16 * t26;
+        const gic_real t31 = t28 + t30;
+        const gic_real t32 = t27 + t29;
+        const gic_real t33 = t18 * (t26 * t29) + t19 * (t26 * t30) - (t31 * t31 + t32 * t32);
+        const gic_real t34 = m0[12] * (m0[12] * t1) + m0[18] * t4;
+        const gic_real t35 = m0[18] * t1 - m0[12] * (m0[12] * t4);
+        const gic_real t36 = t22 * (t33 + t34 * t19 - t35 * t18);
+        const gic_real t37 = t14 * R(0.09182099999999999) + t15 * k[7];
+        const gic_real t38 = t2 - t37;
+        const gic_real t39 = R(90.555) * t38;
+        const gic_real t40 = t14 * k[7] - t15 * R(0.09182099999999999);
+        const gic_real t41 = t4 + t40;
+        const gic_real t42 = R(90.555) * t41;
+        const gic_real t43 = t38 * t39;
+        const gic_real t44 = t41 * t42;
+        const gic_real t45 = t15 * R(-4.5794204999999994);
+        const gic_real t46 = R(4.7728205) + t15 * t45;
+        const gic_real t47 = R(4.7728205) + t14 * (t14 * R(-4.5794204999999994));
+        const gic_real t48 = t14 * t45;
+        const gic_real t49 = t26 * t37;
+        const gic_real t50 = t28 - t49;
+        const gic_real t51 = t50 + (t50 + (turn[0] * t38 - R(-1.653405) * turn[1]));
+        const gic_real t52 = t26 * t40;
+        const gic_real t53 = t27 + t52;
+        const gic_real t54 = R(-1.653405) * turn[2] - turn[0] * t41 - t53 - t53;
+        const gic_real t55 = R(90.555) * (turn[1] * t51 - turn[2] * t54);
+        const gic_real t56 = turn[1] * t41 - turn[2] * t38;
+        const gic_real t57 = turn[2] * t56 - turn[0] * t51 + t26 * t49 - t36 * t40;
+        const gic_real t58 = t57 - t34;
+        const gic_real t59 = R(90.555) * t58;
+        const gic_real t60 = turn[0] * t54 - turn[1] * t56 - t26 * t52 - t36 * t37;
+        const gic_real t61 = t35 + t60;
+        const gic_real t62 = R(90.555) * t61;
+        const gic_real t63 = turn[2] * t47 - turn[1] * t48;
+        const gic_real t64 = turn[1] * t46 - turn[2] * t48;
+        const gic_real t65 = t36 * R(4.8947505) + (turn[1] * t63 - turn[2] * t64);
+        const gic_real t66 = t26 * turn[1];
+        const gic_real t67 = t26 * turn[2];
+        const gic_real t68 = t26 + turn[0];
+        const gic_real t69 = R(4.8947505) * t68;
+        const gic_real t70 = t48 * t66 + t46 * t67 + (turn[2] * t69 - t68 * t63);
+        const gic_real t71 = t68 * t64 - turn[1] * t69 - (t47 * t66 + t48 * t67);
+        const gic_real t72 = t23 + t25 * t40;
+        const gic_real t73 = R(90.555) * t72;
+        const gic_real t74 = t24 - t25 * t37;
+        const gic_real t75 = R(90.555) * t74;
+        const gic_real t76 = t25 * R(4.8947505);
+        const gic_real t77 = -t14;
+        const gic_real t78 = -t27;
+        const gic_real t79 = -t34;
+        const gic_real t80 = -t23;
+        const gic_real t81 = R(4.8947505) + (t43 + t44);
+        const gic_real t82 = t46 + (R(247.5545586544339) + t44);
+        const gic_real t83 = t47 + (R(247.5545586544339) + t43);
+        const gic_real t84 = -(t38 * R(-149.724089775));
+        const gic_real t85 = -(t41 * R(-149.724089775));
+        const gic_real t86 = -(t48 + t41 * t39);
+        const gic_real t87 = t65 + (t38 * t62 - t41 * t59);
+        const gic_real t88 = t70 + (t41 * t55 - R(-149.724089775) * t61);
+        const gic_real t89 = t71 + (R(-149.724089775) * t58 - t38 * t55);
+        const gic_real t90 = -t73;
+        const gic_real t91 = t76 + (t41 * t73 + t38 * t75);
+        const gic_real t92 = -(R(-149.724089775) * t74);
+        const gic_real t93 = -(R(-149.724089775) * t72);
+        const gic_real t94 = t25 * t65 + (t62 * t74 - t59 * t72);
+        const gic_real t95 = t25 * t76 + (t74 * t75 + t72 * t73);
+        motion[1] = t2;
+        motion[2] = t4;
+        motion[7] = t21;
+        motion[8] = t77;
+        motion[10] = t14;
+        motion[11] = t21;
+        motion[12] = t26;
+        motion[16] = t78;
+        motion[17] = t28;
+        motion[18] = t36;
+        motion[22] = t79;
+        motion[23] = t35;
+        motion[24] = t25;
+        motion[28] = t80;
+        motion[29] = t24;
+        inertia[1] = t39;
+        inertia[2] = t42;
+        inertia[3] = t81;
+        inertia[4] = t82;
+        inertia[5] = t83;
+        inertia[6] = t84;
+        inertia[7] = t85;
+        inertia[8] = t86;
+        inertia[9] = t55;
+        inertia[10] = t59;
+        inertia[11] = t62;
+        inertia[12] = t87;
+        inertia[13] = t88;
+        inertia[14] = t89;
+        inertia[16] = t90;
+        inertia[17] = t75;
+        inertia[18] = t91;
+        inertia[19] = t92;
+        inertia[20] = t93;
+        inertia[21] = t94;
+        inertia[22] = t95;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -944,12 +928,12 @@ static GIC_COLD gic_real hmmwv_vehicle_residual_wheel_r_l(const gic_real *GIC_RE
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = (motion[1] - (k[2] + (R(6.938893903907228e-18) * m0[8] + k[1] * m0[7]))) * R(2.928503331078754);
-        const gic_real t2 = GIC_FABS((motion[2] - (R(6.938893903907228e-18) * m0[11] + k[1] * m0[10])) * R(2.928503331078754));
-        const gic_real t3 = motion[2] + (R(0.3340099999999999) * motion[11] + k[5] * motion[10]) - R(0.22567900000000002);
-        const gic_real t4 = motion[1] + (R(0.3340099999999999) * motion[8] + k[5] * motion[7]) - k[3];
-        const gic_real t5 = (t3 * t3 + (R(0.031522582115999995) + t4 * t4) - R(0.095812034182)) * R(5.77921838272602);
-        const gic_real t6 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(R(0.0), GIC_FABS(t1)), t2), R(0.0)), R(0.0)), GIC_FABS(t5));
+        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m0[7] + k[1])) * R(2.928503331078754)));
+        const gic_real t2 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m0[10]) * R(2.928503331078754))), R(0.0));
+        const gic_real t3 = motion[2] + (R(0.3340099999999999) * motion[11] + k[3] * motion[10]) - R(0.22567900000000002);
+        const gic_real t4 = motion[1] + (R(0.3340099999999999) * motion[8] + k[3] * motion[7]) - k[2];
+        const gic_real t5 = (t3 * t3 + (R(0.031522582115999995) + t4 * t4) - R(0.095812034182)) * R(5.7792183827260155);
+        const gic_real t6 = GIC_MAX(GIC_MAX(t2, R(0.0)), GIC_FABS(t5));
         worst = t6;
     }
     return worst;
@@ -2496,7 +2480,7 @@ static int hmmwv_vehicle_measure(const hmmwv_vehicle *self, gic_real time, const
         const gic_real t235 = m[41] * t233 + m[40] * t234;
         const gic_real t236 = y[16] * t235 + y[15] * (m[38] * t233 + m[37] * t234);
         const gic_real t237 = m[42] + y[14];
-        const gic_real t238 = y[16] * (t232 + y[15] * t235) + (y[15] * t236 + t237 * (R(0.4468999999999998) * t237));
+        const gic_real t238 = y[16] * (t232 + y[15] * t235) + (y[15] * t236 + t237 * (R(0.4469) * t237));
         const gic_real t239 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
         const gic_real t240 = R(0.307086) + t239;
         const gic_real t241 = R(1.688965) * y[15];
@@ -2515,7 +2499,7 @@ static int hmmwv_vehicle_measure(const hmmwv_vehicle *self, gic_real time, const
         const gic_real t254 = m[71] * t252 + m[70] * t253;
         const gic_real t255 = y[16] * t254 + y[15] * (m[68] * t252 + m[67] * t253);
         const gic_real t256 = m[72] + y[14];
-        const gic_real t257 = y[16] * (t251 + y[15] * t254) + (y[15] * t255 + t256 * (R(0.4468999999999998) * t256));
+        const gic_real t257 = y[16] * (t251 + y[15] * t254) + (y[15] * t255 + t256 * (R(0.4469) * t256));
         const gic_real t258 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t259 = R(-0.307086) + t258;
         const gic_real t260 = m[72] * t258 + (y[14] * t259 - t241);
@@ -2543,7 +2527,7 @@ static int hmmwv_vehicle_measure(const hmmwv_vehicle *self, gic_real time, const
         const gic_real t282 = m[101] * t280 + m[100] * t281;
         const gic_real t283 = y[16] * t282 + y[15] * (m[98] * t280 + m[97] * t281);
         const gic_real t284 = m[102] + y[14];
-        const gic_real t285 = y[16] * (t279 + y[15] * t282) + (y[15] * t283 + t284 * (R(0.4468999999999998) * t284));
+        const gic_real t285 = y[16] * (t279 + y[15] * t282) + (y[15] * t283 + t284 * (R(0.4469) * t284));
         const gic_real t286 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
         const gic_real t287 = R(0.307086) + t286;
         const gic_real t288 = R(-1.688965) * y[15];
@@ -2563,7 +2547,7 @@ static int hmmwv_vehicle_measure(const hmmwv_vehicle *self, gic_real time, const
         const gic_real t302 = m[131] * t300 + m[130] * t301;
         const gic_real t303 = y[16] * t302 + y[15] * (m[128] * t300 + m[127] * t301);
         const gic_real t304 = m[132] + y[14];
-        const gic_real t305 = y[16] * (t299 + y[15] * t302) + (y[15] * t303 + t304 * (R(0.4468999999999998) * t304));
+        const gic_real t305 = y[16] * (t299 + y[15] * t302) + (y[15] * t303 + t304 * (R(0.4469) * t304));
         const gic_real t306 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
         const gic_real t307 = R(-0.307086) + t306;
         const gic_real t308 = m[132] * t306 + (y[14] * t307 - t288);
@@ -2580,7 +2564,7 @@ static int hmmwv_vehicle_measure(const hmmwv_vehicle *self, gic_real time, const
         const gic_real t319 = m[233] * t317 + m[232] * t318;
         const gic_real t320 = y[16] * t319 + y[15] * (m[230] * t317 + m[229] * t318);
         const gic_real t321 = m[234] + y[14];
-        const gic_real t322 = y[16] * (t316 + y[15] * t319) + (y[15] * t320 + t321 * (t321 * R(4.894750499999996)));
+        const gic_real t322 = y[16] * (t316 + y[15] * t319) + (y[15] * t320 + t321 * (t321 * R(4.8947505)));
         const gic_real t323 = m[230] * R(0.09182099999999999) + m[229] * R(0.08910630000000008);
         const gic_real t324 = m[223] + t323;
         const gic_real t325 = R(-1.653405) * y[15];
@@ -2601,7 +2585,7 @@ static int hmmwv_vehicle_measure(const hmmwv_vehicle *self, gic_real time, const
         const gic_real t340 = m[263] * t338 + m[262] * t339;
         const gic_real t341 = y[16] * t340 + y[15] * (m[260] * t338 + m[259] * t339);
         const gic_real t342 = m[264] + y[14];
-        const gic_real t343 = y[16] * (t337 + y[15] * t340) + (y[15] * t341 + t342 * (t342 * R(4.894750499999996)));
+        const gic_real t343 = y[16] * (t337 + y[15] * t340) + (y[15] * t341 + t342 * (t342 * R(4.8947505)));
         const gic_real t344 = m[260] * R(0.09182099999999999) + m[259] * R(-0.08910630000000008);
         const gic_real t345 = m[253] + t344;
         const gic_real t346 = m[269] + m[264] * t344 + (y[14] * t345 - t325);
@@ -3011,11 +2995,11 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (m[37] + R(0.9999999999999998)));
-        const gic_real t31 = R(1.0) + (m[37] - (m[41] + R(0.9999999999999998)));
+        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
+        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
         const gic_real t32 = m[37] + m[41];
-        const gic_real t33 = R(1.0) + (R(0.9999999999999998) - t32);
-        const gic_real t34 = R(1.0) + (R(0.9999999999999998) + t32);
+        const gic_real t33 = R(1.0) + (R(1.0) - t32);
+        const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
         const gic_real t36 = GIC_MAX(t31, t35);
         const gic_real t37 = t30 - t36;
@@ -3039,11 +3023,11 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
         const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
         const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(0.9999999999999998) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(0.9999999999999998) + m[71]));
+        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
+        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
         const gic_real t60 = m[67] + m[71];
-        const gic_real t61 = R(1.0) + (R(0.9999999999999998) - t60);
-        const gic_real t62 = R(1.0) + (R(0.9999999999999998) + t60);
+        const gic_real t61 = R(1.0) + (R(1.0) - t60);
+        const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
         const gic_real t64 = GIC_MAX(t59, t63);
         const gic_real t65 = t58 - t64;
@@ -3144,11 +3128,11 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t160 = R(-1.688965) * t12;
         const gic_real t161 = R(-1.688965) * t19;
         const gic_real t162 = R(-1.688965) * t23;
-        const gic_real t163 = R(1.0) + (m[101] - (R(0.9999999999999998) + m[97]));
-        const gic_real t164 = R(1.0) + (m[97] - (R(0.9999999999999998) + m[101]));
+        const gic_real t163 = R(1.0) + (m[101] - (R(1.0) + m[97]));
+        const gic_real t164 = R(1.0) + (m[97] - (R(1.0) + m[101]));
         const gic_real t165 = m[97] + m[101];
-        const gic_real t166 = R(1.0) + (R(0.9999999999999998) - t165);
-        const gic_real t167 = R(1.0) + (R(0.9999999999999998) + t165);
+        const gic_real t166 = R(1.0) + (R(1.0) - t165);
+        const gic_real t167 = R(1.0) + (R(1.0) + t165);
         const gic_real t168 = GIC_MAX(t166, t167);
         const gic_real t169 = GIC_MAX(t164, t168);
         const gic_real t170 = t163 - t169;
@@ -3172,11 +3156,11 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t188 = e[1] * t181 - e[2] * t183 + (e[3] * t176 + e[0] * t180);
         const gic_real t189 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
         const gic_real t190 = R(-0.307086) + (m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056));
-        const gic_real t191 = R(1.0) + (m[131] - (R(0.9999999999999998) + m[127]));
-        const gic_real t192 = R(1.0) + (m[127] - (R(0.9999999999999998) + m[131]));
+        const gic_real t191 = R(1.0) + (m[131] - (R(1.0) + m[127]));
+        const gic_real t192 = R(1.0) + (m[127] - (R(1.0) + m[131]));
         const gic_real t193 = m[127] + m[131];
-        const gic_real t194 = R(1.0) + (R(0.9999999999999998) - t193);
-        const gic_real t195 = R(1.0) + (R(0.9999999999999998) + t193);
+        const gic_real t194 = R(1.0) + (R(1.0) - t193);
+        const gic_real t195 = R(1.0) + (R(1.0) + t193);
         const gic_real t196 = GIC_MAX(t194, t195);
         const gic_real t197 = GIC_MAX(t192, t196);
         const gic_real t198 = t191 - t197;
@@ -3203,11 +3187,11 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t219 = R(-1.653405) * t12;
         const gic_real t220 = R(-1.653405) * t19;
         const gic_real t221 = R(-1.653405) * t23;
-        const gic_real t222 = R(1.0) + (m[233] - (m[229] + R(0.9999999999999996)));
-        const gic_real t223 = R(1.0) + (m[229] - (m[233] + R(0.9999999999999996)));
+        const gic_real t222 = R(1.0) + (m[233] - (R(1.0) + m[229]));
+        const gic_real t223 = R(1.0) + (m[229] - (R(1.0) + m[233]));
         const gic_real t224 = m[229] + m[233];
-        const gic_real t225 = R(1.0) + (R(0.9999999999999996) - t224);
-        const gic_real t226 = R(1.0) + (R(0.9999999999999996) + t224);
+        const gic_real t225 = R(1.0) + (R(1.0) - t224);
+        const gic_real t226 = R(1.0) + (R(1.0) + t224);
         const gic_real t227 = GIC_MAX(t225, t226);
         const gic_real t228 = GIC_MAX(t223, t227);
         const gic_real t229 = t222 - t228;
@@ -3231,11 +3215,11 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t247 = e[1] * t240 - e[2] * t242 + (e[3] * t235 + e[0] * t239);
         const gic_real t248 = m[254] + (m[263] * R(0.09182099999999999) + m[262] * R(-0.08910630000000008));
         const gic_real t249 = m[253] + (m[260] * R(0.09182099999999999) + m[259] * R(-0.08910630000000008));
-        const gic_real t250 = R(1.0) + (m[263] - (R(0.9999999999999996) + m[259]));
-        const gic_real t251 = R(1.0) + (m[259] - (R(0.9999999999999996) + m[263]));
+        const gic_real t250 = R(1.0) + (m[263] - (R(1.0) + m[259]));
+        const gic_real t251 = R(1.0) + (m[259] - (R(1.0) + m[263]));
         const gic_real t252 = m[259] + m[263];
-        const gic_real t253 = R(1.0) + (R(0.9999999999999996) - t252);
-        const gic_real t254 = R(1.0) + (R(0.9999999999999996) + t252);
+        const gic_real t253 = R(1.0) + (R(1.0) - t252);
+        const gic_real t254 = R(1.0) + (R(1.0) + t252);
         const gic_real t255 = GIC_MAX(t253, t254);
         const gic_real t256 = GIC_MAX(t251, t255);
         const gic_real t257 = t250 - t256;
@@ -3930,7 +3914,7 @@ static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real ti
         const gic_real t20 = y[16] * t16 + y[15] * t19;
         const gic_real t21 = m[38] * t17 + m[37] * t18;
         const gic_real t22 = y[16] * t19 + y[15] * t21;
-        const gic_real t23 = y[15] * t20 - y[16] * t22 + R(0.4468999999999998) * (m[48] + acc[0] + m[54] * acc[6]);
+        const gic_real t23 = y[15] * t20 - y[16] * t22 + R(0.4469) * (m[48] + acc[0] + m[54] * acc[6]);
         const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
         const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
         const gic_real t26 = m[42] * t25;
@@ -3958,7 +3942,7 @@ static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real ti
         const gic_real t48 = y[16] * t44 + y[15] * t47;
         const gic_real t49 = m[68] * t45 + m[67] * t46;
         const gic_real t50 = y[16] * t47 + y[15] * t49;
-        const gic_real t51 = y[15] * t48 - y[16] * t50 + R(0.4468999999999998) * (m[78] + acc[0] + m[84] * acc[7]);
+        const gic_real t51 = y[15] * t48 - y[16] * t50 + R(0.4469) * (m[78] + acc[0] + m[84] * acc[7]);
         const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
         const gic_real t54 = m[72] * t53;
@@ -4086,7 +4070,7 @@ static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real ti
         const gic_real t176 = y[16] * t172 + y[15] * t175;
         const gic_real t177 = m[98] * t173 + m[97] * t174;
         const gic_real t178 = y[16] * t175 + y[15] * t177;
-        const gic_real t179 = y[15] * t176 - y[16] * t178 + R(0.4468999999999998) * (m[108] + acc[0] + m[114] * acc[8]);
+        const gic_real t179 = y[15] * t176 - y[16] * t178 + R(0.4469) * (m[108] + acc[0] + m[114] * acc[8]);
         const gic_real t180 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
         const gic_real t181 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
         const gic_real t182 = m[102] * t181;
@@ -4114,7 +4098,7 @@ static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real ti
         const gic_real t204 = y[16] * t200 + y[15] * t203;
         const gic_real t205 = m[128] * t201 + m[127] * t202;
         const gic_real t206 = y[16] * t203 + y[15] * t205;
-        const gic_real t207 = y[15] * t204 - y[16] * t206 + R(0.4468999999999998) * (m[138] + acc[0] + m[144] * acc[9]);
+        const gic_real t207 = y[15] * t204 - y[16] * t206 + R(0.4469) * (m[138] + acc[0] + m[144] * acc[9]);
         const gic_real t208 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
         const gic_real t209 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
         const gic_real t210 = m[132] * t209;
@@ -4137,7 +4121,7 @@ static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real ti
         const gic_real t227 = y[16] * t223 + y[15] * t226;
         const gic_real t228 = m[230] * t224 + m[229] * t225;
         const gic_real t229 = y[16] * t226 + y[15] * t228;
-        const gic_real t230 = y[15] * t227 - y[16] * t229 + R(4.894750499999996) * (m[240] + acc[0] + m[246] * acc[8]);
+        const gic_real t230 = y[15] * t227 - y[16] * t229 + R(4.8947505) * (m[240] + acc[0] + m[246] * acc[8]);
         const gic_real t231 = m[230] * R(0.09182099999999999) + m[229] * R(0.08910630000000008);
         const gic_real t232 = m[233] * R(0.09182099999999999) + m[232] * R(0.08910630000000008);
         const gic_real t233 = m[234] * t232;
@@ -4170,7 +4154,7 @@ static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real ti
         const gic_real t260 = y[16] * t256 + y[15] * t259;
         const gic_real t261 = m[260] * t257 + m[259] * t258;
         const gic_real t262 = y[16] * t259 + y[15] * t261;
-        const gic_real t263 = y[15] * t260 - y[16] * t262 + R(4.894750499999996) * (m[270] + acc[0] + m[276] * acc[9]);
+        const gic_real t263 = y[15] * t260 - y[16] * t262 + R(4.8947505) * (m[270] + acc[0] + m[276] * acc[9]);
         const gic_real t264 = m[260] * R(0.09182099999999999) + m[259] * R(-0.08910630000000008);
         const gic_real t265 = m[263] * R(0.09182099999999999) + m[262] * R(-0.08910630000000008);
         const gic_real t266 = m[264] * t265;
@@ -4275,13 +4259,13 @@ static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real ti
         const gic_real t365 = acc[5] + (y[14] * t329 - y[15] * t4 - acc[1] * R(0.056));
         const gic_real t366 = y[16] * t364 - y[14] * t1 + acc[1] * R(2955.66) + (t330 * R(444.42876000000007) - t365 * R(116.84512));
         const gic_real t367 = m[42] + y[14];
-        const gic_real t368 = R(0.4468999999999998) * t367;
+        const gic_real t368 = R(0.4469) * t367;
         const gic_real t369 = acc[2] - m[42] * y[15];
         const gic_real t370 = acc[1] + m[42] * y[16];
         const gic_real t371 = y[16] * t368 - t367 * t20 + (t19 * t369 + t21 * t370);
         const gic_real t372 = t366 + (acc[1] + (t332 * R(0.4919654879999992) - t11 * R(13.051414655999999))) + (t371 + t25 * t336 - t33 * R(40.476046225));
         const gic_real t373 = m[72] + y[14];
-        const gic_real t374 = R(0.4468999999999998) * t373;
+        const gic_real t374 = R(0.4469) * t373;
         const gic_real t375 = acc[2] - m[72] * y[15];
         const gic_real t376 = acc[1] + m[72] * y[16];
         const gic_real t377 = y[16] * t374 - t373 * t48 + (t47 * t375 + t49 * t376);
@@ -4293,25 +4277,25 @@ static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real ti
         const gic_real t383 = t121 * t382 - t127 * t132 + (t126 * t137 + (t133 * t139 + t134 * t142));
         const gic_real t384 = t383 + (t149 * t347 - t147 * t162);
         const gic_real t385 = m[102] + y[14];
-        const gic_real t386 = R(0.4468999999999998) * t385;
+        const gic_real t386 = R(0.4469) * t385;
         const gic_real t387 = acc[2] - m[102] * y[15];
         const gic_real t388 = acc[1] + m[102] * y[16];
         const gic_real t389 = y[16] * t386 - t385 * t176 + (t175 * t387 + t177 * t388);
         const gic_real t390 = t381 + (t384 + (m[188] * t347 - R(149.724089775) * t161)) + (t389 + t181 * t351 - t189 * R(-40.476046225));
         const gic_real t391 = m[132] + y[14];
-        const gic_real t392 = R(0.4468999999999998) * t391;
+        const gic_real t392 = R(0.4469) * t391;
         const gic_real t393 = acc[2] - m[132] * y[15];
         const gic_real t394 = acc[1] + m[132] * y[16];
         const gic_real t395 = y[16] * t392 - t391 * t204 + (t203 * t393 + t205 * t394);
         const gic_real t396 = m[234] + y[14];
-        const gic_real t397 = t396 * R(4.894750499999996);
+        const gic_real t397 = t396 * R(4.8947505);
         const gic_real t398 = acc[2] - m[234] * y[15];
         const gic_real t399 = acc[1] + m[234] * y[16];
         const gic_real t400 = y[16] * t397 - t396 * t227 + (t226 * t398 + t228 * t399);
         const gic_real t401 = t400 + t232 * t356 + (m[224] * t356 - t243 * R(-149.724089775));
         const gic_real t402 = t390 + (t395 + t209 * t354 - R(-40.476046225) * t215) + t401;
         const gic_real t403 = m[264] + y[14];
-        const gic_real t404 = t403 * R(4.894750499999996);
+        const gic_real t404 = t403 * R(4.8947505);
         const gic_real t405 = acc[2] - m[264] * y[15];
         const gic_real t406 = acc[1] + m[264] * y[16];
         const gic_real t407 = y[16] * t404 - t403 * t260 + (t259 * t405 + t261 * t406);
@@ -4520,7 +4504,7 @@ static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real tim
         const gic_real t95 = m[41] * t93 + m[40] * t94;
         const gic_real t96 = rate[15] + m[42] * y[16];
         const gic_real t97 = t95 * t91 + (m[38] * t93 + m[37] * t94) * t96;
-        const gic_real t98 = (m[42] + y[14]) * (R(0.4468999999999998) * (m[48] + rate[14] + m[54] * rate[17]));
+        const gic_real t98 = (m[42] + y[14]) * (R(0.4469) * (m[48] + rate[14] + m[54] * rate[17]));
         const gic_real t99 = y[16] * (t92 + t95 * t96) + (y[15] * t97 + t98);
         const gic_real t100 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t101 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
@@ -4546,7 +4530,7 @@ static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real tim
         const gic_real t121 = m[71] * t119 + m[70] * t120;
         const gic_real t122 = rate[15] + m[72] * y[16];
         const gic_real t123 = t121 * t117 + (m[68] * t119 + m[67] * t120) * t122;
-        const gic_real t124 = (m[72] + y[14]) * (R(0.4468999999999998) * (m[78] + rate[14] + m[84] * rate[18]));
+        const gic_real t124 = (m[72] + y[14]) * (R(0.4469) * (m[78] + rate[14] + m[84] * rate[18]));
         const gic_real t125 = y[16] * (t118 + t121 * t122) + (y[15] * t123 + t124);
         const gic_real t126 = t57 + t58 + (t68 + t69) + (t90 + t99) + (t116 + t125);
         const gic_real t127 = m[153] * R(-0.004825999999999997);
@@ -4695,7 +4679,7 @@ static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real tim
         const gic_real t270 = m[101] * t268 + m[100] * t269;
         const gic_real t271 = rate[15] + m[102] * y[16];
         const gic_real t272 = t270 * t266 + (m[98] * t268 + m[97] * t269) * t271;
-        const gic_real t273 = (m[102] + y[14]) * (R(0.4468999999999998) * (m[108] + rate[14] + m[114] * rate[19]));
+        const gic_real t273 = (m[102] + y[14]) * (R(0.4469) * (m[108] + rate[14] + m[114] * rate[19]));
         const gic_real t274 = y[16] * (t267 + t270 * t271) + (y[15] * t272 + t273);
         const gic_real t275 = t126 + (t160 + t185) + (t219 + t244) + (t265 + t274);
         const gic_real t276 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
@@ -4722,7 +4706,7 @@ static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real tim
         const gic_real t297 = m[131] * t295 + m[130] * t296;
         const gic_real t298 = rate[15] + m[132] * y[16];
         const gic_real t299 = t297 * t293 + (m[128] * t295 + m[127] * t296) * t298;
-        const gic_real t300 = (m[132] + y[14]) * (R(0.4468999999999998) * (m[138] + rate[14] + m[144] * rate[20]));
+        const gic_real t300 = (m[132] + y[14]) * (R(0.4469) * (m[138] + rate[14] + m[144] * rate[20]));
         const gic_real t301 = y[16] * (t294 + t297 * t298) + (y[15] * t299 + t300);
         const gic_real t302 = m[230] * R(0.09182099999999999) + m[229] * R(0.08910630000000008);
         const gic_real t303 = m[233] * R(0.09182099999999999) + m[232] * R(0.08910630000000008);
@@ -4757,7 +4741,7 @@ static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real tim
         const gic_real t332 = rate[15] + m[234] * y[16];
         const gic_real t333 = t331 * t327 + (m[230] * t329 + m[229] * t330) * t332;
         const gic_real t334 = m[234] + y[14];
-        const gic_real t335 = y[15] * t333 + t334 * (R(4.894750499999996) * (m[240] + rate[14] + m[246] * rate[19]));
+        const gic_real t335 = y[15] * t333 + t334 * (R(4.8947505) * (m[240] + rate[14] + m[246] * rate[19]));
         const gic_real t336 = y[16] * (t328 + t331 * t332) + t335;
         const gic_real t337 = m[260] * R(0.09182099999999999) + m[259] * R(-0.08910630000000008);
         const gic_real t338 = m[263] * R(0.09182099999999999) + m[262] * R(-0.08910630000000008);
@@ -4788,7 +4772,7 @@ static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real tim
         const gic_real t363 = rate[15] + m[264] * y[16];
         const gic_real t364 = t362 * t358 + (m[260] * t360 + m[259] * t361) * t363;
         const gic_real t365 = m[264] + y[14];
-        const gic_real t366 = y[15] * t364 + t365 * (R(4.894750499999996) * (m[270] + rate[14] + m[276] * rate[20]));
+        const gic_real t366 = y[15] * t364 + t365 * (R(4.8947505) * (m[270] + rate[14] + m[276] * rate[20]));
         const gic_real t367 = y[16] * (t359 + t362 * t363) + t366;
         const gic_real t368 = t275 + (t292 + t301) + (t326 + t336) + (t357 + t367);
         const gic_real t369 = rate[21] * y[21] * R(7.78782);

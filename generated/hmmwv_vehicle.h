@@ -70,15 +70,15 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                103       166       3      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 87       128       2      1         0
  *   forces and equations of motion                           591       507       9      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         1       0      0         0
  *   wheel 'tire_f_l' (4 times)                               194       313      23     12        37
  *   powertrain                                                47        68       6      0         4
  *   a fast step: all of these                                823      1321      98     48       152
- *   all together                                            2722      3645     127     58       152
+ *   all together                                            2686      3565     125     58       152
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H

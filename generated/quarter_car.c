@@ -41,9 +41,9 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
  *   subset 'arm' (1 times, closed form)                       43        69       2      1         0
- *   subset 'wheel' (1 times, closed form)                    232       322       5      2         0
+ *   subset 'wheel' (1 times, closed form)                    230       320       5      2         0
  *   forces and equations of motion                            39        38       1      0         1
- *   all together                                             315       429       8      3         1
+ *   all together                                             313       427       8      3         1
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #include "quarter_car.h"
@@ -185,11 +185,11 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         const gic_real t1 = R(-0.015515000000000057) + m0[2];
         const gic_real t2 = R(-0.21300000000000008) + m0[2];
         const gic_real t3 = t1 - t2;
-        const gic_real t4 = t3 * R(0.23609299999999983) - R(-0.009447271427999983);
-        const gic_real t5 = t3 * R(-0.04660899999999993) + R(0.04785416235599995);
+        const gic_real t4 = R(-0.04785416235599995) - t3 * R(-0.04660899999999993);
+        const gic_real t5 = R(0.009447271427999983) + t3 * R(0.23609299999999983);
         const gic_real t6 = t4 * t4 + t5 * t5;
         const gic_real t7 = R(0.5) * (R(0.06736127108363994) + (t3 * t3 + R(0.05190275103299997)) - x[0] * x[0]);
-        const gic_real t8 = t7 - R(0.010110666875399993);
+        const gic_real t8 = t7 - R(0.010110666875399996);
         const gic_real t9 = t6 - t8 * t8;
         if (!(t9 > R(0.0)))
             return GIC_ERROR_NEWTON;
@@ -199,8 +199,8 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         const gic_real t11 = GIC_SQRT(t9);
         const gic_real t12 = t10 * (t4 * t11 + t5 * t8);
         const gic_real t13 = t10 * (t4 * t8 - t5 * t11);
-        const gic_real t14 = R(0.23609299999999983) * t12 + t13 * R(0.04660899999999993);
-        const gic_real t15 = R(-0.04660899999999993) * t12 + R(0.23609299999999983) * t13;
+        const gic_real t14 = t12 * R(0.04660899999999993) + t13 * R(-0.23609299999999983);
+        const gic_real t15 = R(0.23609299999999983) * t12 + t13 * R(0.04660899999999993);
         const gic_real t16 = t2 + t15 - t1;
         const gic_real t17 = R(0.307086) + t14 - R(0.509778);
         const gic_real t18 = t14 * t16 - t15 * t17;
@@ -208,10 +208,10 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
             return GIC_ERROR_SINGULAR;
         if (!(t18 * R(-17.834182133305664) > R(0.001)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t19 = R(0.23920559337529682) * t13 + R(0.9709689408513393) * t12;
-        const gic_real t20 = R(-0.9709689408513391) * t13 + R(0.23920559337529687) * t12;
-        const gic_real t21 = R(0.9709689408513393) * t13 + R(-0.23920559337529682) * t12;
-        const gic_real t22 = R(0.23920559337529687) * t13 + R(0.9709689408513391) * t12;
+        const gic_real t19 = t13 * R(-0.9709689408513393) + R(0.23920559337529682) * t12;
+        const gic_real t20 = t13 * R(-0.23920559337529687) + R(-0.9709689408513391) * t12;
+        const gic_real t21 = R(0.23920559337529682) * t13 + R(0.9709689408513393) * t12;
+        const gic_real t22 = R(-0.9709689408513391) * t13 + R(0.23920559337529687) * t12;
         const gic_real t23 = R(1.0) / t18;
         const gic_real t24 = x[0] * t23;
         const gic_real t25 = rate[0] * t24;
@@ -270,7 +270,7 @@ static GIC_COLD gic_real quarter_car_residual_arm(const gic_real *GIC_RESTRICT k
         const gic_real t1 = GIC_MAX(GIC_MAX(R(0.0), GIC_FABS((motion[2] - (R(-0.21300000000000008) + m0[2])) * R(3.852963219305648))), R(0.0));
         const gic_real t2 = motion[2] + (R(0.01121887479261392) * motion[11] + R(0.2403881036540444) * motion[10]) - (R(-0.015515000000000057) + m0[2]);
         const gic_real t3 = R(0.307086) + (R(0.01121887479261392) * motion[8] + R(0.2403881036540444) * motion[7]) - R(0.509778);
-        const gic_real t4 = t2 * t2 + (R(4.633797184000075e-05) + t3 * t3) - x[0] * x[0];
+        const gic_real t4 = t2 * t2 + (R(4.633797184000037e-05) + t3 * t3) - x[0] * x[0];
         const gic_real t5 = GIC_MAX(GIC_MAX(t1, R(0.0)), GIC_FABS(t4 * R(7.892375927523104)));
         worst = t5;
     }
@@ -294,20 +294,20 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
     const gic_real *const rate = links->rate;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(6.938893903907228e-18) * m1[8] + R(0.49375935710120966) * m1[7];
-        const gic_real t2 = R(0.307086) + t1;
+        const gic_real t1 = R(0.49375935710120966) * m1[7];
+        const gic_real t2 = t1 + R(0.307086);
         const gic_real t3 = R(0.4527638) - t2;
-        const gic_real t4 = R(0.9665541626242249) * t3 - R(0.008298160247365956);
+        const gic_real t4 = R(0.9665541626242249) * t3 - R(0.008298160247365955);
         const gic_real t5 = R(0.021117699999999906) + m0[2];
-        const gic_real t6 = R(6.938893903907228e-18) * m1[11] + R(0.49375935710120966) * m1[10];
+        const gic_real t6 = R(0.49375935710120966) * m1[10];
         const gic_real t7 = m1[2] + t6;
         const gic_real t8 = t5 - t7;
-        const gic_real t9 = R(-0.01281272043632549) - R(0.9665541626242249) * t8;
+        const gic_real t9 = R(-0.012812720436325488) - R(0.9665541626242249) * t8;
         const gic_real t10 = R(-0.1394133303209898) * t8 - R(0.21526024724178433) * t3;
         const gic_real t11 = R(1.0) / (t4 * t4 + (t9 * t9 + t10 * t10));
-        const gic_real t12 = R(0.21526024724178433) * t8 + (R(-0.1394133303209898) * t3 + R(-0.057531236867719125));
+        const gic_real t12 = R(0.21526024724178433) * t8 + (R(-0.1394133303209898) * t3 + R(-0.05753123686771912));
         const gic_real t13 = R(4.311654514671526e-08) + t12;
-        const gic_real t14 = t8 * t8 + (t3 * t3 + R(0.0035428684840000013));
+        const gic_real t14 = t8 * t8 + (t3 * t3 + R(0.0035428684840000005));
         const gic_real t15 = R(0.5) * (t14 + R(0.04548219048831004));
         const gic_real t16 = t11 * (t13 * t14 - t12 * t15);
         const gic_real t17 = t11 * (t15 - t12 * t13);
@@ -322,7 +322,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t22 = R(0.21526024724178433) * t16 + t8 * t17 - t4 * t21;
         const gic_real t23 = R(0.448437) - t2;
         const gic_real t24 = R(-0.1394133303209898) * t16 + t3 * t17 - t9 * t21;
-        const gic_real t25 = R(0.9665541626242249) * t16 + R(-0.05952200000000001) * t17 - t10 * t21;
+        const gic_real t25 = R(0.9665541626242249) * t16 + R(-0.059522000000000005) * t17 - t10 * t21;
         const gic_real t26 = t20 * t22 + (t23 * t24 + R(-0.21475700000000003) * t25);
         const gic_real t27 = R(8.573627050492615) * t26;
         const gic_real t28 = t20 - t22 * t27;
@@ -348,10 +348,10 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         if (!(GIC_FABS(t43) > R(4.304353877485568e-08)))
             return GIC_ERROR_SINGULAR;
         const gic_real t44 = t2 + t24 - R(0.4527638);
-        const gic_real t45 = R(-0.03555999999999999) + t25 - R(-0.095082);
+        const gic_real t45 = R(-0.035559999999999994) + t25 - R(-0.095082);
         const gic_real t46 = t30 * t34 - (t24 * t28 - t22 * t29) * t36;
         const gic_real t47 = t46 + t25 * R(0.29106179871846666);
-        const gic_real t48 = R(-0.03555999999999999) + t47 - R(-0.250317);
+        const gic_real t48 = R(-0.035559999999999994) + t47 - R(-0.250317);
         const gic_real t49 = t47 * t42 - t38 * t48;
         const gic_real t50 = t7 + t22 - t5;
         const gic_real t51 = R(1.0) / t43;
@@ -423,7 +423,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t111 = t67 * R(0.09182100000000004) + (t66 * R(0.08910630000000008) + t65 * R(-0.004825999999999997));
         const gic_real t112 = t2 + t111;
         const gic_real t113 = t63 * R(0.09182100000000004) + (t62 * R(0.08910630000000008) + t61 * R(-0.004825999999999997));
-        const gic_real t114 = R(-0.03555999999999999) + t113;
+        const gic_real t114 = R(-0.035559999999999994) + t113;
         const gic_real t115 = t71 * R(0.09182100000000004) + (t70 * R(0.08910630000000008) + t69 * R(-0.004825999999999997));
         const gic_real t116 = t83 * t113 - t81 * t115;
         const gic_real t117 = t82 * t115 - t83 * t111;
@@ -521,25 +521,25 @@ static GIC_COLD gic_real quarter_car_residual_wheel(const gic_real *GIC_RESTRICT
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = (motion[1] - (R(0.307086) + (R(6.938893903907228e-18) * m1[8] + R(0.49375935710120966) * m1[7]))) * R(2.928075656552032);
-        const gic_real t2 = (motion[2] - (m1[2] + (R(6.938893903907228e-18) * m1[11] + R(0.49375935710120966) * m1[10]))) * R(2.928075656552032);
+        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (R(0.49375935710120966) * m1[7] + R(0.307086))) * R(2.928075656552032)));
+        const gic_real t2 = GIC_MAX(t1, GIC_FABS((motion[2] - (m1[2] + R(0.49375935710120966) * m1[10])) * R(2.928075656552032)));
         const gic_real t3 = motion[2] + (R(0.10177780000000003) * motion[11] + (R(0.03459480000000004) * motion[10] + R(-0.1402588) * motion[9]));
         const gic_real t4 = t3 - (R(-0.1587710000000001) + m0[2]);
         const gic_real t5 = motion[1] + (R(0.10177780000000003) * motion[8] + (R(0.03459480000000004) * motion[7] + R(-0.1402588) * motion[6]));
         const gic_real t6 = t5 - R(0.448437);
-        const gic_real t7 = R(-0.03555999999999999) + (R(0.10177780000000003) * motion[5] + (R(0.03459480000000004) * motion[4] + R(-0.1402588) * motion[3]));
+        const gic_real t7 = R(-0.035559999999999994) + (R(0.10177780000000003) * motion[5] + (R(0.03459480000000004) * motion[4] + R(-0.1402588) * motion[3]));
         const gic_real t8 = t7 - R(-0.250317);
         const gic_real t9 = t4 * t4 + (t6 * t6 + t8 * t8) - R(0.14941089924212003);
-        const gic_real t10 = GIC_MAX(GIC_MAX(GIC_MAX(R(0.0), GIC_FABS(t1)), GIC_FABS(t2)), GIC_FABS(t9 * R(3.9285226675160785)));
-        const gic_real t11 = motion[2] + (R(0.33360360000000006) * motion[11] + (R(-0.07099299999999997) * motion[10] + R(-0.017475199999999996) * motion[9]));
-        const gic_real t12 = t11 - (R(0.021117699999999906) + m0[2]);
-        const gic_real t13 = motion[1] + (R(0.33360360000000006) * motion[8] + (R(-0.07099299999999997) * motion[7] + R(-0.017475199999999996) * motion[6]));
-        const gic_real t14 = t13 - R(0.4527638);
-        const gic_real t15 = R(-0.03555999999999999) + (R(0.33360360000000006) * motion[5] + (R(-0.07099299999999997) * motion[4] + R(-0.017475199999999996) * motion[3]));
-        const gic_real t16 = t15 - R(-0.095082);
-        const gic_real t17 = t12 * t12 + (t14 * t14 + t16 * t16) - R(0.07115456010869);
-        const gic_real t18 = R(0.21526024724178433) * t12 + (R(-0.1394133303209898) * t14 + R(0.9665541626242249) * t16) - R(4.311654514671526e-08);
-        const gic_real t19 = GIC_MAX(GIC_MAX(t10, GIC_FABS(t17 * R(5.571891251504317))), GIC_FABS(t18 * R(3.029396354366955)));
+        const gic_real t10 = motion[2] + (R(0.33360360000000006) * motion[11] + (R(-0.07099299999999997) * motion[10] + R(-0.017475199999999996) * motion[9]));
+        const gic_real t11 = t10 - (R(0.021117699999999906) + m0[2]);
+        const gic_real t12 = motion[1] + (R(0.33360360000000006) * motion[8] + (R(-0.07099299999999997) * motion[7] + R(-0.017475199999999996) * motion[6]));
+        const gic_real t13 = t12 - R(0.4527638);
+        const gic_real t14 = R(-0.035559999999999994) + (R(0.33360360000000006) * motion[5] + (R(-0.07099299999999997) * motion[4] + R(-0.017475199999999996) * motion[3]));
+        const gic_real t15 = t14 - R(-0.095082);
+        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
+        const gic_real t17 = GIC_MAX(GIC_MAX(t2, GIC_FABS(t9 * R(3.9285226675160785))), GIC_FABS(t16 * R(5.571891251504317)));
+        const gic_real t18 = R(0.21526024724178433) * t11 + (R(-0.1394133303209898) * t13 + R(0.9665541626242249) * t15) - R(4.311654514671526e-08);
+        const gic_real t19 = GIC_MAX(t17, GIC_FABS(t18 * R(3.029396354366955)));
         worst = t19;
     }
     return worst;
@@ -720,7 +720,7 @@ static int quarter_car_dynamics(quarter_car *self, gic_real time, const gic_real
         const gic_real t6 = m[77] * R(0.09182100000000004) + (m[76] * R(0.12319000000000002) + m[75] * R(-0.004825999999999997));
         const gic_real t7 = m[74] * R(0.09182100000000004) + (m[73] * R(0.12319000000000002) + m[72] * R(-0.004825999999999997));
         gic_real road8[3];
-        if (!road_height(self, time, R(-0.03555999999999999) + t5, m[67] + t7, road8))
+        if (!road_height(self, time, R(-0.035559999999999994) + t5, m[67] + t7, road8))
             return GIC_ERROR_ROAD;
         const gic_real t9 = (m[82] + (m[80] * t5 - m[78] * t6)) * road8[2];
         const gic_real t10 = t9 + (m[79] * t6 - m[80] * t7) * road8[1];
@@ -755,7 +755,7 @@ static int quarter_car_measure(const quarter_car *self, gic_real time, const gic
         const gic_real t1 = m[71] * R(0.09182100000000004);
         const gic_real t2 = m[69] * R(-0.004825999999999997);
         const gic_real t3 = t1 + (m[70] * R(0.12319000000000002) + t2);
-        const gic_real t4 = R(-0.03555999999999999) + t3;
+        const gic_real t4 = R(-0.035559999999999994) + t3;
         const gic_real t5 = m[74] * R(0.09182100000000004);
         const gic_real t6 = m[72] * R(-0.004825999999999997);
         const gic_real t7 = t5 + (m[73] * R(0.12319000000000002) + t6);
@@ -781,7 +781,7 @@ static int quarter_car_measure(const quarter_car *self, gic_real time, const gic
         const gic_real t25 = m[47] + m[42] * (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
         const gic_real t26 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
         const gic_real t27 = m[42] * t26;
-        const gic_real t28 = m[42] * (m[42] * R(0.4468999999999998)) + R(23.965) * (t25 * t25 + t27 * t27);
+        const gic_real t28 = m[42] * (m[42] * R(0.4469)) + R(23.965) * (t25 * t25 + t27 * t27);
         const gic_real t29 = m[77] * (m[77] * R(4.7728205)) + (m[76] * (m[76] * R(7.58122)) + m[75] * (m[75] * R(4.8947505)));
         const gic_real t30 = m[74] * R(4.7728205);
         const gic_real t31 = m[73] * R(7.58122);
@@ -849,11 +849,11 @@ static void quarter_car_place(const quarter_car *self, const gic_real *y, const 
     const gic_real *const m = self->motion;
     (void)y, (void)e, (void)m, (void)pose;
     {
-        const gic_real t1 = R(1.0) + (m[41] - (m[37] + R(0.9999999999999998)));
-        const gic_real t2 = R(1.0) + (m[37] - (m[41] + R(0.9999999999999998)));
+        const gic_real t1 = R(1.0) + (m[41] - (R(1.0) + m[37]));
+        const gic_real t2 = R(1.0) + (m[37] - (R(1.0) + m[41]));
         const gic_real t3 = m[37] + m[41];
-        const gic_real t4 = R(1.0) + (R(0.9999999999999998) - t3);
-        const gic_real t5 = R(1.0) + (R(0.9999999999999998) + t3);
+        const gic_real t4 = R(1.0) + (R(1.0) - t3);
+        const gic_real t5 = R(1.0) + (R(1.0) + t3);
         const gic_real t6 = GIC_MAX(t4, t5);
         const gic_real t7 = GIC_MAX(t2, t6);
         const gic_real t8 = t1 - t7;
@@ -869,7 +869,7 @@ static void quarter_car_place(const quarter_car *self, const gic_real *y, const 
         const gic_real t18 = (t10 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t19 = (t8 > GIC_R(0) ? t17 : (t9 > GIC_R(0) ? t2 : t18)) * t13;
         const gic_real t20 = (t8 > GIC_R(0) ? t1 : (t9 > GIC_R(0) ? t17 : t18)) * t13;
-        const gic_real t21 = R(-0.03555999999999999) + (m[71] * R(0.09182100000000004) + (m[70] * R(0.08910630000000008) + m[69] * R(-0.004825999999999997)));
+        const gic_real t21 = R(-0.035559999999999994) + (m[71] * R(0.09182100000000004) + (m[70] * R(0.08910630000000008) + m[69] * R(-0.004825999999999997)));
         const gic_real t22 = m[67] + (m[74] * R(0.09182100000000004) + (m[73] * R(0.08910630000000008) + m[72] * R(-0.004825999999999997)));
         const gic_real t23 = m[68] + (m[77] * R(0.09182100000000004) + (m[76] * R(0.08910630000000008) + m[75] * R(-0.004825999999999997)));
         const gic_real t24 = R(1.0) + (m[77] - (m[69] + m[73]));
@@ -1246,7 +1246,7 @@ static GIC_COLD int quarter_car_inverse(const quarter_car *self, gic_real time, 
         const gic_real t20 = t8 + (m[76] * R(0.12319000000000002) + t9);
         const gic_real t21 = t12 + (m[73] * R(0.12319000000000002) + t13);
         gic_real road22[3];
-        if (!road_height(self, time, R(-0.03555999999999999) + t19, m[67] + t21, road22))
+        if (!road_height(self, time, R(-0.035559999999999994) + t19, m[67] + t21, road22))
             return GIC_ERROR_ROAD;
         const gic_real t23 = (m[82] + (m[80] * t19 - m[78] * t20)) * road22[2];
         const gic_real t24 = t23 + (m[79] * t20 - m[80] * t21) * road22[1];
@@ -1255,7 +1255,7 @@ static GIC_COLD int quarter_car_inverse(const quarter_car *self, gic_real time, 
         const gic_real t27 = (t24 - (m[83] + (m[78] * t21 - m[79] * t19))) * ((R(3.0) - (t26 + t26)) * (t26 * t26) * R(500.0));
         const gic_real t28 = GIC_MAX(t27 + t25 * R(283000.0), R(0.0));
         const gic_real t29 = m[42] * (m[42] * t1) + m[48] * t2 + acc[1] * (m[54] * t2);
-        const gic_real t30 = R(0.4468999999999998) * (m[48] + m[54] * acc[1]) + (t2 * (t29 * R(23.965)) + t1 * t4);
+        const gic_real t30 = R(0.4469) * (m[48] + m[54] * acc[1]) + (t2 * (t29 * R(23.965)) + t1 * t4);
         const gic_real t31 = m[78] * t14 - m[79] * t7;
         const gic_real t32 = m[80] * t15 - m[78] * t31 + (m[86] * t7 - m[84] * t10);
         const gic_real t33 = m[88] + t32 + acc[1] * (m[100] + (m[98] * t7 - m[96] * t10));
@@ -1313,7 +1313,7 @@ static GIC_COLD int quarter_car_energy(const quarter_car *self, gic_real time, c
         const gic_real t7 = R(9.81) + (m[48] * t3 - m[42] * t6) + rate[3] * (m[54] * t3);
         const gic_real t8 = m[42] * t4 + m[48] * t5 + rate[3] * (m[54] * t5);
         const gic_real t9 = ((m[47] + t4) * (rate[2] + t7) + t6 * t8) * R(23.965);
-        const gic_real t10 = m[42] * (R(0.4468999999999998) * (m[48] + m[54] * rate[3]));
+        const gic_real t10 = m[42] * (R(0.4469) * (m[48] + m[54] * rate[3]));
         const gic_real t11 = m[74] * R(0.09182100000000004);
         const gic_real t12 = m[72] * R(-0.004825999999999997);
         const gic_real t13 = t11 + (t12 + m[73] * R(0.08910630000000008));
@@ -1357,7 +1357,7 @@ static GIC_COLD int quarter_car_energy(const quarter_car *self, gic_real time, c
         const gic_real t51 = m[83] + (m[78] * t49 - m[79] * t50);
         const gic_real t52 = t18 + (m[76] * R(0.12319000000000002) + t19);
         gic_real road53[3];
-        if (!road_height(self, time, R(-0.03555999999999999) + t50, m[67] + t49, road53))
+        if (!road_height(self, time, R(-0.035559999999999994) + t50, m[67] + t49, road53))
             return GIC_ERROR_ROAD;
         const gic_real t54 = (m[82] + (m[80] * t50 - m[78] * t52)) * road53[2];
         const gic_real t55 = t54 + (m[79] * t52 - m[80] * t49) * road53[1];

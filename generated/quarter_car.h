@@ -41,9 +41,9 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
  *   subset 'arm' (1 times, closed form)                       43        69       2      1         0
- *   subset 'wheel' (1 times, closed form)                    232       322       5      2         0
+ *   subset 'wheel' (1 times, closed form)                    230       320       5      2         0
  *   forces and equations of motion                            39        38       1      0         1
- *   all together                                             315       429       8      3         1
+ *   all together                                             313       427       8      3         1
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #ifndef QUARTER_CAR_H

@@ -60,9 +60,9 @@
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (2 times, closed form)                   69       110       1      1         0
  *   subset 'axle' (1 times)                                  658       743       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
  *   forces and equations of motion                           697       663       9      0         4
- *   all together                                            2120      2469      27      6         4
+ *   all together                                            2116      2465      27      6         4
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #include "solid_axle.h"
@@ -218,12 +218,12 @@ static GIC_COLD gic_real solid_axle_residual_rack(const gic_real *GIC_RESTRICT k
 static const gic_real solid_axle_k_lca_f_l[2][11] = {
     { /* lca_f_l */
         R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428), R(0.307086),
-        R(0.509778), R(-17.83418213330566), R(51.57660077184113), R(51.576600771841136),
+        R(0.509778), R(-17.834182133305656), R(51.57660077184113), R(51.576600771841136),
         R(-51.57660077184113), R(0.24689200985615367), R(0.2403881036540444),
     },
     { /* lca_f_r */
         R(0.038649583990999964), R(-0.05607209753299996), R(-50.90547521989428), R(-0.307086),
-        R(-0.509778), R(17.83418213330566), R(-51.57660077184113), R(-51.576600771841136),
+        R(-0.509778), R(17.834182133305656), R(-51.57660077184113), R(-51.576600771841136),
         R(51.57660077184113), R(-0.24689200985615367), R(-0.2403881036540444),
     },
 };
@@ -239,7 +239,7 @@ static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRI
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(0.5) * (R(0.1582643473416399) - x[0] * x[0]) - R(0.010110666875399986);
+        const gic_real t1 = R(0.5) * (R(0.1582643473416399) - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = R(0.004637870464427621) - t1 * t1;
         if (!(t2 > R(0.0)))
             return GIC_ERROR_NEWTON;
@@ -253,7 +253,7 @@ static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRI
         const gic_real t8 = t7 - R(0.19748500000000002);
         const gic_real t9 = k[3] + t6 - k[4];
         const gic_real t10 = t6 * t8 - t7 * t9;
-        if (!(GIC_FABS(t10) > R(6.106551104266462e-08)))
+        if (!(GIC_FABS(t10) > R(6.106551104266464e-08)))
             return GIC_ERROR_SINGULAR;
         if (!(t10 * k[5] > R(0.001)))
             return GIC_ERROR_SINGULAR;
@@ -362,7 +362,7 @@ static GIC_COLD gic_real solid_axle_residual_lca_f_l(const gic_real *GIC_RESTRIC
         const gic_real t1 = R(0.01121887479261392) * motion[11] + k[10] * motion[10] - R(0.19748500000000002);
         const gic_real t2 = k[3] + (R(0.01121887479261392) * motion[8] + k[10] * motion[7]) - k[4];
         const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * R(7.892375927523104)));
+        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * R(7.892375927523102)));
         worst = t4;
     }
     return worst;
@@ -1130,11 +1130,11 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(6.938893903907228e-18) * m1[8] + k[0] * m1[7];
-        const gic_real t2 = k[1] + t1;
+        const gic_real t1 = k[0] * m1[7];
+        const gic_real t2 = t1 + k[1];
         const gic_real t3 = k[2] - t2;
         const gic_real t4 = R(0.9665541626242249) * t3 - k[3];
-        const gic_real t5 = R(6.938893903907228e-18) * m1[11] + k[0] * m1[10];
+        const gic_real t5 = k[0] * m1[10];
         const gic_real t6 = R(0.23411769999999998) - t5;
         const gic_real t7 = R(-0.012812720436325503) - R(0.9665541626242249) * t6;
         const gic_real t8 = k[4] * t6 - R(0.21526024724178433) * t3;
@@ -1424,26 +1424,25 @@ static GIC_COLD gic_real solid_axle_residual_wheel_f_l(const gic_real *GIC_RESTR
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = (motion[1] - (k[1] + (R(6.938893903907228e-18) * m1[8] + k[0] * m1[7]))) * R(2.928075656552032);
-        const gic_real t2 = GIC_FABS((motion[2] - (R(6.938893903907228e-18) * m1[11] + k[0] * m1[10])) * R(2.928075656552032));
-        const gic_real t3 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[12] * motion[10] + R(-0.14025880000000002) * motion[9]));
-        const gic_real t4 = t3 - R(0.05422899999999997);
-        const gic_real t5 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[12] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t6 = t5 - (k[6] + m0[1]);
-        const gic_real t7 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[12] * motion[4] + R(-0.14025880000000002) * motion[3]));
-        const gic_real t8 = t7 - R(1.438648);
-        const gic_real t9 = t4 * t4 + (t6 * t6 + t8 * t8) - R(0.14941089924212003);
-        const gic_real t10 = GIC_MAX(GIC_MAX(GIC_MAX(R(0.0), GIC_FABS(t1)), t2), GIC_FABS(t9 * R(3.9285226675160785)));
-        const gic_real t11 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[13] * motion[10] + R(-0.017475200000000024) * motion[9]));
-        const gic_real t12 = t11 - R(0.23411769999999998);
-        const gic_real t13 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[13] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t14 = t13 - k[2];
-        const gic_real t15 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[13] * motion[4] + R(-0.017475200000000024) * motion[3]));
-        const gic_real t16 = t15 - R(1.593883);
-        const gic_real t17 = t12 * t12 + (t14 * t14 + t16 * t16) - R(0.07115456010869);
-        const gic_real t18 = R(0.21526024724178433) * t12 + (k[4] * t14 + R(0.9665541626242249) * t16) - R(4.3116545195287515e-08);
-        const gic_real t19 = GIC_MAX(GIC_MAX(t10, GIC_FABS(t17 * R(5.571891251504317))), GIC_FABS(t18 * R(3.029396354366955)));
-        worst = t19;
+        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m1[7] + k[1])) * R(2.928075656552032)));
+        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[12] * motion[10] + R(-0.14025880000000002) * motion[9]));
+        const gic_real t3 = t2 - R(0.05422899999999997);
+        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[12] * motion[7] + R(-0.14025880000000002) * motion[6]));
+        const gic_real t5 = t4 - (k[6] + m0[1]);
+        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[12] * motion[4] + R(-0.14025880000000002) * motion[3]));
+        const gic_real t7 = t6 - R(1.438648);
+        const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
+        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m1[10]) * R(2.928075656552032))), GIC_FABS(t8 * R(3.9285226675160785)));
+        const gic_real t10 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[13] * motion[10] + R(-0.017475200000000024) * motion[9]));
+        const gic_real t11 = t10 - R(0.23411769999999998);
+        const gic_real t12 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[13] * motion[7] + R(-0.017475200000000024) * motion[6]));
+        const gic_real t13 = t12 - k[2];
+        const gic_real t14 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[13] * motion[4] + R(-0.017475200000000024) * motion[3]));
+        const gic_real t15 = t14 - R(1.593883);
+        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
+        const gic_real t17 = R(0.21526024724178433) * t11 + (k[4] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
+        const gic_real t18 = GIC_MAX(GIC_MAX(t9, GIC_FABS(t16 * R(5.571891251504317))), GIC_FABS(t17 * R(3.029396354366955)));
+        worst = t18;
     }
     return worst;
 }
@@ -2264,7 +2263,7 @@ static int solid_axle_measure(const solid_axle *self, gic_real time, const gic_r
         const gic_real t164 = m[41] * t162 + m[40] * t163;
         const gic_real t165 = y[17] * t164 + y[16] * (m[38] * t162 + m[37] * t163);
         const gic_real t166 = m[42] + y[15];
-        const gic_real t167 = y[17] * (t161 + y[16] * t164) + (y[16] * t165 + t166 * (t166 * R(0.4468999999999998)));
+        const gic_real t167 = y[17] * (t161 + y[16] * t164) + (y[16] * t165 + t166 * (t166 * R(0.4469)));
         const gic_real t168 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
         const gic_real t169 = R(0.307086) + t168;
         const gic_real t170 = R(1.688965) * y[16];
@@ -2284,7 +2283,7 @@ static int solid_axle_measure(const solid_axle *self, gic_real time, const gic_r
         const gic_real t184 = m[71] * t182 + m[70] * t183;
         const gic_real t185 = y[17] * t184 + y[16] * (m[68] * t182 + m[67] * t183);
         const gic_real t186 = m[72] + y[15];
-        const gic_real t187 = y[17] * (t181 + y[16] * t184) + (y[16] * t185 + t186 * (R(0.4468999999999998) * t186));
+        const gic_real t187 = y[17] * (t181 + y[16] * t184) + (y[16] * t185 + t186 * (R(0.4469) * t186));
         const gic_real t188 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t189 = R(-0.307086) + t188;
         const gic_real t190 = m[72] * t188 + (y[15] * t189 - t170);
@@ -2557,11 +2556,11 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (m[37] + R(0.9999999999999998)));
-        const gic_real t31 = R(1.0) + (m[37] - (m[41] + R(0.9999999999999998)));
+        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
+        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
         const gic_real t32 = m[37] + m[41];
-        const gic_real t33 = R(1.0) + (R(0.9999999999999998) - t32);
-        const gic_real t34 = R(1.0) + (R(0.9999999999999998) + t32);
+        const gic_real t33 = R(1.0) + (R(1.0) - t32);
+        const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
         const gic_real t36 = GIC_MAX(t31, t35);
         const gic_real t37 = t30 - t36;
@@ -2585,11 +2584,11 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
         const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
         const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(0.9999999999999998) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(0.9999999999999998) + m[71]));
+        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
+        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
         const gic_real t60 = m[67] + m[71];
-        const gic_real t61 = R(1.0) + (R(0.9999999999999998) - t60);
-        const gic_real t62 = R(1.0) + (R(0.9999999999999998) + t60);
+        const gic_real t61 = R(1.0) + (R(1.0) - t60);
+        const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
         const gic_real t64 = GIC_MAX(t59, t63);
         const gic_real t65 = t58 - t64;
@@ -3231,7 +3230,7 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
         const gic_real t20 = y[17] * t16 + y[16] * t19;
         const gic_real t21 = m[38] * t17 + m[37] * t18;
         const gic_real t22 = y[17] * t19 + y[16] * t21;
-        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4468999999999998) * (m[48] + acc[0] + m[54] * acc[6]);
+        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4469) * (m[48] + acc[0] + m[54] * acc[6]);
         const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
         const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
         const gic_real t26 = m[42] * t25;
@@ -3259,7 +3258,7 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
         const gic_real t48 = y[17] * t44 + y[16] * t47;
         const gic_real t49 = m[68] * t45 + m[67] * t46;
         const gic_real t50 = y[17] * t47 + y[16] * t49;
-        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4468999999999998) * (m[78] + acc[0] + m[84] * acc[7]);
+        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4469) * (m[78] + acc[0] + m[84] * acc[7]);
         const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
         const gic_real t54 = m[72] * t53;
@@ -3605,13 +3604,13 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
         const gic_real t386 = acc[5] + (y[15] * t355 - y[16] * t4 - acc[1] * R(0.056));
         const gic_real t387 = y[17] * t385 - y[15] * t1 + acc[1] * R(2955.66) + (t356 * R(444.4287600000002) - t386 * R(116.84512));
         const gic_real t388 = m[42] + y[15];
-        const gic_real t389 = R(0.4468999999999998) * t388;
+        const gic_real t389 = R(0.4469) * t388;
         const gic_real t390 = acc[2] - m[42] * y[16];
         const gic_real t391 = acc[1] + m[42] * y[17];
         const gic_real t392 = y[17] * t389 - t388 * t20 + (t19 * t390 + t21 * t391);
         const gic_real t393 = t387 + (acc[1] + (t358 * R(0.4919654879999997) - t11 * R(13.051414655999999))) + (t392 + t25 * t362 - t33 * R(40.476046225));
         const gic_real t394 = m[72] + y[15];
-        const gic_real t395 = R(0.4468999999999998) * t394;
+        const gic_real t395 = R(0.4469) * t394;
         const gic_real t396 = acc[2] - m[72] * y[16];
         const gic_real t397 = acc[1] + m[72] * y[17];
         const gic_real t398 = y[17] * t395 - t394 * t48 + (t47 * t396 + t49 * t397);
@@ -3778,7 +3777,7 @@ static GIC_COLD int solid_axle_energy(const solid_axle *self, gic_real time, con
         const gic_real t76 = m[41] * t74 + m[40] * t75;
         const gic_real t77 = rate[16] + m[42] * y[17];
         const gic_real t78 = t76 * t72 + (m[38] * t74 + m[37] * t75) * t77;
-        const gic_real t79 = (m[42] + y[15]) * (R(0.4468999999999998) * (m[48] + rate[15] + m[54] * rate[18]));
+        const gic_real t79 = (m[42] + y[15]) * (R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]));
         const gic_real t80 = y[17] * (t73 + t76 * t77) + (y[16] * t78 + t79);
         const gic_real t81 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t82 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
@@ -3804,7 +3803,7 @@ static GIC_COLD int solid_axle_energy(const solid_axle *self, gic_real time, con
         const gic_real t102 = m[71] * t100 + m[70] * t101;
         const gic_real t103 = rate[16] + m[72] * y[17];
         const gic_real t104 = t102 * t98 + (m[68] * t100 + m[67] * t101) * t103;
-        const gic_real t105 = (m[72] + y[15]) * (R(0.4468999999999998) * (m[78] + rate[15] + m[84] * rate[19]));
+        const gic_real t105 = (m[72] + y[15]) * (R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]));
         const gic_real t106 = y[17] * (t99 + t102 * t103) + (y[16] * t104 + t105);
         const gic_real t107 = t39 + t40 + (t49 + t50) + (t71 + t80) + (t97 + t106);
         const gic_real t108 = m[131] * R(0.09182100000000004);

@@ -60,9 +60,9 @@
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (2 times, closed form)                   69       110       1      1         0
  *   subset 'axle' (1 times)                                  658       743       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
  *   forces and equations of motion                           697       663       9      0         4
- *   all together                                            2120      2469      27      6         4
+ *   all together                                            2116      2465      27      6         4
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H

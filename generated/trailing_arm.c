@@ -62,10 +62,10 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (2 times, closed form)                   61       117       2      1         2
- *   subset 'wheel_f_l' (2 times, closed form)                306       409       5      2         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
  *   subset 'lca_f_l_2' (2 times, closed form)                 76       121       2      1         2
  *   forces and equations of motion                           743       706      14      4         4
- *   all together                                            1644      2025      32     12        12
+ *   all together                                            1640      2021      32     12        12
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #include "trailing_arm.h"
@@ -407,11 +407,11 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = R(6.938893903907228e-18) * m1[8] + k[0] * m1[7];
-        const gic_real t2 = k[1] + t1;
+        const gic_real t1 = k[0] * m1[7];
+        const gic_real t2 = t1 + k[1];
         const gic_real t3 = k[2] - t2;
         const gic_real t4 = R(0.9665541626242249) * t3 - k[3];
-        const gic_real t5 = R(6.938893903907228e-18) * m1[11] + k[0] * m1[10];
+        const gic_real t5 = k[0] * m1[10];
         const gic_real t6 = R(0.23411769999999998) - t5;
         const gic_real t7 = R(-0.012812720436325503) - R(0.9665541626242249) * t6;
         const gic_real t8 = k[4] * t6 - R(0.21526024724178433) * t3;
@@ -701,26 +701,25 @@ static GIC_COLD gic_real trailing_arm_residual_wheel_f_l(const gic_real *GIC_RES
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = (motion[1] - (k[1] + (R(6.938893903907228e-18) * m1[8] + k[0] * m1[7]))) * R(2.928075656552032);
-        const gic_real t2 = GIC_FABS((motion[2] - (R(6.938893903907228e-18) * m1[11] + k[0] * m1[10])) * R(2.928075656552032));
-        const gic_real t3 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[12] * motion[10] + R(-0.14025880000000002) * motion[9]));
-        const gic_real t4 = t3 - R(0.05422899999999997);
-        const gic_real t5 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[12] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t6 = t5 - (k[6] + m0[1]);
-        const gic_real t7 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[12] * motion[4] + R(-0.14025880000000002) * motion[3]));
-        const gic_real t8 = t7 - R(1.438648);
-        const gic_real t9 = t4 * t4 + (t6 * t6 + t8 * t8) - R(0.14941089924212003);
-        const gic_real t10 = GIC_MAX(GIC_MAX(GIC_MAX(R(0.0), GIC_FABS(t1)), t2), GIC_FABS(t9 * R(3.9285226675160785)));
-        const gic_real t11 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[13] * motion[10] + R(-0.017475200000000024) * motion[9]));
-        const gic_real t12 = t11 - R(0.23411769999999998);
-        const gic_real t13 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[13] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t14 = t13 - k[2];
-        const gic_real t15 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[13] * motion[4] + R(-0.017475200000000024) * motion[3]));
-        const gic_real t16 = t15 - R(1.593883);
-        const gic_real t17 = t12 * t12 + (t14 * t14 + t16 * t16) - R(0.07115456010869);
-        const gic_real t18 = R(0.21526024724178433) * t12 + (k[4] * t14 + R(0.9665541626242249) * t16) - R(4.3116545195287515e-08);
-        const gic_real t19 = GIC_MAX(GIC_MAX(t10, GIC_FABS(t17 * R(5.571891251504317))), GIC_FABS(t18 * R(3.029396354366955)));
-        worst = t19;
+        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m1[7] + k[1])) * R(2.928075656552032)));
+        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[12] * motion[10] + R(-0.14025880000000002) * motion[9]));
+        const gic_real t3 = t2 - R(0.05422899999999997);
+        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[12] * motion[7] + R(-0.14025880000000002) * motion[6]));
+        const gic_real t5 = t4 - (k[6] + m0[1]);
+        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[12] * motion[4] + R(-0.14025880000000002) * motion[3]));
+        const gic_real t7 = t6 - R(1.438648);
+        const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
+        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m1[10]) * R(2.928075656552032))), GIC_FABS(t8 * R(3.9285226675160785)));
+        const gic_real t10 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[13] * motion[10] + R(-0.017475200000000024) * motion[9]));
+        const gic_real t11 = t10 - R(0.23411769999999998);
+        const gic_real t12 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[13] * motion[7] + R(-0.017475200000000024) * motion[6]));
+        const gic_real t13 = t12 - k[2];
+        const gic_real t14 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[13] * motion[4] + R(-0.017475200000000024) * motion[3]));
+        const gic_real t15 = t14 - R(1.593883);
+        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
+        const gic_real t17 = R(0.21526024724178433) * t11 + (k[4] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
+        const gic_real t18 = GIC_MAX(GIC_MAX(t9, GIC_FABS(t16 * R(5.571891251504317))), GIC_FABS(t17 * R(3.029396354366955)));
+        worst = t18;
     }
     return worst;
 }
@@ -1459,8 +1458,8 @@ static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_re
         const gic_real t317 = R(-0.006807199999999902) * t259;
         const gic_real t318 = t259 * R(-0.002199670439359969) - R(1.792978) * t260 + (R(-0.002199670439359969) * t267 - R(1.792978) * t268);
         const gic_real t319 = t318 + (R(0.376) * t274 - R(-1.6) * t207) + (R(0.376) * t278 - R(-1.6) * t178);
-        const gic_real t320 = R(0.09720579999999995) * t260 - t253 * t317 + (t319 + R(1.688965) * t260);
-        const gic_real t321 = R(0.09720579999999995) * t268 - t261 * t316 + (t320 + R(1.688965) * t268);
+        const gic_real t320 = R(0.09720579999999998) * t260 - t253 * t317 + (t319 + R(1.688965) * t260);
+        const gic_real t321 = R(0.09720579999999998) * t268 - t261 * t316 + (t320 + R(1.688965) * t268);
         const gic_real t322 = t315 + (t321 + (m[152] * t314 - R(1.653405) * t252)) + (m[188] * t312 - R(1.653405) * t230);
         const gic_real t323 = t275 - t274;
         const gic_real t324 = t276 + (t313 + t322 + (R(0.026000000000000023) * t323 - R(-1.15) * t208));
@@ -1473,8 +1472,8 @@ static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_re
         const gic_real t331 = t232 * t288 - t231 * t314;
         const gic_real t332 = R(1.792978) * t292 - t259 * R(-0.003388550642239951) + (R(1.792978) * t290 - t267 * R(0.003388550642239951));
         const gic_real t333 = t332 + (t206 * R(-0.08000000000000007) - R(0.6) * t274) + (t177 * R(0.08000000000000007) - R(-0.6) * t278);
-        const gic_real t334 = t255 * t317 - R(0.09720579999999995) * t292 + (t333 + (t259 * R(-0.00209039581919997) - R(1.688965) * t292));
-        const gic_real t335 = t263 * t316 - R(0.09720579999999995) * t290 + (t334 + (t267 * R(0.00209039581919997) - R(1.688965) * t290));
+        const gic_real t334 = t255 * t317 - R(0.09720579999999998) * t292 + (t333 + (t259 * R(-0.00209039581919997) - R(1.688965) * t292));
+        const gic_real t335 = t263 * t316 - R(0.09720579999999998) * t290 + (t334 + (t267 * R(0.00209039581919997) - R(1.688965) * t290));
         const gic_real t336 = t331 + (t335 + (R(1.653405) * t288 - m[151] * t314)) + (R(1.653405) * t286 - m[187] * t312);
         const gic_real t337 = t180 * t285 - R(0.25970099999999996) * t275 - t202 * t284 + (t330 + t336 + (R(-1.15) * t298 - R(0.65) * t323));
         const gic_real t338 = t142 * t283 - R(-0.25970099999999996) * t279 - t173 * t282 + (t337 + (R(-1.15) * t300 - R(-0.65) * t325));
@@ -1760,7 +1759,7 @@ static int trailing_arm_measure(const trailing_arm *self, gic_real time, const g
         const gic_real t179 = m[41] * t177 + m[40] * t178;
         const gic_real t180 = y[17] * t179 + y[16] * (m[38] * t177 + m[37] * t178);
         const gic_real t181 = m[42] + y[15];
-        const gic_real t182 = y[17] * (t176 + y[16] * t179) + (y[16] * t180 + t181 * (t181 * R(0.4468999999999998)));
+        const gic_real t182 = y[17] * (t176 + y[16] * t179) + (y[16] * t180 + t181 * (t181 * R(0.4469)));
         const gic_real t183 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
         const gic_real t184 = R(0.307086) + t183;
         const gic_real t185 = R(1.688965) * y[16];
@@ -1780,7 +1779,7 @@ static int trailing_arm_measure(const trailing_arm *self, gic_real time, const g
         const gic_real t199 = m[71] * t197 + m[70] * t198;
         const gic_real t200 = y[17] * t199 + y[16] * (m[68] * t197 + m[67] * t198);
         const gic_real t201 = m[72] + y[15];
-        const gic_real t202 = y[17] * (t196 + y[16] * t199) + (y[16] * t200 + t201 * (R(0.4468999999999998) * t201));
+        const gic_real t202 = y[17] * (t196 + y[16] * t199) + (y[16] * t200 + t201 * (R(0.4469) * t201));
         const gic_real t203 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t204 = R(-0.307086) + t203;
         const gic_real t205 = m[72] * t203 + (y[15] * t204 - t185);
@@ -2079,11 +2078,11 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (m[37] + R(0.9999999999999998)));
-        const gic_real t31 = R(1.0) + (m[37] - (m[41] + R(0.9999999999999998)));
+        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
+        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
         const gic_real t32 = m[37] + m[41];
-        const gic_real t33 = R(1.0) + (R(0.9999999999999998) - t32);
-        const gic_real t34 = R(1.0) + (R(0.9999999999999998) + t32);
+        const gic_real t33 = R(1.0) + (R(1.0) - t32);
+        const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
         const gic_real t36 = GIC_MAX(t31, t35);
         const gic_real t37 = t30 - t36;
@@ -2107,11 +2106,11 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
         const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
         const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(0.9999999999999998) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(0.9999999999999998) + m[71]));
+        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
+        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
         const gic_real t60 = m[67] + m[71];
-        const gic_real t61 = R(1.0) + (R(0.9999999999999998) - t60);
-        const gic_real t62 = R(1.0) + (R(0.9999999999999998) + t60);
+        const gic_real t61 = R(1.0) + (R(1.0) - t60);
+        const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
         const gic_real t64 = GIC_MAX(t59, t63);
         const gic_real t65 = t58 - t64;
@@ -2800,7 +2799,7 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t20 = y[17] * t16 + y[16] * t19;
         const gic_real t21 = m[38] * t17 + m[37] * t18;
         const gic_real t22 = y[17] * t19 + y[16] * t21;
-        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4468999999999998) * (m[48] + acc[0] + m[54] * acc[6]);
+        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4469) * (m[48] + acc[0] + m[54] * acc[6]);
         const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
         const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
         const gic_real t26 = m[42] * t25;
@@ -2828,7 +2827,7 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t48 = y[17] * t44 + y[16] * t47;
         const gic_real t49 = m[68] * t45 + m[67] * t46;
         const gic_real t50 = y[17] * t47 + y[16] * t49;
-        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4468999999999998) * (m[78] + acc[0] + m[84] * acc[7]);
+        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4469) * (m[78] + acc[0] + m[84] * acc[7]);
         const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
         const gic_real t54 = m[72] * t53;
@@ -3223,13 +3222,13 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t435 = acc[5] + (y[15] * t396 - y[16] * t4 - acc[1] * R(0.056));
         const gic_real t436 = y[17] * t434 - y[15] * t1 + acc[1] * R(2955.66) + (t397 * R(444.4287600000002) - t435 * R(116.84512));
         const gic_real t437 = m[42] + y[15];
-        const gic_real t438 = R(0.4468999999999998) * t437;
+        const gic_real t438 = R(0.4469) * t437;
         const gic_real t439 = acc[2] - m[42] * y[16];
         const gic_real t440 = acc[1] + m[42] * y[17];
         const gic_real t441 = y[17] * t438 - t437 * t20 + (t19 * t439 + t21 * t440);
         const gic_real t442 = t436 + (acc[1] + (t399 * R(0.4919654879999997) - t11 * R(13.051414655999999))) + (t441 + t25 * t403 - t33 * R(40.476046225));
         const gic_real t443 = m[72] + y[15];
-        const gic_real t444 = R(0.4468999999999998) * t443;
+        const gic_real t444 = R(0.4469) * t443;
         const gic_real t445 = acc[2] - m[72] * y[16];
         const gic_real t446 = acc[1] + m[72] * y[17];
         const gic_real t447 = y[17] * t444 - t443 * t48 + (t47 * t445 + t49 * t446);
@@ -3255,8 +3254,8 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t467 = t345 * t429 - t341 * t361;
         const gic_real t468 = t380 * R(-0.002199670439359969) - R(1.792978) * t382 + (R(-0.002199670439359969) * t370 - R(1.792978) * t372);
         const gic_real t469 = t468 + (R(0.376) * t426 - R(-1.6) * t385) + (R(0.376) * t423 - R(-1.6) * t386);
-        const gic_real t470 = R(0.09720579999999995) * t382 - t374 * t430 + (t469 + R(1.688965) * t382);
-        const gic_real t471 = R(0.09720579999999995) * t372 - t364 * t431 + (t470 + R(1.688965) * t372);
+        const gic_real t470 = R(0.09720579999999998) * t382 - t374 * t430 + (t469 + R(1.688965) * t382);
+        const gic_real t471 = R(0.09720579999999998) * t372 - t364 * t431 + (t470 + R(1.688965) * t372);
         const gic_real t472 = t467 + (t471 + (m[152] * t429 - R(1.653405) * t361)) + (m[188] * t428 - R(1.653405) * t337);
         const gic_real t473 = t465 + (t466 + t472 + (R(0.026000000000000023) * t427 - R(-1.15) * t390));
         const gic_real t474 = t459 + (t463 + (R(2.874430000000003) * t420 - R(-127.13825) * t230)) - (t464 + (t473 + (R(0.026000000000000023) * t424 - R(-1.15) * t393)));
@@ -3284,8 +3283,8 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t496 = t341 * t362 - t340 * t429;
         const gic_real t497 = R(1.792978) * t381 - t380 * R(-0.003388550642239951) + (R(1.792978) * t371 - t370 * R(0.003388550642239951));
         const gic_real t498 = t497 + (t293 * R(-0.08000000000000007) - R(0.6) * t426) + (t243 * R(0.08000000000000007) - R(-0.6) * t423);
-        const gic_real t499 = t375 * t430 - R(0.09720579999999995) * t381 + (t498 + (t380 * R(-0.00209039581919997) - R(1.688965) * t381));
-        const gic_real t500 = t365 * t431 - R(0.09720579999999995) * t371 + (t499 + (t370 * R(0.00209039581919997) - R(1.688965) * t371));
+        const gic_real t499 = t375 * t430 - R(0.09720579999999998) * t381 + (t498 + (t380 * R(-0.00209039581919997) - R(1.688965) * t381));
+        const gic_real t500 = t365 * t431 - R(0.09720579999999998) * t371 + (t499 + (t370 * R(0.00209039581919997) - R(1.688965) * t371));
         const gic_real t501 = t496 + (t500 + (R(1.653405) * t362 - m[151] * t429)) + (R(1.653405) * t338 - m[187] * t428);
         const gic_real t502 = t295 * t315 - R(0.25970099999999996) * t425 - t289 * t294 + (t495 + t501 + (R(-1.15) * t391 - R(0.65) * t427));
         const gic_real t503 = t253 * t286 - R(-0.25970099999999996) * t422 - t239 * t244 + (t502 + (R(-1.15) * t394 - R(-0.65) * t424));
@@ -3409,7 +3408,7 @@ static GIC_COLD int trailing_arm_energy(const trailing_arm *self, gic_real time,
         const gic_real t76 = m[41] * t74 + m[40] * t75;
         const gic_real t77 = rate[16] + m[42] * y[17];
         const gic_real t78 = t76 * t72 + (m[38] * t74 + m[37] * t75) * t77;
-        const gic_real t79 = (m[42] + y[15]) * (R(0.4468999999999998) * (m[48] + rate[15] + m[54] * rate[18]));
+        const gic_real t79 = (m[42] + y[15]) * (R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]));
         const gic_real t80 = y[17] * (t73 + t76 * t77) + (y[16] * t78 + t79);
         const gic_real t81 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
         const gic_real t82 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
@@ -3435,7 +3434,7 @@ static GIC_COLD int trailing_arm_energy(const trailing_arm *self, gic_real time,
         const gic_real t102 = m[71] * t100 + m[70] * t101;
         const gic_real t103 = rate[16] + m[72] * y[17];
         const gic_real t104 = t102 * t98 + (m[68] * t100 + m[67] * t101) * t103;
-        const gic_real t105 = (m[72] + y[15]) * (R(0.4468999999999998) * (m[78] + rate[15] + m[84] * rate[19]));
+        const gic_real t105 = (m[72] + y[15]) * (R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]));
         const gic_real t106 = y[17] * (t99 + t102 * t103) + (y[16] * t104 + t105);
         const gic_real t107 = t39 + t40 + (t49 + t50) + (t71 + t80) + (t97 + t106);
         const gic_real t108 = m[155] * R(0.09182100000000004);
