@@ -22,9 +22,9 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'rod' (1 times, closed form)                       15        41       2      1         2
+ *   subset 'rod' (1 times, closed form)                       16        43       2      1         2
  *   forces and equations of motion                             2         3       1      0         0
- *   all together                                              17        44       3      1         2
+ *   all together                                              18        46       3      1         2
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #include "pendulum.h"
@@ -97,10 +97,11 @@
 #define GIC_PIECES 1000
 
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
- * changes since its start, and the angular velocity of the base. */
+ * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct pendulum_links {
     const gic_real *known[PENDULUM_KNOWN_ROOM];
     gic_real x[PENDULUM_DEPENDENCE_ROOM], rate[PENDULUM_DEPENDENCE_ROOM], change[PENDULUM_DEPENDENCE_ROOM], turn[3];
+    gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
     int again, same[PENDULUM_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
 } pendulum_links;
@@ -121,6 +122,7 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
+    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = GIC_COS(x[0]);
@@ -137,11 +139,11 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t8 = t2 * t6 + t1 * t7;
         if (!(GIC_FABS(t8) > R(1e-06)))
             return GIC_ERROR_SINGULAR;
-        if (!(t8 > R(0.001)))
-            return GIC_ERROR_SINGULAR;
         const gic_real t9 = R(1.0) / -t8;
         const gic_real t10 = t8 * t9;
         const gic_real t11 = rate[0] * t10;
+        if (!(-(t8 * R(-0.5) + GIC_FABS(t11) * ahead[0]) > R(0.0005)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t12 = t6 * t11;
         const gic_real t13 = t7 * t11;
         const gic_real t14 = rate[0] * (t1 * t12 - t2 * t13);
@@ -232,13 +234,15 @@ static int pendulum_recover(pendulum *self, const gic_real turn[3], int cold)
     int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
-    links.again = self->recovered && !memcmp(at + 2 * PENDULUM_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    links.again = self->recovered && !memcmp(at + 2 * PENDULUM_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
+        self->head.ahead <= at[2 * PENDULUM_COORDINATE_ROOM + 3];
     self->recovered = 0;
     for (i = 0; links.again && i < PENDULUM_COORDINATES; ++i)
         links.same[i] = !memcmp(&at[i], &self->x[i], sizeof *at) &&
             !memcmp(&at[PENDULUM_COORDINATE_ROOM + i], &self->xd[i], sizeof *at);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
+    links.ahead[0] = self->head.ahead;
     for (i = 0; i < PENDULUM_COORDINATES; ++i) {
         const gic_real parts = GIC_FABS(self->x[i] - from[i]) / pendulum_piece[i];
         if (!(parts < R(GIC_PIECES)))
@@ -263,6 +267,7 @@ static int pendulum_recover(pendulum *self, const gic_real turn[3], int cold)
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + PENDULUM_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * PENDULUM_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    at[2 * PENDULUM_COORDINATE_ROOM + 3] = self->head.ahead;
     self->recovered = 1;
     self->head.flip = now;
     return GIC_OK;
@@ -449,6 +454,7 @@ int pendulum_rhs(pendulum *self, gic_real time, const gic_real *state, gic_real 
 static gic_real pendulum_present(pendulum *self)
 {
     const gic_real time = pendulum_time(self);
+    self->head.ahead = R(0.0);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
     return time;

@@ -22,9 +22,9 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'rod' (1 times, closed form)                       15        41       2      1         2
+ *   subset 'rod' (1 times, closed form)                       16        43       2      1         2
  *   forces and equations of motion                             2         3       1      0         0
- *   all together                                              17        44       3      1         2
+ *   all together                                              18        46       3      1         2
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #ifndef PENDULUM_H
@@ -114,7 +114,7 @@ typedef struct pendulum {
     gic_real x[PENDULUM_COORDINATE_ROOM], xd[PENDULUM_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[GIC_STARTS][PENDULUM_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[PENDULUM_MOTION_ROOM];            /* bodies relative to the base */
-    gic_real recovered_at[2 * PENDULUM_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    gic_real recovered_at[2 * PENDULUM_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[PENDULUM_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[PENDULUM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */

@@ -218,7 +218,7 @@ static bool any_reads(const Block *const *block, int blocks, const char *array)
 /* Local names for the links that the blocks read. */
 static void write_arguments(Generation *g, Text *out, int indent, const Block *const *block, int blocks)
 {
-    static const char *const part[] = {"x", "rate", "change", "turn"};
+    static const char *const part[] = {"x", "rate", "change", "turn", "ahead"};
     const char *real = style_real(g->style);
     const size_t before = out->size;
     if (any_reads(block, blocks, "d"))
@@ -228,7 +228,7 @@ static void write_arguments(Generation *g, Text *out, int indent, const Block *c
         if (any_reads(block, blocks, pool_print(g->pool, "m%d", i)))
             line(out, indent, "const %s *const m%d = links->known[%d]; /* %s */", real, i, i,
                  g->model->body[first->known[i]].name);
-    for (int i = 0; i < 4; ++i)
+    for (int i = 0; i < 5; ++i)
         if (any_reads(block, blocks, part[i]))
             line(out, indent, "const %s *const %s = links->%s;", real, part[i], part[i]);
     if (out->size == before)

@@ -76,8 +76,9 @@ void write_lane_links(Generation *g, Text *out)
         line(out, 0, "typedef struct %s_links_%d {", g->model->name, lanes);
         line(out, 4, "const gic_real *known[%s_KNOWN_ROOM];", g->upper);
         line(out, 4,
-             "gic_lane_%d x[%s_DEPENDENCE_ROOM], rate[%s_DEPENDENCE_ROOM], change[%s_DEPENDENCE_ROOM], turn[3];", lanes,
-             g->upper, g->upper, g->upper);
+             "gic_lane_%d x[%s_DEPENDENCE_ROOM], rate[%s_DEPENDENCE_ROOM], change[%s_DEPENDENCE_ROOM], turn[3], "
+             "ahead[1];",
+             lanes, g->upper, g->upper, g->upper);
         if (g->model->tuning)
             line(out, 4, "const gic_lane_%d *derived;", lanes);
         line(out, 4, "int cold;");
@@ -175,7 +176,7 @@ static void write_arguments(const Generation *g, Text *out, int indent)
     for (int i = 0; i < 3; ++i)
         if (solve_reads(f, part[i]))
             line(out, indent, "const gic_lane_%d *const %s = links->%s;", lanes, part[i], part[i]);
-    line(out, indent, "const gic_lane_%d *const turn = links->turn;", lanes);
+    line(out, indent, "const gic_lane_%d *const turn = links->turn, *const ahead = links->ahead;", lanes);
     if (solve_reads(f, "s"))
         line(out, indent, "const gic_row_%d *const s = old + %d; /* unit velocities at the start */", lanes,
              f->layout.start_S);
@@ -349,6 +350,7 @@ void write_lane_call(const Generation *g, Text *out, int indent, int subset)
     line(out, indent, "int i, lane;");
     line(out, indent, "for (i = 0; i < 3; ++i)");
     line(out, indent + 4, "row.turn[i] = LANE_%d(links->turn[i]);", lanes);
+    line(out, indent, "row.ahead[0] = LANE_%d(links->ahead[0]);", lanes);
     line(out, indent, "row.cold = links->cold;");
     for (int i = 0; i < row_subset(&row, 0)->knowns; ++i)
         write_known(&row, out, indent, i);

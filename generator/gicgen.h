@@ -439,7 +439,8 @@ int inertia_mass(int deps, int j, int k); /* place of M_jk, j <= k */
 
 /* The formulas of a class. C names: k constants of the member, d those of them that tunable parameters change, m0, m1,
  * ... motions of the knowns, x, rate, change:
- * value, rate and change since the start of the deps, turn: angular velocity of the base, q: pose, s and f: S and
+ * value, rate and change since the start of the deps, turn: angular velocity of the base, ahead: time that must be left
+ * until the coordinates stop being independent, at the present velocities, q: pose, s and f: S and
  * factors of the start, motion: the poses that were found. */
 typedef struct Formula {
     Dag *dag;

@@ -226,6 +226,7 @@ static int check_step(const gic_model *model, void *self, gic_real step, gic_rea
     head->subset = head->grown = -1;
     if (!gic_finite(&step, 1) || !gic_finite(&time, 1) || time + part <= time)
         return head->status = GIC_ERROR_ARGUMENT;
+    head->ahead = step;
     return GIC_OK;
 }
 

@@ -93,6 +93,9 @@ typedef void gic_input_function(void *user, int32_t lane, gic_real time, gic_rea
 typedef struct gic_head {
     gic_real start_time;  /* s */
     gic_real step;        /* s, of the steps counted below */
+    gic_real ahead;       /* s, what a step leads to: nearer in time a configuration where coordinates stop being
+                           * independent is none that a right-hand side takes. Step functions set it, outputs don't need
+                           * it; integrators of others may */
     int64_t steps;        /* time = start_time + steps * step, so that no error accumulates */
     int32_t method;       /* of the last step; a change restarts the multistep history */
     int32_t history;      /* rates kept for AB3: 0, 1 or 2 */

@@ -131,6 +131,7 @@ static int evaluate(Instance *self, double time, const double *y, double e[4], d
 double tape_present(Instance *self)
 {
     const double time = gic_time(self);
+    self->head.ahead = 0;
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time,
                                   tape_array(self, tape_of(self)->code.input_offset));

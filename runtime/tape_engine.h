@@ -23,7 +23,7 @@ typedef struct TapeWheel {
 
 /* What a subset is connected to, as in model.c.in, and addresses of all arrays of its class's blocks. */
 typedef struct TapeLinks {
-    double **array, *x, *rate, *change, turn[3];
+    double **array, *x, *rate, *change, turn[3], ahead[1];
     bool cold, again, *same; /* the last: [coordinates] */
 } TapeLinks;
 
@@ -47,7 +47,7 @@ typedef struct TapeEngine {
     double *piece, *initial; /* [coordinates], [states] */
     size_t x_offset, xd_offset, start_offset[GIC_STARTS], motion_offset, inertia_offset, multiplier_offset, derived_offset;
     size_t grip_offset,
-        recovered_offset; /* the latter: x, xd and angular velocity of the last recovery, 1: it was good */
+        recovered_offset; /* the latter: x, xd, angular velocity and ahead of the last recovery, 1: it was good */
     size_t gear_offset, watch_offset;
     double *link_row, *torques; /* a link; what drives and brakes [wheels with tires][2] */
     double *choice;             /* powertrain.h */
@@ -77,7 +77,7 @@ static inline double *tape_start(Instance *self)
 /* Arrays of a class's blocks, with m0, m1, ... and as many w0, w1, ... behind, and of the blocks about the whole
  * mechanism; names as in Formula and Whole of gicgen.h. */
 #define CLASS_ARRAYS(X) \
-    X(q) X(x) X(rate) X(change) X(turn) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst) X(w) X(d)
+    X(q) X(x) X(rate) X(change) X(turn) X(ahead) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst) X(w) X(d)
 #define WHOLE_ARRAYS(X) \
     X(time) \
     X(y) \

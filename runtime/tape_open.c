@@ -143,7 +143,7 @@ static void lay_out(TapeEngine *engine)
     engine->inertia_offset = descriptor_place(code, (size_t)plan->inertia_size);
     engine->derived_offset = descriptor_place(code, (size_t)plan->derived->count);
     engine->multiplier_offset = descriptor_place(code, (size_t)plan->multipliers);
-    engine->recovered_offset = descriptor_place(code, 2 * coordinates + 4);
+    engine->recovered_offset = descriptor_place(code, 2 * coordinates + 5);
     const Wheels *wheels = engine->formulation->wheels;
     if (wheels) {
         code->link_offset = descriptor_place(code, 5 * (size_t)wheels->links);

@@ -16,6 +16,7 @@ void tape_link(Instance *self, TapeLinks *links, const Subset *subset)
     array[CLASS_rate] = links->rate;
     array[CLASS_change] = links->change;
     array[CLASS_turn] = links->turn;
+    array[CLASS_ahead] = links->ahead;
     array[CLASS_d] =
         tape_array(self, tape_of(self)->derived_offset) + plan->derived_offset[subset - plan->sequence->subset];
     for (int i = 0; i < subset->knowns; ++i)
@@ -138,14 +139,15 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
     int pieces = 1;
     double *at = tape_array(self, engine->recovered_offset), *at_rate = at + coordinates,
            *at_turn = at_rate + coordinates;
-    double *recovered = at_turn + 3;
+    double *recovered = at_turn + 4;
     const double *xd = tape_array(self, engine->xd_offset);
     links.cold = cold;
-    links.again = *recovered > 0 && !memcmp(at_turn, turn, sizeof links.turn);
+    links.again = *recovered > 0 && !memcmp(at_turn, turn, sizeof links.turn) && self->head.ahead <= at_turn[3];
     *recovered = 0;
     for (int i = 0; i < coordinates; ++i)
         links.same[i] = !memcmp(&at[i], &x[i], sizeof *x) && !memcmp(&at_rate[i], &xd[i], sizeof *xd);
     memcpy(links.turn, turn, sizeof links.turn);
+    links.ahead[0] = self->head.ahead;
     for (int i = 0; i < coordinates; ++i) {
         const double parts = fabs(x[i] - from[i]) / engine->piece[i];
         if (!(parts < GIC_PIECES))
@@ -169,6 +171,7 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
     memcpy(at, x, (size_t)coordinates * sizeof *at);
     memcpy(at_rate, xd, (size_t)coordinates * sizeof *at);
     memcpy(at_turn, turn, sizeof links.turn);
+    at_turn[3] = self->head.ahead;
     *recovered = 1;
     self->head.flip = now;
     return GIC_OK;

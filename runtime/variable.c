@@ -135,6 +135,7 @@ static int advance(Variable *variable, double *time, double end)
 {
     gsl_odeiv2_driver *driver = variable->driver;
     variable->status = GIC_OK;
+    variable->self->ahead = variable->step;
     const int result = gsl_odeiv2_evolve_apply(driver->e, driver->c, driver->s, &variable->system, time, end,
                                                &variable->step, variable->integrated);
     if (result != GSL_SUCCESS)

@@ -1,10 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# branches.sh BRANCHES RANDOM_VEHICLE: random walks that must never leap to another assembly mode, nor leave a trace where they are refused
+# branches.sh BRANCHES PASSAGE RANDOM_VEHICLE: random walks that must never leap to another assembly mode, nor leave a trace where they are refused
 #
-# COUNT steps a model and way of recovery (a million steps: COUNT=1000000), of ours and of VEHICLES random mechanisms.
+# COUNT steps a model and way of recovery (a million steps: COUNT=1000000), of ours and of VEHICLES random mechanisms;
+# and runs towards a singular configuration in steps that are longer than its margin.
 branches=$1
-random_vehicle=$2
+passage=$2
+random_vehicle=$3
 models=$(cd "$(dirname "$0")/../../models" && pwd)
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -36,4 +38,14 @@ done
 [ "$STRESS" = short ] || walk andrews "$models/andrews.veh" $((count / 20))
 for seed in $(seq 1 "$vehicles"); do
     "$random_vehicle" --seed "$seed" >"$work/random.veh" && walk "random vehicle $seed" "$work/random.veh" $((count / 10))
+done
+for way in newton closed; do
+    if "$passage" --recovery $way --count $((count / 10)) --seed 1 >"$work/out"; then
+        read -r tried ended passed left <"$work/out"
+        verdict=ok
+        [ "$passed" = 0 ] || verdict="$passed runs turned back where they should have ended"
+        echo "branches | passage $way | $tried | 0 | $ended | $left steps early | $verdict"
+    else
+        echo "branches | passage $way | 0 | 0 | 0 | - | the attack itself failed"
+    fi
 done
