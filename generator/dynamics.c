@@ -31,7 +31,7 @@ static void add_all(const Summation *now, Ex *sum, int subset, int offset, int c
         Ex e = formula->inertia[i];
         if (formula_settled(formula, e) != now->settled)
             continue;
-        if (now->settled)
+        if (now->settled && !now->whole->open)
             e = ex_literal(dag, formula_value(formula, e, class_place(&plan->sequence->class[class], subset)));
         else
             e = ex_input(dag, pool_print(dag->pool, "n[%d]", plan->inertia_offset[subset] + plan->stride[subset] * i),

@@ -246,6 +246,12 @@ Ex ex_lane(Dag *dag, Ex vector, int lane)
 
 Ex ex_lane_sum(Dag *dag, Ex vector)
 {
+    if (dag->node[vector].op == OP_CONSTANT) {
+        double sum = 0;
+        for (int l = 0; l < dag->lanes; ++l)
+            sum += ex_value(dag, vector, l * (dag->samples / dag->members));
+        return ex_literal(dag, sum);
+    }
     if (dag->node[vector].wide)
         return narrow(dag, OP_LANE_SUM, vector, 0);
     return ex_mul(dag, ex_literal(dag, dag->lanes), vector);

@@ -39,9 +39,7 @@ void formulation_blocks(Pool *pool, Formulation *f)
 {
     const Plan *plan = f->plan;
     const bool reduced = plan->solve == SOLVE_REDUCED;
-    Whole *whole = whole_new(pool, plan);
-    whole->open = plan->pack;
-    f->dynamics = (reduced ? dynamics_block : augmented_block)(whole);
+    f->dynamics = (reduced ? dynamics_block : augmented_block)(whole_open(pool, plan, plan->pack));
     f->outputs = outputs_block(whole_new(pool, plan));
     f->poses = poses_block(whole_new(pool, plan));
     f->inverse = inverse_block(whole_new(pool, plan));

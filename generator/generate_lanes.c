@@ -331,6 +331,24 @@ static void write_derived(const LaneRow *row, Text *out, int indent, int count)
     line(out, indent, "row.derived = derived;");
 }
 
+/* The solution is kept where it is for the same numbers; what the start has of it moves on. */
+static void write_kept(const LaneRow *row, Text *out, int indent, int members)
+{
+    const Plan *plan = row->g->plan;
+    const Subset *first = row_subset(row, 0);
+    const int subset = (int)(first - row->g->sequence->subset), offset = plan->start_offset[subset];
+    text_print(out, "%*sconst int kept = links->again", indent, "");
+    for (int j = 0; j < first->deps; ++j)
+        for (int l = 0; l < members; ++l)
+            if (!l || row_subset(row, l)->dep[j] != first->dep[j])
+                text_print(out, " && links->same[%d]", row_subset(row, l)->dep[j]);
+    text_print(out, ";\n");
+    line(out, indent, "self->head.kept_count += kept ? %d : 0;", members);
+    if (plan->formula[first->class]->layout.start_size)
+        line(out, indent, "if (kept)\n%*smemcpy(start + %d, old + %d, %d * sizeof *start);", indent + 4, "", offset,
+             offset, row->lanes * plan->formula[first->class]->layout.start_size);
+}
+
 void write_lane_call(const Generation *g, Text *out, int indent, int subset)
 {
     const Plan *plan = g->plan;
@@ -348,6 +366,8 @@ void write_lane_call(const Generation *g, Text *out, int indent, int subset)
     indent += 4;
     line(out, indent, "%s_links_%d row;", model, lanes);
     line(out, indent, "int i, lane;");
+    if (plan_keeps(plan, subset))
+        write_kept(&row, out, indent, members < lanes ? members : lanes);
     line(out, indent, "for (i = 0; i < 3; ++i)");
     line(out, indent + 4, "row.turn[i] = LANE_%d(links->turn[i]);", lanes);
     line(out, indent, "row.ahead[0] = LANE_%d(links->ahead[0]);", lanes);
@@ -357,8 +377,8 @@ void write_lane_call(const Generation *g, Text *out, int indent, int subset)
     write_coordinates(&row, out, indent, formula->closed);
     if (formula->derived)
         write_derived(&row, out, indent, formula->derived);
-    line(out, indent, "status = %s_solve_%s(self, ROW_%d(%s_row_%s[%d]), &row,", model, class, lanes, model, class,
-         row.index);
+    line(out, indent, "status = %s%s_solve_%s(self, ROW_%d(%s_row_%s[%d]), &row,",
+         plan_keeps(plan, subset) ? "kept ? GIC_OK : " : "", model, class, lanes, model, class, row.index);
     if (!formula->closed)
         line(out, indent + 4, "ROW_%d(old + %d),", lanes, plan->start_offset[subset]);
     line(out, indent + 4, "ROW_%d(start + %d), ROW_%d(self->motion + %d), ROW_%d(self->inertia + %d), %d, &lane);",

@@ -552,10 +552,11 @@ typedef struct Whole {
     Ex turn[3];                /* angular velocity of the base, base frame */
     Ex gravity[3];             /* base frame */
     Ex *x, *xd;                /* [coordinates] */
-    bool open;                 /* numbers of the model stay inputs, whatever they are, for block_pack to compare */
+    bool open;                 /* numbers that are known stay inputs, for block_pack to compare */
 } Whole;
 
 Whole *whole_new(Pool *pool, const Plan *plan);
+Whole *whole_open(Pool *pool, const Plan *plan, bool open);
 /* A number of the model, a difference of two. */
 Ex whole_number(Whole *whole, const double *at);
 Ex whole_difference(Whole *whole, const double *a, const double *b);

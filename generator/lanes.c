@@ -138,12 +138,21 @@ typedef struct Inputs {
     LaneInput *input;
 } Inputs;
 
-static void add_input(Inputs *all, int subset, int kind, int number, const char *array, int index)
+/* found: what the subset's formula says of it, NULL: nothing. */
+static void add_input(Inputs *all, const Plan *plan, int subset, const Ex *found, int kind, int number,
+                      const char *array, int index)
 {
     const Tracks *tracks = all->tracks;
+    const Formula *formula = plan->formula[plan->sequence->subset[subset].class];
     const uint64_t slot = (uint64_t)tracks->slot[subset] * 512 + (uint64_t)kind;
-    *POOL_PUSH(all->pool, all->input, all->count) = (LaneInput){
-        pool_print(all->pool, "%s[%d]", array, index), (slot << 32) + (uint64_t)number + 1, tracks->of[subset]};
+    LaneInput input = {.name = pool_print(all->pool, "%s[%d]", array, index),
+                       .colour = (slot << 32) + (uint64_t)number + 1,
+                       .track = tracks->of[subset],
+                       .fixed = found && formula_settled(formula, *found)};
+    if (input.fixed)
+        input.value = formula_value(formula, *found,
+                                    class_place(&plan->sequence->class[plan->sequence->subset[subset].class], subset));
+    *POOL_PUSH(all->pool, all->input, all->count) = input;
 }
 
 /* Which of a track's coordinates the j-th dependence of a subset is, or which one of all. */
@@ -168,17 +177,20 @@ static int dependent(int first, int second, int number)
 static void add_inertia(Inputs *all, const Plan *plan, int s)
 {
     const int deps = plan->sequence->subset[s].deps, offset = plan->inertia_offset[s], stride = plan->stride[s];
+    const Ex *found = plan->formula[plan->sequence->subset[s].class]->inertia;
     for (int i = 0; i < INERTIA_COORDINATE; ++i)
-        add_input(all, s, INPUT_INERTIA, i, "n", offset + stride * i);
+        add_input(all, plan, s, &found[i], INPUT_INERTIA, i, "n", offset + stride * i);
     for (int j = 0; j < deps; ++j) {
         const int own = dependence(all, plan, s, j);
-        for (int i = 0; i < 7; ++i)
-            add_input(all, s, INPUT_INERTIA, dependent(own, 0, i), "n",
-                      offset + stride * (INERTIA_COORDINATE + 7 * j + i));
+        for (int i = 0; i < 7; ++i) {
+            const int place = INERTIA_COORDINATE + 7 * j + i;
+            add_input(all, plan, s, &found[place], INPUT_INERTIA, dependent(own, 0, i), "n", offset + stride * place);
+        }
         for (int k = j; k < deps; ++k) {
-            const int other = dependence(all, plan, s, k);
-            add_input(all, s, INPUT_INERTIA, dependent(own < other ? own : other, 1 + (own < other ? other : own), 0),
-                      "n", offset + stride * inertia_mass(deps, j, k));
+            const int other = dependence(all, plan, s, k), place = inertia_mass(deps, j, k);
+            const int low = own < other ? own : other, high = own < other ? other : own;
+            add_input(all, plan, s, &found[place], INPUT_INERTIA, dependent(low, 1 + high, 0), "n",
+                      offset + stride * place);
         }
     }
 }
@@ -189,7 +201,8 @@ static void add_motion(Inputs *all, const Plan *plan, int s, int b)
     const int offset = plan->motion_offset[subset->body[b]], stride = plan->stride[s];
     for (int i = 0; i < MOTION_S + 6 * subset->deps; ++i) {
         const int number = i < MOTION_S ? i : dependent(dependence(all, plan, s, (i - MOTION_S) / 6), 0, i % 6);
-        add_input(all, s, INPUT_MOTION + 8 * b, number, "m", offset + stride * i);
+        add_input(all, plan, s, motion_number(&plan->formula[subset->class]->motion[b], i), INPUT_MOTION + 8 * b,
+                  number, "m", offset + stride * i);
     }
 }
 
@@ -201,14 +214,15 @@ static void add_subset(Inputs *all, const Plan *plan, int s)
     if (plan->formula[subset->class]->layout.inertia_size)
         add_inertia(all, plan, s);
     for (int i = 0; i < subset->coordinates; ++i) {
-        add_input(all, s, INPUT_VALUE, i, "x", subset->coordinate[i]);
-        add_input(all, s, INPUT_RATE, i, "xd", subset->coordinate[i]);
+        add_input(all, plan, s, NULL, INPUT_VALUE, i, "x", subset->coordinate[i]);
+        add_input(all, plan, s, NULL, INPUT_RATE, i, "xd", subset->coordinate[i]);
     }
     for (int w = 0; w < plan->model->wheels; ++w) {
         const Wheel *wheel = &plan->model->wheel[w];
         if (wheel->tire >= 0 && plan->sequence->body_subset[wheel->body] == s)
             for (int i = 0; i < GRIP_NUMBERS; ++i)
-                add_input(all, s, INPUT_GRIP, i, "self->grip", GRIP_NUMBERS * wheel_rolling(plan->model, w) + i);
+                add_input(all, plan, s, NULL, INPUT_GRIP, i, "self->grip",
+                          GRIP_NUMBERS * wheel_rolling(plan->model, w) + i);
     }
 }
 
@@ -229,7 +243,7 @@ const Formulation *formulation_lanes(Pool *pool, const Formulation *formulation,
     f->plan = plan;
     formulation_blocks(pool, f);
     for (int s = 0; s < plan->sequence->subsets; ++s)
-        if (tracks.of[s] >= 0)
+        if (plan->pack && plan->sequence->subset[s].class >= 0)
             add_subset(&inputs, plan, s);
     if (plan->pack)
         f->dynamics = block_pack(pool, f->dynamics, inputs.input, inputs.count, plan->pack);

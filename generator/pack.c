@@ -232,7 +232,9 @@ static void classify(Packing *p, Ex e)
     const LaneInput *input = node->op == OP_INPUT ? find_input(p, node->name) : NULL;
     Shape shape = {.op = (Op)node->op, .input = input ? input->colour : 0};
     int track = input ? input->track : -1;
-    bool swapped = false, fixed = node->op == OP_INPUT ? ex_is_number(p->dag, e) : is_arithmetic(node);
+    bool swapped = false, fixed = is_arithmetic(node);
+    if (node->op == OP_INPUT)
+        fixed = ex_is_number(p->dag, e) || (input && input->fixed && track < 0);
     for (int i = 0; i < op_arity[node->op]; ++i)
         fixed = fixed && (node->level < LEVEL_VARIABLE || is_fixed(p, node->arg[i]));
     *POOL_PUSH(p->pool, p->fixed, p->infos) = fixed;
@@ -431,6 +433,15 @@ static Ex apply(Dag *dag, const Node *node, Ex a, Ex b, Ex c)
     }
 }
 
+static Ex copy_input(Packing *p, Ex e)
+{
+    const char *name = p->from->node[e].name;
+    const LaneInput *input = find_input(p, name);
+    if (ex_is_number(p->from, e))
+        return ex_number(p->dag, ex_value(p->from, e, 0));
+    return ex_input(p->dag, name, input && input->fixed ? &input->value : NULL);
+}
+
 static void make_dag(Packing *p)
 {
     noted(p, 0);
@@ -444,8 +455,7 @@ static void make_dag(Packing *p)
         } else if (node->level < LEVEL_VARIABLE) {
             p->same[e] = ex_literal(p->dag, ex_value(p->from, (Ex)e, 0));
         } else if (node->op == OP_INPUT) {
-            p->same[e] = ex_is_number(p->from, (Ex)e) ? ex_number(p->dag, ex_value(p->from, (Ex)e, 0))
-                                                      : ex_input(p->dag, node->name, NULL);
+            p->same[e] = copy_input(p, (Ex)e);
         } else {
             Ex arg[3] = {0};
             for (int i = 0; i < op_arity[node->op]; ++i)
@@ -474,10 +484,18 @@ static void find_usable(Packing *p)
     }
 }
 
+/* The same number at all times, be it of one track? */
+static bool is_known(const Packing *p, Ex e)
+{
+    const Node *node = &p->dag->node[e];
+    const LaneInput *input = node->op == OP_INPUT ? find_input(p, node->name) : NULL;
+    return is_fixed(p, e) || (input && input->fixed);
+}
+
 static const char *free_text(const Packing *p, Ex e)
 {
     const Node *node = &p->dag->node[e];
-    return is_fixed(p, e) ? emit_number(p->pool, ex_value(p->dag, e, 0)) : node->name;
+    return is_known(p, e) ? emit_number(p->pool, ex_value(p->dag, e, 0)) : node->name;
 }
 
 /* Numbers, one a lane; lanes without one get another's. */
@@ -495,10 +513,10 @@ static Ex vector_of(Packing *p, const Ex *e)
         const Ex own = e[l] ? e[l] : any;
         const Node *node = &p->dag->node[own];
         same = same && own == any;
-        literal = literal && is_fixed(p, own);
+        literal = literal && is_known(p, own);
         value[l] = ex_value(p->dag, own, 0);
-        bool part = e[l] && node->op == OP_INPUT && sscanf(node->name, "%63[^[][%d]", other, &index[l]) == 2 &&
-                    (!l || !strcmp(array, other));
+        bool part = e[l] && node->op == OP_INPUT && !is_known(p, own) &&
+                    sscanf(node->name, "%63[^[][%d]", other, &index[l]) == 2 && (!l || !strcmp(array, other));
         memcpy(array, other, sizeof array);
         part = part && (l % half == 0 || index[l] == index[l - 1] + 1);
         if (l < half)
@@ -630,7 +648,7 @@ static void make_number(Packing *p, Stack *stack, Ex e)
     const Node *node = &p->dag->node[e];
     const int track = p->track[e];
     bool all = true;
-    if (is_fixed(p, e)) {
+    if (is_known(p, e)) {
         set_number(p, e, ex_literal(p->out, ex_value(p->dag, e, 0)));
     } else if (node->op == OP_INPUT) {
         const LaneSum *over = find_sum(p, e);

@@ -10,7 +10,9 @@
 typedef struct LaneInput {
     const char *name;
     uint64_t colour;
-    int track;
+    int track;  /* -1: none */
+    bool fixed; /* always this value, and not in memory */
+    double value;
 } LaneInput;
 
 /* The same block with vectors of so many lanes for what it does alike to several tracks. */

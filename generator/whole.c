@@ -127,7 +127,7 @@ static void body_motion(Whole *whole, int body)
                  subset->deps);
     for (int i = 0; i < formula->layout.motion_size; ++i) {
         const Ex found = *motion_number(&formula->motion[subset_place(subset, body)], i);
-        if (formula_settled(formula, found))
+        if (formula_settled(formula, found) && !whole->open)
             *motion_number(motion, i) = ex_literal(whole->dag, formula_value(formula, found, member));
     }
 }
@@ -143,7 +143,7 @@ bool plan_keeps(const Plan *plan, int subset)
     return true;
 }
 
-Whole *whole_new(Pool *pool, const Plan *plan)
+Whole *whole_open(Pool *pool, const Plan *plan, bool open)
 {
     const Model *model = plan->model;
     Dag *dag = dag_new(pool, 1, 1);
@@ -151,6 +151,7 @@ Whole *whole_new(Pool *pool, const Plan *plan)
     *whole = (Whole){.plan = plan,
                      .model = model,
                      .dag = dag,
+                     .open = open,
                      .motion = pool_alloc(pool, (size_t)model->bodies * sizeof(Motion)),
                      .x = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof(Ex)),
                      .xd = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof(Ex))};
@@ -183,6 +184,11 @@ Whole *whole_new(Pool *pool, const Plan *plan)
     }
     ex_apply_transposed(dag, whole->R, gravity, whole->gravity);
     return whole;
+}
+
+Whole *whole_new(Pool *pool, const Plan *plan)
+{
+    return whole_open(pool, plan, false);
 }
 
 /* The number of derived[] with that formula, which gets a place there; 0 is none: a literal. */
