@@ -194,12 +194,13 @@ void write_wheel_lane_calls(Generation *g, Text *out, int indent, const WheelCla
     const char *name = g->model->name;
     const Expansion x = {.g = g, .class = class, .lanes = wheel_lanes(g, class)};
     for (int r = 0; r < wheel_rows(&x); ++r) {
+        const int rest = class->members - x.lanes * r, count = rest < x.lanes ? rest : x.lanes;
         text_print(out, "%*sif (status == GIC_OK) /*", indent, "");
-        for (int l = 0; l < x.lanes && x.lanes * r + l < class->members; ++l)
+        for (int l = 0; l < count; ++l)
             text_print(out, "%s %s", l ? "," : "", g->model->wheel[class->member[x.lanes * r + l]].name);
         text_print(out, " */\n");
         line(out, indent + 4,
-             "status = %s_wheels_%s(self, %s_k_wheel_%s[%d], %s_at_%s[%d], time, link, fast, torque, rate, grip);",
-             name, class->name, name, class->name, r, name, class->name, r);
+             "status = %s_wheels_%s(self, %d, %s_k_wheel_%s[%d], %s_at_%s[%d], time, link, fast, torque, rate, grip);",
+             name, class->name, count, name, class->name, r, name, class->name, r);
     }
 }

@@ -214,8 +214,8 @@ int main(int count, char **word)
                          .lanes = request.lanes,
                          .compiler = request.compiler,
                          .flags = request.flags,
-                         /* a page shows whatever outputs tell */
-                         .facts = runs && !request.general && !request.page
+                         /* a page shows whatever outputs tell; lanes are for code for all scenes */
+                         .facts = runs && !request.general && !request.page && !request.lanes
                                       ? scene_facts(pool, model, scene, request.scene, drawn)
                                       : NULL,
                          .quiet = request.quiet});
