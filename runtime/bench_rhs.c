@@ -13,26 +13,30 @@ typedef struct Variant {
     const char *flags;
     Solve solve;
     bool single;
+    bool newton; /* everywhere, whatever the command line says */
 } Variant;
 
 #define FASTEST "-O3 -march=native -ffp-contract=fast"
 
 /* The first is what the others are compared with, in double precision and the reduced form. */
 static const Variant every_variant[] = {
-    {"cc", NULL, "-O2", SOLVE_REDUCED, false},
-    {"cc", NULL, "-O3", SOLVE_REDUCED, false},
-    {"cc", NULL, FASTEST, SOLVE_REDUCED, false},
-    {"cc", "clang", "-O2", SOLVE_REDUCED, false},
-    {"cc", "clang", FASTEST, SOLVE_REDUCED, false},
-    {"cc", NULL, "-O2", SOLVE_AUGMENTED, false},
-    {"cc", NULL, FASTEST, SOLVE_AUGMENTED, false},
-    {"cc", NULL, "-O2 -DGIC_FLOAT", SOLVE_REDUCED, true},
-    {"cc", NULL, FASTEST " -DGIC_FLOAT", SOLVE_REDUCED, true},
-    {"tcc", NULL, "", SOLVE_REDUCED, false},
-    {"tape", NULL, "", SOLVE_REDUCED, false},
-    {"gic", NULL, "", SOLVE_REDUCED, false},
-    {"gcp1", NULL, "", SOLVE_REDUCED, false},
-    {"gcp2", NULL, "", SOLVE_REDUCED, false},
+    {"cc", NULL, "-O2", SOLVE_REDUCED, false, false},
+    {"cc", NULL, "-O3", SOLVE_REDUCED, false, false},
+    {"cc", NULL, FASTEST, SOLVE_REDUCED, false, false},
+    {"cc", "clang", "-O2", SOLVE_REDUCED, false, false},
+    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, false},
+    {"cc", NULL, "-O2", SOLVE_REDUCED, false, true},
+    {"cc", NULL, FASTEST, SOLVE_REDUCED, false, true},
+    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, true},
+    {"cc", NULL, "-O2", SOLVE_AUGMENTED, false, false},
+    {"cc", NULL, FASTEST, SOLVE_AUGMENTED, false, false},
+    {"cc", NULL, "-O2 -DGIC_FLOAT", SOLVE_REDUCED, true, false},
+    {"cc", NULL, FASTEST " -DGIC_FLOAT", SOLVE_REDUCED, true, false},
+    {"tcc", NULL, "", SOLVE_REDUCED, false, false},
+    {"tape", NULL, "", SOLVE_REDUCED, false, false},
+    {"gic", NULL, "", SOLVE_REDUCED, false, false},
+    {"gcp1", NULL, "", SOLVE_REDUCED, false, false},
+    {"gcp2", NULL, "", SOLVE_REDUCED, false, false},
 };
 
 enum {
@@ -180,11 +184,14 @@ static void open_subject(Course *course, const Variant *variant)
     *subject = (Subject){.variant = variant, .calls = variant->single ? &calls_float : &calls_double};
     subject->name = strcmp(variant->engine, "cc")
                         ? variant->engine
-                        : pool_print(pool, "%s %s%s", variant->compiler ? variant->compiler : options.compiler,
-                                     variant->flags, variant->solve == SOLVE_AUGMENTED ? " --solve augmented" : "");
+                        : pool_print(pool, "%s %s%s%s", variant->compiler ? variant->compiler : options.compiler,
+                                     variant->flags, variant->solve == SOLVE_AUGMENTED ? " --solve augmented" : "",
+                                     variant->newton ? " --recovery newton" : "");
     bench_progress("engine %s", subject->name);
     options.solve = variant->solve;
     options.single = variant->single;
+    if (variant->newton)
+        options.recovery = RECOVERY_NEWTON;
     options.quiet = true;
     options.flags = pool_print(pool, "%s %s", variant->flags, options.flags);
     if (variant->compiler)
@@ -275,11 +282,21 @@ static void time_subject(const Course *course, Subject *subject, int repetition)
 
 /* ---- tables ----------------------------------------------------------------------------------------------------- */
 
-static const Figures *figures_of(const Bench *bench, Solve solve)
+/* Operations of the code, by the way that it was made. */
+typedef struct Kinds {
+    const Figures *usual[SOLVES], *newton;
+} Kinds;
+
+static const Figures *figures_of(const Bench *bench, Solve solve, Recovery recovery)
 {
     const Sequence *sequence = sequence_find(bench->pool, bench->model);
     return figures_new(bench->pool, formulate(bench->pool, model_assemble(bench->pool, bench->model, sequence),
-                                              sequence, solve, bench->options.recovery));
+                                              sequence, solve, recovery));
+}
+
+static const Figures *figures_for(const Kinds *kinds, const Variant *variant)
+{
+    return variant->newton ? kinds->newton : kinds->usual[variant->solve];
 }
 
 /* Corrections with old factors that a subset without a closed form takes on average; the last one is with new ones. */
@@ -301,31 +318,52 @@ static void operations_row(Pool *pool, Sheet *table, const char *what, Count cou
                    (const int[]){count.add, count.multiply, count.divide, count.root, count.function}[i]);
 }
 
-static void operations_table(const Course *course, const Figures *const figures[SOLVES], int chords)
+/* Corrections with old factors, rounded, of the first variant at work that is like this one. */
+static int usual_chords(const Course *course, const Kinds *kinds, bool newton)
+{
+    for (int s = 0; s < course->subjects; ++s) {
+        const Subject *subject = &course->subject[s];
+        if (!strcmp(subject->variant->engine, "cc") && subject->variant->newton == newton)
+            return (int)round(average_chords(subject, figures_for(kinds, subject->variant)));
+    }
+    return 0;
+}
+
+static void operations_table(const Course *course, const Kinds *kinds)
 {
     Pool *pool = course->bench->pool;
     Sheet *table = report_table(course->bench->report, "rhs_operations", "Operations of generated code",
                                 "part|add|multiply|divide|root|other functions");
-    operations_row(pool, table, "recovery", figures_recovery(figures[SOLVE_REDUCED], chords, 1));
+    const Figures *const reduced = kinds->usual[SOLVE_REDUCED];
+    const int chords = usual_chords(course, kinds, false), newton_chords = usual_chords(course, kinds, true);
+    operations_row(pool, table, "recovery", figures_recovery(reduced, chords, 1));
+    operations_row(pool, table, "recovery (newton)", figures_recovery(kinds->newton, newton_chords, 1));
     for (int solve = 0; solve < SOLVES; ++solve) {
-        Count equations = figures[solve]->dynamics;
-        count_add(&equations, figures[solve]->loads, -1);
+        Count equations = kinds->usual[solve]->dynamics;
+        count_add(&equations, kinds->usual[solve]->loads, -1);
         operations_row(pool, table, pool_print(pool, "equations of motion (%s)", solve_name[solve]), equations);
     }
-    const Figures *reduced = figures[SOLVE_REDUCED];
     Count laws = reduced->loads;
     count_add(&laws, reduced->link, 1);
     count_add(&laws, reduced->fast, 1);
     operations_row(pool, table, "force laws", laws);
     if (course->subject->engine->code->link_count)
         operations_row(pool, table, "of these in a fast step", reduced->fast);
-    operations_row(pool, table, "all (reduced)", figures_rhs(reduced, chords, 1));
-    table->note = pool_print(pool,
-                             "Recovery with %d correction%s by the last call's factors and one by new ones, which is "
-                             "what these states take, where there is no closed form. Force laws give the applied "
-                             "forces and what they do along the "
-                             "coordinates, from the motion of the bodies.",
-                             chords, chords == 1 ? "" : "s");
+    for (int newton = 0; newton < 2; ++newton) {
+        const Figures *figures = newton ? kinds->newton : reduced;
+        Count all = figures_rhs(figures, newton ? newton_chords : chords, 1);
+        operations_row(pool, table, newton ? "all (reduced, newton)" : "all (reduced)", all);
+        count_add(&all, figures->loads, -1);
+        count_add(&all, figures->link, -1);
+        count_add(&all, figures->fast, -1);
+        operations_row(pool, table, newton ? "all but force laws (newton)" : "all but force laws", all);
+    }
+    table->note =
+        pool_print(pool,
+                   "Recovery with %d correction%s by the last call's factors, of Newton's method everywhere with %d, "
+                   "and one by new ones, which is what these states take, where there is no closed form. Force laws "
+                   "give the applied forces and what they do along the coordinates, from the motion of the bodies.",
+                   chords, chords == 1 ? "" : "s", newton_chords);
 }
 
 /* Additions and multiplications. */
@@ -359,8 +397,7 @@ static void limit_cells(const Course *course, Sheet *table, const double *second
 }
 
 /* Rows of one of the numbers of all subjects; ratios to those that interpret. */
-static void time_table(const Course *course, const char *name, const char *title, const Figures *const figures[SOLVES],
-                       bool fast)
+static void time_table(const Course *course, const char *name, const char *title, const Kinds *kinds, bool fast)
 {
     const Bench *bench = course->bench;
     Pool *pool = bench->pool;
@@ -396,7 +433,7 @@ static void time_table(const Course *course, const char *name, const char *title
                 table_cell(pool, table, "-");
             continue;
         }
-        const Figures *own = figures[subject->variant->solve];
+        const Figures *own = figures_for(kinds, subject->variant);
         limit_cells(course, table, seconds, fast ? work_of(own->fast) : rhs_work(subject, own),
                     subject->variant->single);
     }
@@ -433,7 +470,9 @@ void bench_rhs(const Bench *bench)
             time_subject(&course, &course.subject[s], r);
     }
     const bool tires = course.subject->engine->code->link_count > 0;
-    const Figures *const figures[SOLVES] = {figures_of(bench, SOLVE_REDUCED), figures_of(bench, SOLVE_AUGMENTED)};
+    const Recovery usual = bench->options.recovery;
+    const Kinds kinds = {{figures_of(bench, SOLVE_REDUCED, usual), figures_of(bench, SOLVE_AUGMENTED, usual)},
+                         figures_of(bench, SOLVE_REDUCED, RECOVERY_NEWTON)};
     report_heading(bench->report, "One right-hand side");
     report_text(bench->report,
                 "Recovery of the dependent coordinates, forces, equations of motion: on %d stretches of the %s, each "
@@ -446,10 +485,10 @@ void bench_rhs(const Bench *bench)
                 "loop in each repetition, with one number at a time and with as many as it takes.",
                 course.stretches, bench->scene ? "scene" : "run that follows setting up", CALLS, bench->repetitions,
                 build_flags);
-    operations_table(&course, figures, (int)round(average_chords(course.subject, figures[SOLVE_REDUCED])));
-    time_table(&course, "rhs", "Time of a right-hand side", figures, false);
+    operations_table(&course, &kinds);
+    time_table(&course, "rhs", "Time of a right-hand side", &kinds, false);
     if (tires)
-        time_table(&course, "rhs_fast", "Time of a fast step's rates", figures, true);
+        time_table(&course, "rhs_fast", "Time of a fast step's rates", &kinds, true);
     limit_table(&course);
     for (int s = 0; s < course.subjects; ++s)
         engine_close(course.subject[s].engine);
