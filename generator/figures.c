@@ -11,6 +11,11 @@ void count_add(Count *sum, Count more, int times)
     sum->function += times * more.function;
 }
 
+int count_sum(Count c)
+{
+    return c.add + c.multiply + c.divide + c.root + c.function;
+}
+
 static void wheel_figures(Pool *pool, Figures *figures, const Formulation *f)
 {
     const Wheels *wheels = f->wheels;

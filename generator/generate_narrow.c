@@ -32,6 +32,14 @@ void write_narrowing(Generation *g, Text *out)
     for (int i = 0; i < narrowing->assumptions; ++i)
         text_print(out, " *   %s\n", narrowing->assumption[i].text);
     text_print(out, " *\n");
+    if (!narrowing->account)
+        return;
+    text_print(out, " * What that saves, one after the other: operations of a right-hand side and of outputs.\n");
+    for (int i = 0; i < narrowing->account->rows; ++i) {
+        const AccountRow *row = &narrowing->account->row[i];
+        text_print(out, " *   %-48s %6d %6d  %s\n", row->what, count_sum(row->rhs), count_sum(row->outputs), row->why);
+    }
+    text_print(out, " *\n");
 }
 
 static const char *const state_name[] = {[ABOUT_STATE] = "y", [ABOUT_FAST] = "fast"};

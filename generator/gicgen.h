@@ -842,6 +842,8 @@ typedef struct Figures {
 
 const Figures *figures_new(Pool *pool, const Formulation *f);
 void count_add(Count *sum, Count more, int times);
+/* All of them, each as one. */
+int count_sum(Count c);
 /* With so many corrections with old factors and with new ones: of one subset of a class; of all subsets, which is one
  * piece; of a right-hand side in one piece. */
 Count figures_subset(const Figures *figures, int class, int chords, int passes);

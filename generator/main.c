@@ -153,9 +153,24 @@ static Options read_options(int count, char **word)
     return options;
 }
 
+/* A scene: the model before it, and what is known of it; NULL: none. */
+typedef struct Setting {
+    const Model *drawn;
+    const Facts *facts;
+} Setting;
+
+static const Formulation *formulation_of(Pool *pool, const Model *model, const Sequence *sequence,
+                                         const Options *options, const Setting *setting)
+{
+    if (!setting->facts)
+        return formulate(pool, model, sequence, options->solve, options->recovery);
+    return formulate_explained(pool, setting->drawn, model, sequence, options->solve, options->recovery,
+                               setting->facts);
+}
+
 /* FILE.c and FILE.h; the code includes <model>.h, so the names must agree. */
 static void write_code(Pool *pool, const Model *model, const Sequence *sequence, const Options *options,
-                       const Facts *facts)
+                       const Setting *setting)
 {
     Text c = {.pool = pool}, h = {.pool = pool};
     bool batch = options->task == TASK_BATCH;
@@ -165,7 +180,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
     const Formulation *formulation =
-        formulate_narrow(pool, model, sequence, options->solve, options->recovery, facts);
+        formulation_of(pool, model, sequence, options, setting);
     if (!batch && options->batch.lanes)
         formulation = formulation_lanes(pool, formulation, options->batch.lanes);
     name = strcmp(path, "-") ? name : NULL;
@@ -199,13 +214,13 @@ static void write_graph(Pool *pool, const Model *model, const Sequence *sequence
 }
 
 static void write_report(Pool *pool, const Model *model, const Sequence *sequence, const Options *options,
-                         const Facts *facts)
+                         const Setting *setting)
 {
     Text c = {.pool = pool}, h = {.pool = pool}, page = {.pool = pool};
     if (strcmp(options->page, "-") && !path_ends(options->page, ".html"))
         usage_error("the report's name must end in .html", options->page);
     const Formulation *formulation =
-        formulate_narrow(pool, model, sequence, options->solve, options->recovery, facts);
+        formulation_of(pool, model, sequence, options, setting);
     generate(pool, formulation, &style_readable, options->templates, NULL, &c, &h);
     report_print(&page, options->page, options->templates, formulation, &c, &h);
     file_write(options->page, page.s, page.size);
@@ -216,20 +231,20 @@ int main(int count, char **word)
     Options options = read_options(count, word);
     Pool *pool = pool_new();
     const Model *model = model_read(pool, options.model);
-    const Facts *facts = NULL;
+    Setting setting = {model, NULL};
     if (options.scene) {
         const Scene *scene = scene_read(pool, options.scene, model, NULL, 0);
         model = scene_rig(pool, model, &scene);
-        facts = scene_facts(pool, model, scene, options.scene, false);
+        setting.facts = scene_facts(pool, model, scene, options.scene, false);
     }
     const Sequence *sequence = sequence_find(pool, model);
     model = model_assemble(pool, model, sequence);
     Text text = {.pool = pool};
     switch (options.task) {
     case TASK_GENERATE:
-    case TASK_BATCH: write_code(pool, model, sequence, &options, facts); break;
+    case TASK_BATCH: write_code(pool, model, sequence, &options, &setting); break;
     case TASK_GRAPH: write_graph(pool, model, sequence, &options); break;
-    case TASK_REPORT: write_report(pool, model, sequence, &options, facts); break;
+    case TASK_REPORT: write_report(pool, model, sequence, &options, &setting); break;
     case TASK_MAIN:
     case TASK_SEQUENCE:
     case TASK_DUMP:

@@ -76,6 +76,17 @@ typedef struct Assumption {
     const char *text, *broken;
 } Assumption;
 
+/* What is known or refused, why, and the operations that are left with it and all before it. */
+typedef struct AccountRow {
+    const char *what, *why;
+    Count rhs, outputs;
+} AccountRow;
+
+typedef struct Account {
+    int rows;
+    AccountRow *row;
+} Account;
+
 struct Narrowing {
     const Facts *facts;
     int assumptions;
@@ -85,6 +96,7 @@ struct Narrowing {
     const char *asymmetry; /* why both are; NULL: they are not */
     bool *steady; /* [subsets] nothing about it ever changes: recovered at set-up */
     bool road, friction, tables; /* are they still looked up? */
+    const Account *account;      /* NULL: nobody asked */
 };
 
 /* Is a subset recovered at set-up alone; is it, or a wheel, the image of another? narrowing may be NULL. */
@@ -103,5 +115,11 @@ double wheel_grip_sign(int number);
 /* As formulate, of an assembled model and its sequence; facts NULL: the same. */
 const Formulation *formulate_narrow(Pool *pool, const Model *model, const Sequence *sequence, Solve solve,
                                     Recovery recovery, const Facts *facts);
+
+/* ---- narrow_account.c ---------------------------------------------------------------------------------------------- */
+
+/* The same with its account. drawn: the model before a scene made it one of a rig, or `model` as it was read. */
+const Formulation *formulate_explained(Pool *pool, const Model *drawn, const Model *model, const Sequence *sequence,
+                                       Solve solve, Recovery recovery, const Facts *facts);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The page of --report: what the model is, its sequence, and what its code costs. */
-#include "gicgen.h"
+#include "narrow.h"
 
 #include <string.h>
 
@@ -106,6 +106,39 @@ static void identity(const Report *r, Text *out)
                    model->powertrain ? " and the powertrain" : "", model->fast_states);
     text_print(out, "<p>Equations of motion in the %s form. Code of gicgen %s; model hash <code>%s</code>.</p>\n",
                solve_name[r->formulation->plan->solve], GICGEN_VERSION, r->formulation->hash);
+}
+
+/* What code for one scene takes for granted, and what that saves. */
+static void scene(const Report *r, Text *out)
+{
+    const Narrowing *narrowing = r->formulation->narrowing;
+    if (!narrowing)
+        return;
+    text_print(out, "<h2>Scene</h2>\n<p>This code is for the scene <code>");
+    html(out, narrowing->facts->scene);
+    text_print(out, "</code> alone. What it takes for granted it checks in each call, which ends with "
+                    "<code>GIC_ERROR_ASSUMPTION</code> and the text of what is broken.</p>\n");
+    table_open(out, "assumptions", "Assumptions", "what is taken for granted");
+    for (int i = 0; i < narrowing->assumptions; ++i) {
+        row_open(out);
+        cell(out, narrowing->assumption[i].text);
+        row_close(out);
+    }
+    table_close(out);
+    table_open(out, "savings", "What is left out, one after the other, and the operations that are left",
+               "what|why|#right-hand side before|#after|#outputs before|#after");
+    for (int i = 1; i < narrowing->account->rows; ++i) {
+        const AccountRow *row = &narrowing->account->row[i];
+        row_open(out);
+        cell(out, row->what);
+        cell(out, row->why);
+        cell_number(out, count_sum(row[-1].rhs));
+        cell_number(out, count_sum(row->rhs));
+        cell_number(out, count_sum(row[-1].outputs));
+        cell_number(out, count_sum(row->outputs));
+        row_close(out);
+    }
+    table_close(out);
 }
 
 static void sequence(const Report *r, Text *out)
@@ -505,7 +538,7 @@ static void insert(void *context, const char *name, Text *out, int indent)
     static const struct {
         const char *name;
         void (*print)(const Report *, Text *);
-    } section[] = {{"identity", identity}, {"sequence", sequence}, {"graph", graph},   {"operations", operations},
+    } section[] = {{"identity", identity}, {"scene", scene}, {"sequence", sequence}, {"graph", graph},   {"operations", operations},
                    {"bounds", bounds},     {"totals", totals},     {"pieces", pieces}, {"memory", memory},
                    {"stack", stack},       {"states", states},     {"inputs", inputs}, {"parameters", parameters},
                    {"ports", ports},       {"outputs", outputs}};
