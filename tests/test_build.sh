@@ -40,7 +40,7 @@ chmod +x "$work/bin/counting"
 # $status and the number of compilers it started in $starts
 run() {
     : >"$work/starts"
-    "$gicrun" --engine cc --cc "$work/bin/counting" \
+    "$gicrun" --general --engine cc --cc "$work/bin/counting" \
         "$work/mass.veh" "$work/mass.scene" "$@" >"$work/out" 2>"$work/err"
     status=$?
     starts=$(wc -l <"$work/starts")
@@ -124,7 +124,7 @@ mkdir "$work/other"
 cp "$work/bin/counting" "$work/other/"
 : >"$work/starts"
 for folder in other bin; do
-    PATH=$work/$folder:$PATH "$gicrun" -q --engine cc --cc counting \
+    PATH=$work/$folder:$PATH "$gicrun" -q --general --engine cc --cc counting \
         "$work/mass.veh" "$work/mass.scene" >"$work/out" 2>"$work/err"
 done
 check 'the compiler is the one that PATH finds' [ "$(wc -l <"$work/starts")" -eq 2 ]
@@ -155,7 +155,7 @@ check 'damaged objects are compiled anew' good 1
 # whole, but of another model
 rm -f "$GICGEN_CACHE"/*.so
 sed 's/^model: mass/model: other/' "$work/mass.veh" >"$work/other.veh"
-"$gicrun" -q --engine cc "$work/other.veh" "$work/mass.scene" >"$work/out" 2>"$work/err"
+"$gicrun" -q --general --engine cc "$work/other.veh" "$work/mass.scene" >"$work/out" 2>"$work/err"
 mv "$GICGEN_CACHE"/*.so "$work/other.so"
 run
 damage cp "$work/other.so"
@@ -171,7 +171,7 @@ for word; do
 done
 END
 chmod +x "$work/bin/breaking"
-"$gicrun" --engine cc --cc "$work/bin/breaking" "$work/mass.veh" "$work/mass.scene" >"$work/out" 2>"$work/err"
+"$gicrun" --general --engine cc --cc "$work/bin/breaking" "$work/mass.veh" "$work/mass.scene" >"$work/out" 2>"$work/err"
 check 'an object that cannot be loaded is an error' [ $? -eq 1 ]
 check 'and is not kept' [ "$(objects)" -eq 1 ]
 
@@ -179,7 +179,7 @@ check 'and is not kept' [ "$(objects)" -eq 1 ]
 
 : >"$work/starts"
 for i in 1 2 3 4; do
-    "$gicrun" -q --engine cc --cc "$work/bin/counting" \
+    "$gicrun" -q --general --engine cc --cc "$work/bin/counting" \
         "$work/mass.veh" "$work/mass.scene" >"$work/out$i" 2>>"$work/err" &
 done
 wait
@@ -198,7 +198,7 @@ cc "$@"
 kill -KILL $PPID
 END
 chmod +x "$work/bin/killing"
-"$gicrun" --engine cc --cc "$work/bin/killing" "$work/mass.veh" "$work/mass.scene" >"$work/out" 2>"$work/err"
+"$gicrun" --general --engine cc --cc "$work/bin/killing" "$work/mass.veh" "$work/mass.scene" >"$work/out" 2>"$work/err"
 check 'a run killed when its object is there keeps nothing' [ "$(objects)" -eq 0 ]
 rm -rf "${TMPDIR:?}"/*
 # what one killed while it kept its object leaves

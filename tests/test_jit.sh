@@ -39,17 +39,27 @@ quick="sh $work/cc"
 
 # ---- the same bits ------------------------------------------------------------------------------------------------
 
-# same_run MODEL SCENE COMPILER: all engines; summaries but for the time that it took
-same_run() {
-    "$gicrun" --engine cc --cc "$3" "$1" "$2" -o run.csv 2>said
-    check $? "$2: cc"
+# same_as MODEL SCENE COMPILER ENGINES [OPTION...]: summaries but for the time that it took
+same_as() {
+    model=$1
+    scene=$2
+    compiler=$3
+    engines=$4
+    shift 4
+    "$gicrun" "$@" --engine cc --cc "$compiler" "$model" "$scene" -o run.csv 2>said
+    check $? "$scene: cc $*"
     mv run.csv compiled.csv
     grep -v 'CPU time' said >compiled.said
-    for engine in tcc auto tape; do
-        alone --engine $engine "$1" "$2" -o run.csv 2>said && cmp compiled.csv run.csv >>said &&
+    for engine in $engines; do
+        alone "$@" --engine "$engine" "$model" "$scene" -o run.csv 2>said && cmp compiled.csv run.csv >>said &&
             grep -v 'CPU time' said | diff - compiled.said >>said && [ "$(wc -l <run.csv)" -gt 2 ]
-        check $? "$2: $engine"
+        check $? "$scene: $engine $*"
     done
+}
+# same_run MODEL SCENE COMPILER: all engines; the tape has formulas for any scene
+same_run() {
+    same_as "$@" "tcc auto"
+    same_as "$@" "tcc tape" --general
 }
 sed 's/^duration: .*/duration: 1.5/' "$root/models/scenes/paper_run.scene" >hmmwv.scene
 same_run "$root/models/hmmwv.veh" hmmwv.scene "${CC:-cc}"
@@ -185,7 +195,7 @@ support=$(dirname "$(tcc -print-search-dirs | sed -n 's/^ *\(.*\/libtcc1\.a\)$/\
 if [ -f "$support/libtcc1.a" ] && unshare -m mount -t tmpfs none "$support" 2>said; then
     "$gicrun" -q --engine tape "$pendulum" "$root/models/scenes/pendulum.scene" -o tape.csv &&
         unshare -m sh -c 'mount -t tmpfs none "$0" && [ ! -e "$0/libtcc1.a" ] && exec "$@"' "$support" \
-            "$gicrun" -q --engine tcc "$pendulum" "$root/models/scenes/pendulum.scene" -o bare.csv 2>said &&
+            "$gicrun" -q --general --engine tcc "$pendulum" "$root/models/scenes/pendulum.scene" -o bare.csv 2>said &&
         cmp tape.csv bare.csv >>said
     check $? "tcc without its support files"
 else

@@ -105,7 +105,7 @@ same() {
     esac
     rm -f sanitized.csv
     "$gicrun" -q --engine "$plain" "$@" "$model" "$scene" -o plain.csv 2>said &&
-        "$debug/gicrun" --engine "$engine" "$@" "$model" "$scene" -o sanitized.csv 2>>said &&
+        "$debug/gicrun" --general --engine "$engine" "$@" "$model" "$scene" -o sanitized.csv 2>>said &&
         cmp plain.csv sanitized.csv >>said && [ "$(wc -l <sanitized.csv)" -gt 2 ] && clean
     check $? "gicrun --engine $engine $* $model"
 }
@@ -156,7 +156,7 @@ goes() {
     note=$2
     shift 2
     rm -f sanitized.csv
-    "$@" "$pendulum" pendulum.scene -o sanitized.csv 2>said && cmp right.csv sanitized.csv >>said && clean &&
+    "$@" --general "$pendulum" pendulum.scene -o sanitized.csv 2>said && cmp right.csv sanitized.csv >>said && clean &&
         [ "$(grep -c '^gicrun: note: ' said)" -eq "$note" ]
     check $? "$label"
 }

@@ -81,7 +81,7 @@ same_states() {
 
 # same_run MODEL SCENE LABEL: results and summary, but for the time it took
 same_run() {
-    "$gicrun" --engine cc "$1" "$2" -o "$work/run" 2>"$work/said.compiled" && mv "$work/run" "$work/compiled" &&
+    "$gicrun" --general --engine cc "$1" "$2" -o "$work/run" 2>"$work/said.compiled" && mv "$work/run" "$work/compiled" &&
         tape "$1" "$2" -o "$work/run" 2>"$work/said.played" &&
         sed -i '/CPU time/d' "$work/said.compiled" "$work/said.played" &&
         diff "$work/said.compiled" "$work/said.played" >"$work/said" &&
@@ -150,7 +150,7 @@ done
 sed 's/^duration.*/duration: 2/; s/^step:.*/step: 0.02/; s/^output_step:.*/output_step: 0.02/
     s/height: 0.06/height: 3/' \
     "$root/models/scenes/paper_run.scene" >"$work/hmmwv.scene"
-"$gicrun" --engine cc --cc "sh $work/cc" -q "$root/models/hmmwv.veh" "$work/hmmwv.scene" -o "$work/compiled" \
+"$gicrun" --general --engine cc --cc "sh $work/cc" -q "$root/models/hmmwv.veh" "$work/hmmwv.scene" -o "$work/compiled" \
     2>"$work/said.compiled"
 compiled=$?
 tape -q "$root/models/hmmwv.veh" "$work/hmmwv.scene" -o "$work/played" 2>"$work/said.played"
