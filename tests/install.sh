@@ -5,7 +5,7 @@
 packages="gcc libc6-dev make libyaml-dev libgsl-dev libmumps-seq-dev libsuitesparse-dev libtcc-dev gnuplot-nox"
 [ "$1" = test ] && packages="$packages g++ clang libclang-rt-dev libcmocka-dev graphviz python3-jsonschema python3-yaml \
     gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user \
-    mandoc pkgconf tcc chromium"
+    mandoc pkgconf tcc chromium libc6-dev-i386 lib32gcc-12-dev"
 
 if ! command -v dpkg-query >/dev/null; then
     echo "This is no Debian system: make sure that it has what these packages hold: $packages" >&2
