@@ -79,9 +79,9 @@ static void print_line(Place at)
 {
     const char *s = diag_line(at), *end = at.source->bytes + at.source->size;
     int first = at.column > WINDOW ? at.column - WINDOW_LEAD : 1;
-    Text caret = {.pool = pool_new()};
+    char blank[WINDOW + 1]; /* below what is shown; no Pool, for there may be no memory left */
+    int blanks = 0;
     fputs(first > 1 ? "  ..." : "  ", stderr);
-    text_print(&caret, first > 1 ? "     " : "  ");
     for (int column = 1; s < end && !line_break(s, end); ++column) {
         bool shown;
         size_t size = character(s, end, &shown);
@@ -93,11 +93,10 @@ static void print_line(Place at)
         if (column >= first)
             print_character(s, size, shown || tab);
         if (column >= first && column < at.column)
-            text_print(&caret, tab ? "\t" : " ");
+            blank[blanks++] = tab ? '\t' : ' ';
         s += size;
     }
-    fprintf(stderr, "\n%s^\n", caret.s);
-    pool_free(caret.pool);
+    fprintf(stderr, "\n%s%.*s^\n", first > 1 ? "     " : "  ", blanks, blank);
 }
 
 static void report(Place at, const char *kind, const char *remedy, const char *format, va_list args)

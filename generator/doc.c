@@ -35,6 +35,8 @@ static Place place(const Loader *loader, yaml_mark_t mark)
 static _Noreturn void syntax_fail(Loader *loader)
 {
     const yaml_parser_t *parser = &loader->parser;
+    if (parser->error == YAML_MEMORY_ERROR)
+        out_of_memory();
     const char *problem = parser->problem ? parser->problem : "not readable";
     if (parser->error == YAML_READER_ERROR) {
         size_t offset = parser->problem_offset;
@@ -257,7 +259,7 @@ const Item *doc_read(Pool *pool, const char *path)
     Loader loader = {.pool = pool, .source = source};
     yaml_event_t event;
     if (!yaml_parser_initialize(&loader.parser))
-        diag_fail((Place){source, 0, 0}, NULL, "out of memory");
+        out_of_memory();
     yaml_parser_set_encoding(&loader.parser, YAML_UTF8_ENCODING);
     yaml_parser_set_input_string(&loader.parser, (const unsigned char *)source->bytes, source->size);
     do {

@@ -21,6 +21,9 @@ void *pool_grow(Pool *pool, void *old, size_t old_size, size_t size); /* copy in
 char *pool_print(Pool *pool, const char *format, ...) __attribute__((format(printf, 2, 3)));
 char *pool_vprint(Pool *pool, const char *format, va_list args);
 
+/* What every allocation of a Pool does where there is no memory: one message, exit status 1. */
+_Noreturn void out_of_memory(void);
+
 /* Make room for one more element behind the first `count` of `array`; sizes double. */
 #define POOL_PUSH(pool, array, count) \
     ((((count) & ((count)-1)) == 0 \

@@ -12,8 +12,8 @@
 #define NUMBER_LIST(X) \
     X(UNLOADED_RADIUS) \
     X(WIDTH) \
-    X(RIM_RADIUS) X(VERTICAL_STIFFNESS) X(VERTICAL_DAMPING) X(BOTTOM_STIFF) X(BOTTOM_OFFST) X(LCZ) X(VXLOW) \
-        X(USE_MODE) X(FITTYP)
+    X(RIM_RADIUS) \
+    X(VERTICAL_STIFFNESS) X(VERTICAL_DAMPING) X(BOTTOM_STIFF) X(BOTTOM_OFFST) X(LCZ) X(VXLOW) X(USE_MODE) X(FITTYP)
 #define WORD_LIST(X) X(PROPERTY_FILE_FORMAT) X(TYRESIDE)
 #define UNIT_LIST(X) X(LENGTH) X(FORCE) X(ANGLE) X(TIME) X(MASS) X(PRESSURE)
 
@@ -467,6 +467,9 @@ static void numbers_convert(Tir *tir)
             double *number = &tir->found[dimension[i].key].number;
             *number *= dimension[i].exponent[k] > 0 ? size[k] : 1;
             *number /= dimension[i].exponent[k] < 0 ? size[k] : 1;
+            if (!isfinite(*number))
+                diag_fail(tir->found[dimension[i].key].item.at, "check the number, and its unit in [UNITS]",
+                          "%s of %s is too large in SI units", key_name[dimension[i].key], tir->what);
         }
 }
 
@@ -605,6 +608,9 @@ static void tire_fill(const Tir *tir, Tire *tire)
     tire->width = tir->found[TIR_WIDTH].number;
     tire->stiffness =
         tir->found[TIR_VERTICAL_STIFFNESS].number * (given(tir, TIR_LCZ) ? tir->found[TIR_LCZ].number : 1);
+    if (!(tire->stiffness > 0) || !isfinite(tire->stiffness))
+        diag_fail(tir->found[TIR_VERTICAL_STIFFNESS].item.at, "check it, and LCZ of [SCALING_COEFFICIENTS]",
+                  "VERTICAL_STIFFNESS of %s is %g N/m with LCZ", tir->what, tire->stiffness);
     tire->damping = tir->found[TIR_VERTICAL_DAMPING].number;
     tire->low_speed = given(tir, TIR_VXLOW) ? tir->found[TIR_VXLOW].number : 1;
     tire->relaxation[0] = number[PAC_PTX1] == 0 ? 0.5 * tire->radius : 0;

@@ -20,7 +20,7 @@ struct Pool {
     Chunk *chunk;
 };
 
-static _Noreturn void out_of_memory(void)
+_Noreturn void out_of_memory(void)
 {
     fputs("gicgen: error: out of memory\n", stderr);
     exit(1);

@@ -144,9 +144,9 @@ static double cell_number(Pool *pool, const Source *source, const Cell *c, const
     double value = strtod(text, &stop);
     const char *remedy = "write a decimal number such as 1.5 or -2e-3";
     if (stop == text || *stop || text[strspn(text, "0123456789+-.eE")])
-        diag_fail(cell_place(source, c), remedy, "%s must be a number, not '%s'", column, text);
+        diag_fail(cell_place(source, c), remedy, "%s must be a number, not '%.40s'", column, text);
     if (!isfinite(value))
-        diag_fail(cell_place(source, c), remedy, "%s: %s is too large", column, text);
+        diag_fail(cell_place(source, c), remedy, "%s: %.40s is too large", column, text);
     return value;
 }
 
