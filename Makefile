@@ -229,8 +229,8 @@ demo: all
 	@echo "numbers:  $(BUILD)/demo/hmmwv.csv, $(BUILD)/demo/full_run.csv"
 
 # scenes that are run with general code and with code for each alone: model/scene
-compared := hmmwv/paper_run hmmwv/rough_road hmmwv_tires/straight hmmwv_tires/tires_jump quarter_car/quarter_car \
-    hmmwv_vehicle/constant_steer hmmwv_vehicle/cruise hmmwv_vehicle/coasting hmmwv_vehicle/parked hmmwv_vehicle/full_run
+compared := hmmwv/paper_run hmmwv/rough_road hmmwv/suspension_rig quarter_car/quarter_car hmmwv_tires/tires_jump \
+    $(addprefix hmmwv_vehicle/,straight constant_steer cruise coasting parked full_run)
 
 # QUICK=1: fewer repetitions and settings
 bench: all
