@@ -42,11 +42,11 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'K1' (1 times, closed form)                        21        58       2      1         2
- *   subset 'K2_K3' (1 times)                                 285       395       2      0         0
- *   subset 'K5_K4' (2 times)                                 487       642       4      0         0
+ *   subset 'K1' (1 times, closed form)                        22        59       2      1         2
+ *   subset 'K2_K3' (1 times)                                 287       396       2      0         0
+ *   subset 'K5_K4' (2 times)                                 491       643       4      0         0
  *   forces and equations of motion                            18        15       2      1         0
- *   all together                                            1298      1752      14      2         2
+ *   all together                                            1309      1756      14      2         2
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #ifndef ANDREWS_H
@@ -170,7 +170,7 @@ typedef struct andrews {
     gic_real x[ANDREWS_COORDINATE_ROOM], xd[ANDREWS_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[GIC_STARTS][ANDREWS_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[ANDREWS_MOTION_ROOM];            /* bodies relative to the base */
-    gic_real recovered_at[2 * ANDREWS_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    gic_real recovered_at[2 * ANDREWS_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[ANDREWS_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[ANDREWS_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */

@@ -63,11 +63,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   69       110       1      1         0
- *   subset 'wheel_r_l' (2 times)                             594       679       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
+ *   subset 'lca_f_l' (2 times, closed form)                   70       111       1      1         0
+ *   subset 'wheel_r_l' (2 times)                             597       680       6      0         0
+ *   subset 'wheel_f_l' (2 times, closed form)                307       408       5      2         0
  *   forces and equations of motion                           703       657      11      0         4
- *   all together                                            2652      3074      35      6         4
+ *   all together                                            2666      3080      35      6         4
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
@@ -242,7 +242,7 @@ typedef struct five_link {
     gic_real x[FIVE_LINK_COORDINATE_ROOM], xd[FIVE_LINK_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[GIC_STARTS][FIVE_LINK_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[FIVE_LINK_MOTION_ROOM];            /* bodies relative to the base */
-    gic_real recovered_at[2 * FIVE_LINK_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    gic_real recovered_at[2 * FIVE_LINK_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[FIVE_LINK_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[FIVE_LINK_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */

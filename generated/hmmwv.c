@@ -69,11 +69,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                 87       128       2      1         0
+ *   subset 'lca_f_l' (4 times, closed form)                   70       111       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                307       408       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 88       129       2      1         0
  *   forces and equations of motion                           681       587      10      0         4
- *   all together                                            1754      2122      28     10         4
+ *   all together                                            1766      2130      28     10         4
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #include "hmmwv.h"
@@ -146,10 +146,11 @@
 #define GIC_PIECES 1000
 
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
- * changes since its start, and the angular velocity of the base. */
+ * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct hmmwv_links {
     const gic_real *known[HMMWV_KNOWN_ROOM];
     gic_real x[HMMWV_DEPENDENCE_ROOM], rate[HMMWV_DEPENDENCE_ROOM], change[HMMWV_DEPENDENCE_ROOM], turn[3];
+    gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
     int again, same[HMMWV_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
 } hmmwv_links;
@@ -231,7 +232,7 @@ static const gic_real hmmwv_k_lca_f_l[4][27] = {
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
         R(-0.05607209753299996), R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428),
         R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(0.307086),
-        R(0.509778), R(-17.834182133305656), R(51.57660077184113), R(209.3566321652691),
+        R(0.509778), R(-8.917091066652828), R(51.57660077184113), R(209.3566321652691),
         R(-209.35663216526908), R(51.576600771841136), R(-51.57660077184113), R(209.35663216526908),
         R(3.0379110359107786e-06), R(0.24689200985615367), R(1.688965), R(40.476046225),
         R(0.01121887479261392), R(0.2403881036540444), R(7.8923759275231005),
@@ -240,7 +241,7 @@ static const gic_real hmmwv_k_lca_f_l[4][27] = {
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
         R(-0.05607209753299996), R(0.038649583990999964), R(-0.05607209753299996), R(-50.90547521989428),
         R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(-0.307086),
-        R(-0.509778), R(17.834182133305656), R(-51.57660077184113), R(209.3566321652691),
+        R(-0.509778), R(8.917091066652828), R(-51.57660077184113), R(209.3566321652691),
         R(-209.35663216526908), R(-51.576600771841136), R(51.57660077184113), R(209.35663216526908),
         R(3.0379110359107786e-06), R(-0.24689200985615367), R(1.688965), R(40.476046225),
         R(0.01121887479261392), R(-0.2403881036540444), R(7.8923759275231005),
@@ -249,7 +250,7 @@ static const gic_real hmmwv_k_lca_f_l[4][27] = {
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
         R(-0.06962018656579994), R(-0.03396250304259998), R(0.06962018656579994), R(39.34606605646901),
         R(7.767620356494952), R(-7.767620356494952), R(0.2564892), R(0.307086),
-        R(0.5015738), R(-14.363650103908768), R(39.86479513590535), R(161.81677595488463),
+        R(0.5015738), R(-7.181825051954384), R(39.86479513590535), R(161.81677595488463),
         R(-161.8167759548846), R(39.864795135905354), R(-39.86479513590535), R(161.8167759548846),
         R(-3.0379110358344508e-06), R(0.246867347245056), R(-1.688965), R(-40.476046225),
         R(0.011218874792613923), R(0.24038810365404442), R(6.355965194292885),
@@ -258,7 +259,7 @@ static const gic_real hmmwv_k_lca_f_l[4][27] = {
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
         R(-0.06962018656579994), R(0.03396250304259998), R(-0.06962018656579994), R(-39.34606605646901),
         R(7.767620356494952), R(-7.767620356494952), R(0.2564892), R(-0.307086),
-        R(-0.5015738), R(14.363650103908768), R(-39.86479513590535), R(161.81677595488463),
+        R(-0.5015738), R(7.181825051954384), R(-39.86479513590535), R(161.81677595488463),
         R(-161.8167759548846), R(-39.864795135905354), R(39.86479513590535), R(161.8167759548846),
         R(-3.0379110358344508e-06), R(-0.246867347245056), R(-1.688965), R(-40.476046225),
         R(0.011218874792613923), R(-0.24038810365404442), R(6.355965194292885),
@@ -274,6 +275,7 @@ static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, cons
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
+    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.01011066687539999);
@@ -292,54 +294,54 @@ static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, cons
         const gic_real t10 = t6 * t8 - t7 * t9;
         if (!(GIC_FABS(t10) > R(7.426200502961346e-08)))
             return GIC_ERROR_SINGULAR;
-        if (!(t10 * k[13] > R(0.001)))
+        const gic_real t11 = R(1.0) / t10;
+        const gic_real t12 = x[0] * t11;
+        const gic_real t13 = rate[0] * t12;
+        if (!(t10 * k[13] - GIC_FABS(t13) * ahead[0] > R(0.0005)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t11 = t5 * k[14] + t4 * k[15];
-        const gic_real t12 = t5 * k[16] + t4 * k[17];
-        const gic_real t13 = t5 * k[15] + t4 * k[18];
-        const gic_real t14 = t5 * k[17] + t4 * k[19];
-        const gic_real t15 = R(1.0) / t10;
-        const gic_real t16 = x[0] * t15;
-        const gic_real t17 = rate[0] * t16;
-        const gic_real t18 = t6 * t17;
-        const gic_real t19 = t7 * t17;
-        const gic_real t20 = t18 * t18 + t19 * t19 - (t8 * (t17 * t19) + t9 * (t17 * t18));
-        const gic_real t21 = t15 * (rate[0] * rate[0] - t20);
-        const gic_real t22 = t12 * k[20] + t11 * k[21];
+        const gic_real t14 = t5 * k[14] + t4 * k[15];
+        const gic_real t15 = t5 * k[16] + t4 * k[17];
+        const gic_real t16 = t5 * k[15] + t4 * k[18];
+        const gic_real t17 = t5 * k[17] + t4 * k[19];
+        const gic_real t18 = t6 * t13;
+        const gic_real t19 = t7 * t13;
+        const gic_real t20 = t18 * t18 + t19 * t19 - (t8 * (t13 * t19) + t9 * (t13 * t18));
+        const gic_real t21 = t11 * (rate[0] * rate[0] - t20);
+        const gic_real t22 = t15 * k[20] + t14 * k[21];
         const gic_real t23 = k[11] + t22;
         const gic_real t24 = R(23.965) * t23;
-        const gic_real t25 = t14 * k[20] + t13 * k[21];
+        const gic_real t25 = t17 * k[20] + t16 * k[21];
         const gic_real t26 = R(23.965) * t25;
         const gic_real t27 = t23 * t24;
         const gic_real t28 = t25 * t26;
-        const gic_real t29 = t12 * R(0.4469);
-        const gic_real t30 = R(0.4469) + t12 * t29;
-        const gic_real t31 = R(0.4469) + t14 * (t14 * R(0.4469));
-        const gic_real t32 = t14 * t29;
-        const gic_real t33 = t17 * t22;
+        const gic_real t29 = t15 * R(0.4469);
+        const gic_real t30 = R(0.4469) + t15 * t29;
+        const gic_real t31 = R(0.4469) + t17 * (t17 * R(0.4469));
+        const gic_real t32 = t17 * t29;
+        const gic_real t33 = t13 * t22;
         const gic_real t34 = t33 + (t33 + (turn[0] * t23 - k[22] * turn[1]));
-        const gic_real t35 = t17 * t25;
+        const gic_real t35 = t13 * t25;
         const gic_real t36 = k[22] * turn[2] - turn[0] * t25 - t35 - t35;
         const gic_real t37 = R(23.965) * (turn[1] * t34 - turn[2] * t36);
         const gic_real t38 = turn[1] * t25 - turn[2] * t23;
-        const gic_real t39 = turn[2] * t38 - turn[0] * t34 - t17 * t33 - t21 * t25;
+        const gic_real t39 = turn[2] * t38 - turn[0] * t34 - t13 * t33 - t21 * t25;
         const gic_real t40 = R(23.965) * t39;
-        const gic_real t41 = turn[0] * t36 - turn[1] * t38 - t17 * t35 + t21 * t22;
+        const gic_real t41 = turn[0] * t36 - turn[1] * t38 - t13 * t35 + t21 * t22;
         const gic_real t42 = R(23.965) * t41;
         const gic_real t43 = turn[2] * t31 + turn[1] * t32;
         const gic_real t44 = turn[2] * t32 + turn[1] * t30;
         const gic_real t45 = t21 * R(0.4469) + (turn[1] * t43 - turn[2] * t44);
-        const gic_real t46 = t17 * turn[2];
-        const gic_real t47 = t17 * turn[1];
-        const gic_real t48 = t17 + turn[0];
+        const gic_real t46 = t13 * turn[2];
+        const gic_real t47 = t13 * turn[1];
+        const gic_real t48 = t13 + turn[0];
         const gic_real t49 = R(0.4469) * t48;
         const gic_real t50 = t30 * t46 - t32 * t47 + (turn[2] * t49 - t48 * t43);
         const gic_real t51 = t32 * t46 - t31 * t47 + (t48 * t44 - turn[1] * t49);
-        const gic_real t52 = t16 * t25;
+        const gic_real t52 = t12 * t25;
         const gic_real t53 = R(23.965) * t52;
-        const gic_real t54 = t16 * t22;
+        const gic_real t54 = t12 * t22;
         const gic_real t55 = R(23.965) * t54;
-        const gic_real t56 = t16 * R(0.4469);
+        const gic_real t56 = t12 * R(0.4469);
         const gic_real t57 = R(0.4469) + (t27 + t28);
         const gic_real t58 = t30 + (R(68.36262541240713) + t28);
         const gic_real t59 = t31 + (R(68.36262541240713) + t27);
@@ -353,15 +355,15 @@ static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, cons
         const gic_real t67 = t56 + (t25 * t53 + t23 * t55);
         const gic_real t68 = -(k[23] * t54);
         const gic_real t69 = -(k[23] * t52);
-        const gic_real t70 = t16 * t45 + (t42 * t54 - t40 * t52);
-        const gic_real t71 = t16 * t56 + (t54 * t55 + t52 * t53);
-        motion[7] = t11;
-        motion[8] = t12;
-        motion[10] = t13;
-        motion[11] = t14;
-        motion[12] = t17;
+        const gic_real t70 = t12 * t45 + (t42 * t54 - t40 * t52);
+        const gic_real t71 = t12 * t56 + (t54 * t55 + t52 * t53);
+        motion[7] = t14;
+        motion[8] = t15;
+        motion[10] = t16;
+        motion[11] = t17;
+        motion[12] = t13;
         motion[18] = t21;
-        motion[24] = t16;
+        motion[24] = t12;
         inertia[1] = t24;
         inertia[2] = t26;
         inertia[3] = t57;
@@ -430,6 +432,7 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
+    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = k[0] * m1[7];
@@ -503,215 +506,216 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t57 = R(0.9665541626242249) * t19 - R(0.21526024724178433) * t23 - t52 * t53 - t54 * t56;
         if (!(GIC_FABS(t57) > R(3.3266643612763756e-07)))
             return GIC_ERROR_SINGULAR;
-        if (!(t57 * (t41 * t51) * R(-669.5366201272494) > R(0.001)))
+        const gic_real t58 = t40 * t50;
+        const gic_real t59 = R(1.0) / t57;
+        const gic_real t60 = t59 * (t56 * t58 - t40 * t53);
+        const gic_real t61 = t55 * (t58 + t54 * t60);
+        const gic_real t62 = t49 * (t40 + t47 * t61 - t52 * t60);
+        const gic_real t63 = m1[24] * t5;
+        const gic_real t64 = m1[24] * t1;
+        const gic_real t65 = t40 * t63 - t39 * t64;
+        const gic_real t66 = t42 * t63 - t48 * t64 - t50 * t65;
+        const gic_real t67 = k[4] * t63 - R(0.21526024724178433) * t64 - t53 * t65 - t56 * t66;
+        const gic_real t68 = t59 * t67;
+        const gic_real t69 = t55 * (t66 - t54 * t68);
+        const gic_real t70 = t49 * (t65 - t47 * t69 - t52 * t68);
+        const gic_real t71 = rate[0] * t62 + rate[1] * t70;
+        const gic_real t72 = rate[0] * t60 + rate[1] * t68;
+        const gic_real t73 = rate[1] * t69 - rate[0] * t61;
+        const gic_real t74 = (GIC_FABS(t71) + GIC_FABS(t72) + GIC_FABS(t73)) * ahead[0];
+        if (!(t57 * (t41 * t51) * R(-334.7683100636247) - t74 > R(0.0005)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t58 = t22 * t37 - t19 * t35;
-        const gic_real t59 = t58 * k[7] + (t44 * R(-6.332169372123424) + t23 * R(-0.14982584743276875));
-        const gic_real t60 = t58 * R(-18.07838873614245) + (t44 * k[8] + t23 * k[9]);
-        const gic_real t61 = t58 * k[10] + (t44 * R(0.2191665982107646) + t23 * R(2.8601928491017183));
-        const gic_real t62 = t19 * t44 - t23 * t37;
-        const gic_real t63 = t62 * k[7] + (t35 * R(-6.332169372123424) + t22 * R(-0.14982584743276875));
-        const gic_real t64 = t62 * R(-18.07838873614245) + (t35 * k[8] + t22 * k[9]);
-        const gic_real t65 = t62 * k[10] + (t35 * R(0.2191665982107646) + t22 * R(2.8601928491017183));
-        const gic_real t66 = t23 * t35 - t22 * t44;
-        const gic_real t67 = t66 * k[7] + (t37 * R(-6.332169372123424) + t19 * R(-0.14982584743276875));
-        const gic_real t68 = t66 * R(-18.07838873614245) + (t37 * k[8] + t19 * k[9]);
-        const gic_real t69 = t66 * k[10] + (t37 * R(0.2191665982107646) + t19 * R(2.8601928491017183));
-        const gic_real t70 = t40 * t50;
-        const gic_real t71 = R(1.0) / t57;
-        const gic_real t72 = t71 * (t56 * t70 - t40 * t53);
-        const gic_real t73 = t55 * (t70 + t54 * t72);
-        const gic_real t74 = t49 * (t40 + t47 * t73 - t52 * t72);
-        const gic_real t75 = m1[24] * t5;
-        const gic_real t76 = m1[24] * t1;
-        const gic_real t77 = t40 * t75 - t39 * t76;
-        const gic_real t78 = t42 * t75 - t48 * t76 - t50 * t77;
-        const gic_real t79 = k[4] * t75 - R(0.21526024724178433) * t76 - t53 * t77 - t56 * t78;
-        const gic_real t80 = t71 * t79;
-        const gic_real t81 = t55 * (t78 - t54 * t80);
-        const gic_real t82 = t49 * (t77 - t47 * t81 - t52 * t80);
-        const gic_real t83 = rate[0] * t74 + rate[1] * t82;
-        const gic_real t84 = rate[0] * t72 + rate[1] * t80;
-        const gic_real t85 = rate[1] * t81 - rate[0] * t73;
-        const gic_real t86 = rate[1] * t75;
-        const gic_real t87 = rate[1] * t76;
-        const gic_real t88 = m1[12] * (m1[12] * t1) + m1[18] * t5;
-        const gic_real t89 = t36 * t83 - t45 * t84;
-        const gic_real t90 = t87 + t89;
-        const gic_real t91 = t45 * t85 - t38 * t83;
-        const gic_real t92 = t91 - t86 - m0[16];
-        const gic_real t93 = t38 * t84 - t36 * t85;
-        const gic_real t94 = t40 * (t85 * t93 - t83 * t89) + t46 * (t84 * t89 - t85 * t91);
-        const gic_real t95 = t90 * t90 + (t92 * t92 + t93 * t93) + (t39 * (t83 * t91 - t84 * t93) + t94);
-        const gic_real t96 = m1[18] * t1 - m1[12] * (m1[12] * t5);
-        const gic_real t97 = t88 * t40 - t95 - t96 * t39;
-        const gic_real t98 = t22 * t83 - t23 * t84;
-        const gic_real t99 = t87 + t98;
-        const gic_real t100 = t23 * t85 - t19 * t83;
-        const gic_real t101 = t100 - t86;
-        const gic_real t102 = t19 * t84 - t22 * t85;
-        const gic_real t103 = t83 * t100 - t84 * t102;
-        const gic_real t104 = t85 * t102 - t83 * t98;
-        const gic_real t105 = t84 * t98 - t85 * t100;
-        const gic_real t106 = t99 * t99 + (t101 * t101 + t102 * t102) + (t48 * t103 + (t42 * t104 + t43 * t105));
-        const gic_real t107 = t88 * t42 - t106 - t96 * t48 - t50 * t97;
-        const gic_real t108 = k[4] * t88 - (R(0.21526024724178433) * t103 + (k[4] * t104 + R(0.9665541626242249) * t105));
-        const gic_real t109 = t108 - R(0.21526024724178433) * t96 - t53 * t97 - t56 * t107;
-        const gic_real t110 = t71 * t109;
-        const gic_real t111 = t55 * (t107 - t54 * t110);
-        const gic_real t112 = t49 * (t97 - t47 * t111 - t52 * t110);
-        const gic_real t113 = t61 * R(0.09182100000000004) + (t60 * k[11] + t59 * R(-0.004825999999999997));
-        const gic_real t114 = R(1.653405) + t113;
-        const gic_real t115 = R(90.555) * t114;
-        const gic_real t116 = t65 * R(0.09182100000000004) + (t64 * k[11] + t63 * R(-0.004825999999999997));
-        const gic_real t117 = t2 + t116;
-        const gic_real t118 = R(90.555) * t117;
-        const gic_real t119 = t69 * R(0.09182100000000004) + (t68 * k[11] + t67 * R(-0.004825999999999997));
-        const gic_real t120 = t5 + t119;
-        const gic_real t121 = R(90.555) * t120;
-        const gic_real t122 = t60 * R(2.8083995);
-        const gic_real t123 = t59 * R(0.12192999999999987);
-        const gic_real t124 = R(4.7728205) + (t60 * t122 + t59 * t123);
-        const gic_real t125 = t117 * t118;
-        const gic_real t126 = t120 * t121;
-        const gic_real t127 = t64 * R(2.8083995);
-        const gic_real t128 = t63 * R(0.12192999999999987);
-        const gic_real t129 = R(4.7728205) + (t64 * t127 + t63 * t128);
-        const gic_real t130 = t114 * t115;
-        const gic_real t131 = R(4.7728205) + (t68 * (t68 * R(2.8083995)) + t67 * (t67 * R(0.12192999999999987)));
-        const gic_real t132 = t64 * t122 + t63 * t123;
-        const gic_real t133 = t68 * t122 + t67 * t123;
-        const gic_real t134 = t68 * t127 + t67 * t128;
-        const gic_real t135 = t83 * t116 - t84 * t113;
-        const gic_real t136 = t87 + t135;
-        const gic_real t137 = t136 + (t136 + (turn[0] * t117 - turn[1] * t114));
-        const gic_real t138 = t85 * t113 - t83 * t119;
-        const gic_real t139 = t138 - t86;
-        const gic_real t140 = t139 + (t139 + (turn[2] * t114 - turn[0] * t120));
-        const gic_real t141 = turn[1] * t137 - turn[2] * t140 + (t84 * t135 - t85 * t138);
-        const gic_real t142 = R(90.555) * (t141 + (t110 * t119 - t111 * t116));
-        const gic_real t143 = t84 * t119 - t85 * t116;
-        const gic_real t144 = t143 + (t143 + (turn[1] * t120 - turn[2] * t117));
-        const gic_real t145 = turn[2] * t144 - turn[0] * t137 + (t85 * t143 - t83 * t135);
-        const gic_real t146 = R(90.555) * (t145 + (t111 * t113 - t112 * t119) - t88);
-        const gic_real t147 = turn[0] * t140 - turn[1] * t144 + (t83 * t138 - t84 * t143);
-        const gic_real t148 = R(90.555) * (t96 + (t147 + (t112 * t116 - t110 * t113)));
-        const gic_real t149 = t111 + (t84 * turn[0] - t83 * turn[1]);
-        const gic_real t150 = t110 + (t83 * turn[2] - t85 * turn[0]);
-        const gic_real t151 = t112 + (t85 * turn[1] - t84 * turn[2]);
-        const gic_real t152 = t84 + turn[1];
-        const gic_real t153 = t85 + turn[2];
-        const gic_real t154 = t83 + turn[0];
-        const gic_real t155 = t131 * t153 + (t134 * t152 + t133 * t154);
-        const gic_real t156 = t134 * t153 + (t129 * t152 + t132 * t154);
-        const gic_real t157 = t133 * t149 + (t132 * t150 + t124 * t151) + (t152 * t155 - t153 * t156);
-        const gic_real t158 = t133 * t153 + (t132 * t152 + t124 * t154);
-        const gic_real t159 = t134 * t149 + (t129 * t150 + t132 * t151) + (t153 * t158 - t154 * t155);
-        const gic_real t160 = t131 * t149 + (t134 * t150 + t133 * t151) + (t154 * t156 - t152 * t158);
-        const gic_real t161 = t73 * t116 + t72 * t119;
-        const gic_real t162 = R(90.555) * t161;
-        const gic_real t163 = t74 * t119 + t73 * t113;
-        const gic_real t164 = R(90.555) * t163;
-        const gic_real t165 = t74 * t116 - t72 * t113;
-        const gic_real t166 = R(90.555) * t165;
-        const gic_real t167 = t72 * t132 + t74 * t124 - t73 * t133;
-        const gic_real t168 = t72 * t129 + t74 * t132 - t73 * t134;
-        const gic_real t169 = t72 * t134 + t74 * t133 - t73 * t131;
-        const gic_real t170 = t72 * t159 + t74 * t157 - t73 * t160 + (t148 * t165 + (t142 * t161 - t146 * t163));
-        const gic_real t171 = t80 * t119 - t81 * t116;
-        const gic_real t172 = R(90.555) * t171;
-        const gic_real t173 = t81 * t113 - t82 * t119 - t75;
-        const gic_real t174 = R(90.555) * t173;
-        const gic_real t175 = t76 + (t82 * t116 - t80 * t113);
-        const gic_real t176 = R(90.555) * t175;
-        const gic_real t177 = t81 * t133 + (t80 * t132 + t82 * t124);
-        const gic_real t178 = t81 * t134 + (t80 * t129 + t82 * t132);
-        const gic_real t179 = t81 * t131 + (t80 * t134 + t82 * t133);
-        const gic_real t180 = t81 * t160 + (t80 * t159 + t82 * t157) + (t148 * t175 + (t146 * t173 + t142 * t171));
-        const gic_real t181 = t72 * t168 + t74 * t167 - t73 * t169 + (t165 * t166 + (t163 * t164 + t161 * t162));
-        const gic_real t182 = t72 * t178 + t74 * t177 - t73 * t179 + (t165 * t176 + (t161 * t172 - t163 * t174));
-        const gic_real t183 = t81 * t179 + (t80 * t178 + t82 * t177) + (t175 * t176 + (t173 * t174 + t171 * t172));
-        const gic_real t184 = -t86;
-        const gic_real t185 = -t88;
-        const gic_real t186 = -t73;
-        const gic_real t187 = -t75;
-        const gic_real t188 = t124 + (t125 + t126);
-        const gic_real t189 = t129 + (t130 + t126);
-        const gic_real t190 = t131 + (t130 + t125);
-        const gic_real t191 = t132 - t117 * t115;
-        const gic_real t192 = t133 - t120 * t115;
-        const gic_real t193 = t134 - t120 * t118;
-        const gic_real t194 = t157 + (t117 * t148 - t120 * t146);
-        const gic_real t195 = t159 + (t120 * t142 - t114 * t148);
-        const gic_real t196 = t160 + (t114 * t146 - t117 * t142);
-        const gic_real t197 = -t164;
-        const gic_real t198 = t167 + (t120 * t164 + t117 * t166);
-        const gic_real t199 = t168 + (t120 * t162 - t114 * t166);
-        const gic_real t200 = t169 - (t117 * t162 + t114 * t164);
-        const gic_real t201 = t177 + (t117 * t176 - t120 * t174);
-        const gic_real t202 = t178 + (t120 * t172 - t114 * t176);
-        const gic_real t203 = t179 + (t114 * t174 - t117 * t172);
+        const gic_real t75 = t22 * t37 - t19 * t35;
+        const gic_real t76 = t75 * k[7] + (t44 * R(-6.332169372123424) + t23 * R(-0.14982584743276875));
+        const gic_real t77 = t75 * R(-18.07838873614245) + (t44 * k[8] + t23 * k[9]);
+        const gic_real t78 = t75 * k[10] + (t44 * R(0.2191665982107646) + t23 * R(2.8601928491017183));
+        const gic_real t79 = t19 * t44 - t23 * t37;
+        const gic_real t80 = t79 * k[7] + (t35 * R(-6.332169372123424) + t22 * R(-0.14982584743276875));
+        const gic_real t81 = t79 * R(-18.07838873614245) + (t35 * k[8] + t22 * k[9]);
+        const gic_real t82 = t79 * k[10] + (t35 * R(0.2191665982107646) + t22 * R(2.8601928491017183));
+        const gic_real t83 = t23 * t35 - t22 * t44;
+        const gic_real t84 = t83 * k[7] + (t37 * R(-6.332169372123424) + t19 * R(-0.14982584743276875));
+        const gic_real t85 = t83 * R(-18.07838873614245) + (t37 * k[8] + t19 * k[9]);
+        const gic_real t86 = t83 * k[10] + (t37 * R(0.2191665982107646) + t19 * R(2.8601928491017183));
+        const gic_real t87 = rate[1] * t63;
+        const gic_real t88 = rate[1] * t64;
+        const gic_real t89 = m1[12] * (m1[12] * t1) + m1[18] * t5;
+        const gic_real t90 = t36 * t71 - t45 * t72;
+        const gic_real t91 = t88 + t90;
+        const gic_real t92 = t45 * t73 - t38 * t71;
+        const gic_real t93 = t92 - t87 - m0[16];
+        const gic_real t94 = t38 * t72 - t36 * t73;
+        const gic_real t95 = t40 * (t73 * t94 - t71 * t90) + t46 * (t72 * t90 - t73 * t92);
+        const gic_real t96 = t91 * t91 + (t93 * t93 + t94 * t94) + (t39 * (t71 * t92 - t72 * t94) + t95);
+        const gic_real t97 = m1[18] * t1 - m1[12] * (m1[12] * t5);
+        const gic_real t98 = t89 * t40 - t96 - t97 * t39;
+        const gic_real t99 = t22 * t71 - t23 * t72;
+        const gic_real t100 = t88 + t99;
+        const gic_real t101 = t23 * t73 - t19 * t71;
+        const gic_real t102 = t101 - t87;
+        const gic_real t103 = t19 * t72 - t22 * t73;
+        const gic_real t104 = t71 * t101 - t72 * t103;
+        const gic_real t105 = t73 * t103 - t71 * t99;
+        const gic_real t106 = t72 * t99 - t73 * t101;
+        const gic_real t107 = t100 * t100 + (t102 * t102 + t103 * t103) + (t48 * t104 + (t42 * t105 + t43 * t106));
+        const gic_real t108 = t89 * t42 - t107 - t97 * t48 - t50 * t98;
+        const gic_real t109 = k[4] * t89 - (R(0.21526024724178433) * t104 + (k[4] * t105 + R(0.9665541626242249) * t106));
+        const gic_real t110 = t109 - R(0.21526024724178433) * t97 - t53 * t98 - t56 * t108;
+        const gic_real t111 = t59 * t110;
+        const gic_real t112 = t55 * (t108 - t54 * t111);
+        const gic_real t113 = t49 * (t98 - t47 * t112 - t52 * t111);
+        const gic_real t114 = t78 * R(0.09182100000000004) + (t77 * k[11] + t76 * R(-0.004825999999999997));
+        const gic_real t115 = R(1.653405) + t114;
+        const gic_real t116 = R(90.555) * t115;
+        const gic_real t117 = t82 * R(0.09182100000000004) + (t81 * k[11] + t80 * R(-0.004825999999999997));
+        const gic_real t118 = t2 + t117;
+        const gic_real t119 = R(90.555) * t118;
+        const gic_real t120 = t86 * R(0.09182100000000004) + (t85 * k[11] + t84 * R(-0.004825999999999997));
+        const gic_real t121 = t5 + t120;
+        const gic_real t122 = R(90.555) * t121;
+        const gic_real t123 = t77 * R(2.8083995);
+        const gic_real t124 = t76 * R(0.12192999999999987);
+        const gic_real t125 = R(4.7728205) + (t77 * t123 + t76 * t124);
+        const gic_real t126 = t118 * t119;
+        const gic_real t127 = t121 * t122;
+        const gic_real t128 = t81 * R(2.8083995);
+        const gic_real t129 = t80 * R(0.12192999999999987);
+        const gic_real t130 = R(4.7728205) + (t81 * t128 + t80 * t129);
+        const gic_real t131 = t115 * t116;
+        const gic_real t132 = R(4.7728205) + (t85 * (t85 * R(2.8083995)) + t84 * (t84 * R(0.12192999999999987)));
+        const gic_real t133 = t81 * t123 + t80 * t124;
+        const gic_real t134 = t85 * t123 + t84 * t124;
+        const gic_real t135 = t85 * t128 + t84 * t129;
+        const gic_real t136 = t71 * t117 - t72 * t114;
+        const gic_real t137 = t88 + t136;
+        const gic_real t138 = t137 + (t137 + (turn[0] * t118 - turn[1] * t115));
+        const gic_real t139 = t73 * t114 - t71 * t120;
+        const gic_real t140 = t139 - t87;
+        const gic_real t141 = t140 + (t140 + (turn[2] * t115 - turn[0] * t121));
+        const gic_real t142 = turn[1] * t138 - turn[2] * t141 + (t72 * t136 - t73 * t139);
+        const gic_real t143 = R(90.555) * (t142 + (t111 * t120 - t112 * t117));
+        const gic_real t144 = t72 * t120 - t73 * t117;
+        const gic_real t145 = t144 + (t144 + (turn[1] * t121 - turn[2] * t118));
+        const gic_real t146 = turn[2] * t145 - turn[0] * t138 + (t73 * t144 - t71 * t136);
+        const gic_real t147 = R(90.555) * (t146 + (t112 * t114 - t113 * t120) - t89);
+        const gic_real t148 = turn[0] * t141 - turn[1] * t145 + (t71 * t139 - t72 * t144);
+        const gic_real t149 = R(90.555) * (t97 + (t148 + (t113 * t117 - t111 * t114)));
+        const gic_real t150 = t112 + (t72 * turn[0] - t71 * turn[1]);
+        const gic_real t151 = t111 + (t71 * turn[2] - t73 * turn[0]);
+        const gic_real t152 = t113 + (t73 * turn[1] - t72 * turn[2]);
+        const gic_real t153 = t72 + turn[1];
+        const gic_real t154 = t73 + turn[2];
+        const gic_real t155 = t71 + turn[0];
+        const gic_real t156 = t132 * t154 + (t135 * t153 + t134 * t155);
+        const gic_real t157 = t135 * t154 + (t130 * t153 + t133 * t155);
+        const gic_real t158 = t134 * t150 + (t133 * t151 + t125 * t152) + (t153 * t156 - t154 * t157);
+        const gic_real t159 = t134 * t154 + (t133 * t153 + t125 * t155);
+        const gic_real t160 = t135 * t150 + (t130 * t151 + t133 * t152) + (t154 * t159 - t155 * t156);
+        const gic_real t161 = t132 * t150 + (t135 * t151 + t134 * t152) + (t155 * t157 - t153 * t159);
+        const gic_real t162 = t61 * t117 + t60 * t120;
+        const gic_real t163 = R(90.555) * t162;
+        const gic_real t164 = t62 * t120 + t61 * t114;
+        const gic_real t165 = R(90.555) * t164;
+        const gic_real t166 = t62 * t117 - t60 * t114;
+        const gic_real t167 = R(90.555) * t166;
+        const gic_real t168 = t60 * t133 + t62 * t125 - t61 * t134;
+        const gic_real t169 = t60 * t130 + t62 * t133 - t61 * t135;
+        const gic_real t170 = t60 * t135 + t62 * t134 - t61 * t132;
+        const gic_real t171 = t60 * t160 + t62 * t158 - t61 * t161 + (t149 * t166 + (t143 * t162 - t147 * t164));
+        const gic_real t172 = t68 * t120 - t69 * t117;
+        const gic_real t173 = R(90.555) * t172;
+        const gic_real t174 = t69 * t114 - t70 * t120 - t63;
+        const gic_real t175 = R(90.555) * t174;
+        const gic_real t176 = t64 + (t70 * t117 - t68 * t114);
+        const gic_real t177 = R(90.555) * t176;
+        const gic_real t178 = t69 * t134 + (t68 * t133 + t70 * t125);
+        const gic_real t179 = t69 * t135 + (t68 * t130 + t70 * t133);
+        const gic_real t180 = t69 * t132 + (t68 * t135 + t70 * t134);
+        const gic_real t181 = t69 * t161 + (t68 * t160 + t70 * t158) + (t149 * t176 + (t147 * t174 + t143 * t172));
+        const gic_real t182 = t60 * t169 + t62 * t168 - t61 * t170 + (t166 * t167 + (t164 * t165 + t162 * t163));
+        const gic_real t183 = t60 * t179 + t62 * t178 - t61 * t180 + (t166 * t177 + (t162 * t173 - t164 * t175));
+        const gic_real t184 = t69 * t180 + (t68 * t179 + t70 * t178) + (t176 * t177 + (t174 * t175 + t172 * t173));
+        const gic_real t185 = -t87;
+        const gic_real t186 = -t89;
+        const gic_real t187 = -t61;
+        const gic_real t188 = -t63;
+        const gic_real t189 = t125 + (t126 + t127);
+        const gic_real t190 = t130 + (t131 + t127);
+        const gic_real t191 = t132 + (t131 + t126);
+        const gic_real t192 = t133 - t118 * t116;
+        const gic_real t193 = t134 - t121 * t116;
+        const gic_real t194 = t135 - t121 * t119;
+        const gic_real t195 = t158 + (t118 * t149 - t121 * t147);
+        const gic_real t196 = t160 + (t121 * t143 - t115 * t149);
+        const gic_real t197 = t161 + (t115 * t147 - t118 * t143);
+        const gic_real t198 = -t165;
+        const gic_real t199 = t168 + (t121 * t165 + t118 * t167);
+        const gic_real t200 = t169 + (t121 * t163 - t115 * t167);
+        const gic_real t201 = t170 - (t118 * t163 + t115 * t165);
+        const gic_real t202 = t178 + (t118 * t177 - t121 * t175);
+        const gic_real t203 = t179 + (t121 * t173 - t115 * t177);
+        const gic_real t204 = t180 + (t115 * t175 - t118 * t173);
         motion[1] = t2;
         motion[2] = t5;
-        motion[3] = t59;
-        motion[4] = t60;
-        motion[5] = t61;
-        motion[6] = t63;
-        motion[7] = t64;
-        motion[8] = t65;
-        motion[9] = t67;
-        motion[10] = t68;
-        motion[11] = t69;
-        motion[12] = t83;
-        motion[13] = t84;
-        motion[14] = t85;
-        motion[16] = t184;
-        motion[17] = t87;
-        motion[18] = t112;
-        motion[19] = t110;
-        motion[20] = t111;
-        motion[22] = t185;
-        motion[23] = t96;
-        motion[24] = t74;
-        motion[25] = t72;
-        motion[26] = t186;
-        motion[30] = t82;
-        motion[31] = t80;
-        motion[32] = t81;
-        motion[34] = t187;
-        motion[35] = t76;
-        inertia[0] = t115;
-        inertia[1] = t118;
-        inertia[2] = t121;
-        inertia[3] = t188;
-        inertia[4] = t189;
-        inertia[5] = t190;
-        inertia[6] = t191;
-        inertia[7] = t192;
-        inertia[8] = t193;
-        inertia[9] = t142;
-        inertia[10] = t146;
-        inertia[11] = t148;
-        inertia[12] = t194;
-        inertia[13] = t195;
-        inertia[14] = t196;
-        inertia[15] = t162;
-        inertia[16] = t197;
-        inertia[17] = t166;
-        inertia[18] = t198;
-        inertia[19] = t199;
-        inertia[20] = t200;
-        inertia[21] = t170;
-        inertia[22] = t172;
-        inertia[23] = t174;
-        inertia[24] = t176;
-        inertia[25] = t201;
-        inertia[26] = t202;
-        inertia[27] = t203;
-        inertia[28] = t180;
-        inertia[29] = t181;
-        inertia[30] = t182;
-        inertia[31] = t183;
+        motion[3] = t76;
+        motion[4] = t77;
+        motion[5] = t78;
+        motion[6] = t80;
+        motion[7] = t81;
+        motion[8] = t82;
+        motion[9] = t84;
+        motion[10] = t85;
+        motion[11] = t86;
+        motion[12] = t71;
+        motion[13] = t72;
+        motion[14] = t73;
+        motion[16] = t185;
+        motion[17] = t88;
+        motion[18] = t113;
+        motion[19] = t111;
+        motion[20] = t112;
+        motion[22] = t186;
+        motion[23] = t97;
+        motion[24] = t62;
+        motion[25] = t60;
+        motion[26] = t187;
+        motion[30] = t70;
+        motion[31] = t68;
+        motion[32] = t69;
+        motion[34] = t188;
+        motion[35] = t64;
+        inertia[0] = t116;
+        inertia[1] = t119;
+        inertia[2] = t122;
+        inertia[3] = t189;
+        inertia[4] = t190;
+        inertia[5] = t191;
+        inertia[6] = t192;
+        inertia[7] = t193;
+        inertia[8] = t194;
+        inertia[9] = t143;
+        inertia[10] = t147;
+        inertia[11] = t149;
+        inertia[12] = t195;
+        inertia[13] = t196;
+        inertia[14] = t197;
+        inertia[15] = t163;
+        inertia[16] = t198;
+        inertia[17] = t167;
+        inertia[18] = t199;
+        inertia[19] = t200;
+        inertia[20] = t201;
+        inertia[21] = t171;
+        inertia[22] = t173;
+        inertia[23] = t175;
+        inertia[24] = t177;
+        inertia[25] = t202;
+        inertia[26] = t203;
+        inertia[27] = t204;
+        inertia[28] = t181;
+        inertia[29] = t182;
+        inertia[30] = t183;
+        inertia[31] = t184;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -752,11 +756,11 @@ static GIC_COLD gic_real hmmwv_residual_wheel_f_l(const gic_real *GIC_RESTRICT k
 static const gic_real hmmwv_k_wheel_r_l[2][8] = {
     { /* wheel_r_l */
         R(0.49375935710120966), R(0.307086), R(0.462153), R(-0.07099299999999997),
-        R(-1.0), R(0.07099299999999997), R(-11.914378069795442), R(0.08910630000000008),
+        R(-1.0), R(0.07099299999999997), R(-5.957189034897721), R(0.08910630000000008),
     },
     { /* wheel_r_r */
         R(-0.49375935710120966), R(-0.307086), R(-0.462153), R(0.07099299999999997),
-        R(1.0), R(-0.07099299999999997), R(11.914378069795442), R(-0.08910630000000008),
+        R(1.0), R(-0.07099299999999997), R(5.957189034897721), R(-0.08910630000000008),
     },
 };
 
@@ -769,6 +773,7 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
+    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = k[0] * m0[7];
@@ -797,24 +802,24 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t20 = t16 * t18 - t17 * t19;
         if (!(GIC_FABS(t20) > R(8.650478159472878e-08)))
             return GIC_ERROR_SINGULAR;
-        if (!(t20 * k[6] > R(0.001)))
+        const gic_real t21 = R(1.0) / t20;
+        const gic_real t22 = m0[24] * t4;
+        const gic_real t23 = m0[24] * t1;
+        const gic_real t24 = t21 * (t19 * t22 - t18 * t23);
+        const gic_real t25 = rate[0] * t24;
+        if (!(t20 * k[6] - GIC_FABS(t25) * ahead[0] > R(0.0005)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t21 = -t15;
-        const gic_real t22 = R(1.0) / t20;
-        const gic_real t23 = m0[24] * t4;
-        const gic_real t24 = m0[24] * t1;
-        const gic_real t25 = t22 * (t19 * t23 - t18 * t24);
-        const gic_real t26 = rate[0] * t25;
-        const gic_real t27 = rate[0] * t23;
-        const gic_real t28 = rate[0] * t24;
-        const gic_real t29 = t17 * t26;
-        const gic_real t30 = t16 * t26;
+        const gic_real t26 = -t15;
+        const gic_real t27 = rate[0] * t22;
+        const gic_real t28 = rate[0] * t23;
+        const gic_real t29 = t17 * t25;
+        const gic_real t30 = t16 * t25;
         const gic_real t31 = t28 + t30;
         const gic_real t32 = t27 + t29;
-        const gic_real t33 = t18 * (t26 * t29) + t19 * (t26 * t30) - (t31 * t31 + t32 * t32);
+        const gic_real t33 = t18 * (t25 * t29) + t19 * (t25 * t30) - (t31 * t31 + t32 * t32);
         const gic_real t34 = m0[12] * (m0[12] * t1) + m0[18] * t4;
         const gic_real t35 = m0[18] * t1 - m0[12] * (m0[12] * t4);
-        const gic_real t36 = t22 * (t33 + t34 * t19 - t35 * t18);
+        const gic_real t36 = t21 * (t33 + t34 * t19 - t35 * t18);
         const gic_real t37 = t14 * R(0.09182100000000004) + t15 * k[7];
         const gic_real t38 = t2 - t37;
         const gic_real t39 = R(90.555) * t38;
@@ -827,38 +832,38 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t46 = R(4.7728205) + t15 * t45;
         const gic_real t47 = R(4.7728205) + t14 * (t14 * R(2.8083995));
         const gic_real t48 = t14 * t45;
-        const gic_real t49 = t26 * t37;
+        const gic_real t49 = t25 * t37;
         const gic_real t50 = t28 - t49;
         const gic_real t51 = t50 + (t50 + (turn[0] * t38 - R(-1.653405) * turn[1]));
-        const gic_real t52 = t26 * t40;
+        const gic_real t52 = t25 * t40;
         const gic_real t53 = t27 + t52;
         const gic_real t54 = R(-1.653405) * turn[2] - turn[0] * t41 - t53 - t53;
         const gic_real t55 = R(90.555) * (turn[1] * t51 - turn[2] * t54);
         const gic_real t56 = turn[1] * t41 - turn[2] * t38;
-        const gic_real t57 = turn[2] * t56 - turn[0] * t51 + t26 * t49 - t36 * t40;
+        const gic_real t57 = turn[2] * t56 - turn[0] * t51 + t25 * t49 - t36 * t40;
         const gic_real t58 = t57 - t34;
         const gic_real t59 = R(90.555) * t58;
-        const gic_real t60 = turn[0] * t54 - turn[1] * t56 - t26 * t52 - t36 * t37;
+        const gic_real t60 = turn[0] * t54 - turn[1] * t56 - t25 * t52 - t36 * t37;
         const gic_real t61 = t35 + t60;
         const gic_real t62 = R(90.555) * t61;
         const gic_real t63 = turn[2] * t47 - turn[1] * t48;
         const gic_real t64 = turn[1] * t46 - turn[2] * t48;
         const gic_real t65 = t36 * R(4.8947505) + (turn[1] * t63 - turn[2] * t64);
-        const gic_real t66 = t26 * turn[1];
-        const gic_real t67 = t26 * turn[2];
-        const gic_real t68 = t26 + turn[0];
+        const gic_real t66 = t25 * turn[1];
+        const gic_real t67 = t25 * turn[2];
+        const gic_real t68 = t25 + turn[0];
         const gic_real t69 = R(4.8947505) * t68;
         const gic_real t70 = t48 * t66 + t46 * t67 + (turn[2] * t69 - t68 * t63);
         const gic_real t71 = t68 * t64 - turn[1] * t69 - (t47 * t66 + t48 * t67);
-        const gic_real t72 = t23 + t25 * t40;
+        const gic_real t72 = t22 + t24 * t40;
         const gic_real t73 = R(90.555) * t72;
-        const gic_real t74 = t24 - t25 * t37;
+        const gic_real t74 = t23 - t24 * t37;
         const gic_real t75 = R(90.555) * t74;
-        const gic_real t76 = t25 * R(4.8947505);
+        const gic_real t76 = t24 * R(4.8947505);
         const gic_real t77 = -t14;
         const gic_real t78 = -t27;
         const gic_real t79 = -t34;
-        const gic_real t80 = -t23;
+        const gic_real t80 = -t22;
         const gic_real t81 = R(4.8947505) + (t43 + t44);
         const gic_real t82 = t46 + (R(247.5545586544339) + t44);
         const gic_real t83 = t47 + (R(247.5545586544339) + t43);
@@ -872,23 +877,23 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t91 = t76 + (t41 * t73 + t38 * t75);
         const gic_real t92 = -(R(-149.724089775) * t74);
         const gic_real t93 = -(R(-149.724089775) * t72);
-        const gic_real t94 = t25 * t65 + (t62 * t74 - t59 * t72);
-        const gic_real t95 = t25 * t76 + (t74 * t75 + t72 * t73);
+        const gic_real t94 = t24 * t65 + (t62 * t74 - t59 * t72);
+        const gic_real t95 = t24 * t76 + (t74 * t75 + t72 * t73);
         motion[1] = t2;
         motion[2] = t4;
-        motion[7] = t21;
+        motion[7] = t26;
         motion[8] = t77;
         motion[10] = t14;
-        motion[11] = t21;
-        motion[12] = t26;
+        motion[11] = t26;
+        motion[12] = t25;
         motion[16] = t78;
         motion[17] = t28;
         motion[18] = t36;
         motion[22] = t79;
         motion[23] = t35;
-        motion[24] = t25;
+        motion[24] = t24;
         motion[28] = t80;
-        motion[29] = t24;
+        motion[29] = t23;
         inertia[1] = t39;
         inertia[2] = t42;
         inertia[3] = t81;
@@ -1086,13 +1091,15 @@ static int hmmwv_recover(hmmwv *self, const gic_real turn[3], int cold)
     int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
-    links.again = self->recovered && !memcmp(at + 2 * HMMWV_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    links.again = self->recovered && !memcmp(at + 2 * HMMWV_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
+        self->head.ahead <= at[2 * HMMWV_COORDINATE_ROOM + 3];
     self->recovered = 0;
     for (i = 0; links.again && i < HMMWV_COORDINATES; ++i)
         links.same[i] = !memcmp(&at[i], &self->x[i], sizeof *at) &&
             !memcmp(&at[HMMWV_COORDINATE_ROOM + i], &self->xd[i], sizeof *at);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
+    links.ahead[0] = self->head.ahead;
     for (i = 0; i < HMMWV_COORDINATES; ++i) {
         const gic_real parts = GIC_FABS(self->x[i] - from[i]) / hmmwv_piece[i];
         if (!(parts < R(GIC_PIECES)))
@@ -1117,6 +1124,7 @@ static int hmmwv_recover(hmmwv *self, const gic_real turn[3], int cold)
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + HMMWV_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * HMMWV_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    at[2 * HMMWV_COORDINATE_ROOM + 3] = self->head.ahead;
     self->recovered = 1;
     self->head.flip = now;
     return GIC_OK;
@@ -2539,6 +2547,7 @@ int hmmwv_rhs(hmmwv *self, gic_real time, const gic_real *state, gic_real *rate)
 static gic_real hmmwv_present(hmmwv *self)
 {
     const gic_real time = hmmwv_time(self);
+    self->head.ahead = R(0.0);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
     return time;

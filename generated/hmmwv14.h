@@ -71,11 +71,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
- *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        511       647       6      2         0
- *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        425       538       6      2         0
+ *   subset 'lca_f_l' (4 times, closed form)                   70       111       1      1         0
+ *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        517       648       6      2         0
+ *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        431       539       6      2         0
  *   forces and equations of motion                           855       777      15      4         4
- *   all together                                            3018      3612      43     16         4
+ *   all together                                            3046      3620      43     16         4
  *   outputs, when asked for                                  933      1137       4      4        19
  */
 #ifndef HMMWV14_H
@@ -259,7 +259,7 @@ typedef struct hmmwv14 {
     gic_real x[HMMWV14_COORDINATE_ROOM], xd[HMMWV14_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[GIC_STARTS][HMMWV14_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV14_MOTION_ROOM];            /* bodies relative to the base */
-    gic_real recovered_at[2 * HMMWV14_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    gic_real recovered_at[2 * HMMWV14_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[HMMWV14_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV14_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */

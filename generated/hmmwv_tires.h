@@ -69,15 +69,15 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                 87       128       2      1         0
+ *   subset 'lca_f_l' (4 times, closed form)                   70       111       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                307       408       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 88       129       2      1         0
  *   forces and equations of motion                           551       459       9      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
  *   wheel 'tire_f_l' (4 times)                               195       313      23     12        37
  *   a fast step: all wheels                                  780      1254      92     48       148
- *   all together                                            2603      3450     119     58       148
+ *   all together                                            2615      3458     119     58       148
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TIRES_H
@@ -328,7 +328,7 @@ typedef struct hmmwv_tires {
     gic_real x[HMMWV_TIRES_COORDINATE_ROOM], xd[HMMWV_TIRES_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[GIC_STARTS][HMMWV_TIRES_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_TIRES_MOTION_ROOM];            /* bodies relative to the base */
-    gic_real recovered_at[2 * HMMWV_TIRES_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    gic_real recovered_at[2 * HMMWV_TIRES_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[HMMWV_TIRES_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_TIRES_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */

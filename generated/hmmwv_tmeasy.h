@@ -69,15 +69,15 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   69       110       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                 87       128       2      1         0
+ *   subset 'lca_f_l' (4 times, closed form)                   70       111       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                307       408       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 88       129       2      1         0
  *   forces and equations of motion                           551       459       9      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
  *   wheel 'tire_f_l' (4 times)                               160       246      33     14         5
  *   a fast step: all wheels                                  640       986     132     56        20
- *   all together                                            2463      3182     159     66        20
+ *   all together                                            2475      3190     159     66        20
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TMEASY_H
@@ -328,7 +328,7 @@ typedef struct hmmwv_tmeasy {
     gic_real x[HMMWV_TMEASY_COORDINATE_ROOM], xd[HMMWV_TMEASY_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[GIC_STARTS][HMMWV_TMEASY_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_TMEASY_MOTION_ROOM];            /* bodies relative to the base */
-    gic_real recovered_at[2 * HMMWV_TMEASY_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    gic_real recovered_at[2 * HMMWV_TMEASY_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[HMMWV_TMEASY_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_TMEASY_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */

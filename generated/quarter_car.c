@@ -40,10 +40,10 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
- *   subset 'arm' (1 times, closed form)                       43        69       2      1         0
- *   subset 'wheel' (1 times, closed form)                    230       320       5      2         0
+ *   subset 'arm' (1 times, closed form)                       44        70       2      1         0
+ *   subset 'wheel' (1 times, closed form)                    233       321       5      2         0
  *   forces and equations of motion                            39        38       1      0         1
- *   all together                                             313       427       8      3         1
+ *   all together                                             317       429       8      3         1
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #include "quarter_car.h"
@@ -116,10 +116,11 @@
 #define GIC_PIECES 1000
 
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
- * changes since its start, and the angular velocity of the base. */
+ * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct quarter_car_links {
     const gic_real *known[QUARTER_CAR_KNOWN_ROOM];
     gic_real x[QUARTER_CAR_DEPENDENCE_ROOM], rate[QUARTER_CAR_DEPENDENCE_ROOM], change[QUARTER_CAR_DEPENDENCE_ROOM], turn[3];
+    gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
     int again, same[QUARTER_CAR_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
 } quarter_car_links;
@@ -180,6 +181,7 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
+    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = R(-0.015515000000000057) + m0[2];
@@ -206,45 +208,45 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         const gic_real t18 = t14 * t16 - t15 * t17;
         if (!(GIC_FABS(t18) > R(6.171290232860449e-08)))
             return GIC_ERROR_SINGULAR;
-        if (!(t18 * R(-17.834182133305664) > R(0.001)))
+        const gic_real t19 = R(1.0) / t18;
+        const gic_real t20 = x[0] * t19;
+        const gic_real t21 = rate[0] * t20;
+        if (!(t18 * R(-8.917091066652832) - GIC_FABS(t21) * ahead[0] > R(0.0005)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t19 = t13 * R(-0.9709689408513393) + R(0.23920559337529682) * t12;
-        const gic_real t20 = t13 * R(-0.23920559337529687) + R(-0.9709689408513391) * t12;
-        const gic_real t21 = R(0.23920559337529682) * t13 + R(0.9709689408513393) * t12;
-        const gic_real t22 = R(-0.9709689408513391) * t13 + R(0.23920559337529687) * t12;
-        const gic_real t23 = R(1.0) / t18;
-        const gic_real t24 = x[0] * t23;
-        const gic_real t25 = rate[0] * t24;
-        const gic_real t26 = t14 * t25;
+        const gic_real t22 = t13 * R(-0.9709689408513393) + R(0.23920559337529682) * t12;
+        const gic_real t23 = t13 * R(-0.23920559337529687) + R(-0.9709689408513391) * t12;
+        const gic_real t24 = R(0.23920559337529682) * t13 + R(0.9709689408513393) * t12;
+        const gic_real t25 = R(-0.9709689408513391) * t13 + R(0.23920559337529687) * t12;
+        const gic_real t26 = t14 * t21;
         const gic_real t27 = rate[1] + t26 - m0[17];
-        const gic_real t28 = t15 * t25;
-        const gic_real t29 = t27 * t27 + t28 * t28 - (t16 * (t25 * t28) + t17 * (t25 * t26));
-        const gic_real t30 = t23 * (rate[0] * rate[0] - t29);
-        const gic_real t31 = t22 * R(3.0379110359107786e-06) + t21 * R(0.24689200985615367);
-        const gic_real t32 = t24 * t31;
+        const gic_real t28 = t15 * t21;
+        const gic_real t29 = t27 * t27 + t28 * t28 - (t16 * (t21 * t28) + t17 * (t21 * t26));
+        const gic_real t30 = t19 * (rate[0] * rate[0] - t29);
+        const gic_real t31 = t25 * R(3.0379110359107786e-06) + t24 * R(0.24689200985615367);
+        const gic_real t32 = t20 * t31;
         const gic_real t33 = R(23.965) * t32;
-        const gic_real t34 = t20 * R(3.0379110359107786e-06) + t19 * R(0.24689200985615367);
-        const gic_real t35 = t24 * t34;
+        const gic_real t34 = t23 * R(3.0379110359107786e-06) + t22 * R(0.24689200985615367);
+        const gic_real t35 = t20 * t34;
         const gic_real t36 = R(23.965) * t35;
-        const gic_real t37 = t24 * R(0.4469);
+        const gic_real t37 = t20 * R(0.4469);
         const gic_real t38 = R(0.307086) + t34;
-        const gic_real t39 = R(23.965) * (t30 * t34 - t25 * (t25 * t31));
-        const gic_real t40 = R(23.965) * (t25 * (t25 * t34) + t30 * t31) * t32;
+        const gic_real t39 = R(23.965) * (t30 * t34 - t21 * (t21 * t31));
+        const gic_real t40 = R(23.965) * (t21 * (t21 * t34) + t30 * t31) * t32;
         const gic_real t41 = rate[1];
         const gic_real t42 = -t33;
         const gic_real t43 = t37 + ((t2 + t31) * t33 + t38 * t36);
-        const gic_real t44 = t24 * (t30 * R(0.4469)) + (t39 * t35 + t40);
+        const gic_real t44 = t20 * (t30 * R(0.4469)) + (t39 * t35 + t40);
         const gic_real t45 = R(23.965) * t38;
-        const gic_real t46 = t24 * t37 + (t35 * t36 + t32 * t33);
+        const gic_real t46 = t20 * t37 + (t35 * t36 + t32 * t33);
         motion[2] = t2;
-        motion[7] = t19;
-        motion[8] = t20;
-        motion[10] = t21;
-        motion[11] = t22;
-        motion[12] = t25;
+        motion[7] = t22;
+        motion[8] = t23;
+        motion[10] = t24;
+        motion[11] = t25;
+        motion[12] = t21;
         motion[17] = t41;
         motion[18] = t30;
-        motion[24] = t24;
+        motion[24] = t20;
         inertia[16] = t42;
         inertia[17] = t36;
         inertia[18] = t43;
@@ -292,6 +294,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const m1 = links->known[1]; /* arm */
     const gic_real *const rate = links->rate;
+    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = R(0.49375935710120966) * m1[7];
@@ -367,146 +370,147 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t59 = R(0.9665541626242249) * t22 - R(0.21526024724178433) * t25 - t54 * t55 - t56 * t58;
         if (!(GIC_FABS(t59) > R(3.2601841366889304e-07)))
             return GIC_ERROR_SINGULAR;
-        if (!(t59 * (t43 * t53) * R(-669.536620127249) > R(0.001)))
+        const gic_real t60 = m1[24] * t6;
+        const gic_real t61 = m1[24] * t1;
+        const gic_real t62 = t42 * t60 - t41 * t61;
+        const gic_real t63 = t44 * t60 - t50 * t61 - t52 * t62;
+        const gic_real t64 = R(1.0) / t59;
+        const gic_real t65 = R(-0.1394133303209898) * t60 - R(0.21526024724178433) * t61 - t55 * t62 - t58 * t63;
+        const gic_real t66 = t64 * t65;
+        const gic_real t67 = t57 * (t63 - t56 * t66);
+        const gic_real t68 = t51 * (t62 - t49 * t67 - t54 * t66);
+        const gic_real t69 = rate[1] * t68;
+        const gic_real t70 = rate[1] * t66;
+        const gic_real t71 = rate[1] * t67;
+        const gic_real t72 = (GIC_FABS(t69) + GIC_FABS(t70) + GIC_FABS(t71)) * ahead[0];
+        if (!(t59 * (t43 * t53) * R(-334.7683100636245) - t72 > R(0.0005)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t60 = t24 * t39 - t22 * t37;
-        const gic_real t61 = t60 * R(-7.5372227832688194) + (t46 * R(-6.332169372123424) + t25 * R(-0.1498258474327685));
-        const gic_real t62 = t60 * R(-18.07838873614245) + (t46 * R(2.588574822512031) + t25 * R(-0.608667505195622));
-        const gic_real t63 = t60 * R(-4.242021150632485) + (t46 * R(0.21916659821076587) + t25 * R(2.8601928491017183));
-        const gic_real t64 = t22 * t46 - t25 * t39;
-        const gic_real t65 = t64 * R(-7.5372227832688194) + (t37 * R(-6.332169372123424) + t24 * R(-0.1498258474327685));
-        const gic_real t66 = t64 * R(-18.07838873614245) + (t37 * R(2.588574822512031) + t24 * R(-0.608667505195622));
-        const gic_real t67 = t64 * R(-4.242021150632485) + (t37 * R(0.21916659821076587) + t24 * R(2.8601928491017183));
-        const gic_real t68 = t25 * t37 - t24 * t46;
-        const gic_real t69 = t68 * R(-7.5372227832688194) + (t39 * R(-6.332169372123424) + t22 * R(-0.1498258474327685));
-        const gic_real t70 = t68 * R(-18.07838873614245) + (t39 * R(2.588574822512031) + t22 * R(-0.608667505195622));
-        const gic_real t71 = t68 * R(-4.242021150632485) + (t39 * R(0.21916659821076587) + t22 * R(2.8601928491017183));
-        const gic_real t72 = m1[24] * t6;
-        const gic_real t73 = m1[24] * t1;
-        const gic_real t74 = t42 * t72 - t41 * t73;
-        const gic_real t75 = t44 * t72 - t50 * t73 - t52 * t74;
-        const gic_real t76 = R(1.0) / t59;
-        const gic_real t77 = R(-0.1394133303209898) * t72 - R(0.21526024724178433) * t73 - t55 * t74 - t58 * t75;
-        const gic_real t78 = t76 * t77;
-        const gic_real t79 = t57 * (t75 - t56 * t78);
-        const gic_real t80 = t51 * (t74 - t49 * t79 - t54 * t78);
-        const gic_real t81 = rate[1] * t80;
-        const gic_real t82 = rate[1] * t78;
-        const gic_real t83 = rate[1] * t79;
-        const gic_real t84 = rate[1] * t72;
-        const gic_real t85 = rate[0] + rate[1] * t73;
-        const gic_real t86 = m1[12] * (m1[12] * t1) + m1[18] * t6;
-        const gic_real t87 = t38 * t81 - t47 * t82;
-        const gic_real t88 = t85 + t87 - m0[17];
-        const gic_real t89 = t47 * t83 - t40 * t81;
-        const gic_real t90 = t89 - t84;
-        const gic_real t91 = t40 * t82 - t38 * t83;
-        const gic_real t92 = t42 * (t83 * t91 - t81 * t87) + t48 * (t82 * t87 - t83 * t89);
-        const gic_real t93 = t88 * t88 + (t90 * t90 + t91 * t91) + (t41 * (t81 * t89 - t82 * t91) + t92);
-        const gic_real t94 = m1[18] * t1 - m1[12] * (m1[12] * t6);
-        const gic_real t95 = t86 * t42 - t93 - t94 * t41;
-        const gic_real t96 = t24 * t81 - t25 * t82;
-        const gic_real t97 = t85 + t96 - m0[17];
-        const gic_real t98 = t25 * t83 - t22 * t81;
-        const gic_real t99 = t98 - t84;
-        const gic_real t100 = t22 * t82 - t24 * t83;
-        const gic_real t101 = t81 * t98 - t82 * t100;
-        const gic_real t102 = t83 * t100 - t81 * t96;
-        const gic_real t103 = t82 * t96 - t83 * t98;
-        const gic_real t104 = t97 * t97 + (t99 * t99 + t100 * t100) + (t50 * t101 + (t44 * t102 + t45 * t103));
-        const gic_real t105 = t86 * t44 - t104 - t94 * t50 - t52 * t95;
-        const gic_real t106 = R(-0.1394133303209898) * t86 - (R(0.21526024724178433) * t101 + (R(-0.1394133303209898) * t102 + R(0.9665541626242249) * t103));
-        const gic_real t107 = t106 - R(0.21526024724178433) * t94 - t55 * t95 - t58 * t105;
-        const gic_real t108 = t76 * t107;
-        const gic_real t109 = t57 * (t105 - t56 * t108);
-        const gic_real t110 = t51 * (t95 - t49 * t109 - t54 * t108);
-        const gic_real t111 = t67 * R(0.09182100000000004) + (t66 * R(0.08910630000000008) + t65 * R(-0.004825999999999997));
-        const gic_real t112 = t2 + t111;
-        const gic_real t113 = t63 * R(0.09182100000000004) + (t62 * R(0.08910630000000008) + t61 * R(-0.004825999999999997));
-        const gic_real t114 = R(-0.035559999999999994) + t113;
-        const gic_real t115 = t71 * R(0.09182100000000004) + (t70 * R(0.08910630000000008) + t69 * R(-0.004825999999999997));
-        const gic_real t116 = t83 * t113 - t81 * t115;
-        const gic_real t117 = t82 * t115 - t83 * t111;
-        const gic_real t118 = t81 * t116 - t82 * t117 + (t110 * t111 - t108 * t113);
-        const gic_real t119 = R(90.555) * (t94 + t118);
-        const gic_real t120 = t78 * t115 - t79 * t111;
-        const gic_real t121 = R(90.555) * t120;
-        const gic_real t122 = t79 * t113 - t80 * t115 - t72;
-        const gic_real t123 = R(90.555) * t122;
-        const gic_real t124 = t73 + (t80 * t111 - t78 * t113);
-        const gic_real t125 = R(90.555) * t124;
-        const gic_real t126 = t62 * R(2.8083995);
-        const gic_real t127 = t61 * R(0.12192999999999987);
-        const gic_real t128 = t70 * t126 + t69 * t127;
-        const gic_real t129 = t66 * t126 + t65 * t127;
-        const gic_real t130 = R(4.7728205) + (t62 * t126 + t61 * t127);
-        const gic_real t131 = t79 * t128 + (t78 * t129 + t80 * t130);
-        const gic_real t132 = t7 + t115;
-        const gic_real t133 = t66 * R(2.8083995);
-        const gic_real t134 = t65 * R(0.12192999999999987);
-        const gic_real t135 = t70 * t133 + t69 * t134;
-        const gic_real t136 = R(4.7728205) + (t66 * t133 + t65 * t134);
-        const gic_real t137 = t79 * t135 + (t78 * t136 + t80 * t129);
-        const gic_real t138 = R(4.7728205) + (t70 * (t70 * R(2.8083995)) + t69 * (t69 * R(0.12192999999999987)));
-        const gic_real t139 = t79 * t138 + (t78 * t135 + t80 * t128);
-        const gic_real t140 = t83 * t135 + (t82 * t136 + t81 * t129);
-        const gic_real t141 = t83 * t128 + (t82 * t129 + t81 * t130);
-        const gic_real t142 = t109 * t138 + (t108 * t135 + t110 * t128) + (t81 * t140 - t82 * t141);
-        const gic_real t143 = t83 * t138 + (t82 * t135 + t81 * t128);
-        const gic_real t144 = t109 * t135 + (t108 * t136 + t110 * t129) + (t83 * t141 - t81 * t143);
-        const gic_real t145 = t109 * t128 + (t108 * t129 + t110 * t130) + (t82 * t143 - t83 * t140);
-        const gic_real t146 = t81 * t111 - t82 * t113;
-        const gic_real t147 = t83 * t117 - t81 * t146 + (t109 * t113 - t110 * t115);
-        const gic_real t148 = t82 * t146 - t83 * t116 + (t108 * t115 - t109 * t111);
-        const gic_real t149 = R(90.555) * (t147 - t86) * t122 + R(90.555) * t148 * t120;
-        const gic_real t150 = t79 * t142 + (t78 * t144 + t80 * t145) + (t119 * t124 + t149);
-        const gic_real t151 = t79 * t139 + (t78 * t137 + t80 * t131) + (t124 * t125 + (t122 * t123 + t120 * t121));
-        const gic_real t152 = -t84;
-        const gic_real t153 = -t86;
-        const gic_real t154 = -t72;
-        const gic_real t155 = R(90.555) * t112;
-        const gic_real t156 = -(R(90.555) * t114);
-        const gic_real t157 = t131 + (t112 * t125 - t132 * t123);
-        const gic_real t158 = t137 + (t132 * t121 - t114 * t125);
-        const gic_real t159 = t139 + (t114 * t123 - t112 * t121);
+        const gic_real t73 = t24 * t39 - t22 * t37;
+        const gic_real t74 = t73 * R(-7.5372227832688194) + (t46 * R(-6.332169372123424) + t25 * R(-0.1498258474327685));
+        const gic_real t75 = t73 * R(-18.07838873614245) + (t46 * R(2.588574822512031) + t25 * R(-0.608667505195622));
+        const gic_real t76 = t73 * R(-4.242021150632485) + (t46 * R(0.21916659821076587) + t25 * R(2.8601928491017183));
+        const gic_real t77 = t22 * t46 - t25 * t39;
+        const gic_real t78 = t77 * R(-7.5372227832688194) + (t37 * R(-6.332169372123424) + t24 * R(-0.1498258474327685));
+        const gic_real t79 = t77 * R(-18.07838873614245) + (t37 * R(2.588574822512031) + t24 * R(-0.608667505195622));
+        const gic_real t80 = t77 * R(-4.242021150632485) + (t37 * R(0.21916659821076587) + t24 * R(2.8601928491017183));
+        const gic_real t81 = t25 * t37 - t24 * t46;
+        const gic_real t82 = t81 * R(-7.5372227832688194) + (t39 * R(-6.332169372123424) + t22 * R(-0.1498258474327685));
+        const gic_real t83 = t81 * R(-18.07838873614245) + (t39 * R(2.588574822512031) + t22 * R(-0.608667505195622));
+        const gic_real t84 = t81 * R(-4.242021150632485) + (t39 * R(0.21916659821076587) + t22 * R(2.8601928491017183));
+        const gic_real t85 = rate[1] * t60;
+        const gic_real t86 = rate[0] + rate[1] * t61;
+        const gic_real t87 = m1[12] * (m1[12] * t1) + m1[18] * t6;
+        const gic_real t88 = t38 * t69 - t47 * t70;
+        const gic_real t89 = t86 + t88 - m0[17];
+        const gic_real t90 = t47 * t71 - t40 * t69;
+        const gic_real t91 = t90 - t85;
+        const gic_real t92 = t40 * t70 - t38 * t71;
+        const gic_real t93 = t42 * (t71 * t92 - t69 * t88) + t48 * (t70 * t88 - t71 * t90);
+        const gic_real t94 = t89 * t89 + (t91 * t91 + t92 * t92) + (t41 * (t69 * t90 - t70 * t92) + t93);
+        const gic_real t95 = m1[18] * t1 - m1[12] * (m1[12] * t6);
+        const gic_real t96 = t87 * t42 - t94 - t95 * t41;
+        const gic_real t97 = t24 * t69 - t25 * t70;
+        const gic_real t98 = t86 + t97 - m0[17];
+        const gic_real t99 = t25 * t71 - t22 * t69;
+        const gic_real t100 = t99 - t85;
+        const gic_real t101 = t22 * t70 - t24 * t71;
+        const gic_real t102 = t69 * t99 - t70 * t101;
+        const gic_real t103 = t71 * t101 - t69 * t97;
+        const gic_real t104 = t70 * t97 - t71 * t99;
+        const gic_real t105 = t98 * t98 + (t100 * t100 + t101 * t101) + (t50 * t102 + (t44 * t103 + t45 * t104));
+        const gic_real t106 = t87 * t44 - t105 - t95 * t50 - t52 * t96;
+        const gic_real t107 = R(-0.1394133303209898) * t87 - (R(0.21526024724178433) * t102 + (R(-0.1394133303209898) * t103 + R(0.9665541626242249) * t104));
+        const gic_real t108 = t107 - R(0.21526024724178433) * t95 - t55 * t96 - t58 * t106;
+        const gic_real t109 = t64 * t108;
+        const gic_real t110 = t57 * (t106 - t56 * t109);
+        const gic_real t111 = t51 * (t96 - t49 * t110 - t54 * t109);
+        const gic_real t112 = t80 * R(0.09182100000000004) + (t79 * R(0.08910630000000008) + t78 * R(-0.004825999999999997));
+        const gic_real t113 = t2 + t112;
+        const gic_real t114 = t76 * R(0.09182100000000004) + (t75 * R(0.08910630000000008) + t74 * R(-0.004825999999999997));
+        const gic_real t115 = R(-0.035559999999999994) + t114;
+        const gic_real t116 = t84 * R(0.09182100000000004) + (t83 * R(0.08910630000000008) + t82 * R(-0.004825999999999997));
+        const gic_real t117 = t71 * t114 - t69 * t116;
+        const gic_real t118 = t70 * t116 - t71 * t112;
+        const gic_real t119 = t69 * t117 - t70 * t118 + (t111 * t112 - t109 * t114);
+        const gic_real t120 = R(90.555) * (t95 + t119);
+        const gic_real t121 = t66 * t116 - t67 * t112;
+        const gic_real t122 = R(90.555) * t121;
+        const gic_real t123 = t67 * t114 - t68 * t116 - t60;
+        const gic_real t124 = R(90.555) * t123;
+        const gic_real t125 = t61 + (t68 * t112 - t66 * t114);
+        const gic_real t126 = R(90.555) * t125;
+        const gic_real t127 = t75 * R(2.8083995);
+        const gic_real t128 = t74 * R(0.12192999999999987);
+        const gic_real t129 = t83 * t127 + t82 * t128;
+        const gic_real t130 = t79 * t127 + t78 * t128;
+        const gic_real t131 = R(4.7728205) + (t75 * t127 + t74 * t128);
+        const gic_real t132 = t67 * t129 + (t66 * t130 + t68 * t131);
+        const gic_real t133 = t7 + t116;
+        const gic_real t134 = t79 * R(2.8083995);
+        const gic_real t135 = t78 * R(0.12192999999999987);
+        const gic_real t136 = t83 * t134 + t82 * t135;
+        const gic_real t137 = R(4.7728205) + (t79 * t134 + t78 * t135);
+        const gic_real t138 = t67 * t136 + (t66 * t137 + t68 * t130);
+        const gic_real t139 = R(4.7728205) + (t83 * (t83 * R(2.8083995)) + t82 * (t82 * R(0.12192999999999987)));
+        const gic_real t140 = t67 * t139 + (t66 * t136 + t68 * t129);
+        const gic_real t141 = t71 * t136 + (t70 * t137 + t69 * t130);
+        const gic_real t142 = t71 * t129 + (t70 * t130 + t69 * t131);
+        const gic_real t143 = t110 * t139 + (t109 * t136 + t111 * t129) + (t69 * t141 - t70 * t142);
+        const gic_real t144 = t71 * t139 + (t70 * t136 + t69 * t129);
+        const gic_real t145 = t110 * t136 + (t109 * t137 + t111 * t130) + (t71 * t142 - t69 * t144);
+        const gic_real t146 = t110 * t129 + (t109 * t130 + t111 * t131) + (t70 * t144 - t71 * t141);
+        const gic_real t147 = t69 * t112 - t70 * t114;
+        const gic_real t148 = t71 * t118 - t69 * t147 + (t110 * t114 - t111 * t116);
+        const gic_real t149 = t70 * t147 - t71 * t117 + (t109 * t116 - t110 * t112);
+        const gic_real t150 = R(90.555) * (t148 - t87) * t123 + R(90.555) * t149 * t121;
+        const gic_real t151 = t67 * t143 + (t66 * t145 + t68 * t146) + (t120 * t125 + t150);
+        const gic_real t152 = t67 * t140 + (t66 * t138 + t68 * t132) + (t125 * t126 + (t123 * t124 + t121 * t122));
+        const gic_real t153 = -t85;
+        const gic_real t154 = -t87;
+        const gic_real t155 = -t60;
+        const gic_real t156 = R(90.555) * t113;
+        const gic_real t157 = -(R(90.555) * t115);
+        const gic_real t158 = t132 + (t113 * t126 - t133 * t124);
+        const gic_real t159 = t138 + (t133 * t122 - t115 * t126);
+        const gic_real t160 = t140 + (t115 * t124 - t113 * t122);
         motion[1] = t2;
         motion[2] = t7;
-        motion[3] = t61;
-        motion[4] = t62;
-        motion[5] = t63;
-        motion[6] = t65;
-        motion[7] = t66;
-        motion[8] = t67;
-        motion[9] = t69;
-        motion[10] = t70;
-        motion[11] = t71;
-        motion[12] = t81;
-        motion[13] = t82;
-        motion[14] = t83;
-        motion[16] = t152;
-        motion[17] = t85;
-        motion[18] = t110;
-        motion[19] = t108;
-        motion[20] = t109;
-        motion[22] = t153;
-        motion[23] = t94;
-        motion[30] = t80;
-        motion[31] = t78;
-        motion[32] = t79;
-        motion[34] = t154;
-        motion[35] = t73;
-        inertia[18] = t155;
-        inertia[19] = t156;
-        inertia[21] = t119;
-        inertia[22] = t121;
-        inertia[23] = t123;
-        inertia[24] = t125;
-        inertia[25] = t157;
-        inertia[26] = t158;
-        inertia[27] = t159;
-        inertia[28] = t150;
-        inertia[30] = t125;
-        inertia[31] = t151;
+        motion[3] = t74;
+        motion[4] = t75;
+        motion[5] = t76;
+        motion[6] = t78;
+        motion[7] = t79;
+        motion[8] = t80;
+        motion[9] = t82;
+        motion[10] = t83;
+        motion[11] = t84;
+        motion[12] = t69;
+        motion[13] = t70;
+        motion[14] = t71;
+        motion[16] = t153;
+        motion[17] = t86;
+        motion[18] = t111;
+        motion[19] = t109;
+        motion[20] = t110;
+        motion[22] = t154;
+        motion[23] = t95;
+        motion[30] = t68;
+        motion[31] = t66;
+        motion[32] = t67;
+        motion[34] = t155;
+        motion[35] = t61;
+        inertia[18] = t156;
+        inertia[19] = t157;
+        inertia[21] = t120;
+        inertia[22] = t122;
+        inertia[23] = t124;
+        inertia[24] = t126;
+        inertia[25] = t158;
+        inertia[26] = t159;
+        inertia[27] = t160;
+        inertia[28] = t151;
+        inertia[30] = t126;
+        inertia[31] = t152;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -619,13 +623,15 @@ static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int co
     int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
-    links.again = self->recovered && !memcmp(at + 2 * QUARTER_CAR_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    links.again = self->recovered && !memcmp(at + 2 * QUARTER_CAR_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
+        self->head.ahead <= at[2 * QUARTER_CAR_COORDINATE_ROOM + 3];
     self->recovered = 0;
     for (i = 0; links.again && i < QUARTER_CAR_COORDINATES; ++i)
         links.same[i] = !memcmp(&at[i], &self->x[i], sizeof *at) &&
             !memcmp(&at[QUARTER_CAR_COORDINATE_ROOM + i], &self->xd[i], sizeof *at);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
+    links.ahead[0] = self->head.ahead;
     for (i = 0; i < QUARTER_CAR_COORDINATES; ++i) {
         const gic_real parts = GIC_FABS(self->x[i] - from[i]) / quarter_car_piece[i];
         if (!(parts < R(GIC_PIECES)))
@@ -650,6 +656,7 @@ static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int co
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + QUARTER_CAR_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * QUARTER_CAR_COORDINATE_ROOM, turn, 3 * sizeof *turn);
+    at[2 * QUARTER_CAR_COORDINATE_ROOM + 3] = self->head.ahead;
     self->recovered = 1;
     self->head.flip = now;
     return GIC_OK;
@@ -983,6 +990,7 @@ int quarter_car_rhs(quarter_car *self, gic_real time, const gic_real *state, gic
 static gic_real quarter_car_present(quarter_car *self)
 {
     const gic_real time = quarter_car_time(self);
+    self->head.ahead = R(0.0);
     if (self->head.input_function)
         self->head.input_function(self->head.user, self->head.lane, time, self->input);
     return time;

@@ -40,10 +40,10 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
- *   subset 'arm' (1 times, closed form)                       43        69       2      1         0
- *   subset 'wheel' (1 times, closed form)                    230       320       5      2         0
+ *   subset 'arm' (1 times, closed form)                       44        70       2      1         0
+ *   subset 'wheel' (1 times, closed form)                    233       321       5      2         0
  *   forces and equations of motion                            39        38       1      0         1
- *   all together                                             313       427       8      3         1
+ *   all together                                             317       429       8      3         1
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #ifndef QUARTER_CAR_H
@@ -146,7 +146,7 @@ typedef struct quarter_car {
     gic_real x[QUARTER_CAR_COORDINATE_ROOM], xd[QUARTER_CAR_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[GIC_STARTS][QUARTER_CAR_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[QUARTER_CAR_MOTION_ROOM];            /* bodies relative to the base */
-    gic_real recovered_at[2 * QUARTER_CAR_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    gic_real recovered_at[2 * QUARTER_CAR_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[QUARTER_CAR_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[QUARTER_CAR_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */

@@ -58,11 +58,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   69       110       1      1         0
- *   subset 'axle' (1 times)                                  658       743       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
+ *   subset 'lca_f_l' (2 times, closed form)                   70       111       1      1         0
+ *   subset 'axle' (1 times)                                  661       744       6      0         0
+ *   subset 'wheel_f_l' (2 times, closed form)                307       408       5      2         0
  *   forces and equations of motion                           697       663       9      0         4
- *   all together                                            2116      2465      27      6         4
+ *   all together                                            2127      2470      27      6         4
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
@@ -234,7 +234,7 @@ typedef struct solid_axle {
     gic_real x[SOLID_AXLE_COORDINATE_ROOM], xd[SOLID_AXLE_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[GIC_STARTS][SOLID_AXLE_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[SOLID_AXLE_MOTION_ROOM];            /* bodies relative to the base */
-    gic_real recovered_at[2 * SOLID_AXLE_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    gic_real recovered_at[2 * SOLID_AXLE_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[SOLID_AXLE_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[SOLID_AXLE_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */

@@ -61,11 +61,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   61       117       2      1         2
- *   subset 'wheel_f_l' (2 times, closed form)                304       407       5      2         0
- *   subset 'lca_f_l_2' (2 times, closed form)                 76       121       2      1         2
+ *   subset 'lca_f_l' (2 times, closed form)                   62       118       2      1         2
+ *   subset 'wheel_f_l' (2 times, closed form)                307       408       5      2         0
+ *   subset 'lca_f_l_2' (2 times, closed form)                 77       123       2      1         2
  *   forces and equations of motion                           743       706      14      4         4
- *   all together                                            1640      2021      32     12        12
+ *   all together                                            1650      2029      32     12        12
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H
@@ -244,7 +244,7 @@ typedef struct trailing_arm {
     gic_real x[TRAILING_ARM_COORDINATE_ROOM], xd[TRAILING_ARM_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real start[GIC_STARTS][TRAILING_ARM_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[TRAILING_ARM_MOTION_ROOM];            /* bodies relative to the base */
-    gic_real recovered_at[2 * TRAILING_ARM_COORDINATE_ROOM + 3]; /* x, xd and angular velocity of the base of the last recovery */
+    gic_real recovered_at[2 * TRAILING_ARM_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1: and it was good */
     gic_real inertia[TRAILING_ARM_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[TRAILING_ARM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
