@@ -734,8 +734,7 @@ void insert_code(void *context, const char *name, Text *out, int indent)
         if (g->model->wheels && (!g->formulation->narrowing || g->formulation->narrowing->road))
             insert_template(g, out, "road.c.in");
         if (g->model->wheels && g->plan->pack)
-            template_expand(g->pool, out, g->templates, "lanes_road.c.in", g->model->name,
-                            pool_print(g->pool, "%d", g->plan->pack), insert_nothing, NULL);
+            write_lane_road(g, out);
     } else if (!strcmp(name, "reactions")) {
         if (formulation_reacts(g->formulation))
             template_expand(g->pool, out, g->templates, "reactions.c.in", g->model->name, NULL, insert_code, g);

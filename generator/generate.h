@@ -44,6 +44,7 @@ void write_class_constants(Generation *g, Text *out);
 /* generate_lanes.c: of a plan in lanes. Vectors; links of subsets side by side; the function of class g->class; its
  * call, where a subset is the first of its row. */
 void write_lane_types(Generation *g, Text *out);
+void write_lane_road(Generation *g, Text *out);
 void write_lane_links(Generation *g, Text *out);
 void write_lane_class(Generation *g, Text *out);
 void write_lane_call(const Generation *g, Text *out, int indent, int subset);

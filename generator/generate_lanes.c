@@ -42,6 +42,11 @@ static void insert_width(void *context, const char *name, Text *out, int indent)
         for (int l = 0; l < lanes; ++l)
             text_print(out, "%s%s[%d]", l ? ", " : "", l < lanes / 2 ? "x" : "y", l % (lanes / 2));
         text_print(out, ");\n#endif\n}\n\n");
+    } else if (!strcmp(name, "found")) {
+        text_print(out, "%*s", indent, "");
+        for (int l = 0; l < lanes; ++l)
+            text_print(out, "%sfound[i][%d]", l ? ", " : "", l);
+        text_print(out, ");\n");
     } else if (!strcmp(name, "sum")) {
         text_print(out, "%*sreturn ", indent, "");
         for (int l = 0; l < lanes / 2; ++l)
@@ -65,6 +70,13 @@ void write_lane_types(Generation *g, Text *out)
         if (has_width(g->plan, lanes))
             template_expand(g->pool, out, g->templates, "lanes_width.c.in", g->model->name,
                             pool_print(g->pool, "%d", lanes), insert_width, &lanes);
+}
+
+void write_lane_road(Generation *g, Text *out)
+{
+    int lanes = g->plan->pack;
+    template_expand(g->pool, out, g->templates, "lanes_road.c.in", g->model->name, pool_print(g->pool, "%d", lanes),
+                    insert_width, &lanes);
 }
 
 void write_lane_links(Generation *g, Text *out)
