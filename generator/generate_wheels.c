@@ -18,9 +18,14 @@ typedef struct Expansion {
 void write_wheel_comment(const Generation *g, Text *out, const WheelClass *class)
 {
     const Model *model = g->model;
-    text_print(out, "/* Wheels with the tire '%s':", model->tire[model->wheel[class->member[0]].tire].name);
-    for (int i = 0; i < class->members; ++i)
-        text_print(out, "%s %s", i ? "," : "", model->wheel[class->member[i]].name);
+    const int first = model->wheel[class->member[0]].tire;
+    text_print(out, "/* Wheels with the tire '%s':", model->tire[first].name);
+    for (int i = 0; i < class->members; ++i) {
+        const Wheel *wheel = &model->wheel[class->member[i]];
+        text_print(out, "%s %s", i ? "," : "", wheel->name);
+        if (wheel->tire != first)
+            text_print(out, " ('%s')", model->tire[wheel->tire].name);
+    }
     text_print(out,
                ".\n * torque: of drive and brake. rate: of spin, slips, brake. grip: force 0 and torque 3 on the "
                "carrier,\n * drive and brake 6 7, load, deflection, its rate, road height 8 to 11, Fx Fy Mx My Mz "

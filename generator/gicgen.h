@@ -659,6 +659,8 @@ typedef struct Wheels {
 } Wheels;
 
 const Wheels *wheels_formulate(Pool *pool, const Plan *plan);
+/* wheel_merge.c: the same with classes whose formulas differ in numbers alone made one. */
+const Wheels *wheels_merge(Pool *pool, const Wheels *wheels);
 /* How many wheels with tires come before this one. */
 int wheel_rolling(const Model *model, int wheel);
 

@@ -242,6 +242,8 @@ const Formulation *formulation_lanes(Pool *pool, const Formulation *formulation,
     *f = *formulation;
     f->plan = plan;
     formulation_blocks(pool, f);
+    if (f->wheels)
+        f->wheels = wheels_merge(pool, f->wheels);
     for (int s = 0; s < plan->sequence->subsets; ++s)
         if (plan->pack && plan->sequence->subset[s].class >= 0)
             add_subset(&inputs, plan, s);

@@ -85,6 +85,19 @@ done
     -o lanes.csv
 check "3 s of the vehicle, clang, fused" alike 1e-9
 
+# other numbers of the same kind of tire at the rear: all four wheels in one vector
+sed 's/^PDX1 = 0.77751/PDX1 = 0.7/; s/^PKY1 = -10.289/PKY1 = -9/; s/^VERTICAL_STIFFNESS = .*/VERTICAL_STIFFNESS = 9e5/
+    s/^RBX1 = .*/RBX1 = 10/; s/^QDZ1 = .*/QDZ1 = 0.09/' "$models/tires/hmmwv_pac2002.tir" >rear.tir
+sed "s|parts/|$models/parts/|; /^  tire_r_l:/,/^ *{/s/tire: all/tire: rear/; s|^wheels:|tires:\\n  rear: {file: $work/rear.tir}\\n&|" \
+    "$models/hmmwv_tires.veh" >two.veh
+printf 'gicscene: 1\nduration: 2\nstep: 0.004\nratio: 4\noutput_step: 0.1\ninitial: {velocity: [20, 0, 0]}\ninputs:\n  brake: {knots: {times: [0.5, 0.7], values: [0, 1]}}\n' \
+    >two.scene
+"$gicgen" --lanes 4 two.veh -o two.c
+check "two tires, one function" [ "$(grep -c 'static int hmmwv_tires_wheels_' two.c)" -eq 1 ]
+"$gicrun" -q --engine cc --general two.veh two.scene -o single.csv
+"$gicrun" -q --engine cc --lanes 4 two.veh two.scene -o lanes.csv
+check "two tires, braking" alike 1e-9
+
 # usage
 "$gicrun" --lanes 3 x.veh >out 2>err
 check "three lanes" [ $? -eq 2 ]
