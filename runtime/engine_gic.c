@@ -14,7 +14,7 @@
  * a correction that may lead astray, and pieces in which a change of the coordinates is followed. */
 enum { CHORDS = 6, PASSES = 10, PIECES = 1000 };
 
-static const double leap = 0.5;
+static const double leap = 0.2;
 /* A determinant this small relative to that at the design, or of the other sign: coordinates cease to be independent
  * (Serban and Haug 2000, equation 6). No rigid motion changes it. */
 static const double singular = 1e-3;
@@ -153,7 +153,8 @@ static int converge(const Interpreted *context, Instance *self, const Part *part
         ++profile->newton;
         profile->recovery_solver += solved - ready;
         profile->recovery_functions += ready - begun + (profile_clock(profile) - solved);
-        if (!(step < leap))
+        /* where corrections do not shrink fast, the solution that they lead to may be another one */
+        if (!(step < leap) || (i && step > rounding && step > before / 4))
             return GIC_ERROR_NEWTON;
         if (step <= enough || (step <= rounding && step > before / 4)) {
             ++self->head.newton_count;
