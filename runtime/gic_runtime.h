@@ -61,7 +61,7 @@ typedef enum gic_status {
 #define GIC_STATUS_ENUM(name, code, text) name = code,
     GIC_STATUS_LIST(GIC_STATUS_ENUM)
 #undef GIC_STATUS_ENUM
-        GIC_STATUS_LAST = -13
+        GIC_STATUS_LAST = -14
 } gic_status;
 
 /* What a status means, in one line; never NULL. */

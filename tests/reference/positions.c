@@ -245,9 +245,12 @@ bool solve_positions(Solver *solver, const State *state)
     }
     for (int c = 0; c < model->coordinates; ++c)
         good->w[c] = state->w[c];
+    /* places have the rounding of their distance from the origin */
+    const quad far = fabsq(good->q[0][0]) + fabsq(good->q[0][1]) + fabsq(good->q[0][2]);
+    const quad enough = far > 1000 ? 1e-31 * far : 1e-28;
     for (int i = 0; i < 20; ++i) {
         rows_evaluate(model, good, solver->row);
-        if (residual(solver, good) < 1e-28)
+        if (residual(solver, good) < enough)
             return refactor(solver, good);
         correct(solver, good);
     }

@@ -1,6 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# compilers.sh GICGEN TRAPPED: generated code by gcc, clang and tcc, with -O0, -O2, -O3 -march=native, -ffast-math, for 32 bit
+# compilers.sh GICGEN TRAPPED: compilers and their options against each other; floating-point exceptions
+#
+# Generated code by gcc, clang and tcc, with -O0, -O2, -O3 -march=native, -ffast-math, for 32 bit
 # processors, whose registers may hold more digits, and in single precision, against gcc -O2, which other tests hold
 # against quad precision; in each of them statuses see what is no number. Then no invalid operation, division by zero or
 # overflow in runs of all models and scenes.

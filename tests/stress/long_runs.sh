@@ -1,6 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# long_runs.sh GICRUN: an hour of vehicle time (short: three minutes): constraint residuals, normalization, energy and
+# long_runs.sh GICRUN: an hour of vehicle time
+#
+# (Short: three minutes.) Constraint residuals, normalization, energy and
 # memory at its end are what they were at its beginning.
 gicrun=$(realpath "$1")
 cd "$(dirname "$0")/../.." || exit 1

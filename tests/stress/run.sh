@@ -13,7 +13,7 @@
 # with the numbers of tries, of those that ended well and of those that ended in a status or a message; the worst thing
 # seen, in words or as a number with its unit; and `ok`, perhaps followed by a remark (`ok: ...`), or whatever is wrong.
 # A finding is any other verdict, a row whose tries are not all accounted for, one that names no number but `nan`, an
-# attack without rows, with an exit status, or one that takes longer than LIMIT seconds (short: 100, full: 3600). What an
+# attack without rows, with an exit status, or one that takes longer than LIMIT seconds (short: 600, full: 7200). What an
 # attack prints on standard error ends in $BUILD/stress/NAME.log. ATTACKS is another folder of attacks.
 cd "$(dirname "$0")/../.." || exit 1
 build=${BUILD:-build}
@@ -21,8 +21,8 @@ attacks=${ATTACKS:-tests/stress}
 STRESS=${STRESS:-full}
 . tests/paths.sh
 case $STRESS in
-short) limit=${LIMIT:-100} ;;
-full) limit=${LIMIT:-3600} ;;
+short) limit=${LIMIT:-600} ;;
+full) limit=${LIMIT:-7200} ;;
 *) echo "STRESS is 'short' or 'full', not '$STRESS'" >&2 && exit 2 ;;
 esac
 mkdir -p "$build/stress" || exit 1

@@ -1,6 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# steps.sh STEPS GICRUN: the longest stable steps of AB3, RK4 and dual rate, measured, against theory, over nine decades
+# steps.sh STEPS GICRUN: the longest stable steps against theory, and what is said of longer ones
+#
+# AB3, RK4 and dual rate, over nine decades
 # of stiffness and of models; and what gicrun says of runs with longer ones: when, and which quantity grew.
 steps=$1
 gicrun=$(realpath "$2")
