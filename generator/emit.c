@@ -304,7 +304,11 @@ static void write_statement(Emitter *m, Ex e)
         if (m->style->lanes)
             text_print(&line, ", GIC_ERROR_ROAD);");
         else
-            text_print(&line, ")\n%*sreturn GIC_ERROR_ROAD;", m->indent + 4, "");
+            text_print(&line,
+                       m->block->across
+                           ? ")\n%*sreturn gic_finite(road%d, 3) ? GIC_ERROR_ASSUMPTION : GIC_ERROR_ROAD;"
+                           : ")\n%*sreturn GIC_ERROR_ROAD;",
+                       m->indent + 4, "", number);
     } else {
         text_print(&line, "const %s t%d = ", real, number);
         write_text(m, &line, e, 0);

@@ -732,7 +732,7 @@ void insert_code(void *context, const char *name, Text *out, int indent)
         insert_template(g, out, g->style->whole_self_test ? "self_test.c.in" : "self_test_constraints.c.in");
     } else if (!strcmp(name, "road")) {
         if (g->model->wheels && (!g->formulation->narrowing || g->formulation->narrowing->road))
-            insert_template(g, out, "road.c.in");
+            write_road(g, out);
         if (g->model->wheels && g->plan->pack)
             write_lane_road(g, out);
     } else if (!strcmp(name, "reactions")) {

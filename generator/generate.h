@@ -60,6 +60,8 @@ void write_tables(Generation *g, Text *out);
 int conditions(const Generation *g);                         /* texts of conditions and assumptions */
 void write_assumption_texts(Generation *g, Text *out);       /* behind those of conditions */
 void write_narrowing(Generation *g, Text *out);              /* for the comment in front */
+void write_road(Generation *g, Text *out);                   /* the function that looks it up */
+const char *friction_template(const Generation *g);          /* of the function that looks friction up */
 void write_assumptions(Generation *g, Text *out);            /* the functions that check them */
 void write_assume(Generation *g, Text *out, int indent, AssumptionAbout about); /* the call of it */
 void write_images(Generation *g, Text *out, int indent);     /* what wheels do whose images are computed */

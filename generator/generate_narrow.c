@@ -71,6 +71,28 @@ static bool assumes(const Generation *g, AssumptionAbout about)
     return false;
 }
 
+/* The road of two sides, and its assumption's place among the texts. */
+static void insert_across(void *context, const char *name, Text *out, int indent)
+{
+    const Generation *g = context;
+    const Narrowing *narrowing = g->formulation->narrowing;
+    (void)name;
+    for (int i = 0; i < narrowing->assumptions; ++i)
+        if (narrowing->assumption[i].about == ABOUT_ROAD)
+            line(out, indent, "((%s *)self)->head.condition = %d;", g->model->name, first_assumption(g) + i);
+}
+
+void write_road(Generation *g, Text *out)
+{
+    const char *name = assumes(g, ABOUT_ROAD) ? "road_across.c.in" : "road.c.in";
+    template_expand(g->pool, out, g->templates, name, g->model->name, NULL, insert_across, g);
+}
+
+const char *friction_template(const Generation *g)
+{
+    return assumes(g, ABOUT_ROAD) ? "friction_across.c.in" : "friction.c.in";
+}
+
 void write_assumptions(Generation *g, Text *out)
 {
     Checks checks = {g, ABOUT_CALLER};

@@ -113,7 +113,7 @@ static void insert_wheels(void *context, const char *name, Text *out, int indent
     Constants none = {0};
     if (!strcmp(name, "friction")) {
         if (!g->formulation->narrowing || g->formulation->narrowing->friction)
-            template_expand(g->pool, out, g->templates, "friction.c.in", g->model->name, NULL, insert_wheels, g);
+            template_expand(g->pool, out, g->templates, friction_template(g), g->model->name, NULL, insert_wheels, g);
     } else if (!strcmp(name, "wheel classes"))
         write_classes(g, out);
     else if (!strcmp(name, "powertrain"))

@@ -388,6 +388,7 @@ typedef struct Block {
     Store *store;
     Check *check;
     Ex *load; /* applied forces among its values, for those who count */
+    bool across; /* the road must be the same on both sides, and is looked up on one: narrow.h */
 } Block;
 
 void block_store(Block *block, Ex value, const char *format, ...) __attribute__((format(printf, 3, 4)));

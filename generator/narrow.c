@@ -245,7 +245,7 @@ static void narrow_class(Narrower *n, int c)
     const Class *class = &n->plan->sequence->class[c];
     const Formula *general = n->general->plan->formula[c];
     Formula *formula = narrow_copy(n->pool, general, 1, sizeof *formula);
-    Partial p = partial_new(n->pool, general->dag, class_givens(n, class, general), NULL, n->model);
+    Partial p = partial_new(n->pool, general->dag, class_givens(n, class, general), NULL, false, n->model);
     formula->dag = p.to;
     formula->predict = partial_block(&p, &general->predict);
     formula->chord = partial_block(&p, &general->chord);
@@ -365,7 +365,7 @@ static const Block *narrow_block(Narrower *n, const Givens *givens, const Block 
     Block *out = pool_alloc(n->pool, sizeof *out);
     if (!block)
         return NULL;
-    Partial p = partial_new(n->pool, block->dag, givens, n->facts->plane, n->model);
+    Partial p = partial_new(n->pool, block->dag, givens, n->facts->plane, n->mirror && n->facts->across, n->model);
     *out = partial_block(&p, block);
     return out;
 }
@@ -401,7 +401,7 @@ static Givens *wheel_givens(Narrower *n, const Block *torque, const WheelClass *
 
 static void narrow_wheel_class(Narrower *n, const Block *torque, WheelClass *class)
 {
-    Partial p = partial_new(n->pool, class->contact.dag, wheel_givens(n, torque, class), n->facts->plane, n->model);
+    Partial p = partial_new(n->pool, class->contact.dag, wheel_givens(n, torque, class), n->facts->plane, n->mirror && n->facts->across, n->model);
     class->contact = partial_block(&p, &class->contact);
     class->tire = partial_block(&p, &class->tire);
     class->balance = partial_block(&p, &class->balance);

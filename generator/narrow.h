@@ -40,11 +40,13 @@ typedef struct Partial {
     Dag *to;
     const Givens *givens;
     const Plane *plane;   /* NULL: the road is looked up */
+    bool across;          /* it is looked up once for both sides, and level from one to the other */
     const Table *table;   /* of the model */
     Ex *made;             /* [nodes of from] 1 + the node of `to`, 0: not yet */
 } Partial;
 
-Partial partial_new(Pool *pool, const Dag *from, const Givens *givens, const Plane *plane, const Model *model);
+Partial partial_new(Pool *pool, const Dag *from, const Givens *givens, const Plane *plane, bool across,
+                    const Model *model);
 /* The block with what is given folded in. Checks that constants satisfy are dropped. */
 Block partial_block(Partial *partial, const Block *block);
 /* Does any value of the block need an operation of this kind? */
@@ -62,13 +64,15 @@ typedef struct Facts {
     const double *parameter; /* [tunables] their values; NULL: they may change */
     bool idle;               /* nobody uses ports */
     bool neutral;            /* the transmission is in neutral all along */
-    const Plane *plane;      /* the road; NULL: any */
+    const Plane *plane;      /* the road; NULL: any, */
+    bool across;             /* but this: height and friction don't depend on y */
     const char *asymmetry;   /* what is not the same to both sides; NULL: the base's motion and the road are */
     const double *value, *rate, *state; /* [coordinates] [fast states] at the beginning; state NAN: as wheels roll */
 } Facts;
 
-/* What the condition of an assumption reads: what belongs to the caller, the slow state `y`, the fast one `fast`. */
-typedef enum AssumptionAbout { ABOUT_CALLER, ABOUT_STATE, ABOUT_FAST } AssumptionAbout;
+/* What the condition of an assumption reads: what belongs to the caller, the slow state `y`, the fast one `fast`; the
+ * road is seen where it is looked up. */
+typedef enum AssumptionAbout { ABOUT_CALLER, ABOUT_STATE, ABOUT_FAST, ABOUT_ROAD } AssumptionAbout;
 
 /* What generated code checks: for people, and a condition in C that is true where it is broken. */
 typedef struct Assumption {

@@ -92,6 +92,7 @@ static void learn_powertrain(Accounting *a)
 static void learn_symmetry(Accounting *a)
 {
     a->known.asymmetry = a->all->asymmetry;
+    a->known.across = a->all->across;
     const Formulation *f = formulate_narrow(a->pool, a->model, a->sequence, a->solve, a->recovery, &a->known);
     const char *why = f->narrowing->asymmetry;
     add_row(a, f, "one side for both",
@@ -107,6 +108,7 @@ const Formulation *formulate_explained(Pool *pool, const Model *drawn, const Mod
     a.known.fixed = pool_alloc(pool, (size_t)model->inputs + 1);
     a.known.parameter = NULL;
     a.known.plane = NULL;
+    a.known.across = false;
     a.known.idle = a.known.neutral = false;
     a.known.asymmetry = "it is not looked at yet";
     const Sequence *first = sequence_find(pool, drawn);

@@ -218,6 +218,8 @@ void narrow_mirror(Narrower *n)
         if (wheel[i] >= 0)
             give_wheel(n, i, wheel[i]);
     }
+    if (n->facts->across && model->wheels)
+        narrow_assume(n, ABOUT_ROAD, "the road is the same on both sides, and level from one to the other", "0");
     n->narrowing->image = image;
     n->narrowing->wheel = wheel;
 }
@@ -283,7 +285,7 @@ static bool are_equal(Narrower *n, const Block *block, const Givens *givens, con
         block_store(&roots, equal[i].a, "a");
         block_store(&roots, equal[i].b, "b");
     }
-    Partial p = partial_new(n->pool, block->dag, givens, n->facts->plane, n->model);
+    Partial p = partial_new(n->pool, block->dag, givens, n->facts->plane, n->facts->across, n->model);
     const Block out = partial_block(&p, &roots);
     for (int t = 0; t < trials; ++t) {
         double scale = 0;

@@ -79,12 +79,14 @@ static const int op_arity[OP_COUNT] = {
 #undef OP_ARITY
 };
 
-Partial partial_new(Pool *pool, const Dag *from, const Givens *givens, const Plane *plane, const Model *model)
+Partial partial_new(Pool *pool, const Dag *from, const Givens *givens, const Plane *plane, bool across,
+                    const Model *model)
 {
     return (Partial){.from = from,
                      .to = dag_new(pool, from->members, from->samples),
                      .givens = givens,
                      .plane = plane,
+                     .across = across,
                      .table = model->table,
                      .made = pool_alloc(pool, (size_t)from->nodes * sizeof(Ex))};
 }
@@ -125,6 +127,8 @@ static Ex make_constant(Partial *p, Ex e)
 static Ex make_road_part(Partial *p, Ex road, Ex part)
 {
     Dag *to = p->to;
+    if (p->across && part == 2)
+        return ex_literal(to, 0);
     if (!p->plane)
         return ex_op(to, OP_ROAD_PART, of(p, road), part, 0);
     Ex height = ex_literal(to, p->plane->height);
@@ -133,11 +137,39 @@ static Ex make_road_part(Partial *p, Ex road, Ex part)
     return part ? ex_literal(to, p->plane->slope[part - 1]) : height;
 }
 
+/* Of places at the same x the first one that is asked for stands for all, where the road is the same across. */
+static Ex make_road(Partial *p, Ex x, Ex y)
+{
+    for (Ex e = 0; p->across && e < (Ex)p->to->nodes; ++e)
+        if (p->to->node[e].op == OP_ROAD && p->to->node[e].arg[0] == x)
+            return e;
+    return ex_op(p->to, OP_ROAD, x, y, 0);
+}
+
 static Ex make_table(Partial *p, Ex x, Ex index)
 {
     if (p->to->node[x].op == OP_LITERAL)
         return ex_literal(p->to, table_value(&p->table[index], ex_value(p->to, x, 0)));
     return ex_op(p->to, OP_TABLE, x, index, 0);
+}
+
+/* Without its sign, which goes into *sign. */
+static Ex unsigned_of(Dag *dag, Ex e, int *sign)
+{
+    const Node *node = &dag->node[e];
+    const bool negative = node->op == OP_NEG || (node->op == OP_LITERAL && ex_value(dag, e, 0) < 0);
+    *sign = negative ? -*sign : *sign;
+    return !negative ? e : node->op == OP_NEG ? node->arg[0] : ex_literal(dag, -ex_value(dag, e, 0));
+}
+
+/* Signs in front, so that products of both sides of a vehicle are the same nodes. */
+static Ex make_product(Dag *dag, Ex a, Ex b)
+{
+    int sign = 1;
+    a = unsigned_of(dag, a, &sign);
+    b = unsigned_of(dag, b, &sign);
+    const Ex product = ex_mul(dag, a, b);
+    return sign < 0 ? ex_neg(dag, product) : product;
 }
 
 static Ex make_positive(Dag *to, Ex condition, Ex yes, Ex no)
@@ -165,14 +197,14 @@ static Ex make_node(Partial *p, Ex e)
     case OP_NEG: return ex_neg(to, arg[0]);
     case OP_ADD: return ex_add(to, arg[0], arg[1]);
     case OP_SUB: return ex_sub(to, arg[0], arg[1]);
-    case OP_MUL: return ex_mul(to, arg[0], arg[1]);
+    case OP_MUL: return make_product(to, arg[0], arg[1]);
     case OP_DIV: return ex_div(to, arg[0], arg[1]);
     case OP_ABS: return ex_op(to, OP_ABS, to->node[arg[0]].op == OP_NEG ? to->node[arg[0]].arg[0] : arg[0], 0, 0);
     case OP_POW: return ex_pow(to, arg[0], arg[1]);
     case OP_POSITIVE: return make_positive(to, arg[0], arg[1], arg[2]);
     case OP_TABLE: return make_table(p, arg[0], node->arg[1]);
     case OP_FRICTION: return p->plane ? ex_literal(to, p->plane->friction) : ex_op(to, OP_FRICTION, arg[0], arg[1], 0);
-    case OP_ROAD: return p->plane ? 0 : ex_op(to, OP_ROAD, arg[0], arg[1], 0);
+    case OP_ROAD: return p->plane ? 0 : make_road(p, arg[0], arg[1]);
     default: return ex_op(to, (Op)node->op, arg[0], arg[1], arg[2]);
     }
 }
@@ -204,7 +236,7 @@ static Ex *roots_of(const Block *block, int *count)
 
 Block partial_block(Partial *p, const Block *block)
 {
-    Block out = {.dag = p->to};
+    Block out = {.dag = p->to, .across = p->across};
     int roots;
     const Ex *root = roots_of(block, &roots);
     const bool *needed = dag_needed(p->from, root, roots);

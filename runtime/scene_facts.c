@@ -132,6 +132,34 @@ static const Plane *plane_of(Pool *pool, const gic_road *road)
     return plane;
 }
 
+/* Does nothing of it depend on y? */
+static bool is_across(const gic_road *road)
+{
+    const double far = 1e9; /* m: as far as anybody drives */
+    if (!road || road->height == gic_plane_height)
+        return !road || (!road->friction && ((const gic_road_plane *)road)->sy == 0);
+    if (road->height == gic_patched_height) {
+        const gic_road_patched *patched = (const gic_road_patched *)road;
+        return !patched->count && is_across(patched->under);
+    }
+    if (road->friction)
+        return false;
+    if (road->height == gic_sine_height)
+        return ((const gic_road_sine *)road)->phase_per_y == 0;
+    if (road->height == gic_table_height) {
+        const gic_road_table *table = (const gic_road_table *)road;
+        return !memcmp(table->left, table->right, sizeof *table->left * (size_t)table->count);
+    }
+    bool across = road->height == gic_bumps_height || road->height == gic_sum_height;
+    const gic_road_bumps *bumps = road->height == gic_bumps_height ? (const gic_road_bumps *)road : NULL;
+    for (int i = 0; bumps && i < bumps->count; ++i)
+        across = across && bumps->bump[i].y_low <= -far && bumps->bump[i].y_high >= far;
+    const gic_road_sum *sum = road->height == gic_sum_height ? (const gic_road_sum *)road : NULL;
+    for (int i = 0; sum && i < sum->count; ++i)
+        across = across && is_across(sum->part[i]);
+    return across;
+}
+
 /* ---- symmetry ------------------------------------------------------------------------------------------------------- */
 
 static bool is_small(double x)
@@ -140,22 +168,20 @@ static bool is_small(double x)
 }
 
 /* What of the base's motion and the road is not the same to both sides; NULL: nothing. */
-static const char *asymmetry_of(const Model *model, const Scene *scene, const Plane *plane)
+static const char *asymmetry_of(const Model *model, const Scene *scene, bool across)
 {
     if (!is_small(scene->euler[1]) || !is_small(scene->euler[3]))
         return "the vehicle is turned about x or z at the beginning";
     if (!is_small(scene->velocity[1]) || !is_small(scene->angular_velocity[0]) || !is_small(scene->angular_velocity[2]))
         return "the vehicle does not move straight ahead at the beginning";
-    if (model->wheels && !plane)
-        return "the road is no plane";
-    return model->wheels && plane->slope[1] != 0 ? "the road falls to one side" : NULL;
+    return model->wheels && !across ? "the road is not known to be the same on both sides" : NULL;
 }
 
 const Scene *scene_even(Pool *pool, const Model *model, const Scene *given)
 {
     const char *why = NULL;
     const Mirror *mirror = model->free_base ? mirror_find(pool, model, &why) : NULL;
-    if (!mirror || asymmetry_of(model, given, &(const Plane){.friction = 1}))
+    if (!mirror || asymmetry_of(model, given, true))
         return given;
     Scene *scene = pool_alloc(pool, sizeof *scene);
     *scene = *given;
@@ -192,7 +218,8 @@ const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, con
     facts->idle = true; /* scenes have nothing that could use one */
     facts->plane = plane_of(pool, scene->road);
     fix_inputs(pool, model, scene, facts);
-    facts->asymmetry = asymmetry_of(model, scene, facts->plane);
+    facts->across = !facts->plane && is_across(scene->road);
+    facts->asymmetry = asymmetry_of(model, scene, is_across(scene->road));
     facts->value = scene->value;
     facts->rate = scene->rate;
     facts->state = scene->fast;

@@ -39,6 +39,21 @@ same hmmwv_vehicle "$root/tests/narrow/coast.scene" --cflags -O1
 same hmmwv_vehicle "$root/tests/narrow/steer.scene" --cflags -O1
 same hmmwv_vehicle "$root/tests/narrow/straight.scene" --cflags -O1
 same hmmwv "$root/tests/narrow/bounce.scene" --cflags -O1
+same hmmwv "$root/tests/narrow/bumps.scene" --cflags -O1
+same hmmwv_vehicle "$root/tests/narrow/brake.scene" --cflags -O1
+sed 's/^duration.*/duration: 2/' "$models/scenes/suspension_rig.scene" >"$work/rig.scene"
+same hmmwv "$work/rig.scene" --cflags -O1
+
+# a rig, whose model is another one: the interpreted engines, which know nothing of how it is narrowed
+for engine in gic gcp1; do
+    run --engine $engine "$models/hmmwv.veh" "$work/rig.scene" -o "$work/other"
+    check "rig: $engine" exits 0
+    check "rig: as $engine" near "$work/narrow" "$work/other"
+done
+# straight ahead the interpreted engine keeps its distance: rounding grows, but not like a term left out
+run --engine gic "$models/hmmwv.veh" "$root/tests/narrow/bumps.scene" -o "$work/other"
+run --engine cc --cflags -O1 "$models/hmmwv.veh" "$root/tests/narrow/bumps.scene" -o "$work/narrow"
+check "straight ahead: as gic" near "$work/narrow" "$work/other"
 same quarter_car "$models/scenes/quarter_car.scene" --cflags -O1
 same pendulum "$models/scenes/pendulum.scene" --cflags -O1
 
@@ -64,6 +79,24 @@ done
 gcc -std=c99 -O1 $warnings -o "$work/refuse" "$root/tests/narrow/refuse.c" "$work/narrow.c" "$root/runtime/gic_runtime.c" -lm &&
     "$work/refuse" >"$work/out"
 check "every false assumption is refused" [ $? -eq 0 ]
+"$gicgen" --scene "$root/tests/narrow/bumps.scene" "$models/hmmwv.veh" -o "$work/narrow.c" &&
+    gcc -std=c99 -O1 $warnings -o "$work/uneven" "$root/tests/narrow/uneven.c" "$work/narrow.c" "$root/runtime/gic_runtime.c" -lm &&
+    "$work/uneven" >"$work/out"
+check "what is not the same on both sides is refused" [ $? -eq 0 ]
+
+# side NAME SCENE MODEL: is one side computed for both, and if not, why?
+side() { "$gicgen" --scene "$2" "$3" -o - 2>&1 | grep -q "one side for both .* $1"; }
+sed 's/10, 0, 0/10, 0.1, 0/' "$root/tests/narrow/bounce.scene" >"$work/drift.scene"
+check "refused: drift" side "refused: the vehicle does not move straight ahead" "$work/drift.scene" "$models/hmmwv.veh"
+sed 's/tracks: both/tracks: left/' "$root/tests/narrow/bumps.scene" >"$work/left.scene"
+check "refused: road" side "refused: the road" "$work/left.scene" "$models/hmmwv.veh"
+sed "s|parts/|$models/parts/|g; s/^forces:/forces:\n  spring_f_r: {type: spring_damper, coordinate: spring_f_r, stiffness: 167071, damping: 17490.8, free: 0.31903}/" \
+    "$models/hmmwv.veh" >"$work/spring.veh"
+check "refused: a spring" side "refused: forces are not the same" "$root/tests/narrow/bumps.scene" "$work/spring.veh"
+sed "s|parts/|$models/parts/|g; s/^wheels:/wheels:\n  tire_f_r: {body: wheel_f_r, center: centre_f_r, radius: 0.47, stiffness: 283000, damping: 500}/" \
+    "$models/hmmwv.veh" >"$work/wheel.veh"
+check "refused: a wheel" side "refused: wheel 'tire_f_" "$root/tests/narrow/bumps.scene" "$work/wheel.veh"
+check "taken" side "model, initial state" "$root/tests/narrow/bumps.scene" "$models/hmmwv.veh"
 "$gicgen" --scene "$scene" --sequence "$models/hmmwv_vehicle.veh" >"$work/out" 2>"$work/err"
 check "--scene with another task" [ $? -eq 2 ]
 sed 's/chassis, spring/chassis, sprong/' "$scene" >"$work/wrong.scene"
