@@ -91,24 +91,24 @@ typedef void gic_input_function(void *user, int32_t lane, gic_real time, gic_rea
 
 /* The head of every generated structure. */
 typedef struct gic_head {
-    gic_real start_time;  /* s */
-    gic_real step;        /* s, of the steps counted below */
-    gic_real ahead;       /* s, what a step leads to: nearer in time a configuration where coordinates stop being
-                           * independent is none that a right-hand side takes. Step functions set it, outputs don't need
-                           * it; integrators of others may */
-    int64_t steps;        /* time = start_time + steps * step, so that no error accumulates */
-    int32_t method;       /* of the last step; a change restarts the multistep history */
-    int32_t history;      /* rates kept for AB3: 0, 1 or 2 */
-    int32_t ratio;        /* of the last step: fast steps in it, 1: a single rate; a change restarts the history too */
-    int32_t lane;         /* free for the caller: which vehicle of many this is */
-    int32_t flip;         /* which of the Newton starts is the last good one */
-    int32_t hold;         /* one that must not be lost: that of the beginning of a step under way, -1: none */
-    int32_t status;       /* of the last call */
-    int32_t subset;       /* that the status is about, -1: none; see the descriptor's subset_name */
-    int32_t condition;    /* that GIC_ERROR_GEOMETRY or _ASSUMPTION is about, -1: none; the descriptor's condition_text */
-    int32_t grown;        /* index in state[] of what GIC_ERROR_UNSTABLE is about, -1: none */
-    int64_t rhs_count;    /* right-hand sides evaluated */
-    int64_t fast_count;   /* rates of the fast states alone evaluated, by gic_step_dual */
+    gic_real start_time; /* s */
+    gic_real step;       /* s, of the steps counted below */
+    gic_real ahead;      /* s, what a step leads to: nearer in time a configuration where coordinates stop being
+                          * independent is none that a right-hand side takes. Step functions set it, outputs don't need
+                          * it; integrators of others may */
+    int64_t steps;       /* time = start_time + steps * step, so that no error accumulates */
+    int32_t method;      /* of the last step; a change restarts the multistep history */
+    int32_t history;     /* rates kept for AB3: 0, 1 or 2 */
+    int32_t ratio;       /* of the last step: fast steps in it, 1: a single rate; a change restarts the history too */
+    int32_t lane;        /* free for the caller: which vehicle of many this is */
+    int32_t flip;        /* which of the Newton starts is the last good one */
+    int32_t hold;        /* one that must not be lost: that of the beginning of a step under way, -1: none */
+    int32_t status;      /* of the last call */
+    int32_t subset;      /* that the status is about, -1: none; see the descriptor's subset_name */
+    int32_t condition;  /* that GIC_ERROR_GEOMETRY or _ASSUMPTION is about, -1: none; the descriptor's condition_text */
+    int32_t grown;      /* index in state[] of what GIC_ERROR_UNSTABLE is about, -1: none */
+    int64_t rhs_count;  /* right-hand sides evaluated */
+    int64_t fast_count; /* rates of the fast states alone evaluated, by gic_step_dual */
     int64_t newton_count; /* subset solutions, and the corrections they took in total */
     int64_t correction_count;
     int64_t switch_count; /* changes of the dependent Euler parameter */
