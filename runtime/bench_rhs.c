@@ -17,6 +17,7 @@ typedef struct Variant {
 } Variant;
 
 #define FASTEST "-O3 -march=native -ffp-contract=fast"
+#define NEAR(error) "-O2 -DGIC_RECOVERY_ERROR=" #error
 
 /* The first is what the others are compared with, in double precision and the reduced form. */
 static const Variant every_variant[] = {
@@ -26,6 +27,11 @@ static const Variant every_variant[] = {
     {"cc", "clang", "-O2", SOLVE_REDUCED, false, false},
     {"cc", "clang", FASTEST, SOLVE_REDUCED, false, false},
     {"cc", NULL, "-O2", SOLVE_REDUCED, false, true},
+    {"cc", NULL, NEAR(1e-10), SOLVE_REDUCED, false, true},
+    {"cc", NULL, NEAR(1e-8), SOLVE_REDUCED, false, true},
+    {"cc", NULL, NEAR(1e-6), SOLVE_REDUCED, false, true},
+    {"cc", NULL, NEAR(1e-4), SOLVE_REDUCED, false, true},
+    {"cc", NULL, NEAR(1e-2), SOLVE_REDUCED, false, true},
     {"cc", NULL, FASTEST, SOLVE_REDUCED, false, true},
     {"cc", "clang", FASTEST, SOLVE_REDUCED, false, true},
     {"cc", NULL, "-O2", SOLVE_AUGMENTED, false, false},
@@ -57,6 +63,7 @@ typedef struct Subject {
     void *room;
     double *rhs, *fast; /* [repetitions] s a call: median over the stretches */
     double corrections; /* of one subset's solution, 0: not counted */
+    double *rate;       /* [stretches][states] at the first end, of generated code in double precision; or NULL */
     int status;         /* that ended it */
 } Subject;
 
@@ -248,6 +255,19 @@ static void enter(Subject *subject, const Stretch *stretch, CallsMoment end[2])
     }
 }
 
+static int states_of(const Subject *subject)
+{
+    return subject->engine->code->slow_count + subject->engine->code->fast_count;
+}
+
+/* The last rate: an even number of calls ends at the first of both ends. */
+static void keep_rate(Subject *subject, int stretch)
+{
+    const int states = states_of(subject);
+    memcpy(subject->rate + stretch * states, (const double *)subject->room + 2 * states,
+           (size_t)states * sizeof *subject->rate);
+}
+
 /* All stretches once. */
 static void time_subject(const Course *course, Subject *subject, int repetition)
 {
@@ -267,6 +287,8 @@ static void time_subject(const Course *course, Subject *subject, int repetition)
         if (subject->status == GIC_OK)
             subject->status = calls->rhs(code, subject->self, end, subject->room, CALLS, &seconds);
         calls->counts(subject->self, after);
+        if (subject->rate && subject->status == GIC_OK)
+            keep_rate(subject, i);
         solved += after[0] - before[0];
         corrected += after[1] - before[1];
         rhs[i] = seconds / CALLS;
@@ -439,6 +461,48 @@ static void time_table(const Course *course, const char *name, const char *title
     }
 }
 
+/* Largest difference of a rate from the first subject's, relative to its largest one. */
+static double deviation(const Course *course, const Subject *subject)
+{
+    const Subject *first = course->subject;
+    double largest = 0, difference = 0;
+    for (int i = 0; i < course->stretches * states_of(first); ++i) {
+        largest = fmax(largest, fabs(first->rate[i]));
+        difference = fmax(difference, fabs(subject->rate[i] - first->rate[i]));
+    }
+    return difference / largest;
+}
+
+/* Recovery as a choice between time and error. */
+static void precision_chart(const Course *course)
+{
+    const Bench *bench = course->bench;
+    Pool *pool = bench->pool;
+    Sheet *table = report_table(bench->report, "rhs_precision", "Time and error of a right-hand side",
+                                "variant|time [ns]|corrections|largest deviation of a rate");
+    Chart *chart = report_chart(bench->report, "rhs_precision", "Time and error of a right-hand side",
+                                "time of a right-hand side [ns]", "deviation of a rate, relative to the largest");
+    for (int s = 1; s < course->subjects; ++s) {
+        const Subject *subject = &course->subject[s];
+        if (!subject->rate || subject->status != GIC_OK)
+            continue;
+        const double time = 1e9 * spread_of(pool, subject->rhs, bench->repetitions).median;
+        const double error = deviation(course, subject);
+        table_cell(pool, table, "%s", subject->name);
+        table_cell(pool, table, "%.4g", time);
+        table_cell(pool, table, subject->corrections > 0 ? "%.3g" : "-", subject->corrections);
+        table_cell(pool, table, "%.2g", error);
+        const bool newton = subject->variant->newton || bench->options.recovery == RECOVERY_NEWTON;
+        chart_point(pool, chart, newton ? "newton" : "closed forms where there are any", newton, time, error);
+    }
+    table->note = pool_print(
+        pool,
+        "From '%s', on the same states, relative to the largest rate of them all. GIC_RECOVERY_ERROR: how far "
+        "poses may be off, relative to the size of a subset, by what Newton's iteration leaves; "
+        "by default as near as numbers are.",
+        course->subject->name);
+}
+
 static void limit_table(const Course *course)
 {
     const Bench *bench = course->bench;
@@ -462,6 +526,12 @@ void bench_rhs(const Bench *bench)
         if (available(bench, &every_variant[v]))
             open_subject(&course, &every_variant[v]);
     find_stretches(&course);
+    for (int s = 0; s < course.subjects; ++s) {
+        Subject *subject = &course.subject[s];
+        if (!subject->variant->single && !strcmp(subject->variant->engine, "cc"))
+            subject->rate =
+                pool_alloc(bench->pool, (size_t)(course.stretches * states_of(subject) + 1) * sizeof(double));
+    }
     begin(&course);
     for (int r = 0; r < bench->repetitions; ++r) {
         bench_progress("right-hand sides: repetition %d of %d", r + 1, bench->repetitions);
@@ -487,6 +557,7 @@ void bench_rhs(const Bench *bench)
                 build_flags);
     operations_table(&course, &kinds);
     time_table(&course, "rhs", "Time of a right-hand side", &kinds, false);
+    precision_chart(&course);
     if (tires)
         time_table(&course, "rhs_fast", "Time of a fast step's rates", &kinds, true);
     limit_table(&course);

@@ -53,7 +53,7 @@ static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, do
     memcpy(q, old, pose);
     if (!links->cold) {
         tape_play(class->predict, member, array, &none, frame);
-        for (int i = 0; i < GIC_CHORDS; ++i) {
+        for (int i = 0; i < GIC_CHORDS && (i || 4 * reach * reach > class->enough); ++i) {
             tape_play(class->chord, member, array, &none, frame);
             ++engine->profile->newton;
             ++self->head.correction_count;

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # test_recovery.sh GICGEN GICRUN STATES REFERENCE AGREE: which subsets have a closed form, and that it leads to where
 # Newton's iteration and the independent reference in quad precision are. The latter within 5e-13, as in
-# test_accelerations.sh.
+# test_accelerations.sh. That GIC_RECOVERY_ERROR is kept: residuals of the constraints, relative to a subset's size, stay
+# below it along a path, and the larger ones are made use of.
 gicgen=$1
 gicrun=$2
 states=$3
@@ -52,6 +53,45 @@ for name in hmmwv14 five_link trailing_arm; do
     cmp -s "$work/newton" "$work/closed"
     check "$name: two ways" 1 $?
 done
+
+# One recovery after the other along a path through the ranges: the largest residual of the constraints.
+"$gicgen" --recovery newton "$models/five_link.veh" -o "$work/five_link.c"
+cat >"$work/path.c" <<'END'
+#include "five_link.c"
+
+#include <stdio.h>
+
+int main(void)
+{
+    static five_link car;
+    gic_real state[FIVE_LINK_STATES], rate[FIVE_LINK_STATES], worst = 0, one;
+    int status = five_link_setup(&car);
+    for (int k = 0; k < 400 && status == GIC_OK; ++k) {
+        memcpy(state, car.state, sizeof state);
+        for (int i = FIVE_LINK_STATE_SPRING_F_L; i <= FIVE_LINK_STATE_RACK; ++i)
+            state[i] += 0.02 * sin(0.1 * k + i);
+        status = five_link_rhs(&car, 0, state, rate);
+        one = five_link_residual(&car);
+        worst = one > worst ? one : worst;
+    }
+    printf("%.3g\n", status == GIC_OK ? worst : 1.0);
+    return 0;
+}
+END
+
+# residual ERROR: with poses that may be off by it, relative to the size of a subset
+residual() {
+    "${CC:-cc}" -std=c99 -I"$work" -I"$root/runtime" -DGIC_RECOVERY_ERROR="$1" "$work/path.c" \
+        "$root/runtime/gic_runtime.c" -lm -o "$work/path" && "$work/path"
+}
+
+nearest=$(residual 0.0)
+for error in 1e-14 1e-9 1e-6 1e-3; do
+    worst=$(residual $error)
+    check "poses within $error" yes "$(awk -v x="$worst" -v e=$error 'BEGIN { print (x <= e ? "yes" : x) }')"
+done
+check "poses off by more than rounding" yes \
+    "$(awk -v x="$worst" -v y="$nearest" 'BEGIN { print (x > 1000 * y ? "yes" : x " " y) }')"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
