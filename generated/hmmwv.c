@@ -127,16 +127,26 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
+/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers are;
+ * 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer than that
+ * where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of it. */
+#ifndef GIC_RECOVERY_ERROR
+#define GIC_RECOVERY_ERROR 0.0
+#endif
+
 /* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
  * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
  * epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
-#define GIC_ENOUGH(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
-#define GIC_AMPLIFIED R(1e4)
+#define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
+#define GIC_AMPLIFICATION R(1e4)
 #else
-#define GIC_ENOUGH(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far))
-#define GIC_AMPLIFIED R(1e6)
+#define GIC_NEAREST(far) GIC_MAX(R(1e-28), R(1.3e-29) * (far))
+#define GIC_AMPLIFICATION R(1e6)
 #endif
+#define GIC_ENOUGH(far) GIC_MAX(R(GIC_RECOVERY_ERROR) * R(GIC_RECOVERY_ERROR), GIC_NEAREST(far))
+/* Corrections that do not shrink any more are rounding only where all digits are asked for. */
+#define GIC_AMPLIFIED (R(GIC_RECOVERY_ERROR) > R(0.0) ? R(1.0) : GIC_AMPLIFICATION)
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
  * pieces in which a change of the coordinates is followed. */
