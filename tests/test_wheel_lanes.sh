@@ -3,8 +3,8 @@
 # test_wheel_lanes.sh GICGEN GICRUN: wheels side by side in lanes. The code compiles without a warning by gcc and clang,
 # as C99 and C++, with either number type; runs behave as those of single wheels must (tests/tires/runs.py: lock-up,
 # standstill, parking, a jump); along a run of the complete vehicle results are those of single wheels to 1e-9 of their
-# size, which is what some thousand steps make of a few units of the last place; a wheel alone in the air next to three on
-# the ground, and a road that ends under one wheel, are right; the same input gives the same bytes.
+# size, which is what some thousand steps make of a few units of the last place; so they are with other tires at the
+# rear, with three wheels, and with one of five in the air; the same input gives the same bytes.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 here=$(cd "$(dirname "$0")" && pwd)
@@ -97,6 +97,35 @@ check "two tires, one function" [ "$(grep -c 'static int hmmwv_tires_wheels_' tw
 "$gicrun" -q --engine cc --general two.veh two.scene -o single.csv
 "$gicrun" -q --engine cc --lanes 4 two.veh two.scene -o lanes.csv
 check "two tires, braking" alike 1e-9
+
+# three and five wheels: a lane and three lanes are left over; one of five is in the air
+cat >box.veh <<END
+gicgen: 1
+model: box
+base: box
+bodies:
+  box: {mass: 4000, com: [0, 0, 1], inertia: [3000, 3000, 3000]}
+tires:
+  all: {file: $models/tires/hmmwv_pac2002.tir}
+wheels:
+  front: {body: box, center: [1, 0, 0.45], tire: all, spin_inertia: 7}
+  left: {body: box, center: [-1, 1, 0.45], tire: all, spin_inertia: 7}
+  right: {body: box, center: [-1, -1, 0.45], tire: all, spin_inertia: 7}
+  # spare: {body: box, center: [-1.5, 0, 0.6], tire: all, spin_inertia: 7}
+  # flag: {body: box, center: [-1.5, 0, 2], tire: all, spin_inertia: 7}
+outputs:
+  front: {type: tire, wheel: front}
+  left: {type: tire, wheel: left}
+  right: {type: tire, wheel: right}
+  energies: {type: energy}
+END
+sed 's/# \(spare\|flag\)/\1/; s/^model: box/model: five/' box.veh >five.veh
+printf 'gicscene: 1\nduration: 0.5\nstep: 0.004\nratio: 4\noutput_step: 0.02\ninitial: {velocity: [10, 1, 0]}\n' >box.scene
+for code in box five; do
+    "$gicrun" -q --engine cc --general $code.veh box.scene -o single.csv
+    "$gicrun" -q --engine cc --lanes 4 $code.veh box.scene -o lanes.csv
+    check "wheels left over: $code" alike 1e-9
+done
 
 # usage
 "$gicrun" --lanes 3 x.veh >out 2>err
