@@ -31,10 +31,10 @@ typedef struct Way {
 
 #define FASTEST "-O3 -march=native -ffp-contract=fast"
 static const Way way[] = {
-    {"cc, fast", NULL, FASTEST, 0},
-    {"cc, fast, 4 lanes", NULL, FASTEST, 4},
-    {"clang, fast", "clang", FASTEST, 0},
-    {"clang, fast, 4 lanes", "clang", FASTEST, 4},
+    {"cc fast", NULL, FASTEST, 0},
+    {"cc fast 4 lanes", NULL, FASTEST, 4},
+    {"clang fast", "clang", FASTEST, 0},
+    {"clang fast 4 lanes", "clang", FASTEST, 4},
 };
 enum { WAYS = sizeof way / sizeof *way };
 
