@@ -181,7 +181,9 @@ int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int s
         const int32_t at = model->coordinate_state[c];
         if (at < 0)
             continue;
-        const gic_real allowed = GIC_R(0.25) * (model->coordinate_high[c] - model->coordinate_low[c]);
+        const gic_real part = GIC_R(0.25) * (model->coordinate_high[c] - model->coordinate_low[c]);
+        const int wide = model->coordinate[c].unit[0] == 'r' && part > GIC_R(0.5); /* rad */
+        const gic_real allowed = wide ? GIC_R(0.5) : part;
         const gic_real moved = step * (absolute(rate[at]) + step * absolute(rate[at + half])) / allowed;
         if (moved > farthest) {
             farthest = moved;
@@ -242,10 +244,21 @@ static int give_up(const gic_model *model, void *self, gic_real step, int status
                    const gic_real *input_before)
 {
     gic_head *head = (gic_head *)self;
+    const gic_real *state = array_at(self, model->state_offset);
+    const int32_t n = model->slow_count + model->fast_count, half = (model->slow_count - model->free_base) / 2;
+    gic_real *rate = array_at(self, model->scratch_offset);
+    if (newest != rate)
+        copy(rate, newest, n);
+    /* of coordinates, the state knows theirs */
+    for (int32_t c = 0; c < model->coordinate_count; ++c) {
+        const int32_t at = model->coordinate_state[c];
+        if (at >= 0 && at + half < n && absolute(state[at + half]) > absolute(rate[at]))
+            rate[at] = state[at + half];
+    }
     head->flip = head->hold;
     head->hold = -1;
     copy(array_at(self, model->input_offset), input_before, model->input_count);
-    return head->status = gic_blame(model, step, newest, status, &head->grown);
+    return head->status = gic_blame(model, step, rate, status, &head->grown);
 }
 
 /* A step was made: the instance moves on, with `history` rates kept. */

@@ -236,8 +236,8 @@ int gic_finite(const gic_real *x, int32_t count);
 int gic_bounded(const gic_real *x, int32_t count);
 
 /* Why a step of `step` seconds fails with `status`: GIC_ERROR_UNSTABLE where at rate[] (states, the newest known) a
- * coordinate moves by more than a quarter of its range, or the base turns by more than 1 rad, within it; *grown is then
- * its index in state[]. Else `status`. Step functions call it. */
+ * coordinate moves by more than a quarter of its range, or 0.5 rad, or the base turns by more than 1 rad, within it;
+ * *grown is then its index in state[]. Else `status`. Step functions call it. */
 #define gic_blame GIC_NAME(gic_blame)
 int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int status, int32_t *grown);
 

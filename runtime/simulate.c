@@ -376,9 +376,16 @@ static int run_all(Run *run, const gic_head **failed)
             return status;
         status = compute_outputs(run);
         *failed = run->copy;
-        if (status != GIC_OK)
-            return gic_blame(run->model, run->self->step, instance_array(run->self, run->model->rate_offset), status,
-                             &run->copy->grown);
+        if (status != GIC_OK) {
+            /* a step from there fails too, and knows whether it was too long */
+            const int next = run->variable ? status
+                                           : scene_step(run->engine, run->model, run->scene, NULL, run->self,
+                                                        (double)(k + 2) * run->scene->output_step);
+            if (next != GIC_ERROR_UNSTABLE)
+                return status;
+            *failed = run->self;
+            return next;
+        }
         record(run);
     }
     return GIC_OK;

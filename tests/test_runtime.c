@@ -344,9 +344,11 @@ static void test_blame(void **unused)
     (void)unused;
     static const gic_real low[] = {0, 0}, high[] = {GIC_R(0.4), GIC_R(1e-6)};
     static const int32_t place[] = {7, -1};
+    static const gic_signal signal[] = {{"spring", "m"}, {"rack", "m"}};
     const gic_model model = {.free_base = 1,
                              .slow_count = 15,
                              .coordinate_count = 2,
+                             .coordinate = signal,
                              .coordinate_low = low,
                              .coordinate_high = high,
                              .coordinate_state = place};

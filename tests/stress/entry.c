@@ -23,7 +23,7 @@ static const int whole[] = {INT_MIN, -1000, -3, -1, 0, 1, 2, 3, 4, 5, 17, 1 << 2
 enum { POISONS = sizeof poison / sizeof *poison, WHOLES = sizeof whole / sizeof *whole };
 
 enum { WARM = 8, AFTER = 4 }; /* steps before, and after the number is taken back */
-static const double step = 1e-3;
+static const double step = 1e-4;
 
 typedef struct Trial {
     const gic_model *code;

@@ -112,7 +112,8 @@ static double measured(const Rest *rest, int32_t method, double expected)
     return low;
 }
 
-/* A run with half as much again as the limit, with a displacement that is felt: the status that ends it. */
+/* A run with half as much again as the limit, with a displacement that is felt: the status that ends it. (A model whose
+ * dampers have a kink at rest, such as hmmwv_full, has no small motions to compare with.) */
 static int ending(const Rest *rest, int32_t method, double limit, double push)
 {
     memcpy(rest->self, rest->rest, rest->code->size);
