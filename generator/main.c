@@ -199,8 +199,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         file_write(path, h.s, h.size);
         return;
     }
-    file_write(header, h.s, h.size);
-    file_write(path, c.s, c.size);
+    file_write_both(header, &h, path, &c);
 }
 
 static void write_graph(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)

@@ -61,6 +61,8 @@ void mat_apply_transposed(const double A[9], const double x[3], double out[3]); 
 /* Write a whole file under a temporary name beside it and rename it: readers see all of it or the old one.
  * "-" is standard output. Exits with a message naming the file when it can't be written. */
 void file_write(const char *path, const char *bytes, size_t size);
+/* The same with two files that belong together: neither is replaced where one can't be written. */
+void file_write_both(const char *path, const Text *text, const char *other_path, const Text *other);
 /* Is there something at `path` that is no file, a device or pipe? It is written to as it is: a rename would replace it.
  */
 bool file_is_special(const char *path);

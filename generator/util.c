@@ -215,6 +215,45 @@ bool path_ends(const char *path, const char *end)
     return n > m && !strcmp(path + n - m, end);
 }
 
+/* End with a message about a file that can't be written, without the temporary ones (NULL: none). */
+static _Noreturn void write_fail(const char *path, const char *what, const char *temporary, const char *other)
+{
+    const int reason = errno;
+    if (temporary)
+        remove(temporary);
+    if (other)
+        remove(other);
+    errno = reason;
+    file_fail(path, what);
+}
+
+/* Write to a temporary file beside `path`. Returns its name, to be freed. other: as for write_fail. */
+static char *temporary_write(const char *path, const char *bytes, size_t size, const char *other)
+{
+    const size_t room = strlen(path) + 32;
+    char *temporary = malloc(room);
+    if (!temporary) {
+        if (other)
+            remove(other);
+        out_of_memory();
+    }
+    snprintf(temporary, room, "%s.%ld.tmp", path, (long)getpid());
+    FILE *file = fopen(temporary, "wb");
+    if (!file)
+        write_fail(path, "can't create", NULL, other);
+    const bool written = fwrite(bytes, 1, size, file) == size;
+    if (fclose(file) || !written)
+        write_fail(path, "can't write", temporary, other);
+    return temporary;
+}
+
+static void temporary_move(char *temporary, const char *path, const char *other)
+{
+    if (rename(temporary, path))
+        write_fail(path, "can't write", temporary, other);
+    free(temporary);
+}
+
 void file_write(const char *path, const char *bytes, size_t size)
 {
     if (!strcmp(path, "-")) {
@@ -231,22 +270,20 @@ void file_write(const char *path, const char *bytes, size_t size)
             file_fail(path, "can't write");
         return;
     }
-    size_t length = strlen(path);
-    char *temporary = malloc(length + 32);
-    if (!temporary)
-        out_of_memory();
-    snprintf(temporary, length + 32, "%s.%ld.tmp", path, (long)getpid());
-    FILE *file = fopen(temporary, "wb");
-    if (!file)
-        file_fail(path, "can't create");
-    bool written = fwrite(bytes, 1, size, file) == size;
-    if (fclose(file) || !written || rename(temporary, path)) {
-        int reason = errno;
-        remove(temporary);
-        errno = reason;
-        file_fail(path, "can't write");
+    temporary_move(temporary_write(path, bytes, size, NULL), path, NULL);
+}
+
+void file_write_both(const char *path, const Text *text, const char *other_path, const Text *other)
+{
+    if (file_is_special(path) || file_is_special(other_path)) {
+        file_write(path, text->s, text->size);
+        file_write(other_path, other->s, other->size);
+        return;
     }
-    free(temporary);
+    char *first = temporary_write(path, text->s, text->size, NULL);
+    char *second = temporary_write(other_path, other->s, other->size, first);
+    temporary_move(first, path, second);
+    temporary_move(second, other_path, NULL);
 }
 
 char *file_read(Pool *pool, const char *path, size_t most, size_t *size)
@@ -262,8 +299,9 @@ char *file_read(Pool *pool, const char *path, size_t most, size_t *size)
     if (ferror(file))
         file_fail(path, "can't read");
     if (text.size > most) {
-        fprintf(stderr, "%s: error: larger than the %zu MB that are read of such a file\n"
-                        "  remedy: is it the file that was meant?\n",
+        fprintf(stderr,
+                "%s: error: larger than the %zu MB that are read of such a file\n"
+                "  remedy: is it the file that was meant?\n",
                 path, most >> 20);
         exit(1);
     }
