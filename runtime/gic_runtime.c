@@ -25,11 +25,12 @@ const char *gic_status_text(int status)
 
 #ifdef GIC_FLOAT
 typedef uint32_t bits_type;
-static const bits_type exponent = UINT32_C(0x7f800000), exponent_of_bound = UINT32_C(0x49800000); /* 2^20 */
+static const bits_type exponent = UINT32_C(0x7f800000);
+static const bits_type exponent_of_bound = UINT32_C(0x49800000); /* 2^20 */
 #else
 typedef uint64_t bits_type;
-static const bits_type exponent = UINT64_C(0x7ff0000000000000),
-                       exponent_of_bound = UINT64_C(0x41d0000000000000); /* 2^30 */
+static const bits_type exponent = UINT64_C(0x7ff0000000000000);
+static const bits_type exponent_of_bound = UINT64_C(0x41d0000000000000); /* 2^30 */
 #endif
 
 /* Are all numbers below a power of two? By their bits: a comparison with itself or with infinity would be optimized
