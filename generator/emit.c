@@ -305,9 +305,8 @@ static void write_statement(Emitter *m, Ex e)
             text_print(&line, ", GIC_ERROR_ROAD);");
         else
             text_print(&line,
-                       m->block->across
-                           ? ")\n%*sreturn gic_finite(road%d, 3) ? GIC_ERROR_ASSUMPTION : GIC_ERROR_ROAD;"
-                           : ")\n%*sreturn GIC_ERROR_ROAD;",
+                       m->block->across ? ")\n%*sreturn gic_finite(road%d, 3) ? GIC_ERROR_ASSUMPTION : GIC_ERROR_ROAD;"
+                                        : ")\n%*sreturn GIC_ERROR_ROAD;",
                        m->indent + 4, "", number);
     } else {
         text_print(&line, "const %s t%d = ", real, number);

@@ -57,15 +57,15 @@ const char *alone_text(const Generation *g, const char *room, const char *array,
 void write_tables(Generation *g, Text *out);
 
 /* generate_narrow.c: of code for one scene, nothing of other code but for `condition`. */
-int conditions(const Generation *g);                         /* texts of conditions and assumptions */
-void write_assumption_texts(Generation *g, Text *out);       /* behind those of conditions */
-void write_narrowing(Generation *g, Text *out);              /* for the comment in front */
-void write_road(Generation *g, Text *out);                   /* the function that looks it up */
-const char *friction_template(const Generation *g);          /* of the function that looks friction up */
-void write_assumptions(Generation *g, Text *out);            /* the functions that check them */
+int conditions(const Generation *g);                   /* texts of conditions and assumptions */
+void write_assumption_texts(Generation *g, Text *out); /* behind those of conditions */
+void write_narrowing(Generation *g, Text *out);        /* for the comment in front */
+void write_road(Generation *g, Text *out);             /* the function that looks it up */
+const char *friction_template(const Generation *g);    /* of the function that looks friction up */
+void write_assumptions(Generation *g, Text *out);      /* the functions that check them */
 void write_assume(Generation *g, Text *out, int indent, AssumptionAbout about); /* the call of it */
-void write_images(Generation *g, Text *out, int indent);     /* what wheels do whose images are computed */
-void write_condition(Generation *g, Text *out, int indent);  /* which text the last status is about */
+void write_images(Generation *g, Text *out, int indent);    /* what wheels do whose images are computed */
+void write_condition(Generation *g, Text *out, int indent); /* which text the last status is about */
 
 /* generate_wheels.c: nothing where no wheel has a tire, but for the end of the descriptor. */
 void write_wheels(Generation *g, Text *out);          /* functions of the wheels, before the equations of motion */

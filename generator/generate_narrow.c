@@ -27,7 +27,8 @@ void write_narrowing(Generation *g, Text *out)
     const Narrowing *narrowing = g->formulation->narrowing;
     if (!narrowing)
         return;
-    text_print(out, " * For the scene %s alone. Other calls end with GIC_ERROR_ASSUMPTION; this is taken for granted:\n",
+    text_print(out,
+               " * For the scene %s alone. Other calls end with GIC_ERROR_ASSUMPTION; this is taken for granted:\n",
                narrowing->facts->scene);
     for (int i = 0; i < narrowing->assumptions; ++i)
         text_print(out, " *   %s\n", narrowing->assumption[i].text);
@@ -146,6 +147,6 @@ void write_images(Generation *g, Text *out, int indent)
 void write_condition(Generation *g, Text *out, int indent)
 {
     const char *also = g->formulation->narrowing ? " || self->head.status == GIC_ERROR_ASSUMPTION" : "";
-    line(out, indent, "const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY%s ? self->head.condition : -1;",
-         also);
+    line(out, indent,
+         "const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY%s ? self->head.condition : -1;", also);
 }

@@ -181,8 +181,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         usage_error("the generated file must end in .c", path);
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
-    const Formulation *formulation =
-        formulation_of(pool, model, sequence, options, setting);
+    const Formulation *formulation = formulation_of(pool, model, sequence, options, setting);
     if (!batch && options->batch.lanes)
         formulation = formulation_lanes(pool, formulation, options->batch.lanes);
     name = strcmp(path, "-") ? name : NULL;
@@ -220,8 +219,7 @@ static void write_report(Pool *pool, const Model *model, const Sequence *sequenc
     Text c = {.pool = pool}, h = {.pool = pool}, page = {.pool = pool};
     if (strcmp(options->page, "-") && !path_ends(options->page, ".html"))
         usage_error("the report's name must end in .html", options->page);
-    const Formulation *formulation =
-        formulation_of(pool, model, sequence, options, setting);
+    const Formulation *formulation = formulation_of(pool, model, sequence, options, setting);
     generate(pool, formulation, &style_readable, options->templates, NULL, &c, &h);
     report_print(&page, options->page, options->templates, formulation, &c, &h);
     file_write(options->page, page.s, page.size);

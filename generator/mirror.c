@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Is a model its own mirror image? By its numbers, whoever wrote them: those of each side are compared with the image of
- * the other's. */
+ * Is a model its own mirror image? By its numbers, whoever wrote them: those of each side are compared with the image
+ * of the other's. */
 #include "mirror.h"
 
 #include "read.h"
@@ -134,8 +134,7 @@ static bool joint_fits(const Search *s, const Joint *a, const Joint *b, bool swa
     bool fits = a->type == b->type && near(a->length, b->length);
     for (int end = 0; end < 2 && fits; ++end) {
         const int other = swapped ? 1 - end : end;
-        fits = b->body[other] == body_image(s, a->body[end]) &&
-               point_fits(b, other, a->point[end], b->point[other]);
+        fits = b->body[other] == body_image(s, a->body[end]) && point_fits(b, other, a->point[end], b->point[other]);
         const double own = direction_sign(a->axis[end], b->axis[other], mirror_vector);
         fits = fits && own != 0 && (own == sign || !end || vec_norm(a->axis[end]) == 0);
         sign = end ? sign : own;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Formulas of a model for one scene: what the scene doesn't need is taken out of the model, what is known is folded into
- * the blocks, and what generated code must check is written down. */
+ * Formulas of a model for one scene: what the scene doesn't need is taken out of the model, what is known is folded
+ * into the blocks, and what generated code must check is written down. */
 #include "narrow_work.h"
 
 #include "powertrain.h"
@@ -14,7 +14,8 @@ void *narrow_copy(Pool *pool, const void *array, size_t count, size_t size)
     return pool_grow(pool, (void *)array, count * size, (count + 1) * size);
 }
 
-/* ---- the model ------------------------------------------------------------------------------------------------------ */
+/* ---- the model ------------------------------------------------------------------------------------------------------
+ */
 
 static void keep_wanted(Pool *pool, Model *model, const bool *wanted)
 {
@@ -66,7 +67,8 @@ static const Model *narrow_model(Pool *pool, const Model *model, const Facts *fa
     return narrow;
 }
 
-/* ---- classes: members alike in what is known ------------------------------------------------------------------------ */
+/* ---- classes: members alike in what is known ------------------------------------------------------------------------
+ */
 
 /* Driven coordinates whose inputs stand still. */
 static void find_steady(Narrower *n)
@@ -150,7 +152,8 @@ static const Sequence *split_classes(Narrower *n, const Sequence *sequence)
     return split;
 }
 
-/* ---- subsets -------------------------------------------------------------------------------------------------------- */
+/* ---- subsets --------------------------------------------------------------------------------------------------------
+ */
 
 /* A number of each member, where all have one: get(n, member's subset, a, b, &value). */
 typedef bool MemberNumber(const Narrower *n, const Subset *subset, int a, int b, double *value);
@@ -270,7 +273,8 @@ static void narrow_subsets(Narrower *n)
     }
 }
 
-/* ---- the rest ------------------------------------------------------------------------------------------------------- */
+/* ---- the rest -------------------------------------------------------------------------------------------------------
+ */
 
 void narrow_assume(Narrower *n, AssumptionAbout about, const char *text, const char *broken)
 {
@@ -290,8 +294,8 @@ static const char *number_text(Pool *pool, double value)
 }
 
 /* One that keeps a value, in an array of the instance. */
-static void give_fixed(Narrower *n, const char *kind, const char *name, const char *array, const char *member, int index,
-                       double value)
+static void give_fixed(Narrower *n, const char *kind, const char *name, const char *array, const char *member,
+                       int index, double value)
 {
     givens_number(n->whole, value, "%s[%d]", array, index);
     givens_number(n->fast, value, "%s[%d]", array, index);
@@ -342,8 +346,9 @@ static void give_whole(Narrower *n)
     }
     if (facts->plane && model->wheels)
         assume(n,
-               pool_print(n->pool, "the road is z = %s + %s x + %s y with friction %s, which is part of the code: leave "
-                                   "`road` NULL",
+               pool_print(n->pool,
+                          "the road is z = %s + %s x + %s y with friction %s, which is part of the code: leave "
+                          "`road` NULL",
                           number_text(n->pool, facts->plane->height), number_text(n->pool, facts->plane->slope[0]),
                           number_text(n->pool, facts->plane->slope[1]), number_text(n->pool, facts->plane->friction)),
                "self->head.road != NULL");
@@ -370,7 +375,8 @@ static const Block *narrow_block(Narrower *n, const Givens *givens, const Block 
     return out;
 }
 
-/* ---- wheels with tires, powertrain ------------------------------------------------------------------------------------ */
+/* ---- wheels with tires, powertrain
+ * ------------------------------------------------------------------------------------ */
 
 static const Store *store_of(const Block *block, const char *target)
 {
@@ -401,7 +407,8 @@ static Givens *wheel_givens(Narrower *n, const Block *torque, const WheelClass *
 
 static void narrow_wheel_class(Narrower *n, const Block *torque, WheelClass *class)
 {
-    Partial p = partial_new(n->pool, class->contact.dag, wheel_givens(n, torque, class), n->facts->plane, n->mirror && n->facts->across, n->model);
+    Partial p = partial_new(n->pool, class->contact.dag, wheel_givens(n, torque, class), n->facts->plane,
+                            n->mirror && n->facts->across, n->model);
     class->contact = partial_block(&p, &class->contact);
     class->tire = partial_block(&p, &class->tire);
     class->balance = partial_block(&p, &class->balance);
@@ -486,7 +493,7 @@ static void narrow_rest(Narrower *n)
 static void find_uses(const Formulation *f, Narrowing *narrowing)
 {
     const Wheels none = {0}, *wheels = f->wheels ? f->wheels : &none;
-    const Block *const block[] = {f->dynamics,  f->outputs,   f->poses,      f->inverse,     f->energy,
+    const Block *const block[] = {f->dynamics, f->outputs,    f->poses,        f->inverse,     f->energy,
                                   f->wrenches, &wheels->link, &wheels->torque, &wheels->drive, &wheels->shift};
     for (size_t i = 0; i < sizeof block / sizeof *block; ++i) {
         if (!block[i] || !block[i]->dag)
@@ -537,7 +544,8 @@ static bool starts_even(const Narrower *n, const Mirror *mirror)
     for (int i = 0; i < model->wheels; ++i) {
         const Wheel *wheel = &model->wheel[i];
         for (int k = 0; k < wheel_fast_states(wheel); ++k) {
-            const double own = facts->state[wheel->fast + k], other = facts->state[model->wheel[mirror->wheel[i]].fast + k];
+            const double own = facts->state[wheel->fast + k],
+                         other = facts->state[model->wheel[mirror->wheel[i]].fast + k];
             if (!(isnan(own) && isnan(other)) && other != wheel_fast_sign(k) * own)
                 return false;
         }

@@ -39,10 +39,10 @@ typedef struct Partial {
     const Dag *from;
     Dag *to;
     const Givens *givens;
-    const Plane *plane;   /* NULL: the road is looked up */
-    bool across;          /* it is looked up once for both sides, and level from one to the other */
-    const Table *table;   /* of the model */
-    Ex *made;             /* [nodes of from] 1 + the node of `to`, 0: not yet */
+    const Plane *plane; /* NULL: the road is looked up */
+    bool across;        /* it is looked up once for both sides, and level from one to the other */
+    const Table *table; /* of the model */
+    Ex *made;           /* [nodes of from] 1 + the node of `to`, 0: not yet */
 } Partial;
 
 Partial partial_new(Pool *pool, const Dag *from, const Givens *givens, const Plane *plane, bool across,
@@ -98,7 +98,7 @@ struct Narrowing {
     const int *image;      /* [subsets] the one whose mirror image it is, -1: none's; NULL: both sides are computed */
     const int *wheel;      /* [wheels] the same */
     const char *asymmetry; /* why both are; NULL: they are not */
-    bool *steady; /* [subsets] nothing about it ever changes: recovered at set-up */
+    bool *steady;          /* [subsets] nothing about it ever changes: recovered at set-up */
     bool road, friction, tables; /* are they still looked up? */
     const Account *account;      /* NULL: nobody asked */
 };
@@ -120,7 +120,8 @@ double wheel_grip_sign(int number);
 const Formulation *formulate_narrow(Pool *pool, const Model *model, const Sequence *sequence, Solve solve,
                                     Recovery recovery, const Facts *facts);
 
-/* ---- narrow_account.c ---------------------------------------------------------------------------------------------- */
+/* ---- narrow_account.c ----------------------------------------------------------------------------------------------
+ */
 
 /* The same with its account. drawn: the model before a scene made it one of a rig, or `model` as it was read. */
 const Formulation *formulate_explained(Pool *pool, const Model *drawn, const Model *model, const Sequence *sequence,

@@ -77,7 +77,8 @@ static void learn_road(Accounting *a)
     if (!a->model->wheels)
         return;
     a->known.plane = a->all->plane;
-    learn(a, "road and friction without look-up", a->all->plane ? "the road is a plane with one friction" : "refused: the road is no plane with one friction");
+    learn(a, "road and friction without look-up",
+          a->all->plane ? "the road is a plane with one friction" : "refused: the road is no plane with one friction");
 }
 
 static void learn_powertrain(Accounting *a)

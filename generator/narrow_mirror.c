@@ -20,7 +20,8 @@ double wheel_grip_sign(int i)
     return odd ? -1 : 1;
 }
 
-/* ---- which is whose image ----------------------------------------------------------------------------------------- */
+/* ---- which is whose image -----------------------------------------------------------------------------------------
+ */
 
 int narrow_image_subset(const Narrower *n, int subset)
 {
@@ -97,7 +98,9 @@ static void give_inertia(Narrower *n, int subset, int leader)
             continue;
         for (int i = 0; i < 7; ++i)
             give(n, n->whole, "n", row + i, of + INERTIA_COORDINATE + 7 * k + i,
-                 sign * (i < 3 ? mirror_vector(i) : i < 6 ? mirror_turn(i - 3) : 1));
+                 sign * (i < 3   ? mirror_vector(i)
+                         : i < 6 ? mirror_turn(i - 3)
+                                 : 1));
         for (int l = j; l < own->deps; ++l) {
             const int m = leading_dep(n, own, other, l, &sign_l);
             if (m >= 0)
@@ -107,7 +110,8 @@ static void give_inertia(Narrower *n, int subset, int leader)
     }
 }
 
-/* ---- states ------------------------------------------------------------------------------------------------------- */
+/* ---- states -------------------------------------------------------------------------------------------------------
+ */
 
 static void assume_zero(Narrower *n, int state, const char *what)
 {
@@ -146,10 +150,10 @@ static void give_coordinates(Narrower *n)
         if (image == w && n->mirror->sign[w] < 0 && state >= 0) {
             givens_number(n->whole, 0, "rate[%d]", state);
             givens_number(n->whole, 0, "rate[%d]", rate);
-            narrow_assume(n, ABOUT_STATE,
-                          pool_print(n->pool, "the vehicle moves straight ahead: '%s' keeps its design value", name),
-                          pool_print(n->pool, "y[%d] != %s || y[%d] != R(0.0)", state,
-                                     emit_number(n->pool, n->at[w]), rate));
+            narrow_assume(
+                n, ABOUT_STATE,
+                pool_print(n->pool, "the vehicle moves straight ahead: '%s' keeps its design value", name),
+                pool_print(n->pool, "y[%d] != %s || y[%d] != R(0.0)", state, emit_number(n->pool, n->at[w]), rate));
         }
         if (image >= w)
             continue;
@@ -180,7 +184,8 @@ static void give_wheel(Narrower *n, int wheel, int leader)
         give(n, n->whole, "rate", slow + at + i, slow + of + i, wheel_fast_sign(i));
         give(n, n->fast, "fast", at + i, of + i, wheel_fast_sign(i));
         give(n, n->fast, "rate", at + i, of + i, wheel_fast_sign(i));
-        text_print(&broken, "%sfast[%d] != %s", i ? " || " : "", at + i, signed_place(n, "fast", of + i, wheel_fast_sign(i)));
+        text_print(&broken, "%sfast[%d] != %s", i ? " || " : "", at + i,
+                   signed_place(n, "fast", of + i, wheel_fast_sign(i)));
     }
     for (int i = 0; i < GRIP_NUMBERS; ++i) {
         if (i == GRIP_POINT + 1)
@@ -224,7 +229,8 @@ void narrow_mirror(Narrower *n)
     n->narrowing->wheel = wheel;
 }
 
-/* ---- equations of motion ------------------------------------------------------------------------------------------ */
+/* ---- equations of motion ------------------------------------------------------------------------------------------
+ */
 
 static Reduction *reduction_of(Narrower *n)
 {
@@ -241,9 +247,9 @@ static Reduction *reduction_of(Narrower *n)
         if (unknown < 0)
             continue;
         r->sign[unknown] = image < w ? n->mirror->sign[w] : 1;
-        r->of[unknown] = image < w                                     ? r->of[plan->coordinate_unknown[image]]
+        r->of[unknown] = image < w                              ? r->of[plan->coordinate_unknown[image]]
                          : image == w && n->mirror->sign[w] < 0 ? -1
-                                                                       : r->unknowns++;
+                                                                : r->unknowns++;
     }
     return r;
 }
@@ -255,7 +261,8 @@ const Block *narrow_dynamics(Narrower *n)
     return dynamics_block(whole_new(n->pool, narrow_copy(n->pool, &plan, 1, sizeof plan)));
 }
 
-/* ---- proof by numbers --------------------------------------------------------------------------------------------- */
+/* ---- proof by numbers ---------------------------------------------------------------------------------------------
+ */
 
 /* New random numbers for all that the graph does not compute. */
 static void scatter(Dag *dag, Random *random)
@@ -293,7 +300,8 @@ static bool are_equal(Narrower *n, const Block *block, const Givens *givens, con
         for (int i = 0; i < out.stores; ++i)
             scale = fmax(scale, fabs(ex_value(p.to, out.store[i].value, 0)));
         for (int i = 0; i < count; ++i) {
-            const double a = ex_value(p.to, out.store[2 * i].value, 0), b = ex_value(p.to, out.store[2 * i + 1].value, 0);
+            const double a = ex_value(p.to, out.store[2 * i].value, 0),
+                         b = ex_value(p.to, out.store[2 * i + 1].value, 0);
             if (!(fabs(b - equal[i].sign * a) <= rounding * scale))
                 return false;
         }

@@ -28,7 +28,8 @@ void narrow_assume(Narrower *n, AssumptionAbout about, const char *text, const c
 /* Index of a target of that array, -1: it is of another. */
 int narrow_target(const char *target, const char *array);
 
-/* ---- narrow_mirror.c: one side for both --------------------------------------------------------------------------- */
+/* ---- narrow_mirror.c: one side for both ---------------------------------------------------------------------------
+ */
 
 /* The subset whose image a subset is, -1: none's. */
 int narrow_image_subset(const Narrower *n, int subset);

@@ -6,7 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- what is given ------------------------------------------------------------------------------------------------ */
+/* ---- what is given ------------------------------------------------------------------------------------------------
+ */
 
 static Given *slot_of(const Givens *givens, const char *name)
 {
@@ -71,7 +72,8 @@ const Given *givens_find(const Givens *givens, const char *name)
     return slot->name ? slot : NULL;
 }
 
-/* ---- nodes ---------------------------------------------------------------------------------------------------------- */
+/* ---- nodes ----------------------------------------------------------------------------------------------------------
+ */
 
 static const int op_arity[OP_COUNT] = {
 #define OP_ARITY(name, arity, text, counted) arity,
@@ -110,7 +112,8 @@ static Ex make_input(Partial *p, Ex e)
     for (int s = 0; s < from->samples; ++s)
         own[s] = given->negative ? -sample[s] : sample[s];
     const Given *further = givens_find(p->givens, given->other);
-    const Ex other = further && further->value ? ex_constant(p->to, further->value) : ex_input(p->to, given->other, own);
+    const Ex other =
+        further && further->value ? ex_constant(p->to, further->value) : ex_input(p->to, given->other, own);
     return given->negative ? ex_neg(p->to, other) : other;
 }
 
@@ -209,7 +212,8 @@ static Ex make_node(Partial *p, Ex e)
     }
 }
 
-/* ---- blocks --------------------------------------------------------------------------------------------------------- */
+/* ---- blocks ---------------------------------------------------------------------------------------------------------
+ */
 
 static bool holds(const Dag *dag, Ex value, const Check *check)
 {

@@ -538,10 +538,10 @@ static void insert(void *context, const char *name, Text *out, int indent)
     static const struct {
         const char *name;
         void (*print)(const Report *, Text *);
-    } section[] = {{"identity", identity}, {"scene", scene}, {"sequence", sequence}, {"graph", graph},   {"operations", operations},
-                   {"bounds", bounds},     {"totals", totals},     {"pieces", pieces}, {"memory", memory},
-                   {"stack", stack},       {"states", states},     {"inputs", inputs}, {"parameters", parameters},
-                   {"ports", ports},       {"outputs", outputs}};
+    } section[] = {{"identity", identity},     {"scene", scene},   {"sequence", sequence}, {"graph", graph},
+                   {"operations", operations}, {"bounds", bounds}, {"totals", totals},     {"pieces", pieces},
+                   {"memory", memory},         {"stack", stack},   {"states", states},     {"inputs", inputs},
+                   {"parameters", parameters}, {"ports", ports},   {"outputs", outputs}};
     for (size_t i = 0; i < sizeof section / sizeof *section; ++i)
         if (!strcmp(name, section[i].name))
             section[i].print(context, out);

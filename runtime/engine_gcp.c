@@ -349,7 +349,8 @@ static int evaluate(const Interpreted *context, Instance *self, const double *st
 static bool degraded(const Memory *memory, Partition *partition)
 {
     const double most = 2;
-    return !(partition_amplification(partition, (int64_t)(*memory->checks)++) < most * partition->usual);
+    return partition->columns > partition->rows &&
+           !(partition_amplification(partition, (int64_t)(*memory->checks)++) < most * partition->usual);
 }
 
 static int choose(const Interpreted *context, const Memory *memory)

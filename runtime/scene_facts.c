@@ -37,7 +37,8 @@ static const bool *wanted_outputs(Pool *pool, const Model *model, const Scene *s
     return wanted;
 }
 
-/* ---- inputs ------------------------------------------------------------------------------------------------------- */
+/* ---- inputs -------------------------------------------------------------------------------------------------------
+ */
 
 static bool stands_still(const Profile *profile)
 {
@@ -70,7 +71,8 @@ static void fix_inputs(Pool *pool, const Model *model, const Scene *scene, Facts
     facts->input = value;
 }
 
-/* ---- powertrain --------------------------------------------------------------------------------------------------- */
+/* ---- powertrain ---------------------------------------------------------------------------------------------------
+ */
 
 /* Is it made of numbers, parameters and inputs that stand still? */
 static bool law_is_fixed(const Law *law, const Facts *facts)
@@ -105,7 +107,8 @@ static bool stays_neutral(Pool *pool, const Model *model, const Scene *scene, co
     return fabs(law_number(selector, &now)) <= engaging;
 }
 
-/* ---- road ----------------------------------------------------------------------------------------------------------- */
+/* ---- road -----------------------------------------------------------------------------------------------------------
+ */
 
 /* NULL: it is no plane with the same friction everywhere. */
 static const Plane *plane_of(Pool *pool, const gic_road *road)
@@ -160,7 +163,8 @@ static bool is_across(const gic_road *road)
     return across;
 }
 
-/* ---- symmetry ------------------------------------------------------------------------------------------------------- */
+/* ---- symmetry -------------------------------------------------------------------------------------------------------
+ */
 
 static bool is_small(double x)
 {
@@ -227,7 +231,8 @@ const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, con
     return facts;
 }
 
-/* ---- the scene, for such code ----------------------------------------------------------------------------------------- */
+/* ---- the scene, for such code
+ * ----------------------------------------------------------------------------------------- */
 
 /* -1: the code does not have it, for nobody asks for it. */
 static int signal_place(const Scene *scene, int i, const gic_model *code, int outputs)
@@ -267,7 +272,7 @@ const Scene *scene_narrow(Pool *pool, const Scene *scene, const Model *model, co
     narrow_list(pool, scene, code, model->output_components, &axis, &axes);
     narrow->panel = (int(*)[2])axis;
     narrow->panels = axes / 2; /* all of them, or none */
-    if (engine->facts->plane) /* part of the code */
+    if (engine->facts->plane)  /* part of the code */
         narrow->road = NULL;
     return narrow;
 }

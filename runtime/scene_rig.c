@@ -41,8 +41,8 @@ void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene)
         if (scene->given[w])
             diag_fail(key->at, "remove it from `initial`", "the profile of '%s' says where it begins", name[w]);
         Profile *profile = POOL_PUSH(pool, scene->profile, scene->profiles);
-        *profile = (Profile){
-            .input = model->inputs + 3 * scene->driven, .driven = coordinate, .offset = coordinate->initial};
+        *profile =
+            (Profile){.input = model->inputs + 3 * scene->driven, .driven = coordinate, .offset = coordinate->initial};
         profile_read(pool, driven->value[k], profile);
         *POOL_PUSH(pool, scene->drive, scene->driven) = w;
     }

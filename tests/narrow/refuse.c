@@ -42,7 +42,8 @@ static void refuses(hmmwv_vehicle *vehicle, const hmmwv_vehicle *good, const cha
     status[5] = hmmwv_vehicle_self_test(vehicle, &test);
     for (int i = 0; i < 6; ++i)
         check(status[i] == GIC_ERROR_ASSUMPTION, named);
-    check(model->fast(vehicle, 0, vehicle->link, vehicle->state + HMMWV_VEHICLE_SLOW, fast) == GIC_ERROR_ASSUMPTION, named);
+    check(model->fast(vehicle, 0, vehicle->link, vehicle->state + HMMWV_VEHICLE_SLOW, fast) == GIC_ERROR_ASSUMPTION,
+          named);
     check(!memcmp(vehicle->state, before.state, sizeof before.state), "state untouched");
     check(!memcmp(vehicle->output, before.output, sizeof before.output), "outputs untouched");
     check(gic_time(vehicle) == gic_time(&before), "time untouched");
