@@ -251,7 +251,7 @@ typedef struct hmmwv_full {
     gic_real start[GIC_STARTS][HMMWV_FULL_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_FULL_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * HMMWV_FULL_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1: and it was good */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
     gic_real inertia[HMMWV_FULL_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_FULL_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } hmmwv_full;

@@ -329,7 +329,7 @@ typedef struct hmmwv_tires {
     gic_real start[GIC_STARTS][HMMWV_TIRES_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_TIRES_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * HMMWV_TIRES_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1: and it was good */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
     gic_real inertia[HMMWV_TIRES_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_TIRES_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_TIRES_LINKS]; /* how the multibody system moves the wheels, at slow steps */

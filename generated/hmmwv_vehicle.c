@@ -1106,7 +1106,7 @@ static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], in
     int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
-    links.again = self->recovered && !memcmp(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
+    links.again = self->recovered == 1 + first && !memcmp(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
         self->head.ahead <= at[2 * HMMWV_VEHICLE_COORDINATE_ROOM + 3];
     self->recovered = 0;
     for (i = 0; links.again && i < HMMWV_VEHICLE_COORDINATES; ++i)
@@ -1140,7 +1140,7 @@ static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], in
     memcpy(at + HMMWV_VEHICLE_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     at[2 * HMMWV_VEHICLE_COORDINATE_ROOM + 3] = self->head.ahead;
-    self->recovered = 1;
+    self->recovered = 1 + now;
     self->head.flip = now;
     return GIC_OK;
 }
@@ -1903,7 +1903,7 @@ static int hmmwv_vehicle_turn_wheels(hmmwv_vehicle *self, gic_real time, const g
 static int hmmwv_vehicle_recover_once(hmmwv_vehicle *self, const gic_real turn[3])
 {
     const gic_real *const at = self->recovered_at;
-    if (self->recovered && !memcmp(at, self->x, sizeof self->x) &&
+    if (self->recovered == 1 + self->head.flip && !memcmp(at, self->x, sizeof self->x) &&
         !memcmp(at + HMMWV_VEHICLE_COORDINATE_ROOM, self->xd, sizeof self->xd) &&
         !memcmp(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
         self->head.ahead <= at[2 * HMMWV_VEHICLE_COORDINATE_ROOM + 3]) {

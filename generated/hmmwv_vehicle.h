@@ -345,7 +345,7 @@ typedef struct hmmwv_vehicle {
     gic_real start[GIC_STARTS][HMMWV_VEHICLE_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[HMMWV_VEHICLE_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * HMMWV_VEHICLE_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1: and it was good */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
     gic_real inertia[HMMWV_VEHICLE_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_VEHICLE_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_VEHICLE_LINKS]; /* how the multibody system moves the wheels, at slow steps */

@@ -1578,7 +1578,7 @@ static int solid_axle_recover(solid_axle *self, const gic_real turn[3], int cold
     int32_t now = first, next = 0;
     int i, piece, pieces = 1;
     links.cold = cold;
-    links.again = self->recovered && !memcmp(at + 2 * SOLID_AXLE_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
+    links.again = self->recovered == 1 + first && !memcmp(at + 2 * SOLID_AXLE_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
         self->head.ahead <= at[2 * SOLID_AXLE_COORDINATE_ROOM + 3];
     self->recovered = 0;
     for (i = 0; links.again && i < SOLID_AXLE_COORDINATES; ++i)
@@ -1612,7 +1612,7 @@ static int solid_axle_recover(solid_axle *self, const gic_real turn[3], int cold
     memcpy(at + SOLID_AXLE_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * SOLID_AXLE_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     at[2 * SOLID_AXLE_COORDINATE_ROOM + 3] = self->head.ahead;
-    self->recovered = 1;
+    self->recovered = 1 + now;
     self->head.flip = now;
     return GIC_OK;
 }

@@ -235,7 +235,7 @@ typedef struct solid_axle {
     gic_real start[GIC_STARTS][SOLID_AXLE_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[SOLID_AXLE_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * SOLID_AXLE_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1: and it was good */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
     gic_real inertia[SOLID_AXLE_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[SOLID_AXLE_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } solid_axle;

@@ -245,7 +245,7 @@ typedef struct trailing_arm {
     gic_real start[GIC_STARTS][TRAILING_ARM_START_ROOM];  /* where Newton begins: the last good one, and the next */
     gic_real motion[TRAILING_ARM_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * TRAILING_ARM_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1: and it was good */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
     gic_real inertia[TRAILING_ARM_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[TRAILING_ARM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } trailing_arm;

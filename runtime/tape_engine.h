@@ -47,7 +47,7 @@ typedef struct TapeEngine {
     double *piece, *initial; /* [coordinates], [states] */
     size_t x_offset, xd_offset, start_offset[GIC_STARTS], motion_offset, inertia_offset, multiplier_offset, derived_offset;
     size_t grip_offset,
-        recovered_offset; /* the latter: x, xd, angular velocity and ahead of the last recovery, 1: it was good */
+        recovered_offset; /* the latter: x, xd, angular velocity and ahead of the last recovery, 1 + the start that it left */
     size_t gear_offset, watch_offset;
     double *link_row, *torques; /* a link; what drives and brakes [wheels with tires][2] */
     double *choice;             /* powertrain.h */

@@ -142,7 +142,8 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
     double *recovered = at_turn + 4;
     const double *xd = tape_array(self, engine->xd_offset);
     links.cold = cold;
-    links.again = *recovered > 0 && !memcmp(at_turn, turn, sizeof links.turn) && self->head.ahead <= at_turn[3];
+    links.again =
+        *recovered == 1 + first && !memcmp(at_turn, turn, sizeof links.turn) && self->head.ahead <= at_turn[3];
     *recovered = 0;
     for (int i = 0; i < coordinates; ++i)
         links.same[i] = !memcmp(&at[i], &x[i], sizeof *x) && !memcmp(&at_rate[i], &xd[i], sizeof *xd);
@@ -172,7 +173,7 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
     memcpy(at_rate, xd, (size_t)coordinates * sizeof *at);
     memcpy(at_turn, turn, sizeof links.turn);
     at_turn[3] = self->head.ahead;
-    *recovered = 1;
+    *recovered = 1 + now;
     self->head.flip = now;
     return GIC_OK;
 }

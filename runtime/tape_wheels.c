@@ -165,7 +165,7 @@ int tape_recover_once(Instance *self, const double turn[3])
     const size_t size = (size_t)coordinates * sizeof(double);
     const double *x = tape_array(self, engine->x_offset), *xd = tape_array(self, engine->xd_offset);
     const double *at = tape_array(self, engine->recovered_offset), *recovered = at + 2 * coordinates + 4;
-    if (*recovered > 0 && !memcmp(at, x, size) && !memcmp(at + coordinates, xd, size) &&
+    if (*recovered == 1 + self->head.flip && !memcmp(at, x, size) && !memcmp(at + coordinates, xd, size) &&
         !memcmp(at + 2 * coordinates, turn, 3 * sizeof *turn) && self->head.ahead <= recovered[-1]) {
         for (int s = 0; s < engine->code.subset_count; ++s)
             self->head.kept_count += engine->formulation->sequence->subset[s].class >= 0;

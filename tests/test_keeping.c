@@ -82,6 +82,42 @@ static void test_failure(void **unused)
     assert_true(car.head.kept_count <= ALL);
 }
 
+/* A road that may have a hole everywhere. */
+static int hole;
+
+static void holed(const gic_road *road, int32_t lane, double time, double x, double y, double out[3])
+{
+    (void)road, (void)lane, (void)time, (void)x, (void)y;
+    out[0] = hole ? NAN : 0;
+    out[1] = out[2] = 0;
+}
+
+/* A step that fails after its recovery goes back to the start before that: what it recovered is no longer kept. */
+static void test_failed_step(void **unused)
+{
+    (void)unused;
+    static const gic_road road = {holed, NULL};
+    static hmmwv_tires car, other;
+    gic_self_test test[2];
+    assert_int_equal(hmmwv_tires_setup(&car), GIC_OK);
+    car.head.road = &road;
+    car.state[HMMWV_TIRES_STATE_V_Z] = -0.5;
+    for (int i = 0; i < 20; ++i)
+        assert_int_equal(hmmwv_tires_step(&car, 0.002, GIC_AB3), GIC_OK);
+    hole = 1;
+    assert_int_equal(hmmwv_tires_step(&car, 0.002, GIC_AB3), GIC_ERROR_ROAD);
+    hole = 0;
+    other = car;
+    other.recovered = 0;
+    assert_int_equal(hmmwv_tires_outputs(&car), GIC_OK);
+    assert_int_equal(hmmwv_tires_outputs(&other), GIC_OK);
+    assert_memory_equal(car.output, other.output, sizeof car.output);
+    assert_memory_equal(car.start[car.head.flip], other.start[other.head.flip], sizeof car.start[0]);
+    assert_int_equal(hmmwv_tires_self_test(&car, &test[0]), GIC_OK);
+    assert_int_equal(hmmwv_tires_self_test(&other, &test[1]), GIC_OK);
+    assert_true(test[0].constraint == test[1].constraint && test[0].constraint < 1e-12);
+}
+
 /* Runs in which one instance keeps what it can and the other one nothing. The rig stands still but for its spring. */
 static void test_runs(void **unused)
 {
@@ -135,10 +171,8 @@ static void test_air(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_corners),
-        cmocka_unit_test(test_failure),
-        cmocka_unit_test(test_runs),
-        cmocka_unit_test(test_air),
+        cmocka_unit_test(test_corners), cmocka_unit_test(test_failure), cmocka_unit_test(test_failed_step),
+        cmocka_unit_test(test_runs),    cmocka_unit_test(test_air),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
