@@ -42,11 +42,11 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'K1' (1 times, closed form)                        22        59       2      1         2
+ *   subset 'K1' (1 times, closed form)                        21        57       2      1         2
  *   subset 'K2_K3' (1 times)                                 287       396       2      0         0
  *   subset 'K5_K4' (2 times)                                 491       643       4      0         0
  *   forces and equations of motion                            18        15       2      1         0
- *   all together                                            1309      1756      14      2         2
+ *   all together                                            1308      1754      14      2         2
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #include "andrews.h"
@@ -154,7 +154,6 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = x[0] - R(-0.06171389001427645);
@@ -176,39 +175,37 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
         const gic_real t13 = t4 * t10 + t2 * t12;
         if (!(GIC_FABS(t13) > R(1.0000000000000002e-06)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t14 = R(1.0) / t13;
-        const gic_real t15 = t13 * t14;
-        const gic_real t16 = rate[0] * t15;
-        if (!(t13 * R(0.4999999999999999) - GIC_FABS(t16) * ahead[0] > R(0.0005)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t17 = R(0.061674723509842204) * t9 + R(0.9980963022073495) * t11;
-        const gic_real t18 = R(-0.9980963022073495) * t9 + R(0.061674723509842204) * t11;
-        const gic_real t19 = R(0.9980963022073495) * t9 + R(-0.061674723509842204) * t11;
-        const gic_real t20 = t12 * t16;
-        const gic_real t21 = t10 * t16;
+        const gic_real t14 = R(0.061674723509842204) * t9 + R(0.9980963022073495) * t11;
+        const gic_real t15 = R(-0.9980963022073495) * t9 + R(0.061674723509842204) * t11;
+        const gic_real t16 = R(0.9980963022073495) * t9 + R(-0.061674723509842204) * t11;
+        const gic_real t17 = R(1.0) / t13;
+        const gic_real t18 = t13 * t17;
+        const gic_real t19 = rate[0] * t18;
+        const gic_real t20 = t12 * t19;
+        const gic_real t21 = t10 * t19;
         const gic_real t22 = rate[0] * (t4 * t20 - t2 * t21);
-        const gic_real t23 = t22 + t22 - (t4 * (t16 * t20) - t2 * (t16 * t21));
-        const gic_real t24 = t14 * t23;
-        const gic_real t25 = t17 * R(-6.776263578034403e-21) + t19 * R(0.00092);
-        const gic_real t26 = t15 * t25;
+        const gic_real t23 = t22 + t22 - (t4 * (t19 * t20) - t2 * (t19 * t21));
+        const gic_real t24 = t17 * t23;
+        const gic_real t25 = t14 * R(-6.776263578034403e-21) + t16 * R(0.00092);
+        const gic_real t26 = t18 * t25;
         const gic_real t27 = R(0.04325) * t26;
-        const gic_real t28 = t18 * R(-6.776263578034403e-21) + t17 * R(0.00092);
-        const gic_real t29 = t15 * t28;
+        const gic_real t28 = t15 * R(-6.776263578034403e-21) + t14 * R(0.00092);
+        const gic_real t29 = t18 * t28;
         const gic_real t30 = R(0.04325) * t29;
-        const gic_real t31 = t15 * R(2.194e-06);
-        const gic_real t32 = R(0.04325) * (t24 * t28 - t16 * (t16 * t25)) * t29;
-        const gic_real t33 = R(0.04325) * (t16 * (t16 * t28) + t24 * t25) * t26;
+        const gic_real t31 = t18 * R(2.194e-06);
+        const gic_real t32 = R(0.04325) * (t24 * t28 - t19 * (t19 * t25)) * t29;
+        const gic_real t33 = R(0.04325) * (t19 * (t19 * t28) + t24 * t25) * t26;
         const gic_real t34 = -t27;
         const gic_real t35 = t31 + (t25 * t27 + t28 * t30);
-        const gic_real t36 = t15 * (t24 * R(2.194e-06)) + (t32 + t33);
-        const gic_real t37 = t15 * t31 + (t29 * t30 + t26 * t27);
-        motion[3] = t17;
-        motion[4] = t18;
-        motion[6] = t19;
-        motion[7] = t17;
-        motion[14] = t16;
+        const gic_real t36 = t18 * (t24 * R(2.194e-06)) + (t32 + t33);
+        const gic_real t37 = t18 * t31 + (t29 * t30 + t26 * t27);
+        motion[3] = t14;
+        motion[4] = t15;
+        motion[6] = t16;
+        motion[7] = t14;
+        motion[14] = t19;
         motion[20] = t24;
-        motion[26] = t15;
+        motion[26] = t18;
         inertia[15] = t34;
         inertia[16] = t30;
         inertia[20] = t35;

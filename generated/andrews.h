@@ -42,11 +42,11 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'K1' (1 times, closed form)                        22        59       2      1         2
+ *   subset 'K1' (1 times, closed form)                        21        57       2      1         2
  *   subset 'K2_K3' (1 times)                                 287       396       2      0         0
  *   subset 'K5_K4' (2 times)                                 491       643       4      0         0
  *   forces and equations of motion                            18        15       2      1         0
- *   all together                                            1309      1756      14      2         2
+ *   all together                                            1308      1754      14      2         2
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #ifndef ANDREWS_H

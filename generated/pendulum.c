@@ -22,9 +22,9 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'rod' (1 times, closed form)                       16        43       2      1         2
+ *   subset 'rod' (1 times, closed form)                       15        41       2      1         2
  *   forces and equations of motion                             2         3       1      0         0
- *   all together                                              18        46       3      1         2
+ *   all together                                              17        44       3      1         2
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #include "pendulum.h"
@@ -132,7 +132,6 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = GIC_COS(x[0]);
@@ -152,8 +151,6 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t9 = R(1.0) / -t8;
         const gic_real t10 = t8 * t9;
         const gic_real t11 = rate[0] * t10;
-        if (!(-(t8 * R(-0.5) + GIC_FABS(t11) * ahead[0]) > R(0.0005)))
-            return GIC_ERROR_SINGULAR;
         const gic_real t12 = t6 * t11;
         const gic_real t13 = t7 * t11;
         const gic_real t14 = rate[0] * (t1 * t12 - t2 * t13);

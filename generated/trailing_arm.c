@@ -61,11 +61,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   62       118       2      1         2
+ *   subset 'lca_f_l' (2 times, closed form)                   61       116       2      1         2
  *   subset 'wheel_f_l' (2 times, closed form)                307       408       5      2         0
- *   subset 'lca_f_l_2' (2 times, closed form)                 77       123       2      1         2
+ *   subset 'lca_f_l_2' (2 times, closed form)                 76       121       2      1         2
  *   forces and equations of motion                           743       706      14      4         4
- *   all together                                            1650      2029      32     12        12
+ *   all together                                            1646      2021      32     12        12
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #include "trailing_arm.h"
@@ -229,16 +229,14 @@ static GIC_COLD gic_real trailing_arm_residual_rack(const gic_real *GIC_RESTRICT
     return worst;
 }
 
-static const gic_real trailing_arm_k_lca_f_l[2][9] = {
+static const gic_real trailing_arm_k_lca_f_l[2][8] = {
     { /* lca_f_l */
-        R(0.9999999999999996), R(-1.0), R(0.5000000000000002), R(0.23920559337529682),
-        R(0.23920559337529687), R(-0.23920559337529682), R(1.0), R(0.24689200985615367),
-        R(0.307086),
+        R(0.9999999999999996), R(-1.0), R(0.23920559337529682), R(0.23920559337529687),
+        R(-0.23920559337529682), R(1.0), R(0.24689200985615367), R(0.307086),
     },
     { /* lca_f_r */
-        R(-0.9999999999999996), R(1.0), R(-0.5000000000000002), R(-0.23920559337529682),
-        R(-0.23920559337529687), R(0.23920559337529682), R(-1.0), R(-0.24689200985615367),
-        R(-0.307086),
+        R(-0.9999999999999996), R(1.0), R(-0.23920559337529682), R(-0.23920559337529687),
+        R(0.23920559337529682), R(-1.0), R(-0.24689200985615367), R(-0.307086),
     },
 };
 
@@ -251,7 +249,6 @@ static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RE
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
-    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = GIC_COS(x[0]);
@@ -271,86 +268,84 @@ static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RE
         const gic_real t11 = t3 * t9 + t1 * (k[0] * t10);
         if (!(GIC_FABS(t11) > R(9.999999999999995e-07)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t12 = R(0.9999999999999996) * t10;
-        const gic_real t13 = R(1.0) / -t11;
-        const gic_real t14 = (t1 * t12 + t3 * (k[0] * t8)) * t13;
-        const gic_real t15 = rate[0] * t14;
-        const gic_real t16 = -t15;
-        if (!(-(t11 * k[2] + GIC_FABS(t16) * ahead[0]) > R(0.0005)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t17 = k[3] * t8 + R(0.9709689408513393) * t10;
-        const gic_real t18 = R(-0.9709689408513391) * t8 + k[4] * t10;
-        const gic_real t19 = R(0.9709689408513393) * t8 + k[5] * t10;
-        const gic_real t20 = k[4] * t8 + R(0.9709689408513391) * t10;
-        const gic_real t21 = t12 * t15;
-        const gic_real t22 = t9 * t15;
-        const gic_real t23 = rate[0] * (t3 * (k[6] * t21) - t1 * t22);
-        const gic_real t24 = t1 * (k[6] * (t15 * t22)) - t3 * (t15 * t21);
-        const gic_real t25 = t13 * (t23 + t23 - t24);
-        const gic_real t26 = t18 * R(3.0379110359107786e-06) + t17 * k[7];
-        const gic_real t27 = k[8] - t26;
-        const gic_real t28 = R(23.965) * t27;
-        const gic_real t29 = t20 * R(3.0379110359107786e-06) + t19 * k[7];
-        const gic_real t30 = R(23.965) * t29;
-        const gic_real t31 = t27 * t28;
-        const gic_real t32 = t29 * t30;
-        const gic_real t33 = t18 * R(0.4469);
-        const gic_real t34 = R(0.4469) + t18 * t33;
-        const gic_real t35 = R(0.4469) + t20 * (t20 * R(0.4469));
-        const gic_real t36 = t20 * t33;
-        const gic_real t37 = t15 * t26;
-        const gic_real t38 = t37 + (t37 + (turn[0] * t27 - R(1.688965) * turn[1]));
-        const gic_real t39 = t15 * t29;
-        const gic_real t40 = turn[0] * t29 + R(1.688965) * turn[2] - t39 - t39;
-        const gic_real t41 = R(23.965) * (turn[1] * t38 - turn[2] * t40);
-        const gic_real t42 = turn[2] * t27 + turn[1] * t29;
-        const gic_real t43 = t15 * t37 - (turn[0] * t38 + turn[2] * t42) + t25 * t29;
-        const gic_real t44 = R(23.965) * t43;
-        const gic_real t45 = turn[1] * t42 + turn[0] * t40 + t15 * t39 - t25 * t26;
-        const gic_real t46 = R(23.965) * t45;
-        const gic_real t47 = turn[2] * t35 + turn[1] * t36;
-        const gic_real t48 = turn[2] * t36 + turn[1] * t34;
-        const gic_real t49 = t25 * R(0.4469) + (turn[1] * t47 - turn[2] * t48);
-        const gic_real t50 = t15 * turn[1];
-        const gic_real t51 = t15 * turn[2];
-        const gic_real t52 = turn[0] - t15;
-        const gic_real t53 = R(0.4469) * t52;
-        const gic_real t54 = t36 * t50 - t34 * t51 + (turn[2] * t53 - t52 * t47);
-        const gic_real t55 = t35 * t50 - t36 * t51 + (t52 * t48 - turn[1] * t53);
-        const gic_real t56 = t14 * t29;
-        const gic_real t57 = R(23.965) * t56;
-        const gic_real t58 = t14 * t26;
-        const gic_real t59 = R(23.965) * t58;
-        const gic_real t60 = t14 * R(0.4469);
-        const gic_real t61 = -t17;
-        const gic_real t62 = -t18;
-        const gic_real t63 = -t19;
-        const gic_real t64 = -t20;
-        const gic_real t65 = -t14;
-        const gic_real t66 = -t30;
-        const gic_real t67 = R(0.4469) + (t31 + t32);
-        const gic_real t68 = t34 + (R(68.36262541240713) + t32);
-        const gic_real t69 = t35 + (R(68.36262541240713) + t31);
-        const gic_real t70 = -(t27 * R(40.476046225));
-        const gic_real t71 = t29 * R(40.476046225);
-        const gic_real t72 = t36 + t29 * t28;
-        const gic_real t73 = t49 + (t29 * t44 + t27 * t46);
-        const gic_real t74 = t54 - (R(40.476046225) * t45 + t29 * t41);
-        const gic_real t75 = t55 + (R(40.476046225) * t43 - t27 * t41);
-        const gic_real t76 = -t57;
-        const gic_real t77 = t27 * t59 - t29 * t57 - t60;
-        const gic_real t78 = -(R(40.476046225) * t58);
-        const gic_real t79 = -(R(40.476046225) * t56);
-        const gic_real t80 = t46 * t58 - t44 * t56 - t14 * t49;
-        const gic_real t81 = t14 * t60 + (t58 * t59 + t56 * t57);
-        motion[7] = t61;
-        motion[8] = t62;
-        motion[10] = t63;
-        motion[11] = t64;
-        motion[12] = t16;
-        motion[18] = t25;
+        const gic_real t12 = k[2] * t8 + R(0.9709689408513393) * t10;
+        const gic_real t13 = R(-0.9709689408513391) * t8 + k[3] * t10;
+        const gic_real t14 = R(0.9709689408513393) * t8 + k[4] * t10;
+        const gic_real t15 = k[3] * t8 + R(0.9709689408513391) * t10;
+        const gic_real t16 = R(0.9999999999999996) * t10;
+        const gic_real t17 = R(1.0) / -t11;
+        const gic_real t18 = (t1 * t16 + t3 * (k[0] * t8)) * t17;
+        const gic_real t19 = rate[0] * t18;
+        const gic_real t20 = t16 * t19;
+        const gic_real t21 = t9 * t19;
+        const gic_real t22 = rate[0] * (t3 * (k[5] * t20) - t1 * t21);
+        const gic_real t23 = t1 * (k[5] * (t19 * t21)) - t3 * (t19 * t20);
+        const gic_real t24 = t17 * (t22 + t22 - t23);
+        const gic_real t25 = t13 * R(3.0379110359107786e-06) + t12 * k[6];
+        const gic_real t26 = k[7] - t25;
+        const gic_real t27 = R(23.965) * t26;
+        const gic_real t28 = t15 * R(3.0379110359107786e-06) + t14 * k[6];
+        const gic_real t29 = R(23.965) * t28;
+        const gic_real t30 = t26 * t27;
+        const gic_real t31 = t28 * t29;
+        const gic_real t32 = t13 * R(0.4469);
+        const gic_real t33 = R(0.4469) + t13 * t32;
+        const gic_real t34 = R(0.4469) + t15 * (t15 * R(0.4469));
+        const gic_real t35 = t15 * t32;
+        const gic_real t36 = t19 * t25;
+        const gic_real t37 = t36 + (t36 + (turn[0] * t26 - R(1.688965) * turn[1]));
+        const gic_real t38 = t19 * t28;
+        const gic_real t39 = turn[0] * t28 + R(1.688965) * turn[2] - t38 - t38;
+        const gic_real t40 = R(23.965) * (turn[1] * t37 - turn[2] * t39);
+        const gic_real t41 = turn[2] * t26 + turn[1] * t28;
+        const gic_real t42 = t19 * t36 - (turn[0] * t37 + turn[2] * t41) + t24 * t28;
+        const gic_real t43 = R(23.965) * t42;
+        const gic_real t44 = turn[1] * t41 + turn[0] * t39 + t19 * t38 - t24 * t25;
+        const gic_real t45 = R(23.965) * t44;
+        const gic_real t46 = turn[2] * t34 + turn[1] * t35;
+        const gic_real t47 = turn[2] * t35 + turn[1] * t33;
+        const gic_real t48 = t24 * R(0.4469) + (turn[1] * t46 - turn[2] * t47);
+        const gic_real t49 = t19 * turn[1];
+        const gic_real t50 = t19 * turn[2];
+        const gic_real t51 = turn[0] - t19;
+        const gic_real t52 = R(0.4469) * t51;
+        const gic_real t53 = t35 * t49 - t33 * t50 + (turn[2] * t52 - t51 * t46);
+        const gic_real t54 = t34 * t49 - t35 * t50 + (t51 * t47 - turn[1] * t52);
+        const gic_real t55 = t18 * t28;
+        const gic_real t56 = R(23.965) * t55;
+        const gic_real t57 = t18 * t25;
+        const gic_real t58 = R(23.965) * t57;
+        const gic_real t59 = t18 * R(0.4469);
+        const gic_real t60 = -t12;
+        const gic_real t61 = -t13;
+        const gic_real t62 = -t14;
+        const gic_real t63 = -t15;
+        const gic_real t64 = -t19;
+        const gic_real t65 = -t18;
+        const gic_real t66 = -t29;
+        const gic_real t67 = R(0.4469) + (t30 + t31);
+        const gic_real t68 = t33 + (R(68.36262541240713) + t31);
+        const gic_real t69 = t34 + (R(68.36262541240713) + t30);
+        const gic_real t70 = -(t26 * R(40.476046225));
+        const gic_real t71 = t28 * R(40.476046225);
+        const gic_real t72 = t35 + t28 * t27;
+        const gic_real t73 = t48 + (t28 * t43 + t26 * t45);
+        const gic_real t74 = t53 - (R(40.476046225) * t44 + t28 * t40);
+        const gic_real t75 = t54 + (R(40.476046225) * t42 - t26 * t40);
+        const gic_real t76 = -t56;
+        const gic_real t77 = t26 * t58 - t28 * t56 - t59;
+        const gic_real t78 = -(R(40.476046225) * t57);
+        const gic_real t79 = -(R(40.476046225) * t55);
+        const gic_real t80 = t45 * t57 - t43 * t55 - t18 * t48;
+        const gic_real t81 = t18 * t59 + (t57 * t58 + t55 * t56);
+        motion[7] = t60;
+        motion[8] = t61;
+        motion[10] = t62;
+        motion[11] = t63;
+        motion[12] = t64;
+        motion[18] = t24;
         motion[24] = t65;
-        inertia[1] = t28;
+        inertia[1] = t27;
         inertia[2] = t66;
         inertia[3] = t67;
         inertia[4] = t68;
@@ -358,14 +353,14 @@ static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RE
         inertia[6] = t70;
         inertia[7] = t71;
         inertia[8] = t72;
-        inertia[9] = t41;
-        inertia[10] = t44;
-        inertia[11] = t46;
+        inertia[9] = t40;
+        inertia[10] = t43;
+        inertia[11] = t45;
         inertia[12] = t73;
         inertia[13] = t74;
         inertia[14] = t75;
         inertia[16] = t76;
-        inertia[17] = t59;
+        inertia[17] = t58;
         inertia[18] = t77;
         inertia[19] = t78;
         inertia[20] = t79;
@@ -384,8 +379,8 @@ static GIC_COLD gic_real trailing_arm_residual_lca_f_l(const gic_real *GIC_RESTR
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_COS(x[0]) * (k[6] * (k[4] * motion[11] + R(0.9709689408513393) * motion[10]));
-        const gic_real t2 = t1 - GIC_SIN(x[0]) * (k[4] * motion[8] + R(0.9709689408513393) * motion[7]);
+        const gic_real t1 = GIC_COS(x[0]) * (k[5] * (k[3] * motion[11] + R(0.9709689408513393) * motion[10]));
+        const gic_real t2 = t1 - GIC_SIN(x[0]) * (k[3] * motion[8] + R(0.9709689408513393) * motion[7]);
         const gic_real t3 = GIC_MAX(R(0.0), GIC_FABS(t2 * R(1.0000000000000004)));
         worst = t3;
     }
@@ -760,7 +755,6 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
-    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = GIC_COS(x[0]);
@@ -779,17 +773,15 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
         const gic_real t10 = t3 * t8 + t1 * t9;
         if (!(GIC_FABS(t10) > R(1e-06)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t11 = R(1.0) / t10;
-        const gic_real t12 = t10 * t11;
-        const gic_real t13 = rate[0] * t12;
-        if (!(R(0.5) * t10 - GIC_FABS(t13) * ahead[0] > R(0.0005)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t14 = k[1] * t7;
-        const gic_real t15 = t9 * t13;
-        const gic_real t16 = t8 * t13;
+        const gic_real t11 = k[1] * t7;
+        const gic_real t12 = R(1.0) / t10;
+        const gic_real t13 = t10 * t12;
+        const gic_real t14 = rate[0] * t13;
+        const gic_real t15 = t9 * t14;
+        const gic_real t16 = t8 * t14;
         const gic_real t17 = rate[0] * (t3 * t15 - t1 * t16);
-        const gic_real t18 = t17 + t17 - (t3 * (t13 * t15) - t1 * (t13 * t16));
-        const gic_real t19 = t11 * t18;
+        const gic_real t18 = t17 + t17 - (t3 * (t14 * t15) - t1 * (t14 * t16));
+        const gic_real t19 = t12 * t18;
         const gic_real t20 = t9 * R(-0.45756300000000016) - t7 * k[2];
         const gic_real t21 = R(-1.15) + t20;
         const gic_real t22 = R(110.555) * t21;
@@ -798,7 +790,7 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
         const gic_real t25 = R(110.555) * t24;
         const gic_real t26 = t9 * R(-1.3186999999999998) - t7 * k[4];
         const gic_real t27 = t9 * R(-0.109132);
-        const gic_real t28 = R(6.78001) + (t9 * t26 - t14 * t27);
+        const gic_real t28 = R(6.78001) + (t9 * t26 - t11 * t27);
         const gic_real t29 = t24 * t25;
         const gic_real t30 = t21 * t22;
         const gic_real t31 = t9 * (t7 * k[5]) + t8 * (t27 - t7 * k[6]);
@@ -806,31 +798,31 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
         const gic_real t33 = t9 * k[7] - t7 * R(0.075632);
         const gic_real t34 = t9 * t27 - t8 * t26;
         const gic_real t35 = t9 * k[8] - t7 * R(-0.729032);
-        const gic_real t36 = t13 * t20;
+        const gic_real t36 = t14 * t20;
         const gic_real t37 = turn[0] * k[9] - turn[1] * t21 - t36 - t36;
         const gic_real t38 = turn[2] * t21 - turn[0] * t24;
-        const gic_real t39 = turn[1] * t37 - turn[2] * t38 - t13 * t36 + t19 * t23;
+        const gic_real t39 = turn[1] * t37 - turn[2] * t38 - t14 * t36 + t19 * t23;
         const gic_real t40 = R(110.555) * t39;
-        const gic_real t41 = t13 * t23;
+        const gic_real t41 = t14 * t23;
         const gic_real t42 = t41 + (t41 + (turn[1] * t24 - turn[2] * k[9]));
         const gic_real t43 = R(110.555) * (turn[2] * t42 - turn[0] * t37);
-        const gic_real t44 = turn[0] * t38 - turn[1] * t42 - t13 * t41 - t19 * t20;
+        const gic_real t44 = turn[0] * t38 - turn[1] * t42 - t14 * t41 - t19 * t20;
         const gic_real t45 = R(110.555) * t44;
-        const gic_real t46 = t13 * turn[0];
-        const gic_real t47 = t13 * turn[2];
-        const gic_real t48 = t13 + turn[1];
+        const gic_real t46 = t14 * turn[0];
+        const gic_real t47 = t14 * turn[2];
+        const gic_real t48 = t14 + turn[1];
         const gic_real t49 = turn[2] * t32 + (t35 * t48 + turn[0] * t34);
         const gic_real t50 = turn[2] * t35 + (R(9.09449) * t48 + turn[0] * t33);
         const gic_real t51 = t34 * t46 + (t19 * t33 - t28 * t47) + (t48 * t49 - turn[2] * t50);
         const gic_real t52 = turn[2] * t34 + (t33 * t48 + turn[0] * t28);
         const gic_real t53 = t35 * t46 + (t19 * R(9.09449) - t33 * t47) + (turn[2] * t52 - turn[0] * t49);
         const gic_real t54 = t32 * t46 + (t19 * t35 - t34 * t47) + (turn[0] * t50 - t48 * t52);
-        const gic_real t55 = t12 * t23;
+        const gic_real t55 = t13 * t23;
         const gic_real t56 = R(110.555) * t55;
-        const gic_real t57 = t12 * t20;
+        const gic_real t57 = t13 * t20;
         const gic_real t58 = R(110.555) * t57;
-        const gic_real t59 = t12 * R(9.09449);
-        const gic_real t60 = -t14;
+        const gic_real t59 = t13 * R(9.09449);
+        const gic_real t60 = -t11;
         const gic_real t61 = -t8;
         const gic_real t62 = t28 + (R(78.723756691462) + t29);
         const gic_real t63 = R(9.09449) + (t30 + t29);
@@ -842,18 +834,18 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
         const gic_real t69 = t53 + (t24 * t40 - t21 * t45);
         const gic_real t70 = t54 + (t21 * t43 - k[10] * t39);
         const gic_real t71 = -t58;
-        const gic_real t72 = t12 * t33 - k[10] * t57;
+        const gic_real t72 = t13 * t33 - k[10] * t57;
         const gic_real t73 = t59 + (t21 * t58 + t24 * t56);
-        const gic_real t74 = t12 * t35 - k[10] * t55;
-        const gic_real t75 = t12 * t53 + (t40 * t55 - t45 * t57);
-        const gic_real t76 = t12 * t59 + (t57 * t58 + t55 * t56);
+        const gic_real t74 = t13 * t35 - k[10] * t55;
+        const gic_real t75 = t13 * t53 + (t40 * t55 - t45 * t57);
+        const gic_real t76 = t13 * t59 + (t57 * t58 + t55 * t56);
         motion[3] = t9;
         motion[5] = t60;
         motion[9] = t61;
         motion[11] = t9;
-        motion[13] = t13;
+        motion[13] = t14;
         motion[19] = t19;
-        motion[25] = t12;
+        motion[25] = t13;
         inertia[0] = t22;
         inertia[2] = t25;
         inertia[3] = t62;

@@ -466,8 +466,24 @@ static const double reserve = 0.5;
 /* A pivot this much smaller than at any sample makes multipliers so large that they cost as many digits. */
 static const double pivot_loss = 1e-6;
 
+/* Is it the same in all configurations, as of a body that turns about a joint by an angle? A wheel may spin. */
+static bool is_steady(const Work *w, Ex e)
+{
+    const double rounding = 1e-9;
+    int seen = 0;
+    for (int s = 0; s < w->dag->samples; ++s) {
+        const double design = ex_value(w->dag, e, s / w->configurations * w->configurations);
+        if (!w->alive[s] || s % w->configurations == 0)
+            continue;
+        ++seen;
+        if (!(fabs(ex_value(w->dag, e, s) - design) <= rounding * fabs(design)))
+            return false;
+    }
+    return seen > 0;
+}
+
 /* Pivots, and guards where poses may be on a wrong branch. Returns the determinant relative to that at the design,
- * times `reserve`; 0: nothing in it varies. */
+ * times `reserve`; 0: it does not vary. */
 static Ex check_pivots(Work *w, Formula *formula, const Factors *factors, bool guarded)
 {
     Ex determinant = 0;
@@ -484,7 +500,7 @@ static Ex check_pivots(Work *w, Formula *formula, const Factors *factors, bool g
     for (int r = 0; guarded && r < w->n; ++r)
         if (w->row[r].guard)
             block_check(&formula->solve, w->row[r].guard, false, 0, "GIC_ERROR_SINGULAR");
-    if (!determinant)
+    if (!determinant || is_steady(w, determinant))
         return 0;
     double scale[w->class->members];
     for (int i = 0; i < w->class->members; ++i)
