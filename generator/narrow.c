@@ -489,6 +489,49 @@ static void narrow_rest(Narrower *n)
     n->out->wheels = narrow_wheels(n);
 }
 
+/* Mark the numbers of n[] that a block reads. */
+static void mark_inertia(const Block *block, bool *read)
+{
+    Ex root[block->stores + block->checks + 1];
+    int roots = 0;
+    for (int i = 0; i < block->stores; ++i)
+        root[roots++] = block->store[i].value;
+    for (int i = 0; i < block->checks; ++i)
+        root[roots++] = block->check[i].value;
+    const bool *needed = dag_needed(block->dag, root, roots);
+    for (int e = 0; e < block->dag->nodes; ++e) {
+        const Node *node = &block->dag->node[e];
+        const int index = needed[e] && node->op == OP_INPUT ? narrow_target(node->name, "n") : -1;
+        if (index >= 0)
+            read[index] = true;
+    }
+}
+
+/* What subsets would add to equations that are not there: of odd unknowns, of coordinates that stand still. */
+static void drop_inertia(Narrower *n)
+{
+    const Formulation *f = n->out;
+    const Sequence *sequence = n->plan->sequence;
+    const Block *const block[] = {f->dynamics, f->outputs, f->poses, f->inverse, f->energy, f->wrenches};
+    bool *read = pool_alloc(n->pool, (size_t)n->plan->inertia_size + 1);
+    for (size_t i = 0; i < sizeof block / sizeof *block; ++i)
+        if (block[i])
+            mark_inertia(block[i], read);
+    for (int c = 0; c < sequence->classes; ++c) {
+        Block *solve = &n->plan->formula[c]->solve;
+        int stores = 0;
+        for (int i = 0; i < solve->stores; ++i) {
+            const int index = narrow_target(solve->store[i].target, "inertia");
+            bool wanted = index < 0;
+            for (int m = 0; m < sequence->class[c].members; ++m)
+                wanted = wanted || read[n->plan->inertia_offset[sequence->class[c].member[m]] + index];
+            if (wanted)
+                solve->store[stores++] = solve->store[i];
+        }
+        solve->stores = stores;
+    }
+}
+
 /* What functions and tables emitted code still needs. */
 static void find_uses(const Formulation *f, Narrowing *narrowing)
 {
@@ -602,6 +645,7 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
     if (n->mirror)
         narrow_mirror(n);
     narrow_rest(n);
+    drop_inertia(n);
     find_uses(n->out, n->narrowing);
     return n->out;
 }
