@@ -1,0 +1,17 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# random.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE: VEHICLES (short: 2, full: 1000) random vehicles against
+# quad precision, and as many with a mistake, which must be refused with a culprit's name (tests/test_random.sh).
+[ "$STRESS" = short ] && usual=2 || usual=1000
+VEHICLES=${VEHICLES:-$usual} ROWS=${ROWS:-10} sh "$(dirname "$0")/../test_random.sh" "$@" | awk -v all=$((2 * ${VEHICLES:-$usual})) '
+    /^FAIL / {
+        verdict = verdict ? verdict : $0
+        print >"/dev/stderr"
+        next
+    }
+    /^[0-9]* passed, [0-9]* failed$/ { passed = $1 }
+    END {
+        # what is broken and refused with a culprit counts as half of what passed
+        refused = verdict ? 0 : all / 2
+        printf "random | random vehicles | %d | %d | %d | | %s\n", all, passed - refused, refused, verdict ? verdict : "ok"
+    }'
