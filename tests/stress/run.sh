@@ -44,6 +44,17 @@ table=$build/stress/table.md
 # Rows of an attack as they come: into the table, in columns for who watches, with a verdict of our own where a row can't
 # stand as it is. exit status 1: findings, 2: no rows.
 judge() {
+    rows=0
+    found=0
+    while IFS= read -r line; do
+        rows=$((rows + 1))
+        printf '%s\n' "$line" | judge_row || found=1
+    done
+    [ $rows -gt 0 ] || return 2
+    return $found
+}
+
+judge_row() {
     awk -F ' *[|] *' -v table="$table" '
         {
             columns = NF
@@ -58,12 +69,11 @@ judge() {
                 verdict = "lost: tried " $3 ", accounted for " $4 + $5
             else if (verdict ~ /^ok/ && tolower($6) ~ /(^|[^a-z])-?(nan|inf)([^a-z]|$)/)
                 verdict = "not a number: " $6
-            found += verdict !~ /^ok(:|$)/
+            found = verdict !~ /^ok(:|$)/
             printf "| %s | %s | %s | %s | %s | %s | %s |\n", $1, $2, $3, $4, $5, $6, verdict >>table
             printf "  %-14s %-24s %9s tried %9s OK %9s refused  %-34s %s\n", $1, $2, $3, $4, $5, $6, verdict
-            fflush()
         }
-        END { exit NR ? found > 0 : 2 }'
+        END { exit found }'
 }
 
 # finding ATTACK TEXT: what the frame saw itself
