@@ -14,6 +14,7 @@ typedef struct Variant {
     Solve solve;
     bool single;
     bool newton; /* everywhere, whatever the command line says */
+    int lanes;   /* of alike parts of the vehicle; 0: one by one */
 } Variant;
 
 #define FASTEST "-O3 -march=native -ffp-contract=fast"
@@ -21,28 +22,32 @@ typedef struct Variant {
 
 /* The first is what the others are compared with, in double precision and the reduced form. */
 static const Variant every_variant[] = {
-    {"cc", NULL, "-O2", SOLVE_REDUCED, false, false},
-    {"cc", NULL, "-O3", SOLVE_REDUCED, false, false},
-    {"cc", NULL, FASTEST, SOLVE_REDUCED, false, false},
-    {"cc", "clang", "-O2", SOLVE_REDUCED, false, false},
-    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, false},
-    {"cc", NULL, "-O2", SOLVE_REDUCED, false, true},
-    {"cc", NULL, NEAR(1e-10), SOLVE_REDUCED, false, true},
-    {"cc", NULL, NEAR(1e-8), SOLVE_REDUCED, false, true},
-    {"cc", NULL, NEAR(1e-6), SOLVE_REDUCED, false, true},
-    {"cc", NULL, NEAR(1e-4), SOLVE_REDUCED, false, true},
-    {"cc", NULL, NEAR(1e-2), SOLVE_REDUCED, false, true},
-    {"cc", NULL, FASTEST, SOLVE_REDUCED, false, true},
-    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, true},
-    {"cc", NULL, "-O2", SOLVE_AUGMENTED, false, false},
-    {"cc", NULL, FASTEST, SOLVE_AUGMENTED, false, false},
-    {"cc", NULL, "-O2 -DGIC_FLOAT", SOLVE_REDUCED, true, false},
-    {"cc", NULL, FASTEST " -DGIC_FLOAT", SOLVE_REDUCED, true, false},
-    {"tcc", NULL, "", SOLVE_REDUCED, false, false},
-    {"tape", NULL, "", SOLVE_REDUCED, false, false},
-    {"gic", NULL, "", SOLVE_REDUCED, false, false},
-    {"gcp1", NULL, "", SOLVE_REDUCED, false, false},
-    {"gcp2", NULL, "", SOLVE_REDUCED, false, false},
+    {"cc", NULL, "-O2", SOLVE_REDUCED, false, false, 0},
+    {"cc", NULL, "-O3", SOLVE_REDUCED, false, false, 0},
+    {"cc", NULL, FASTEST, SOLVE_REDUCED, false, false, 0},
+    {"cc", "clang", "-O2", SOLVE_REDUCED, false, false, 0},
+    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, false, 0},
+    {"cc", NULL, "-O2", SOLVE_REDUCED, false, true, 0},
+    {"cc", NULL, NEAR(1e-10), SOLVE_REDUCED, false, true, 0},
+    {"cc", NULL, NEAR(1e-8), SOLVE_REDUCED, false, true, 0},
+    {"cc", NULL, NEAR(1e-6), SOLVE_REDUCED, false, true, 0},
+    {"cc", NULL, NEAR(1e-4), SOLVE_REDUCED, false, true, 0},
+    {"cc", NULL, NEAR(1e-2), SOLVE_REDUCED, false, true, 0},
+    {"cc", NULL, FASTEST, SOLVE_REDUCED, false, true, 0},
+    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, true, 0},
+    {"cc", NULL, "-O2", SOLVE_AUGMENTED, false, false, 0},
+    {"cc", NULL, FASTEST, SOLVE_AUGMENTED, false, false, 0},
+    {"cc", NULL, "-O2 -DGIC_FLOAT", SOLVE_REDUCED, true, false, 0},
+    {"cc", NULL, FASTEST " -DGIC_FLOAT", SOLVE_REDUCED, true, false, 0},
+    {"tcc", NULL, "", SOLVE_REDUCED, false, false, 0},
+    {"tape", NULL, "", SOLVE_REDUCED, false, false, 0},
+    {"gic", NULL, "", SOLVE_REDUCED, false, false, 0},
+    {"gcp1", NULL, "", SOLVE_REDUCED, false, false, 0},
+    {"gcp2", NULL, "", SOLVE_REDUCED, false, false, 0},
+    {"cc", NULL, FASTEST, SOLVE_REDUCED, false, false, 4},
+    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, false, 4},
+    {"cc", NULL, FASTEST, SOLVE_REDUCED, false, true, 4},
+    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, true, 4},
 };
 
 enum {
@@ -194,9 +199,12 @@ static void open_subject(Course *course, const Variant *variant)
                         : pool_print(pool, "%s %s%s%s", variant->compiler ? variant->compiler : options.compiler,
                                      variant->flags, variant->solve == SOLVE_AUGMENTED ? " --solve augmented" : "",
                                      variant->newton ? " --recovery newton" : "");
+    if (variant->lanes)
+        subject->name = pool_print(pool, "%s --lanes %d", subject->name, variant->lanes);
     bench_progress("engine %s", subject->name);
     options.solve = variant->solve;
     options.single = variant->single;
+    options.lanes = variant->lanes;
     if (variant->newton)
         options.recovery = RECOVERY_NEWTON;
     options.quiet = true;
@@ -503,6 +511,68 @@ static void precision_chart(const Course *course)
         course->subject->name);
 }
 
+/* Additions and multiplications of a right-hand side in lanes: of vectors; of single numbers. */
+static void lane_work(const Course *course, const Subject *subject, double *vector, double *scalar)
+{
+    const Bench *bench = course->bench;
+    Pool *pool = bench->pool;
+    const Sequence *sequence = sequence_find(pool, bench->model);
+    const Recovery recovery = subject->variant->newton ? RECOVERY_NEWTON : bench->options.recovery;
+    const Formulation *f =
+        formulate(pool, model_assemble(pool, bench->model, sequence), sequence, subject->variant->solve, recovery);
+    f = formulation_lanes(pool, f, subject->variant->lanes);
+    const Figures *figures = figures_new(pool, f);
+    const double chords = average_chords(subject, figures);
+    *vector = work_of(block_count_wide(f->dynamics));
+    *scalar = work_of(figures->dynamics) - *vector;
+    for (int c = 0; c < f->sequence->classes; ++c) {
+        const double one = work_of(figures_subset(figures, c, 0, 1)), two = work_of(figures_subset(figures, c, 1, 1));
+        *(f->plan->class_lanes[c] ? vector : scalar) += class_rows(f->plan, c) * (one + chords * (two - one));
+    }
+}
+
+/* The same code by the same compiler with the same flags, one by one. */
+static const Subject *without_lanes(const Course *course, const Variant *variant)
+{
+    for (int s = 0; s < course->subjects; ++s) {
+        const Variant *other = course->subject[s].variant;
+        if (!other->lanes && other->compiler == variant->compiler && !strcmp(other->flags, variant->flags) &&
+            other->solve == variant->solve && other->newton == variant->newton)
+            return &course->subject[s];
+    }
+    return NULL;
+}
+
+/* Variants in lanes beside the same without. */
+static void lanes_table(const Course *course)
+{
+    const Bench *bench = course->bench;
+    Pool *pool = bench->pool;
+    double *limit = pool_alloc(pool, sizeof *limit * (size_t)bench->repetitions);
+    Sheet *table = report_table(bench->report, "rhs_lanes", "Alike parts side by side",
+                                "variant|operations on vectors|on single numbers|times as fast as one by one|low|high|"
+                                "limit [ns]|times the limit");
+    for (int s = 0; s < course->subjects; ++s) {
+        const Subject *subject = &course->subject[s], *alone = without_lanes(course, subject->variant);
+        double vector, scalar;
+        if (!subject->variant->lanes || !alone || subject->status != GIC_OK || alone->status != GIC_OK)
+            continue;
+        lane_work(course, subject, &vector, &scalar);
+        table_cell(pool, table, "%s", subject->name);
+        table_cell(pool, table, "%.0f", vector);
+        table_cell(pool, table, "%.0f", scalar);
+        spread_cells(pool, table, spread_of_ratio(pool, alone->rhs, subject->rhs, bench->repetitions), 1);
+        for (int r = 0; r < bench->repetitions; ++r)
+            limit[r] = (vector + scalar) / (2 * course->limit[r].scalar);
+        table_cell(pool, table, "%.4g", 1e9 * spread_of(pool, limit, bench->repetitions).median);
+        table_cell(pool, table, "%.3g", spread_of_ratio(pool, subject->rhs, limit, bench->repetitions).median);
+    }
+    table->note =
+        "Additions and multiplications, force laws among them, those of a whole vector counted once; the limit "
+        "is what they would take, two in each multiply-add, at the rate of multiply-adds one after another. "
+        "One by one: by the same compiler with the same flags.";
+}
+
 static void limit_table(const Course *course)
 {
     const Bench *bench = course->bench;
@@ -560,6 +630,8 @@ void bench_rhs(const Bench *bench)
     precision_chart(&course);
     if (tires)
         time_table(&course, "rhs_fast", "Time of a fast step's rates", &kinds, true);
+    if (!tires)
+        lanes_table(&course);
     limit_table(&course);
     for (int s = 0; s < course.subjects; ++s)
         engine_close(course.subject[s].engine);

@@ -4,7 +4,8 @@
 # forces, all that wheels tell, rates of fast states, energies and power of generated code against the independent
 # reference in quad precision, at ROWS (default 100; four times that with tires) random states of every model, of a cart
 # with every kind of force law and of the HMMWV with a driven rack, with the equations of motion in either form; constraint
-# residuals at the same states. Each form within half of 1e-12 of the reference: so they agree with each other to 1e-12.
+# residuals at the same states; the reduced form also with alike parts side by side in lanes. Each form within half of
+# 1e-12 of the reference: so they agree with each other to 1e-12.
 # With tires within 2e-12, for tires are stiff: at some states they make 1e-12 of the last digit of a pose, whichever way
 # that is found. Once more on waves with a patch of little friction, where 100 m from the origin heights of a road whose
 # slope reaches 0.1 are known to 1e-15 m; there also with wheels side by side in lanes.
@@ -58,9 +59,10 @@ for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" "$work/steered.veh
         echo "FAIL $(basename "$model")"
         continue
     fi
-    for solve in reduced augmented; do
+    for solve in reduced augmented 'reduced --lanes 4' 'reduced --lanes 2 --recovery newton'; do
         cc=${CC:-cc}
-        [ $solve = reduced ] || cc="sh $work/cc"
+        [ "$solve" = reduced ] || cc="sh $work/cc"
+        # shellcheck disable=SC2086  # a list of words
         if "$gicrun" --solve $solve --engine cc --cc "$cc" --eval "$work/states" "$work/variant.veh" -o "$work/results" &&
             "$agree" "$work/dump" "$work/accelerations" "$work/results" --reactions --wheels \
                 --tolerance "$tolerance"; then
