@@ -23,22 +23,23 @@ cp "$root"/runtime/gic_runtime.[ch] "$root/runtime/gic_batch.h" "$root/tests/emb
 sed "s|\.\./\.\./models|$root/models|; /type: reaction/d" "$root/tests/tuning/car.veh" >"$work/car.veh"
 cd "$work" || exit 1
 
-# agrees MODEL.veh OPTIONS COMPILER...: eight vehicles have the same bits
+# agrees MODEL.veh OPTIONS LANES COMPILER...: eight vehicles, LANES of them in a vector, have the same bits
 agrees() {
     file=$1
     options=$2
-    shift 2
+    lanes=$3
+    shift 3
     name=$(sed -n 's/^model: *//p' "$file")
     # shellcheck disable=SC2086  # a list of words
-    "$gicgen" $options "$file" -o "$name.c" && "$gicgen" --batch 8 $options "$file" &&
+    "$gicgen" $options "$file" -o "$name.c" && "$gicgen" --batch 8 --lanes "$lanes" $options "$file" &&
         "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -ffp-contract=off -DBATCH="${name}_batch_model" -I. \
             lanes.c "$name.c" "${name}_batch.c" gic_runtime.c -lm -o lanes && [ "$(./lanes)" = '8 8 8 of 8' ]
-    check $? "$file $options: $* $(./lanes)"
+    check $? "$file $options, $lanes lanes: $* $(./lanes)"
 }
 
 for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" car.veh; do
     if "$gicgen" --batch 8 "$model" -o - >out 2>err; then
-        agrees "$model" '' gcc -std=c11 -O0
+        agrees "$model" '' 4 gcc -std=c11 -O0
     else
         grep -q "error: code for many vehicles at once can't have wheels with tires yet" err
         check $? "$model: $(cat err)"
@@ -46,11 +47,11 @@ for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" car.veh; do
 done
 
 hmmwv=$root/models/hmmwv.veh
-agrees "$hmmwv" '--lanes 2' gcc -std=c11 -O2
-agrees "$hmmwv" '--lanes 8' gcc -std=c11 -O2 -DGIC_FLOAT -Wdouble-promotion
-agrees "$hmmwv" '--lanes 16' clang -std=c11 -O1
-agrees "$hmmwv" '--solve augmented' clang -std=c11 -O1 -DGIC_FLOAT
-agrees "$hmmwv" '' gcc -std=c11 -O1 -fopenmp
+agrees "$hmmwv" '' 2 gcc -std=c11 -O2
+agrees "$hmmwv" '' 8 gcc -std=c11 -O2 -DGIC_FLOAT -Wdouble-promotion
+agrees "$hmmwv" '' 16 clang -std=c11 -O1
+agrees "$hmmwv" '--solve augmented' 4 clang -std=c11 -O1 -DGIC_FLOAT
+agrees "$hmmwv" '' 4 gcc -std=c11 -O1 -fopenmp
 for how in 'g++ -std=c++11' 'clang++ -std=c++11 -DGIC_FLOAT'; do
     $how -x c++ -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -O1 -I. -c hmmwv_batch.c -o x.o
     check $? "$how hmmwv_batch.c"
