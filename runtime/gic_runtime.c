@@ -147,17 +147,14 @@ static int out_of_bounds(void *self, const gic_real *state, int32_t first, int32
     return GIC_ERROR_RESULT;
 }
 
-/* What makes the numbers that an integrator found a state. */
+/* What makes the numbers that an integrator found a state; bounded ones stay so. */
 static int settle(const gic_model *model, void *self, gic_real *next)
 {
     const int32_t n = model->slow_count + model->fast_count;
     ((gic_head *)self)->subset = -1; /* what follows is about the whole state */
     if (!gic_bounded(next, n))
         return out_of_bounds(self, next, 0, n);
-    const int status = model->settle(self, next);
-    if (status != GIC_OK)
-        return status;
-    return gic_bounded(next, n) ? GIC_OK : out_of_bounds(self, next, 0, n);
+    return model->settle(self, next);
 }
 
 static gic_real absolute(gic_real x)
