@@ -113,7 +113,7 @@ static int solutions(const Sequence *sequence)
 }
 
 /* Bodies whose poses a Newton start has. */
-static int followed_bodies(const Plan *plan)
+int followed_bodies(const Plan *plan)
 {
     int bodies = 0;
     for (int s = 0; s < plan->sequence->subsets; ++s)
@@ -326,8 +326,7 @@ void write_class_constants(Generation *g, Text *out)
                     &g->constants[g->class], member);
 }
 
-/* Are the members of a class solved side by side? */
-static bool in_lanes(const Generation *g, int class)
+bool class_in_lanes(const Generation *g, int class)
 {
     return g->plan->lanes && g->plan->class_lanes[class];
 }
@@ -351,7 +350,7 @@ static void write_classes(Generation *g, Text *out)
         if (!is_called(g, g->class))
             continue;
         const char *way = g->plan->formula[g->class]->closed ? "closed.c.in" : "subset.c.in";
-        if (in_lanes(g, g->class))
+        if (class_in_lanes(g, g->class))
             write_lane_class(g, out);
         else
             template_expand(g->pool, &body, g->templates, way, g->model->name, g->sequence->class[g->class].name,
@@ -365,231 +364,6 @@ static void write_classes(Generation *g, Text *out)
         text_add(out, body.s, body.size);
     }
     g->class = 0;
-}
-
-/* ---- recovery
- * ------------------------------------------------------------------------------------------------------------- */
-
-/* Copies of numbers that stand in rows: of knowns, then of the subset itself. */
-static void write_rooms(Generation *g, Text *out, int indent)
-{
-    int most = 1;
-    for (int c = 0; c < g->sequence->classes; ++c) {
-        const Layout *layout = &g->plan->formula[c]->layout;
-        const int size[] = {layout->bodies * layout->motion_size, layout->start_size};
-        for (int i = 0; i < 2; ++i)
-            most = size[i] > most ? size[i] : most;
-    }
-    if (!g->plan->lanes)
-        return;
-    line(out, indent, "gic_real room[%s_KNOWN_ROOM + 2][%d];", g->upper, most);
-    line(out, indent, "(void)room;");
-}
-
-static const char *room_text(const Generation *g, int index, const char *from)
-{
-    return pool_print(g->pool, "room[%s%s%d]", from, *from ? " + " : "", index);
-}
-
-static const char *known_text(const Generation *g, const Subset *subset, int i)
-{
-    const int owner = g->sequence->body_subset[subset->known[i]];
-    const Formula *formula = g->plan->formula[g->sequence->subset[owner].class];
-    return alone_text(g, room_text(g, i, ""), "self->motion", g->plan->motion_offset[subset->known[i]],
-                      g->plan->stride[owner], formula->layout.motion_size);
-}
-
-static void write_knowns(Generation *g, Text *out, int indent, const Subset *subset)
-{
-    for (int i = 0; i < subset->knowns; ++i)
-        line(out, indent, "links.known[%d] = %s;", i, known_text(g, subset, i));
-}
-
-/* Motion of a subset's bodies, and its start. */
-static const char *motion_text(const Generation *g, int s)
-{
-    const Subset *subset = &g->sequence->subset[s];
-    const Layout *layout = &g->plan->formula[subset->class]->layout;
-    return alone_text(g, room_text(g, 0, pool_print(g->pool, "%s_KNOWN_ROOM", g->upper)), "self->motion",
-                      g->plan->motion_offset[subset->body[0]], g->plan->stride[s],
-                      layout->bodies * layout->motion_size);
-}
-
-static const char *start_text(const Generation *g, int s)
-{
-    const Layout *layout = &g->plan->formula[g->sequence->subset[s].class]->layout;
-    return alone_text(g, room_text(g, 1, pool_print(g->pool, "%s_KNOWN_ROOM", g->upper)), "start",
-                      g->plan->start_offset[s], g->plan->stride[s], layout->start_size);
-}
-
-/* The solution of a subset is kept where it is for the same numbers; what the start has of it moves on. Returns the
- * indent of the other branch. */
-static int open_kept(Generation *g, Text *out, int indent, const Subset *subset, int s)
-{
-    const int offset = g->plan->start_offset[s], numbers = g->plan->formula[subset->class]->layout.start_size;
-    text_print(out, "%*sif (links->again", indent, "");
-    for (int j = 0; j < subset->deps; ++j)
-        text_print(out, " && links->same[%d]", subset->dep[j]);
-    text_print(out, ") {\n");
-    line(out, indent + 4, "++self->head.kept_count;");
-    if (numbers)
-        line(out, indent + 4, "memcpy(start + %d, old + %d, %d * sizeof *start);", offset, offset, numbers);
-    line(out, indent, "} else {");
-    return indent + 4;
-}
-
-/* Through a pointer in recover_piece, an object in residual: the same lines serve both. */
-static void write_calls(Generation *g, Text *out, int indent)
-{
-    const Sequence *sequence = g->sequence;
-    write_rooms(g, out, indent);
-    for (int s = 0; s < sequence->subsets; ++s) {
-        const Subset *subset = &sequence->subset[s];
-        if (subset->class < 0)
-            continue;
-        if (in_lanes(g, subset->class)) {
-            write_lane_call(g, out, indent, s);
-            continue;
-        }
-        const Class *class = &sequence->class[subset->class];
-        if (narrowing_image(g->formulation->narrowing, s))
-            continue;
-        const bool closed = g->plan->formula[subset->class]->closed;
-        const bool steady = narrowing_steady(g->formulation->narrowing, s), keeps = !steady && plan_keeps(g->plan, s);
-        if (steady)
-            line(out, indent, "if (links->cold) { /* nothing about it changes later */");
-        indent += steady ? 4 : 0;
-        text_print(out, "%*s/* stage %d:", indent, "", subset->stage);
-        for (int b = 0; b < subset->bodies; ++b)
-            text_print(out, " %s", g->model->body[subset->body[b]].name);
-        text_print(out, " */\n");
-        if (keeps)
-            indent = open_kept(g, out, indent, subset, s);
-        for (int i = 0; i < subset->knowns; ++i)
-            line(out, indent, "links->known[%d] = %s; /* %s */", i, known_text(g, subset, i),
-                 g->model->body[subset->known[i]].name);
-        for (int j = 0; j < subset->deps; ++j) {
-            line(out, indent, "links->x[%d] = start[%d]; /* %s */", j, subset->dep[j],
-                 g->model->coordinate[subset->dep[j]].name);
-            line(out, indent, "links->rate[%d] = xd[%d];", j, subset->dep[j]);
-            if (!closed)
-                line(out, indent, "links->change[%d] = start[%d] - old[%d];", j, subset->dep[j], subset->dep[j]);
-        }
-        if (g->plan->formula[subset->class]->derived)
-            line(out, indent, "links->derived = self->derived + %d;", g->plan->derived_offset[s]);
-        const char *old = closed ? "" : pool_print(g->pool, "old + %d, ", g->plan->start_offset[s]);
-        line(out, indent,
-             "status = %s_solve_%s(self, %s_k_%s[%d], links, %sstart + %d, self->motion + %d, self->inertia + %d);",
-             g->model->name, class->name, g->model->name, class->name, class_place(class, s), old,
-             g->plan->start_offset[s], g->plan->motion_offset[subset->body[0]], g->plan->inertia_offset[s]);
-        line(out, indent, "if (status != GIC_OK) {");
-        line(out, indent + 4, "self->head.subset = %d;", s);
-        line(out, indent + 4, "return status;");
-        line(out, indent, "}");
-        if (steady || keeps)
-            line(out, indent -= 4, "}");
-    }
-}
-
-static void write_residuals(Generation *g, Text *out, int indent)
-{
-    const Sequence *sequence = g->sequence;
-    write_rooms(g, out, indent);
-    for (int s = 0; s < sequence->subsets; ++s) {
-        const Subset *subset = &sequence->subset[s];
-        if (subset->class < 0 || narrowing_image(g->formulation->narrowing, s))
-            continue;
-        const Class *class = &sequence->class[subset->class];
-        write_knowns(g, out, indent, subset);
-        for (int j = 0; j < subset->deps; ++j)
-            line(out, indent, "links.x[%d] = start[%d];", j, subset->dep[j]);
-        if (g->plan->formula[subset->class]->derived)
-            line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
-        line(out, indent, "one = %s_residual_%s(%s_k_%s[%d], &links, %s);", g->model->name, class->name, g->model->name,
-             class->name, class_place(class, s), motion_text(g, s));
-        line(out, indent, "largest = GIC_MAX(largest, one);");
-    }
-}
-
-/* Against the computational sequence: what a subset puts on others is known before they are asked. */
-static void write_react_calls(Generation *g, Text *out, int indent)
-{
-    const Sequence *sequence = g->sequence;
-    const Plan *plan = g->plan;
-    const bool *needed = reactions_needed(g->pool, g->model, sequence);
-    write_rooms(g, out, indent);
-    for (int s = sequence->subsets - 1; s >= 0; --s) {
-        const Subset *subset = &sequence->subset[s];
-        if (subset->class < 0 || !needed[s])
-            continue;
-        const Class *class = &sequence->class[subset->class];
-        line(out, indent, "/* %s */", subset_title(g->pool, g->model, subset));
-        write_knowns(g, out, indent, subset);
-        for (int i = 0; i < subset->knowns; ++i)
-            if (needed[sequence->body_subset[subset->known[i]]])
-                line(out, indent, "onto[%d] = lambda + %d;", i, plan->multiplier_offset[subset->known[i]]);
-            else
-                line(out, indent, "onto[%d] = spare;", i);
-        for (int j = 0; j < subset->deps; ++j)
-            line(out, indent, "links.x[%d] = start[%d];", j, subset->dep[j]);
-        if (plan->formula[subset->class]->derived)
-            line(out, indent, "links.derived = self->derived + %d;", plan->derived_offset[s]);
-        line(out, indent, "%s_react_%s(%s_k_%s[%d], &links, %s, %s, lambda + %d, onto);", g->model->name, class->name,
-             g->model->name, class->name, class_place(class, s), start_text(g, s), motion_text(g, s),
-             plan->multiplier_offset[subset->body[0]]);
-    }
-}
-
-static void write_gather(Generation *g, Text *out, int indent)
-{
-    for (int w = 0; w < g->model->coordinates; ++w) {
-        const Coordinate *c = &g->model->coordinate[w];
-        line(out, indent, "x[%d] = %s[%d]; /* %s */", w, c->driven ? "u" : "y",
-             c->driven ? c->input : g->plan->coordinate_state[w], c->name);
-        line(out, indent, "xd[%d] = %s[%d];", w, c->driven ? "u" : "y",
-             c->driven ? c->input + 1 : g->plan->coordinate_rate[w]);
-    }
-}
-
-static void write_pieces(Generation *g, Text *out, int indent)
-{
-    for (int w = 0; w < g->model->coordinates; ++w)
-        line(out, indent, "%s, /* %s */", emit_number(g->pool, coordinate_piece(g->formulation, w)),
-             g->model->coordinate[w].name);
-    if (!g->model->coordinates)
-        line(out, indent, "R(0.0)");
-}
-
-static void write_design(Generation *g, Text *out, int indent)
-{
-    for (int s = 0; s < g->sequence->subsets; ++s) {
-        const Subset *subset = &g->sequence->subset[s];
-        for (int b = 0; plan_follows(g->plan, s) && b < subset->bodies; ++b) {
-            double q[7];
-            body_design(g->formulation, subset->body[b], q);
-            text_print(out, "%*s{%d, ", indent, "", g->plan->start_offset[s] + 7 * b * g->plan->stride[s]);
-            if (g->plan->lanes)
-                text_print(out, "%d, ", g->plan->stride[s]);
-            text_print(out, "{");
-            for (int i = 0; i < 7; ++i)
-                text_print(out, "%s%s", i ? ", " : "", emit_number(g->pool, q[i]));
-            text_print(out, "}}, /* %s */\n", g->model->body[subset->body[b]].name);
-        }
-    }
-    if (!followed_bodies(g->plan))
-        line(out, indent,
-             g->plan->lanes ? "{0, 1, {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}}"
-                            : "{0, {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}}");
-}
-
-static void write_initial(Generation *g, Text *out, int indent)
-{
-    for (int i = 0; i < states(g); ++i) {
-        const StateNumber number = state_number(g->pool, g->formulation, i);
-        line(out, indent, "%s, /* %s */", emit_number(g->pool, number.initial), number.name);
-    }
-    if (!states(g))
-        line(out, indent, "R(0.0)");
 }
 
 /* ---- tuning, tables of the model, insertion points ----------------------------------------------------------- */
@@ -720,9 +494,9 @@ void insert_code(void *context, const char *name, Text *out, int indent)
     } else if (!strcmp(name, "pieces")) {
         write_pieces(g, out, indent);
     } else if (!strcmp(name, "calls")) {
-        write_calls(g, out, indent);
+        write_recovery_calls(g, out, indent);
     } else if (!strcmp(name, "gather")) {
-        write_gather(g, out, indent);
+        write_gathered(g, out, indent);
     } else if (!strcmp(name, "base")) {
         insert_template(g, out, g->model->free_base ? "base_free.c.in" : "base_fixed.c.in");
     } else if (!strcmp(name, "independent equations")) {

@@ -39,7 +39,21 @@ void insert_code(void *context, const char *name, Text *out, int indent);
 void insert_subset(void *context, const char *name, Text *out, int indent);
 /* The constants of that class that text so far refers to. */
 void write_class_constants(Generation *g, Text *out);
-/* Which member of a class a subset is. */
+/* Are the members of a class solved side by side? */
+bool class_in_lanes(const Generation *g, int class);
+/* How many bodies are followed by Newton's iteration. */
+int followed_bodies(const Plan *plan);
+
+/* generate_recovery.c: calls of the subsets' functions, in recover_piece and residual; of those that find reactions;
+ * coordinates and rates from state and inputs; changes followed in one piece; design poses of followed bodies; the
+ * initial state. */
+void write_recovery_calls(Generation *g, Text *out, int indent);
+void write_residuals(Generation *g, Text *out, int indent);
+void write_react_calls(Generation *g, Text *out, int indent);
+void write_gathered(Generation *g, Text *out, int indent);
+void write_pieces(Generation *g, Text *out, int indent);
+void write_design(Generation *g, Text *out, int indent);
+void write_initial(Generation *g, Text *out, int indent);
 
 /* generate_lanes.c: of a plan in lanes. Vectors; links of subsets side by side; the function of class g->class; its
  * call, where a subset is the first of its row. */
