@@ -382,7 +382,7 @@ static void operations_table(const Course *course, const Kinds *kinds)
     for (int newton = 0; newton < 2; ++newton) {
         const Figures *figures = newton ? kinds->newton : reduced;
         Count all = figures_rhs(figures, newton ? newton_chords : chords, 1);
-        operations_row(pool, table, newton ? "all (reduced, newton)" : "all (reduced)", all);
+        operations_row(pool, table, newton ? "all (newton)" : "all (reduced)", all);
         count_add(&all, figures->loads, -1);
         count_add(&all, figures->link, -1);
         count_add(&all, figures->fast, -1);

@@ -256,7 +256,8 @@ static int give_up(const gic_model *model, void *self, gic_real step, int status
     head->flip = head->hold;
     head->hold = -1;
     copy(array_at(self, model->input_offset), input_before, model->input_count);
-    return head->status = gic_blame(model, step, rate, status, &head->grown);
+    /* a state that is none was not made by a step */
+    return head->status = gic_bounded(state, n) ? gic_blame(model, step, rate, status, &head->grown) : status;
 }
 
 /* A step was made: the instance moves on, with `history` rates kept. */
