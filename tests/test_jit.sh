@@ -141,7 +141,7 @@ long() {
     remark=$2
     shift 2
     "$gicrun" "$@" "$pendulum" long.scene -o auto.csv 2>said && cmp long.csv auto.csv >>said &&
-        grep -q "^  compiled code  *$remark" said && [ "$(grep -c . said)" -eq 7 ] && clean
+        grep -q "^  compiled code  *$remark" said && [ "$(grep -c . said)" -eq 8 ] && clean
     check $? "auto: $label"
 }
 long "changes to compiled code" 'from t = [1-9]' --cc "$quick"

@@ -27,7 +27,7 @@ within() {
 # run NAME MODEL ENGINE: the scene on standard input; results in $work/NAME.csv
 run() {
     cat >"$work/$1.scene"
-    "$gicrun" -q --engine "$3" "$2" "$work/$1.scene" -o "$work/$1.csv"
+    "$gicrun" -q --general --engine "$3" "$2" "$work/$1.scene" -o "$work/$1.csv"
 }
 
 spins=$(for wheel in f_l f_r r_l r_r; do printf 'slip_%s.spin, slip_%s.spin_rate, slip_%s.drive, ' $wheel $wheel $wheel; done)
