@@ -87,6 +87,10 @@ Spread spread_of(Pool *pool, const double *value, int count);
 Spread spread_of_ratio(Pool *pool, const double *over, const double *under, int count);
 /* Median of the seconds between two looks at the clock at once. */
 double bench_look(Pool *pool);
+/* Seconds of a step of AB3 from a state at the instance's time, with its inputs, and of a right-hand side at states
+ * where such steps begin: [2], the shortest of some turns each; the instance stays as it is. Status of the one that
+ * fails. */
+int step_parts(Pool *pool, const gic_model *code, gic_head *self, const double *state, double length, double *seconds);
 /* A line for the person who waits. */
 void bench_progress(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

@@ -66,10 +66,12 @@ typedef struct Subject {
     gic_head *self;
     double *state[2]; /* the engine's own, at both ends of a stretch */
     void *room;
-    double *rhs, *fast; /* [repetitions] s a call: median over the stretches */
-    double corrections; /* of one subset's solution, 0: not counted */
-    double *rate;       /* [stretches][states] at the first end, of generated code in double precision; or NULL */
-    int status;         /* that ended it */
+    double *rhs, *fast;     /* [repetitions] s a call: median over the stretches */
+    double *step, *outside; /* [repetitions] s of a step of AB3; share of it that is no right-hand side; with `rate` */
+    bool unstable;          /* such a step fails */
+    double corrections;     /* of one subset's solution, 0: not counted */
+    double *rate;           /* [stretches][states] at the first end, of generated code in double precision; or NULL */
+    int status;             /* that ended it */
 } Subject;
 
 /* A step of a run: both its ends, states in the order of FORMAT.md section 10. */
@@ -284,6 +286,8 @@ static void time_subject(const Course *course, Subject *subject, int repetition)
     Pool *pool = pool_new();
     double *rhs = pool_alloc(pool, sizeof *rhs * (size_t)course->stretches);
     double *fast = pool_alloc(pool, sizeof *fast * (size_t)course->stretches);
+    double *step = pool_alloc(pool, sizeof *step * (size_t)course->stretches);
+    double *outside = pool_alloc(pool, sizeof *outside * (size_t)course->stretches), part[2];
     int64_t before[2], after[2], solved = 0, corrected = 0;
     for (int i = 0; i < course->stretches && subject->status == GIC_OK; ++i) {
         CallsMoment end[2];
@@ -295,8 +299,14 @@ static void time_subject(const Course *course, Subject *subject, int repetition)
         if (subject->status == GIC_OK)
             subject->status = calls->rhs(code, subject->self, end, subject->room, CALLS, &seconds);
         calls->counts(subject->self, after);
-        if (subject->rate && subject->status == GIC_OK)
+        if (subject->rate && subject->status == GIC_OK) {
             keep_rate(subject, i);
+            calls->put(code, subject->self, end);
+            subject->unstable |=
+                step_parts(pool, code, subject->self, end[0].state, end[1].time - end[0].time, part) != GIC_OK;
+            step[i] = part[0];
+            outside[i] = 1 - part[1] / part[0];
+        }
         solved += after[0] - before[0];
         corrected += after[1] - before[1];
         rhs[i] = seconds / CALLS;
@@ -306,6 +316,10 @@ static void time_subject(const Course *course, Subject *subject, int repetition)
     }
     subject->rhs[repetition] = spread_of(pool, rhs, course->stretches).median;
     subject->fast[repetition] = spread_of(pool, fast, course->stretches).median;
+    if (subject->rate) {
+        subject->step[repetition] = spread_of(pool, step, course->stretches).median;
+        subject->outside[repetition] = spread_of(pool, outside, course->stretches).median;
+    }
     subject->corrections = solved ? (double)corrected / (double)solved : 0;
     pool_free(pool);
 }
@@ -511,6 +525,29 @@ static void precision_chart(const Course *course)
         course->subject->name);
 }
 
+/* What the integrator takes, of generated code in double precision. */
+static void step_table(const Course *course)
+{
+    const Bench *bench = course->bench;
+    Pool *pool = bench->pool;
+    Sheet *table = report_table(bench->report, "rhs_step", "A step of AB3 outside the right-hand side",
+                                "variant|step [ns]|low|high|outside [%]|low|high");
+    for (int s = 0; s < course->subjects; ++s) {
+        const Subject *subject = &course->subject[s];
+        if (!subject->rate)
+            continue;
+        table_cell(pool, table, "%s", subject->name);
+        if (subject->status == GIC_OK && !subject->unstable) {
+            spread_cells(pool, table, spread_of(pool, subject->step, bench->repetitions), 1e9);
+            spread_cells(pool, table, spread_of(pool, subject->outside, bench->repetitions), 100);
+        }
+        while (table->cells % table->columns)
+            table_cell(pool, table, subject->unstable ? "unstable" : "failed");
+    }
+    table->note = "Steps in a row, and right-hand sides at the states from which they begin, by turns; inputs stay. "
+                  "The step function is this program's, compiled with its own flags.";
+}
+
 /* Additions and multiplications of a right-hand side in lanes: of vectors; of single numbers. */
 static void lane_work(const Course *course, const Subject *subject, double *vector, double *scalar)
 {
@@ -598,9 +635,11 @@ void bench_rhs(const Bench *bench)
     find_stretches(&course);
     for (int s = 0; s < course.subjects; ++s) {
         Subject *subject = &course.subject[s];
-        if (!subject->variant->single && !strcmp(subject->variant->engine, "cc"))
-            subject->rate =
-                pool_alloc(bench->pool, (size_t)(course.stretches * states_of(subject) + 1) * sizeof(double));
+        if (subject->variant->single || strcmp(subject->variant->engine, "cc"))
+            continue;
+        subject->rate = pool_alloc(bench->pool, (size_t)(course.stretches * states_of(subject) + 1) * sizeof(double));
+        subject->step = pool_alloc(bench->pool, (size_t)bench->repetitions * sizeof(double));
+        subject->outside = pool_alloc(bench->pool, (size_t)bench->repetitions * sizeof(double));
     }
     begin(&course);
     for (int r = 0; r < bench->repetitions; ++r) {
@@ -628,6 +667,7 @@ void bench_rhs(const Bench *bench)
     operations_table(&course, &kinds);
     time_table(&course, "rhs", "Time of a right-hand side", &kinds, false);
     precision_chart(&course);
+    step_table(&course);
     if (tires)
         time_table(&course, "rhs_fast", "Time of a fast step's rates", &kinds, true);
     if (!tires)

@@ -371,6 +371,8 @@ static int settle(void *instance, double *state)
     const Interpreted *context = self->context;
     const Gcp *gcp = context->engine;
     const Memory memory = memory_of(context, self);
+    if (!gic_bounded(state, context->code.slow_count + context->code.fast_count))
+        return GIC_ERROR_INPUT;
     take_share(context, self);
     const bool shifted = *memory.shifted > 0;
     for (int j = 0; shifted && j < 2 * gcp->columns; ++j)

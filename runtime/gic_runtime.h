@@ -167,6 +167,8 @@ typedef struct gic_model {
     int (*setup)(void *self);
     int (*setup_with)(void *self, const gic_real *parameter);
     int (*rhs)(void *self, gic_real time, const gic_real *state, gic_real *rate);
+    /* makes numbers that an integrator found a state; GIC_ERROR_INPUT, and nothing changed, where not all are bounded
+     */
     int (*settle)(void *self, gic_real *state);
     int (*outputs)(void *self);
     int (*poses)(void *self, gic_real *pose);

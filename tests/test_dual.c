@@ -103,6 +103,8 @@ static int probe_rhs(void *self, gic_real time, const gic_real *y, gic_real *rat
 
 static int probe_settle(void *self, gic_real *y)
 {
+    if (!gic_bounded(y, N))
+        return GIC_ERROR_INPUT;
     y[2] = y[0] * y[0];
     return called(self, CALL_SETTLE, y);
 }

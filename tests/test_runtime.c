@@ -60,8 +60,7 @@ static int probe_rhs(void *self, gic_real time, const gic_real *state, gic_real 
 
 static int probe_settle(void *self, gic_real *state)
 {
-    (void)state;
-    return ((Probe *)self)->settle_status;
+    return gic_bounded(state, N) ? ((Probe *)self)->settle_status : GIC_ERROR_INPUT;
 }
 
 static void cosine_input(void *user, int32_t lane, gic_real time, gic_real *input)

@@ -250,8 +250,8 @@ static int pair_rhs(void *self, double time, const double *state, double *rate)
 
 static int pair_settle(void *self, double *state)
 {
-    (void)self, (void)state;
-    return GIC_OK;
+    (void)self;
+    return gic_bounded(state, 2) ? GIC_OK : GIC_ERROR_INPUT;
 }
 
 static int pair_link(void *self, double time, const double *slow, double *link)
