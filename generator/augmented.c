@@ -385,6 +385,9 @@ Block *augmented_block(Whole *whole)
     /* the second pass takes back what J M^-1 J^T, with the square of J's condition, has lost of the digits */
     const int passes = 2;
     Dag *dag = whole->dag;
+    if (model_massless(whole->model))
+        diag_fail((Place){whole->model->source, 0, 0}, "use the reduced form",
+                  "the augmented form of the equations of motion needs the mass of '%s'", model_massless(whole->model));
     Block *block = pool_alloc(dag->pool, sizeof *block);
     block->dag = dag;
     System s = open_system(whole);

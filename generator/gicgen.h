@@ -111,6 +111,18 @@ const Model *model_hold(Pool *pool, const Model *model, const double position[3]
 /* The model with these free coordinates driven, by inputs behind those that it has. */
 const Model *model_drive(Pool *pool, const Model *model, const int *coordinate, int count);
 
+/* ---- massless.c: light bodies without mass, an approximation; without a tuning ---------------------------------- */
+
+/* The model in which bodies of less than `below` kg have neither mass nor inertia. *names: which, in a list for people;
+ * NULL: none. */
+const Model *model_lighten(Pool *pool, const Model *model, double below, const char **names);
+/* The name of a body without mass, NULL: all have one. Ground does not count. */
+const char *model_massless(const Model *model);
+/* The largest part of its kinetic energy that a motion of the free coordinates loses by that, base and driven
+ * coordinates held, at the design and some configurations in the coordinates' ranges. 1: a motion is left without
+ * inertia, so that the equations of motion have no solution. */
+double model_lost(Pool *pool, const Model *model, double below);
+
 /* ---- whole.c: the whole mechanism, once all subsets are recovered ---------------------------------------------- */
 
 /* Unknowns of the equations of motion that go with each other: unknown i is sign[i] times number of[i] of fewer ones,

@@ -57,7 +57,9 @@ bool block_uses(const Block *block, Op op);
 /* What is known about a whole run. Nothing of it is taken on trust: generated code checks at run time what inputs,
  * parameters, ports, road and state could break, and ends a call with GIC_ERROR_ASSUMPTION. */
 typedef struct Facts {
-    const char *scene;       /* its name */
+    const char *scene;     /* its name */
+    double massless, lost; /* bodies below so many kg have lost their mass, see model_lost(); 0: none has */
+    const char *massless_names;
     const bool *wanted;      /* [outputs] NULL: all */
     const bool *fixed;       /* [inputs] those that keep the value input[] */
     const double *input;     /* [inputs] */

@@ -28,6 +28,20 @@ static void learn(Accounting *a, const char *what, const char *why)
     add_row(a, formulate_narrow(a->pool, a->model, a->sequence, a->solve, a->recovery, &a->known), what, why);
 }
 
+/* Of the model as it was drawn, which the rig comes after. */
+static void learn_massless(Accounting *a, const Model *drawn)
+{
+    const char *names;
+    if (!a->all->massless)
+        return;
+    const Model *light = model_lighten(a->pool, drawn, a->all->massless, &names);
+    const Sequence *first = sequence_find(a->pool, light);
+    add_row(a, formulate(a->pool, model_assemble(a->pool, light, first), first, a->solve, a->recovery),
+            pool_print(a->pool, "bodies below %.6g kg massless, an approximation", a->all->massless),
+            pool_print(a->pool, "the scene asks for it: %s; a motion of coordinates loses up to %.3g of its inertia",
+                       a->all->massless_names, a->all->lost));
+}
+
 static void learn_outputs(Accounting *a)
 {
     int wanted = 0, reactions = 0;
@@ -114,6 +128,7 @@ const Formulation *formulate_explained(Pool *pool, const Model *drawn, const Mod
     a.known.asymmetry = "it is not looked at yet";
     const Sequence *first = sequence_find(pool, drawn);
     add_row(&a, formulate(pool, model_assemble(pool, drawn, first), first, solve, recovery), "code for any scene", "");
+    learn_massless(&a, drawn);
     if (drawn->free_base != model->free_base || drawn->inputs != model->inputs)
         learn(&a, "equations of a held base and driven coordinates", "the scene is one of a rig");
     learn_outputs(&a);

@@ -68,12 +68,14 @@ static const Model *with_heavy_base(Pool *pool, const Model *model)
 static const Scene *begin(const Bench *bench, Pool *pool, const char *path, const Model **model, int kind)
 {
     const Scene *scene = scene_read(pool, path, *model, NULL, 0);
-    if (kind == GENERAL && scene->held) {
+    if (kind == GENERAL) {
         Scene *loose = pool_alloc(pool, sizeof *loose);
         *loose = *scene;
         loose->held = false;
+        loose->massless = 0;
+        if (scene->held)
+            *model = with_heavy_base(pool, *model);
         scene = loose;
-        *model = with_heavy_base(pool, *model);
     }
     *model = scene_rig(pool, *model, &scene);
     return equilibrium_start(pool, *model, scene, bench->options.solve);

@@ -96,8 +96,12 @@ typedef struct Scene {
      * columns of the results; curves over time of the picture; its panels of one over another, x and y. */
     const gic_signal *signal;
     int *column, *curve, (*panel)[2];
-    bool plotted; /* does the scene say what is drawn? */
-    bool held;    /* the base, at `position` and `euler` */
+    bool plotted;    /* does the scene say what is drawn? */
+    bool held;       /* the base, at `position` and `euler` */
+    double massless; /* kg: bodies below lose their mass; 0: none does */
+    Place massless_at;
+    double lost; /* by scene_rig(): see model_lost() */
+    const char *massless_names;
     int driven, *drive; /* free coordinates of the model that are driven, by the last profiles */
 } Scene;
 

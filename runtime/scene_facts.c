@@ -217,6 +217,9 @@ const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, con
     Facts *facts = pool_alloc(pool, sizeof *facts);
     const char *slash = strrchr(path, '/');
     facts->scene = slash ? slash + 1 : path;
+    facts->massless = scene->massless;
+    facts->lost = scene->lost;
+    facts->massless_names = scene->massless_names;
     facts->wanted = wanted_outputs(pool, model, scene, drawn);
     facts->parameter = scene->parameter;
     facts->idle = true; /* scenes have nothing that could use one */

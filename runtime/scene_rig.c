@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Scenes as on a test rig, with a base that is held and coordinates that are driven: models/SCENE.md section 10. */
+ * What a scene makes of the model: on a test rig its base is held and coordinates are driven (models/SCENE.md section
+ * 10), light bodies lose their mass (section 9). */
 #include "gicrun.h"
 
 #include <string.h>
@@ -13,8 +14,26 @@ static void check_rig(const Scene *scene, const Model *model, Place at, const ch
         diag_fail(at, "remove the driver: nobody can drive on a rig", "%s, and there is a driver", what);
 }
 
+static void read_massless(const Item *item, const Model *model, Scene *scene)
+{
+    if (item->kind != ITEM_MAP)
+        diag_fail(item->at, "write {below: 6}, a mass in kg", "massless must be a map");
+    CHECK_KEYS(item, "massless", "below");
+    scene->massless = scene_positive(scene_need(item, "below", "massless"), "below");
+    scene->massless_at = item->at;
+    if (model->tuning)
+        diag_fail(item->at, "give geometric parameters numbers in the model",
+                  "bodies lose their mass, and '%s' has geometric parameters", model->name);
+    const Body *base = &model->body[BODY_BASE];
+    if (model->free_base && base->mass < scene->massless)
+        diag_fail(item->at, "choose a smaller mass", "the base '%s' of %.6g kg would be without mass", base->name,
+                  base->mass);
+}
+
 void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene)
 {
+    if (doc_find(root, "massless"))
+        read_massless(doc_find(root, "massless"), model, scene);
     const Item *base = doc_find(root, "base"), *driven = doc_find(root, "driven");
     if (base) {
         const char *word = doc_word(base, "base");
@@ -48,15 +67,31 @@ void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene)
     }
 }
 
+static const Model *lighten(Pool *pool, const Model *model, Scene *scene)
+{
+    const Model *light = model_lighten(pool, model, scene->massless, &scene->massless_names);
+    if (!scene->massless_names)
+        diag_fail(scene->massless_at, "remove it, or choose a larger mass", "no body of '%s' is lighter than %.6g kg",
+                  model->name, scene->massless);
+    scene->lost = model_lost(pool, model, scene->massless);
+    if (scene->lost >= 1)
+        diag_fail(scene->massless_at,
+                  "choose a smaller mass, so that each free coordinate still moves one that has some",
+                  "without the mass of %s a coordinate has no inertia", scene->massless_names);
+    return light;
+}
+
 const Model *scene_rig(Pool *pool, const Model *model, const Scene **scene)
 {
-    if (!*scene || (!(*scene)->held && !(*scene)->driven))
+    if (!*scene || (!(*scene)->held && !(*scene)->driven && !(*scene)->massless))
         return model;
     Scene *own = pool_alloc(pool, sizeof *own);
     *own = **scene;
     if (own->held)
         model = model_hold(pool, model, own->position, own->euler);
     model = model_drive(pool, model, own->drive, own->driven);
+    if (own->massless)
+        model = lighten(pool, model, own);
     own->signal = scene_signals(pool, model); /* the new inputs stand behind the others */
     *scene = own;
     return model;
@@ -66,4 +101,6 @@ void scene_no_rig(const Scene *scene)
 {
     if (scene->held || scene->driven)
         diag_fail((Place){scene->source, 0, 0}, "run it with gicrun", "the scene is one of a rig (`base`, `driven`)");
+    if (scene->massless)
+        diag_fail(scene->massless_at, "run it with gicrun", "the scene leaves out the mass of light bodies");
 }

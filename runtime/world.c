@@ -158,6 +158,9 @@ static void make_ties(Pool *pool, World *world)
 
 World *world_new(Pool *pool, const Model *model, const Sequence *sequence)
 {
+    if (model_massless(model))
+        diag_fail((Place){model->source, 0, 0}, "use --engine tape, tcc or cc",
+                  "an engine with the coordinates of bodies needs the mass of '%s'", model_massless(model));
     World *world = pool_alloc(pool, sizeof *world);
     const size_t bodies = (size_t)model->bodies, coordinates = (size_t)model->coordinates + 1, number = sizeof(double);
     *world = (World){.model = model,
