@@ -54,7 +54,7 @@ XXX
 "$gicbench" --quick -o "$work/page" "$work/stiff.veh" "$work/cart.scene" "$work/cart.scene" >"$work/out" 2>"$work/err"
 check 'a short benchmark ends well' [ $? -eq 0 ]
 for file in index.html bench.txt table1.csv table2.csv table3.csv work_precision.csv spin.csv worst.csv \
-    operations.csv rhs_operations.csv rhs.csv limit.csv start.csv start_steps.csv break_even.csv fig6.svg fig8.svg work_precision.svg break_even.svg; do
+    operations.csv rhs_operations.csv rhs.csv rhs_step.csv limit.csv start.csv start_steps.csv break_even.csv fig6.svg fig8.svg work_precision.svg break_even.svg; do
     check "$file is there" [ -s "$work/page/$file" ]
 done
 check 'no temporary file is left' [ -z "$(find "$work/page" -name '*.tmp')" ]
