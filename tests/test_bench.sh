@@ -104,6 +104,9 @@ check 'the multiply-adds of the processor are plausible' awk -F, '
     NR > 1 {lanes[NR] = $1; rate[NR] = $2; if (!($3 <= $2 && $2 <= $4)) bad = 1}
     END {exit bad || NR != 3 || lanes[2] != 1 || !(rate[2] > 0.1 && rate[2] < 20) ||
         !(rate[3] > 0.7 * rate[2] && rate[3] < 1.3 * lanes[3] * rate[2])}' "$work/page/limit.csv"
+# the scene's step of 10 ms is ten times what AB3 can take
+check 'steps that AB3 can not make have no time' awk -F, 'NR > 1 {++n; if ($2 != "unstable" || $5 != "unstable") bad = 1}
+    END {exit bad || n < 4}' "$work/page/rhs_step.csv"
 # tens of operations take longer than their share of the limit, or it is none: half as long would be noise no more
 check 'limits follow from operations and rates, and no code is beyond them' awk -F, '
     FILENAME ~ /operations/ {if ($1 == "recovery") least = $3; if ($1 == "all (reduced)") {work = $2 + $3}; next}
