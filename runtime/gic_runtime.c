@@ -25,12 +25,14 @@ const char *gic_status_text(int status)
 
 #ifdef GIC_FLOAT
 typedef uint32_t bits_type;
-static const bits_type sign = UINT32_C(0x80000000), exponent = UINT32_C(0x7f800000);
-static const bits_type exponent_of_bound = UINT32_C(0x49800000); /* 2^20 */
+#define SIGN UINT32_C(0x80000000)
+#define EXPONENT UINT32_C(0x7f800000)
+#define EXPONENT_OF_BOUND UINT32_C(0x49800000) /* 2^20 */
 #else
 typedef uint64_t bits_type;
-static const bits_type sign = UINT64_C(0x8000000000000000), exponent = UINT64_C(0x7ff0000000000000);
-static const bits_type exponent_of_bound = UINT64_C(0x41d0000000000000); /* 2^30 */
+#define SIGN UINT64_C(0x8000000000000000)
+#define EXPONENT UINT64_C(0x7ff0000000000000)
+#define EXPONENT_OF_BOUND UINT64_C(0x41d0000000000000) /* 2^30 */
 #endif
 
 /* Are all numbers below a power of two? By their bits: a comparison with itself or with infinity would be optimized
@@ -44,19 +46,19 @@ static int below(const gic_real *x, int32_t count, bits_type bound)
         unsigned char *to = (unsigned char *)&bits;
         for (size_t k = 0; k < sizeof bits; ++k)
             to[k] = from[k];
-        above |= (bits & exponent) + (sign - bound);
+        above |= (bits & EXPONENT) + (SIGN - bound);
     }
-    return !(above & sign);
+    return !(above & SIGN);
 }
 
 int gic_finite(const gic_real *x, int32_t count)
 {
-    return below(x, count, exponent);
+    return below(x, count, EXPONENT);
 }
 
 int gic_bounded(const gic_real *x, int32_t count)
 {
-    return below(x, count, exponent_of_bound);
+    return below(x, count, EXPONENT_OF_BOUND);
 }
 
 /* ---- integrators ---------------------------------------------------------------------------------------- */
