@@ -152,9 +152,9 @@ enum { NAMES_SHOWN = 12 };
 
 /* A part of the graph that is to be reported. */
 typedef struct Part {
-    bool *body, *edge;                /* [bodies], [edges] members */
+    bool *body, *edge;                       /* [bodies], [edges] members */
     int bodies, joints, coordinates, weight; /* how many, and equations in total */
-    int first;                        /* body, in the order of the file */
+    int first;                               /* body, in the order of the file */
 } Part;
 
 /* The bodies marked in `set` that hang together with body `first`, and the edges at them; takes them out of `set`. */
@@ -418,8 +418,8 @@ void graph_match(Graph *graph)
     int bodies = graph->model->bodies;
     Pool *pool = graph->pool;
     check_connected(graph);
-    Flow flow = {graph, ints(pool, bodies), ints(pool, bodies), ints(pool, bodies), ints(pool, bodies),
-                 ints(pool, bodies)};
+    Flow flow = {
+        graph, ints(pool, bodies), ints(pool, bodies), ints(pool, bodies), ints(pool, bodies), ints(pool, bodies)};
     for (int i = 1; i < bodies; ++i)
         flow.excess[i] = -BODY_UNKNOWNS;
     for (int i = 0; i < graph->edges; ++i)

@@ -107,7 +107,8 @@ void engine_close(const Engine *engine)
 
 const char *instance_status(Pool *pool, const gic_model *model, const gic_head *self, int status)
 {
-    if ((status == GIC_ERROR_GEOMETRY || status == GIC_ERROR_ASSUMPTION) && self->condition >= 0 && self->condition < model->condition_count)
+    if ((status == GIC_ERROR_GEOMETRY || status == GIC_ERROR_ASSUMPTION) && self->condition >= 0 &&
+        self->condition < model->condition_count)
         return pool_print(pool, "%s: %s", gic_status_text(status), model->condition_text[self->condition]);
     if (status == GIC_ERROR_UNSTABLE && self->grown >= 0 && self->grown < model->slow_count + model->fast_count) {
         const gic_signal *signal = &model->state[self->grown];

@@ -6,57 +6,58 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char help[] = "usage: gicrun MODEL.veh SCENE [-o results.csv] [--plot picture.svg|picture.png]\n"
-                           "              [--animate page.html]\n"
-                           "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
-                           "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
-                           "\n"
-                           "Generates C for a vehicle model, compiles it and runs a scene, or evaluates rows of\n"
-                           "states: accelerations, poses of all bodies, outputs; or finds where it rests, and how it\n"
-                           "moves about there.\n"
-                           "\n"
-                           "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
-                           "                     picture or a page is asked for)\n"
-                           "      --plot FILE    draw what the scene's `plot` names, with gnuplot\n"
-                           "      --animate FILE write a page for a browser, complete in itself, in which the model\n"
-                           "                     moves along its road\n"
-                           "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
-                           "                     a scene gives the road only\n"
-                           "      --equilibrium  find the static equilibrium near the scene's initial state, with its\n"
-                           "                     inputs and road at time 0, or near the model's: coordinates, forces,\n"
-                           "                     wheel loads; -o: the state as a row that --eval reads\n"
-                           "      --modes        eigenvalues, frequencies and damping of small motions about it, with\n"
-                           "                     the scene's velocities; -o: the same as CSV\n"
-                           "      --integrator NAME\n"
-                           "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
-                           "                     of the scene's\n"
-                           "      --tolerance NUMBER\n"
-                           "                     of variable steps instead of the scene's\n"
-                           "      --engine NAME  how the model is computed: auto (default), generated code that is\n"
-                           "                     compiled in this process, and in a run of more than a moment by\n"
-                           "                     the C compiler too, whose code takes over; tcc, the first of them;\n"
-                           "                     cc, the second; tape, formulas for any scene interpreted; with\n"
-                           "                     --general all four give the same digits, and only cc needs a\n"
-                           "                     compiler. gic, gcp1, gcp2: the paper's methods interpreted\n"
-                           "      --solve FORM   of the equations of motion: reduced (default) or augmented\n"
-                           "      --recovery WAY of dependent coordinates: newton; closed, in closed form wherever there\n"
-                           "                     is one; auto (default), whichever takes fewer operations\n"
-                           "      --general      generated code as for any scene; without it a run has code for its scene\n"
-                           "                     alone, which leaves out what that doesn't need\n"
-                           "      --lanes W      with --engine cc, by gcc or clang: wheels, and other parts that are\n"
-                           "                     alike, side by side in vectors of up to W numbers: 2, 4, 8 or 16\n"
-                           "      --cc COMMAND   C compiler of cc and auto, perhaps with options; default: $CC or cc\n"
-                           "      --cflags FLAGS more options for it, behind ours, all in one word\n"
-                           "  -q, --quiet        neither progress nor summary\n"
-                           "  -h, --help         this text\n"
-                           "      --version      version\n"
-                           "\n"
-                           "What the compiler made is kept for the next run, in $GICGEN_CACHE (default: gicgen in\n"
-                           "$XDG_CACHE_HOME or ~/.cache), at most $GICGEN_CACHE_SIZE megabytes (default: 64); an\n"
-                           "empty GICGEN_CACHE keeps nothing. The compiler works in $TMPDIR (default: /tmp).\n"
-                           "\n"
-                           "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
-                           "Exit status: 0 good, 1 error in a file or during the run, 2 wrong usage.\n";
+static const char help[] =
+    "usage: gicrun MODEL.veh SCENE [-o results.csv] [--plot picture.svg|picture.png]\n"
+    "              [--animate page.html]\n"
+    "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
+    "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
+    "\n"
+    "Generates C for a vehicle model, compiles it and runs a scene, or evaluates rows of\n"
+    "states: accelerations, poses of all bodies, outputs; or finds where it rests, and how it\n"
+    "moves about there.\n"
+    "\n"
+    "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
+    "                     picture or a page is asked for)\n"
+    "      --plot FILE    draw what the scene's `plot` names, with gnuplot\n"
+    "      --animate FILE write a page for a browser, complete in itself, in which the model\n"
+    "                     moves along its road\n"
+    "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
+    "                     a scene gives the road only\n"
+    "      --equilibrium  find the static equilibrium near the scene's initial state, with its\n"
+    "                     inputs and road at time 0, or near the model's: coordinates, forces,\n"
+    "                     wheel loads; -o: the state as a row that --eval reads\n"
+    "      --modes        eigenvalues, frequencies and damping of small motions about it, with\n"
+    "                     the scene's velocities; -o: the same as CSV\n"
+    "      --integrator NAME\n"
+    "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
+    "                     of the scene's\n"
+    "      --tolerance NUMBER\n"
+    "                     of variable steps instead of the scene's\n"
+    "      --engine NAME  how the model is computed: auto (default), generated code that is\n"
+    "                     compiled in this process, and in a run of more than a moment by\n"
+    "                     the C compiler too, whose code takes over; tcc, the first of them;\n"
+    "                     cc, the second; tape, formulas for any scene interpreted; with\n"
+    "                     --general all four give the same digits, and only cc needs a\n"
+    "                     compiler. gic, gcp1, gcp2: the paper's methods interpreted\n"
+    "      --solve FORM   of the equations of motion: reduced (default) or augmented\n"
+    "      --recovery WAY of dependent coordinates: newton; closed, in closed form wherever there\n"
+    "                     is one; auto (default), whichever takes fewer operations\n"
+    "      --general      generated code as for any scene; without it a run has code for its scene\n"
+    "                     alone, which leaves out what that doesn't need\n"
+    "      --lanes W      with --engine cc, by gcc or clang: wheels, and other parts that are\n"
+    "                     alike, side by side in vectors of up to W numbers: 2, 4, 8 or 16\n"
+    "      --cc COMMAND   C compiler of cc and auto, perhaps with options; default: $CC or cc\n"
+    "      --cflags FLAGS more options for it, behind ours, all in one word\n"
+    "  -q, --quiet        neither progress nor summary\n"
+    "  -h, --help         this text\n"
+    "      --version      version\n"
+    "\n"
+    "What the compiler made is kept for the next run, in $GICGEN_CACHE (default: gicgen in\n"
+    "$XDG_CACHE_HOME or ~/.cache), at most $GICGEN_CACHE_SIZE megabytes (default: 64); an\n"
+    "empty GICGEN_CACHE keeps nothing. The compiler works in $TMPDIR (default: /tmp).\n"
+    "\n"
+    "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
+    "Exit status: 0 good, 1 error in a file or during the run, 2 wrong usage.\n";
 
 static double read_tolerance(const char *word)
 {
@@ -207,18 +208,18 @@ int main(int count, char **word)
     if (runs)
         scene = equilibrium_start(pool, model, scene, request.solve);
     const bool drawn = request.picture;
-    const Engine *engine = engine_open(
-        pool, request.engine, model,
-        &(EngineOptions){.solve = request.solve,
-                         .recovery = request.recovery,
-                         .lanes = request.lanes,
-                         .compiler = request.compiler,
-                         .flags = request.flags,
-                         /* a page shows whatever outputs tell; lanes are for code for all scenes */
-                         .facts = runs && !request.general && !request.page && !request.lanes
-                                      ? scene_facts(pool, model, scene, request.scene, drawn)
-                                      : NULL,
-                         .quiet = request.quiet});
+    const Engine *engine =
+        engine_open(pool, request.engine, model,
+                    &(EngineOptions){.solve = request.solve,
+                                     .recovery = request.recovery,
+                                     .lanes = request.lanes,
+                                     .compiler = request.compiler,
+                                     .flags = request.flags,
+                                     /* a page shows whatever outputs tell; lanes are for code for all scenes */
+                                     .facts = runs && !request.general && !request.page && !request.lanes
+                                                  ? scene_facts(pool, model, scene, request.scene, drawn)
+                                                  : NULL,
+                                     .quiet = request.quiet});
     if (request.states)
         evaluate(pool, engine, scene, &request);
     else if (request.rests || request.modes)

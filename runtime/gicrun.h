@@ -22,12 +22,12 @@ typedef struct Request {
     const char *engine;        /* one of engine_name */
     Solve solve;
     Recovery recovery;
-    int lanes; /* as in EngineOptions */
+    int lanes;              /* as in EngineOptions */
     const char *compiler;   /* command, perhaps with options */
     const char *flags;      /* more options of the compiler */
     const char *integrator; /* instead of the scene's, or NULL */
     double tolerance;       /* instead of the scene's, or 0 */
-    bool general; /* code for any scene */
+    bool general;           /* code for any scene */
     bool quiet;
 } Request;
 

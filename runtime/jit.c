@@ -54,9 +54,8 @@ static const char *jit_text(Pool *pool, const Model *model, const EngineOptions 
         if (!strcmp(file->name, "gic_runtime.h"))
             sources.runtime = file->bytes;
     const Sequence *sequence = sequence_find(pool, model);
-    const Formulation *formulation =
-        formulate_narrow(pool, model_assemble(pool, model, sequence), sequence, options->solve, options->recovery,
-                         options->facts);
+    const Formulation *formulation = formulate_narrow(pool, model_assemble(pool, model, sequence), sequence,
+                                                      options->solve, options->recovery, options->facts);
     generate(pool, formulation, &style_direct, NULL, NULL, &c, &h);
     template_expand(pool, &text, NULL, "jit.c.in", model->name, NULL, insert, &sources);
     return text.s;

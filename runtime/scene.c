@@ -536,8 +536,8 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     Scene *scene = pool_alloc(pool, sizeof *scene);
     Reader reader = {pool, model, scene};
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
-               "steady", "sleep", "massless", "base", "driven", "output_step", "initial", "road", "inputs", "driver", "parameters",
-               "outputs", "plot");
+               "steady", "sleep", "massless", "base", "driven", "output_step", "initial", "road", "inputs", "driver",
+               "parameters", "outputs", "plot");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
     if (doc_number(version, "gicscene") != 1)

@@ -37,7 +37,8 @@ static void path_through(Pool *pool, Path *path, const double (*point)[2], int c
             diag_fail(at, "keep one of the two", "points %d and %d of the path are the same", i, i + 1);
     }
     path_room(pool, path, s[count - 1], at); /* refuses what is infinite */
-    const double *bend[2] = {spline_bend(pool, s, x, count, path->closed), spline_bend(pool, s, y, count, path->closed)};
+    const double *bend[2] = {spline_bend(pool, s, x, count, path->closed),
+                             spline_bend(pool, s, y, count, path->closed)};
     int place[2] = {0};
     for (int i = 0; i < path->count; ++i) {
         const double along = fmin(i * path->step, s[count - 1]);

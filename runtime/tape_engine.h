@@ -45,9 +45,10 @@ typedef struct TapeEngine {
     TapeWheel *wheel;          /* [classes of wheels] */
     gic_table *table;
     double *piece, *initial; /* [coordinates], [states] */
-    size_t x_offset, xd_offset, start_offset[GIC_STARTS], motion_offset, inertia_offset, multiplier_offset, derived_offset;
-    size_t grip_offset,
-        recovered_offset; /* the latter: x, xd, angular velocity and ahead of the last recovery, 1 + the start that it left */
+    size_t x_offset, xd_offset, start_offset[GIC_STARTS], motion_offset, inertia_offset, multiplier_offset,
+        derived_offset;
+    size_t grip_offset, recovered_offset; /* the latter: x, xd, angular velocity and ahead of the last recovery, 1 + the
+                                             start that it left */
     size_t gear_offset, watch_offset;
     double *link_row, *torques; /* a link; what drives and brakes [wheels with tires][2] */
     double *choice;             /* powertrain.h */
@@ -77,7 +78,9 @@ static inline double *tape_start(Instance *self)
 /* Arrays of a class's blocks, with m0, m1, ... and as many w0, w1, ... behind, and of the blocks about the whole
  * mechanism; names as in Formula and Whole of gicgen.h. */
 #define CLASS_ARRAYS(X) \
-    X(q) X(x) X(rate) X(change) X(turn) X(ahead) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst) X(w) X(d)
+    X(q) \
+    X(x) X(rate) X(change) X(turn) X(ahead) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst) X(w) \
+        X(d)
 #define WHOLE_ARRAYS(X) \
     X(time) \
     X(y) \
@@ -85,7 +88,8 @@ static inline double *tape_start(Instance *self)
     X(x) \
     X(xd) \
     X(u) \
-    X(m) X(n) X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) X(torque) X(hub) \
+    X(m) \
+    X(n) X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) X(torque) X(hub) \
         X(force) X(grip) X(gear) X(watch) X(choice)
 #define CLASS_ENUM(name) CLASS_##name,
 #define WHOLE_ENUM(name) WHOLE_##name,

@@ -46,8 +46,8 @@ static inline void vehicle_steps(Vehicle *vehicle, double step, int32_t method, 
     for (int i = 0; i < steps; ++i) {
         const int status = gic_step(vehicle->model, vehicle->head, step, method);
         if (status != GIC_OK)
-            fail_msg("%s at %g s: %s (subset %d)", vehicle->model->name, gic_time(vehicle->head), gic_status_text(status),
-                     (int)vehicle->head->subset);
+            fail_msg("%s at %g s: %s (subset %d)", vehicle->model->name, gic_time(vehicle->head),
+                     gic_status_text(status), (int)vehicle->head->subset);
     }
 }
 

@@ -612,13 +612,19 @@ static void test_numeric_singular(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_dense),         cmocka_unit_test(test_sparse),
-        cmocka_unit_test(test_permuted_triangular), cmocka_unit_test(test_badly_scaled),
-        cmocka_unit_test(test_pivot_for_all_samples), cmocka_unit_test(test_rank),
-        cmocka_unit_test(test_nearly_singular), cmocka_unit_test(test_unit_rows),
-        cmocka_unit_test(test_symmetric),     cmocka_unit_test(test_order),
+        cmocka_unit_test(test_dense),
+        cmocka_unit_test(test_sparse),
+        cmocka_unit_test(test_permuted_triangular),
+        cmocka_unit_test(test_badly_scaled),
+        cmocka_unit_test(test_pivot_for_all_samples),
+        cmocka_unit_test(test_rank),
+        cmocka_unit_test(test_nearly_singular),
+        cmocka_unit_test(test_unit_rows),
+        cmocka_unit_test(test_symmetric),
+        cmocka_unit_test(test_order),
         cmocka_unit_test(test_arrow),
-        cmocka_unit_test(test_determinant),   cmocka_unit_test(test_numeric_singular),
+        cmocka_unit_test(test_determinant),
+        cmocka_unit_test(test_numeric_singular),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,14 +16,12 @@ typedef double gic_real;
 
 /* every gap that alignment can make, and every declarator that structures of emitted code have */
 CODE_AND_TEXT(
-    enum { ROOM = 3, STATES = 5 };
-    typedef struct odd {
+    enum {ROOM = 3, STATES = 5}; typedef struct odd {
         char c;
         gic_real x;
         int32_t i;
     } odd;
-    typedef void callback(void *user, int32_t lane);
-    typedef enum kind { FIRST = 1, SECOND = 2 } kind;
+    typedef void callback(void *user, int32_t lane); typedef enum kind{FIRST = 1, SECOND = 2} kind;
     typedef struct instance {
         char first;
         odd one, two[2];
@@ -37,8 +35,10 @@ CODE_AND_TEXT(
         kind what;
         char last;
     } instance;
-    static const gic_real numbers_a[2][ROOM] = {{1, 2, 3}, {4, 5, 6}};
-    static const struct { int place; gic_real q[7]; } numbers_b[] = {{1, {0}}, {2, {0}}, {3, {0}}};
+    static const gic_real numbers_a[2][ROOM] = {{1, 2, 3}, {4, 5, 6}}; static const struct {
+        int place;
+        gic_real q[7];
+    } numbers_b[] = {{1, {0}}, {2, {0}}, {3, {0}}};
     static const char *const words[STATES] = {"a", "b;", "}"};)
 
 static void sizes_are_the_compilers(void **state)

@@ -13,23 +13,23 @@
 #define GROUND_BODY BODY("ground", "0", "[0,0,0]", "[0,0,0,0,0,0]", "[0,0,0]", "[1,0,0,0]")
 #define JOINT(type, a, b, point_a, point_b, axis_a, axis_b, length, offset) \
     "{\"name\": \"j\", \"type\": \"" type "\", \"a\": " a ", \"b\": " b ", \"point_a\": " point_a \
-    ", \"point_b\": " point_b ", \"axis_a\": " axis_a ", \"axis_b\": " axis_b \
-    ", \"length\": " length ", \"offset\": " offset "}"
+    ", \"point_b\": " point_b ", \"axis_a\": " axis_a ", \"axis_b\": " axis_b ", \"length\": " length \
+    ", \"offset\": " offset "}"
 #define COORDINATE(name, type, a, b, point_a, point_b, axis, ref_a, ref_b, design, offset, driven) \
     "{\"name\": \"" name "\", \"type\": \"" type "\", \"a\": " a ", \"b\": " b ", \"point_a\": " point_a \
     ", \"point_b\": " point_b ", \"axis_a\": " axis ", \"reference_a\": " ref_a ", \"reference_b\": " ref_b \
     ", \"design\": " design ", \"offset\": " offset ", \"range\": [0, 1], \"driven\": " driven "}"
 /* what neither an axis nor a stop nor a table is there for */
-#define PLAIN "\"axis_a\": null, \"reference_a\": null, \"reference_b\": null, \"low\": null, \"high\": null, " \
-              "\"fade\": null, \"table\": null, \"law\": []}"
+#define PLAIN \
+    "\"axis_a\": null, \"reference_a\": null, \"reference_b\": null, \"low\": null, \"high\": null, " \
+    "\"fade\": null, \"table\": null, \"law\": []}"
 #define ALONG(coordinate, stiffness, damping, free) \
     "{\"name\": \"f\", \"type\": \"coordinate\", \"coordinate\": " coordinate ", \"a\": null, \"b\": null, " \
     "\"point_a\": null, \"point_b\": null, \"stiffness\": " stiffness ", \"damping\": " damping ", \"free\": " free \
     ", " PLAIN
 #define BETWEEN(a, b, point_a, point_b, stiffness, damping, free) \
     "{\"name\": \"f\", \"type\": \"points\", \"coordinate\": -1, \"a\": " a ", \"b\": " b ", \"point_a\": " point_a \
-    ", \"point_b\": " point_b ", \"stiffness\": " stiffness ", \"damping\": " damping ", \"free\": " free \
-    ", " PLAIN
+    ", \"point_b\": " point_b ", \"stiffness\": " stiffness ", \"damping\": " damping ", \"free\": " free ", " PLAIN
 #define WHEEL(body, center, radius, stiffness, damping) \
     "{\"name\": \"t\", \"body\": " body ", \"center\": " center ", \"radius\": " radius ", \"stiffness\": " stiffness \
     ", \"damping\": " damping ", \"fade\": 0.01, \"tire\": null}"
@@ -60,11 +60,11 @@ static void test_pendulum_on_length(void **unused)
 {
     (void)unused;
     /* a spring along the length from (0.75, 0, 0.5) on ground to (0.25, 0.5, -0.75) on the bob */
-    Model *model = model_parse(
-        HEAD("fixed") GROUND_BODY "," BOB JOINTS HINGE COORDINATES COORDINATE(
-            "w", "length", "0", "1", "[0.75,0,0.5]", "[-0.25,0.4,-0.45]", "null", "null", "null",
-            "1.4361406616345072", "null", "false") FORCES ALONG("0", "300", "20", "1.5") WHEELS SEQUENCE TAIL,
-        "pendulum");
+    Model *model = model_parse(HEAD("fixed") GROUND_BODY "," BOB JOINTS HINGE COORDINATES COORDINATE(
+                                   "w", "length", "0", "1", "[0.75,0,0.5]", "[-0.25,0.4,-0.45]", "null", "null", "null",
+                                   "1.4361406616345072", "null", "false") FORCES ALONG("0", "300", "20", "1.5")
+                                   WHEELS SEQUENCE TAIL,
+                               "pendulum");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
     for (int i = 0; i < 5; ++i) {
@@ -98,10 +98,10 @@ static void test_pendulum_on_length(void **unused)
 static void test_pendulum_on_angle(void **unused)
 {
     (void)unused;
-    Model *model = model_parse(
-        HEAD("fixed") GROUND_BODY "," BOB JOINTS HINGE COORDINATES COORDINATE(
-            "phi", "angle", "0", "1", "null", "null", "[0,1,0]", "[1,0,0]", "[1,0,0]", "0.25", "null",
-            "false") FORCES ALONG("0", "3", "2", "1") WHEELS SEQUENCE TAIL, "pendulum");
+    Model *model = model_parse(HEAD("fixed") GROUND_BODY "," BOB JOINTS HINGE COORDINATES COORDINATE(
+                                   "phi", "angle", "0", "1", "null", "null", "[0,1,0]", "[1,0,0]", "[1,0,0]", "0.25",
+                                   "null", "false") FORCES ALONG("0", "3", "2", "1") WHEELS SEQUENCE TAIL,
+                               "pendulum");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
     for (int i = 0; i < 5; ++i) {
@@ -124,13 +124,15 @@ static void test_driven_slide(void **unused)
 {
     (void)unused;
     Model *model = model_parse(
-        HEAD("fixed") GROUND_BODY "," BODY("slide", "3", "[0,0,0]", "[1,1,1,0,0,0]", "[0,0,0]",
-                                           "[1,0,0,0]") "," BOB JOINTS
-            JOINT("prismatic", "0", "1", "[0,0,0]", "[0,0,0]", "[1,0,0]", "[1,0,0]", "null", "null") ","
-            JOINT("revolute", "1", "2", "[0,0,0]", "[-0.5,-0.1,0.3]", "[0,1,0]", "[0,1,0]", "null", "null") COORDINATES
-            COORDINATE("s", "translation", "0", "1", "[0,0,0]", "[0,0,0]", "[1,0,0]", "null", "null", "0", "0", "true")
-            "," COORDINATE("phi", "angle", "1", "2", "null", "null", "[0,1,0]", "[0,0,1]", "[0,0,1]", "0", "null",
-                           "false") FORCES ALONG("0", "40", "5", "0.125") WHEELS SEQUENCE TAIL, "slide");
+        HEAD("fixed") GROUND_BODY
+        "," BODY("slide", "3", "[0,0,0]", "[1,1,1,0,0,0]", "[0,0,0]", "[1,0,0,0]") "," BOB JOINTS JOINT(
+            "prismatic", "0", "1", "[0,0,0]", "[0,0,0]", "[1,0,0]", "[1,0,0]", "null",
+            "null") "," JOINT("revolute", "1", "2", "[0,0,0]", "[-0.5,-0.1,0.3]", "[0,1,0]", "[0,1,0]", "null", "null")
+            COORDINATES COORDINATE("s", "translation", "0", "1", "[0,0,0]", "[0,0,0]", "[1,0,0]", "null", "null", "0",
+                                   "0", "true") "," COORDINATE("phi", "angle", "1", "2", "null", "null", "[0,1,0]",
+                                                               "[0,0,1]", "[0,0,1]", "0", "null", "false")
+                FORCES ALONG("0", "40", "5", "0.125") WHEELS SEQUENCE TAIL,
+        "slide");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
     real theta = 0.7L, rate = -2.5L, push = 4, slide = 0.5L, slide_rate = 1.5L;
@@ -157,12 +159,12 @@ static void test_change_point(void **unused)
     (void)unused;
     Model *model = model_parse(
         HEAD("fixed") GROUND_BODY "," BODY("crank", "1", "[0,0,0]", "[1,1,1,0,0,0]", "[0,0,0]", "[1,0,0,0]") "," BODY(
-            "rocker", "1", "[0,0,0]", "[1,1,1,0,0,0]", "[2,0,0]", "[1,0,0,0]") JOINTS
-            JOINT("revolute", "0", "1", "[0,0,0]", "[0,0,0]", "[0,1,0]", "[0,1,0]", "null", "null") ","
-            JOINT("revolute", "0", "2", "[2,0,0]", "[0,0,0]", "[0,1,0]", "[0,1,0]", "null", "null") ","
-            JOINT("distance", "1", "2", "[0,0,1]", "[0,0,1]", "null", "null", "2", "null") COORDINATES
-            COORDINATE("phi", "angle", "0", "1", "null", "null", "[0,1,0]", "[1,0,0]", "[1,0,0]", "0", "null", "false")
-            FORCES WHEELS SEQUENCE TAIL,
+            "rocker", "1", "[0,0,0]", "[1,1,1,0,0,0]", "[2,0,0]", "[1,0,0,0]")
+            JOINTS JOINT("revolute", "0", "1", "[0,0,0]", "[0,0,0]", "[0,1,0]", "[0,1,0]", "null", "null") "," JOINT(
+                "revolute", "0", "2", "[2,0,0]", "[0,0,0]", "[0,1,0]", "[0,1,0]", "null",
+                "null") "," JOINT("distance", "1", "2", "[0,0,1]", "[0,0,1]", "null", "null", "2", "null")
+                COORDINATES COORDINATE("phi", "angle", "0", "1", "null", "null", "[0,1,0]", "[1,0,0]", "[1,0,0]", "0",
+                                       "null", "false") FORCES WHEELS SEQUENCE TAIL,
         "parallelogram");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
@@ -211,10 +213,9 @@ static void free_body(const char *dump, const Road *road, const real spring_poin
             arm[i] = point[k][i] - com[i];
         }
         if (k == 0) {
-            static const Force spring = {.coordinate = -1, .body = {GROUND, 0}, .point = {{0}},
-             .stiffness = 70, .damping = 9, .free = 2};
-            real end[2][3] = {{1, 2, 3}, {x[0], x[1], x[2]}},
-                 end_rate[2][3] = {{0}, {x_rate[0], x_rate[1], x_rate[2]}};
+            static const Force spring = {
+                .coordinate = -1, .body = {GROUND, 0}, .point = {{0}}, .stiffness = 70, .damping = 9, .free = 2};
+            real end[2][3] = {{1, 2, 3}, {x[0], x[1], x[2]}}, end_rate[2][3] = {{0}, {x_rate[0], x_rate[1], x_rate[2]}};
             spring_force(&spring, end, end_rate, F);
         } else {
             static const Wheel wheel = {.radius = 0.75, .stiffness = 500, .damping = 30, .fade = 0.01};
@@ -265,9 +266,8 @@ static void test_forces_on_free_body(void **unused)
     (void)unused;
     static const Road sine = {.amplitude = 0.125, .wavelength = 2.5, .x0 = 0.5, .phase_per_y = 0.75};
     static const real spring_point[3] = {0.5L, 1, -0.25L}, center[3] = {0.75L, -0.5L, 0.25L};
-    free_body(HEAD("free") LUMP JOINTS COORDINATES FORCES BETWEEN("-1", "0", "[1,2,3]", "[0.5,1,-0.25]", "70", "9",
-                                                                   "2") WHEELS
-                  WHEEL("0", "[0.75,-0.5,0.25]", "0.75", "500", "30") SEQUENCE TAIL,
+    free_body(HEAD("free") LUMP JOINTS COORDINATES FORCES BETWEEN("-1", "0", "[1,2,3]", "[0.5,1,-0.25]", "70", "9", "2")
+                  WHEELS WHEEL("0", "[0.75,-0.5,0.25]", "0.75", "500", "30") SEQUENCE TAIL,
               &sine, spring_point, center);
 }
 
@@ -278,17 +278,18 @@ static void test_quarter_car(void **unused)
     Model *model = model_parse(
         HEAD("fixed") GROUND_BODY "," BODY("car", "8", "[0,0,0]", "[1,1,1,0,0,0]", "[0,0,0.5]", "[1,0,0,0]")
             JOINTS JOINT("prismatic", "0", "1", "[0,0,0.5]", "[0,0,0]", "[0,0,1]", "[0,0,1]", "null", "null")
-            COORDINATES COORDINATE("z", "translation", "0", "1", "[0,0,0.5]", "[0,0,0]", "[0,0,1]", "null", "null", "0",
-                       "0", "false") FORCES WHEELS WHEEL("1", "[0,0,0]", "0.5", "2000", "100") SEQUENCE TAIL,
+                COORDINATES COORDINATE("z", "translation", "0", "1", "[0,0,0.5]", "[0,0,0]", "[0,0,1]", "null", "null",
+                                       "0", "0", "false") FORCES WHEELS WHEEL("1", "[0,0,0]", "0.5", "2000", "100")
+                    SEQUENCE TAIL,
         "quarter car");
     static const struct {
         double z, rate, force;
     } cases[] = {
-        {0.25, 1, 0},                          /* in the air */
-        {-0.25, 0, 500},                       /* standing */
-        {-0.25, -2, 700},                      /* on the way down */
-        {-0.125, 3, 0},                        /* damping would pull */
-        {-0.0078125, 0, 15.625},               /* within the fade, at rest */
+        {0.25, 1, 0},                                           /* in the air */
+        {-0.25, 0, 500},                                        /* standing */
+        {-0.25, -2, 700},                                       /* on the way down */
+        {-0.125, 3, 0},                                         /* damping would pull */
+        {-0.0078125, 0, 15.625},                                /* within the fade, at rest */
         {-0.0078125, -0.125, 15.625 + 12.5 * 0.87738037109375}, /* s = 0.78125: s^2 (3 - 2 s) */
     };
     Solver *solver = solver_new(model);
@@ -312,8 +313,8 @@ static void test_condition(void **unused)
     Model *model = model_parse(
         HEAD("fixed") GROUND_BODY "," BODY("car", "8", "[0,0,0]", "[1,1,1,0,0,0]", "[0,0,0.5]", "[1,0,0,0]")
             JOINTS JOINT("prismatic", "0", "1", "[0,0,1]", "[0,0,0.5]", "[0,0,1]", "[0,0,1]", "null", "null")
-            COORDINATES COORDINATE("z", "translation", "0", "1", "[0,0,0.5]", "[0,0,0]", "[0,0,1]", "null", "null", "0",
-                       "0", "false") FORCES WHEELS SEQUENCE
+                COORDINATES COORDINATE("z", "translation", "0", "1", "[0,0,0.5]", "[0,0,0]", "[0,0,1]", "null", "null",
+                                       "0", "0", "false") FORCES WHEELS SEQUENCE
         "{\"stage\": 1, \"class\": 0, \"bodies\": [1], \"joints\": [0], \"coordinates\": [0]}" TAIL,
         "slide");
     Solver *solver = solver_new(model);
@@ -336,12 +337,14 @@ static void test_cylindrical(void **unused)
 {
     (void)unused;
     Model *model = model_parse(
-        HEAD("fixed") GROUND_BODY "," BOB JOINTS
-            JOINT("cylindrical", "0", "1", "[0,0,0]", "[-0.5,-0.1,0.3]", "[0,1,0]", "[0,1,0]", "null", "null")
+        HEAD("fixed") GROUND_BODY "," BOB JOINTS JOINT("cylindrical", "0", "1", "[0,0,0]", "[-0.5,-0.1,0.3]", "[0,1,0]",
+                                                       "[0,1,0]", "null", "null")
             COORDINATES COORDINATE("phi", "angle", "0", "1", "null", "null", "[0,1,0]", "[1,0,0]", "[1,0,0]", "0",
-                                   "null", "false") ","
-            COORDINATE("s", "translation", "0", "1", "[0,0,0]", "[-0.5,-0.1,0.3]", "[0,1,0]", "null", "null", "0", "0",
-                       "false") FORCES ALONG("1", "40", "5", "0.125") WHEELS SEQUENCE TAIL, "sleeve");
+                                   "null", "false") "," COORDINATE("s", "translation", "0", "1", "[0,0,0]",
+                                                                   "[-0.5,-0.1,0.3]", "[0,1,0]", "null", "null", "0",
+                                                                   "0", "false") FORCES ALONG("1", "40", "5", "0.125")
+                WHEELS SEQUENCE TAIL,
+        "sleeve");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
     /* the products of inertia turn with the bob, but the sleeve takes what they do */
@@ -364,12 +367,13 @@ static void test_cylindrical(void **unused)
 static void test_fixed(void **unused)
 {
     (void)unused;
-    Model *model = model_parse(
-        HEAD("fixed") GROUND_BODY "," BOB ","
-            BODY("weight", "1", "[0,0,0]", "[0.1,0.2,0.15,0,0.02,0]", "[1,0,-0.5]", "[0.8,0,0.6,0]") JOINTS HINGE ","
-            JOINT("fixed", "1", "2", "[0.25,0,0]", "[-0.262,0.1,-0.184]", "null", "null", "null", "null") COORDINATES
-            COORDINATE("phi", "angle", "0", "1", "null", "null", "[0,1,0]", "[1,0,0]", "[1,0,0]", "0", "null", "false")
-            FORCES WHEELS SEQUENCE TAIL, "two weights");
+    Model *model =
+        model_parse(HEAD("fixed") GROUND_BODY "," BOB "," BODY("weight", "1", "[0,0,0]", "[0.1,0.2,0.15,0,0.02,0]",
+                                                               "[1,0,-0.5]", "[0.8,0,0.6,0]") JOINTS HINGE
+                    "," JOINT("fixed", "1", "2", "[0.25,0,0]", "[-0.262,0.1,-0.184]", "null", "null", "null", "null")
+                        COORDINATES COORDINATE("phi", "angle", "0", "1", "null", "null", "[0,1,0]", "[1,0,0]",
+                                               "[1,0,0]", "0", "null", "false") FORCES WHEELS SEQUENCE TAIL,
+                    "two weights");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
     for (int i = 0; i < 3; ++i) {
@@ -392,13 +396,14 @@ static void test_universal_shafts(void **unused)
 {
     (void)unused;
     Model *model = model_parse(
-        HEAD("fixed") GROUND_BODY "," BODY("in", "1", "[0,0,0]", "[2,3,3,0,0,0]", "[0,0,0]", "[1,0,0,0]") ","
-            BODY("out", "1", "[0,0,0]", "[4,4,4,0,0,0]", "[1,0,0]", "[1,0,0,0]") JOINTS
-            JOINT("revolute", "0", "1", "[0,0,0]", "[0,0,0]", "[1,0,0]", "[1,0,0]", "null", "null") ","
-            JOINT("revolute", "0", "2", "[1,0,0]", "[0,0,0]", "[0.8,0.6,0]", "[0.8,0.6,0]", "null", "null") ","
-            JOINT("perpendicular", "1", "2", "null", "null", "[0,0,1]", "[-0.6,0.8,0]", "null", "null") COORDINATES
-            COORDINATE("theta", "angle", "0", "1", "null", "null", "[1,0,0]", "[0,1,0]", "[0,1,0]", "0", "null",
-                       "false") FORCES ALONG("0", "3", "2", "1") WHEELS SEQUENCE TAIL, "shafts");
+        HEAD("fixed") GROUND_BODY "," BODY("in", "1", "[0,0,0]", "[2,3,3,0,0,0]", "[0,0,0]", "[1,0,0,0]") "," BODY(
+            "out", "1", "[0,0,0]", "[4,4,4,0,0,0]", "[1,0,0]", "[1,0,0,0]")
+            JOINTS JOINT("revolute", "0", "1", "[0,0,0]", "[0,0,0]", "[1,0,0]", "[1,0,0]", "null", "null") "," JOINT(
+                "revolute", "0", "2", "[1,0,0]", "[0,0,0]", "[0.8,0.6,0]", "[0.8,0.6,0]", "null",
+                "null") "," JOINT("perpendicular", "1", "2", "null", "null", "[0,0,1]", "[-0.6,0.8,0]", "null", "null")
+                COORDINATES COORDINATE("theta", "angle", "0", "1", "null", "null", "[1,0,0]", "[0,1,0]", "[0,1,0]", "0",
+                                       "null", "false") FORCES ALONG("0", "3", "2", "1") WHEELS SEQUENCE TAIL,
+        "shafts");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
     const real u[3] = {0.8L, 0.6L, 0}, incline = 0.8L;
@@ -429,11 +434,12 @@ static void test_universal(void **unused)
     (void)unused;
     Model *model = model_parse(
         HEAD("fixed") GROUND_BODY "," BODY("bob", "3", "[0,0,0]", "[0.5,0.5,0.25,0,0,0]", "[0,0,-2]", "[1,0,0,0]")
-            JOINTS JOINT("universal", "0", "1", "[0,0,0]", "[0,0,2]", "[1,0,0]", "[0,1,0]", "null", "null") COORDINATES
-            COORDINATE("swing", "length", "0", "1", "[0,-2,0]", "[0,0,0]", "null", "null", "null",
-                       "2.8284271247461901", "null", "false") ","
-            COORDINATE("nod", "length", "0", "1", "[2,0,0]", "[0,0,0]", "null", "null", "null", "2.8284271247461901",
-                       "null", "false") FORCES WHEELS SEQUENCE TAIL,
+            JOINTS JOINT("universal", "0", "1", "[0,0,0]", "[0,0,2]", "[1,0,0]", "[0,1,0]", "null", "null")
+                COORDINATES COORDINATE("swing", "length", "0", "1", "[0,-2,0]", "[0,0,0]", "null", "null", "null",
+                                       "2.8284271247461901", "null",
+                                       "false") "," COORDINATE("nod", "length", "0", "1", "[2,0,0]", "[0,0,0]", "null",
+                                                               "null", "null", "2.8284271247461901", "null", "false")
+                    FORCES WHEELS SEQUENCE TAIL,
         "universal");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
@@ -469,15 +475,20 @@ static void test_four_bar(void **unused)
 {
     (void)unused;
     Model *model = model_parse(
-        HEAD("fixed") GROUND_BODY "," BODY("crank", "2", "[0,0,0]", "[1,0.25,1,0,0,0]", "[0,0,0.5]", "[1,0,0,0]") ","
-            BODY("coupler", "3", "[0,0,0]", "[2,1.5,1,0,0,0]", "[1.75,0,1.5]", "[1,0,0,0]") ","
-            BODY("rocker", "4", "[0,0,0]", "[1,0.75,1,0,0,0]", "[3.75,0,1]", "[1,0,0,0]") JOINTS
-            JOINT("revolute", "0", "1", "[0,0,0]", "[0,0,-0.5]", "[0,-1,0]", "[0,-1,0]", "null", "null") ","
-            JOINT("revolute", "1", "2", "[0,0,0.5]", "[-1.75,0,-0.5]", "[0,-1,0]", "[0,-1,0]", "null", "null") ","
-            JOINT("revolute", "0", "3", "[4,0,0]", "[0.25,0,-1]", "[0,-1,0]", "[0,-1,0]", "null", "null") ","
-            JOINT("point_on_line", "2", "3", "[1.75,0,0.5]", "[-0.25,0,1]", "[0,-1,0]", "null", "null", "null")
-            COORDINATES COORDINATE("theta", "angle", "0", "1", "null", "null", "[0,-1,0]", "[1,0,0]", "[1,0,0]", "0",
-                                   "null", "false") FORCES ALONG("0", "3", "2", "1") WHEELS SEQUENCE TAIL, "four-bar");
+        HEAD("fixed") GROUND_BODY
+        "," BODY("crank", "2", "[0,0,0]", "[1,0.25,1,0,0,0]", "[0,0,0.5]", "[1,0,0,0]") "," BODY(
+            "coupler", "3", "[0,0,0]", "[2,1.5,1,0,0,0]", "[1.75,0,1.5]",
+            "[1,0,0,0]") "," BODY("rocker", "4", "[0,0,0]", "[1,0.75,1,0,0,0]", "[3.75,0,1]", "[1,0,0,0]")
+            JOINTS JOINT(
+                "revolute", "0", "1", "[0,0,0]", "[0,0,-0.5]", "[0,-1,0]", "[0,-1,0]", "null",
+                "null") "," JOINT("revolute", "1", "2", "[0,0,0.5]", "[-1.75,0,-0.5]", "[0,-1,0]", "[0,-1,0]", "null",
+                                  "null") "," JOINT("revolute", "0", "3", "[4,0,0]", "[0.25,0,-1]", "[0,-1,0]",
+                                                    "[0,-1,0]", "null",
+                                                    "null") "," JOINT("point_on_line", "2", "3", "[1.75,0,0.5]",
+                                                                      "[-0.25,0,1]", "[0,-1,0]", "null", "null", "null")
+                COORDINATES COORDINATE("theta", "angle", "0", "1", "null", "null", "[0,-1,0]", "[1,0,0]", "[1,0,0]",
+                                       "0", "null", "false") FORCES ALONG("0", "3", "2", "1") WHEELS SEQUENCE TAIL,
+        "four-bar");
     Solver *solver = solver_new(model);
     State *state = state_new(model);
     const real b = sqrtl(3.5L * 3.5L + 1), c = sqrtl(4.25L), mass[3] = {2, 3, 4}, J[3] = {0.25L, 1.5L, 0.75L};

@@ -61,15 +61,22 @@ static Mechanism *corners(void)
                         hinge_axis[3] = {0.96, 0, 0.28}, ball[3] = {1.68, 0.8, 0.38}, top_in[3] = {1.6, 0.45, 0.72},
                         top[3] = {1.62, 0.74, 0.74}, top_axis[3] = {0.96, 0, -0.28}, tie_in[3] = {1.4, 0.45, 0.6},
                         tie[3] = {1.5, 0.82, 0.55}, rear[3] = {-1, 0.6, 0.5}, rear_axis[3] = {0, 0.8, 0.6},
-                        swing_axis[3] = {0, 0.96, 0.28},
-                        shock[3] = {1.7, 0.5, 0.8}, shock_foot[3] = {1.72, 0.55, 0.4}, none[3] = {0};
+                        swing_axis[3] = {0, 0.96, 0.28}, shock[3] = {1.7, 0.5, 0.8}, shock_foot[3] = {1.72, 0.55, 0.4},
+                        none[3] = {0};
     Mechanism *mechanism = test_calloc(1, sizeof *mechanism);
     Model *model = &mechanism->model;
     memcpy(mechanism->body, body, sizeof body);
-    *model = (Model){.gravity = {0.5, -0.25, -9.81}, .free_base = true, .bodies = PARTS,
-                     .coordinates = 3, .forces = 5, .wheels = 2,
-                     .body = mechanism->body, .joint = mechanism->joint,
-                     .coordinate = mechanism->coordinate, .force = mechanism->force, .wheel = mechanism->wheel,
+    *model = (Model){.gravity = {0.5, -0.25, -9.81},
+                     .free_base = true,
+                     .bodies = PARTS,
+                     .coordinates = 3,
+                     .forces = 5,
+                     .wheels = 2,
+                     .body = mechanism->body,
+                     .joint = mechanism->joint,
+                     .coordinate = mechanism->coordinate,
+                     .force = mechanism->force,
+                     .wheel = mechanism->wheel,
                      .length = 4};
     add_joint(mechanism, PRISMATIC, CHASSIS, RACK, rack, rack, rack_axis, rack_axis);
     add_joint(mechanism, REVOLUTE, CHASSIS, ARM, hinge, hinge, hinge_axis, hinge_axis);
@@ -95,10 +102,18 @@ static Mechanism *corners(void)
         {.coordinate = 1, .stiffness = 90000, .damping = 6000, .free = 0.5},
         {.coordinate = 2, .stiffness = 4000, .damping = 300},
         {.coordinate = 0, .stiffness = 5000, .damping = 100},
-        {.coordinate = -1, .body = {CHASSIS, KNUCKLE}, .point = {{1.5, 0.4, 0.3}, {0.1, 0.1, 0.1}},
-         .stiffness = 2000, .damping = 150, .free = 0.4},
-        {.coordinate = -1, .body = {GROUND, CHASSIS}, .point = {{1, 2, 3}, {0.5, 0, 0.25}},
-         .stiffness = 700, .damping = 90, .free = 2},
+        {.coordinate = -1,
+         .body = {CHASSIS, KNUCKLE},
+         .point = {{1.5, 0.4, 0.3}, {0.1, 0.1, 0.1}},
+         .stiffness = 2000,
+         .damping = 150,
+         .free = 0.4},
+        {.coordinate = -1,
+         .body = {GROUND, CHASSIS},
+         .point = {{1, 2, 3}, {0.5, 0, 0.25}},
+         .stiffness = 700,
+         .damping = 90,
+         .free = 2},
     };
     static const Wheel wheel[] = {
         {.body = KNUCKLE, .center = {0.02, 0.01, 0}, .radius = 0.47, .stiffness = 300000, .damping = 500, .fade = 0.01},
@@ -134,17 +149,24 @@ static Mechanism *train(void)
     };
     static const double none[3] = {0}, drum[3] = {1, 0, 0.5}, drum_axis[3] = {0.6, 0, 0.8},
                         cross_at[3] = {1.2, 0.3, 0.7}, fork_in[3] = {0, 1, 0}, fork_out[3] = {0.8, 0, -0.6},
-                        stay_in[3] = {2, 0.5, 0.2},
-                        stay[3] = {1.8, 0.9, 0.8}, weld[3] = {1.8, 0.9, 0.9}, line[3] = {2.2, 1.1, 0.9},
-                        line_axis[3] = {0, 0.6, 0.8}, plane[3] = {2, 1.4, 0.6}, plane_axis[3] = {0.28, 0.96, 0},
-                        x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1}, ball[3] = {2.6, 1.3, 0.9},
-                        rod_in[3] = {3.1, 1.2, 1.4}, rod[3] = {3.1, 1.2, 0.6};
+                        stay_in[3] = {2, 0.5, 0.2}, stay[3] = {1.8, 0.9, 0.8}, weld[3] = {1.8, 0.9, 0.9},
+                        line[3] = {2.2, 1.1, 0.9}, line_axis[3] = {0, 0.6, 0.8}, plane[3] = {2, 1.4, 0.6},
+                        plane_axis[3] = {0.28, 0.96, 0}, x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1},
+                        ball[3] = {2.6, 1.3, 0.9}, rod_in[3] = {3.1, 1.2, 1.4}, rod[3] = {3.1, 1.2, 0.6};
     Mechanism *mechanism = test_calloc(1, sizeof *mechanism);
     Model *model = &mechanism->model;
     memcpy(mechanism->body, body, sizeof body);
-    *model = (Model){.gravity = {0.5, -0.25, -9.81}, .free_base = true, .bodies = PARTS, .forces = 4, .wheels = 2,
-                     .body = mechanism->body, .joint = mechanism->joint, .coordinate = mechanism->coordinate,
-                     .force = mechanism->force, .wheel = mechanism->wheel, .length = 4};
+    *model = (Model){.gravity = {0.5, -0.25, -9.81},
+                     .free_base = true,
+                     .bodies = PARTS,
+                     .forces = 4,
+                     .wheels = 2,
+                     .body = mechanism->body,
+                     .joint = mechanism->joint,
+                     .coordinate = mechanism->coordinate,
+                     .force = mechanism->force,
+                     .wheel = mechanism->wheel,
+                     .length = 4};
     add_joint(mechanism, CYLINDRICAL, HULL, DRUM, drum, drum, drum_axis, drum_axis);
     add_joint(mechanism, UNIVERSAL, DRUM, SHAFT, cross_at, cross_at, fork_in, fork_out);
     add_joint(mechanism, DISTANCE, HULL, SHAFT, stay_in, stay, none, none);
@@ -171,10 +193,18 @@ static Mechanism *train(void)
     static const Force force[] = {
         {.coordinate = 1, .stiffness = 400, .damping = 30, .law = {&steady}},
         {.coordinate = 2, .stiffness = 9000, .damping = 600, .free = 0.5},
-        {.coordinate = -1, .body = {HULL, LEVER}, .point = {{1.5, 0.4, 0.3}, {0.1, 0.1, 0.1}},
-         .stiffness = 2000, .damping = 150, .free = 0.4},
-        {.coordinate = -1, .body = {GROUND, SLIDER}, .point = {{1, 2, 3}, {0.5, 0, 0.25}},
-         .stiffness = 700, .damping = 90, .free = 2},
+        {.coordinate = -1,
+         .body = {HULL, LEVER},
+         .point = {{1.5, 0.4, 0.3}, {0.1, 0.1, 0.1}},
+         .stiffness = 2000,
+         .damping = 150,
+         .free = 0.4},
+        {.coordinate = -1,
+         .body = {GROUND, SLIDER},
+         .point = {{1, 2, 3}, {0.5, 0, 0.25}},
+         .stiffness = 700,
+         .damping = 90,
+         .free = 2},
     };
     static const Wheel wheel[] = {
         {.body = SLIDER, .center = {0.02, 0.01, 0}, .radius = 2, .stiffness = 3000, .damping = 50, .fade = 0.01},
@@ -209,7 +239,7 @@ static void far_state(const Mechanism *mechanism, State *state)
 
 /* Motion of one body in the terms of FORMAT.md section 1, from q, q' and q''. */
 typedef struct Motion {
-    real r[3], A[3][3];                 /* body frame */
+    real r[3], A[3][3]; /* body frame */
     real com[3], com_rate[3], com_second[3];
     real omega[3], alpha[3], spin_second[3]; /* body frame; J alpha + omega x J omega */
 } Motion;
@@ -355,9 +385,7 @@ static void coordinate_holds(const Solver *solver, const Coordinate *coordinate,
     for (int k = 0; k < 3; ++k)
         d[k] = x[1][k] - x[0][k];
     switch (coordinate->type) {
-    case LENGTH:
-        near_to(value, sqrtl(inner(d, d)), 1);
-        break;
+    case LENGTH: near_to(value, sqrtl(inner(d, d)), 1); break;
     case TRANSLATION: /* offset 0 in both mechanisms */
         near_to(value, inner(u, d) + (real)coordinate->design, 1);
         break;
@@ -367,8 +395,7 @@ static void coordinate_holds(const Solver *solver, const Coordinate *coordinate,
         cross(u, e_1, e_2);
         near_to(value, atan2l(inner(e_2, f_1), inner(e_1, f_1)) + (real)coordinate->design, 1);
         break;
-    case COORDINATE_TYPES:
-        break;
+    case COORDINATE_TYPES: break;
     }
 }
 
@@ -412,8 +439,8 @@ static void test_differences(void **state_of_test)
             moved->w[c] = state->w[c] + t * state->w_rate[c] + t * t / 2 * solver->w_second[c];
         /* odd terms beyond the second order cancel in both differences */
         for (int i = 0; i < 4; ++i)
-            moved->e[i] = solver->configuration->q[0][3 + i] + t * solver->configuration->rate[0][3 + i]
-                          + t * t / 2 * solver->second[0][3 + i];
+            moved->e[i] = solver->configuration->q[0][3 + i] + t * solver->configuration->rate[0][3 + i] +
+                          t * t / 2 * solver->second[0][3 + i];
         assert_true(recover_largest(moved->e));
         assert_true(solve_positions(aside, moved));
         memcpy(q[1 + side], aside->configuration->q, (size_t)mechanism->model.bodies * sizeof *q[1 + side]);
@@ -473,7 +500,9 @@ static void test_balances(void **state_of_test)
         int c = element->coordinate;
         if (c >= 0) {
             real w = (real)state->w[c], rate = (real)state->w_rate[c];
-            power -= ((element->law[0] ? element->law[0]->number : 0) - element->stiffness * (w - element->free) - element->damping * rate) * rate;
+            power -= ((element->law[0] ? element->law[0]->number : 0) - element->stiffness * (w - element->free) -
+                      element->damping * rate) *
+                     rate;
             continue;
         }
         real x[2][3], x_rate[2][3], pull[3], about[3];

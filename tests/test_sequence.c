@@ -44,8 +44,8 @@ static void assert_consistent(const Model *model, const Sequence *sequence)
         assert_int_equal(weight_of(model, s), 0);
         int latest = model->free_base ? 1 : 0, referred = 0;
         for (int k = 0; k < s->joints + s->coordinates; ++k) {
-            const int *end = k < s->joints ? model->joint[s->joint[k]].body
-                                           : model->coordinate[s->coordinate[k - s->joints]].body;
+            const int *end =
+                k < s->joints ? model->joint[s->joint[k]].body : model->coordinate[s->coordinate[k - s->joints]].body;
             assert_true(lists(s->body, s->bodies, end[0]) || lists(s->body, s->bodies, end[1]));
             for (int e = 0; e < 2; ++e)
                 if (end[e] > 0 && !lists(s->body, s->bodies, end[e])) {
@@ -467,8 +467,7 @@ static void assert_same_subsets(const Builder *a, const Sequence *s, const Build
         for (int k = 0; k < x->joints; ++k)
             assert_string_equal(a->model.joint[x->joint[k]].name, b->model.joint[y->joint[k]].name);
         for (int k = 0; k < x->coordinates; ++k)
-            assert_string_equal(a->model.coordinate[x->coordinate[k]].name,
-                                b->model.coordinate[y->coordinate[k]].name);
+            assert_string_equal(a->model.coordinate[x->coordinate[k]].name, b->model.coordinate[y->coordinate[k]].name);
         for (int k = 0; k < x->deps; ++k)
             assert_string_equal(a->model.coordinate[x->dep[k]].name, b->model.coordinate[y->dep[k]].name);
     }

@@ -60,8 +60,14 @@ agrees() {
     check $? "$file --lanes $lanes $options: $* $(cat err)"
 }
 
+# Andrews' mechanism goes round twenty times in these steps and makes 6e4 times as much of a rounding (so says code with
+# contraction beside code without), and Newton's poses may differ by 1e-14 of their size
 for model in "$root"/models/*.veh "$root/tests/tuning/car.veh"; do
-    agrees "$model" 4 '' 1e-11 gcc -std=c11 -O0
+    case $model in
+    */andrews.veh) tolerance=1e-9 ;;
+    *) tolerance=1e-11 ;;
+    esac
+    agrees "$model" 4 '' "$tolerance" gcc -std=c11 -O0
 done
 
 hmmwv=$root/models/hmmwv.veh

@@ -132,10 +132,14 @@ static inline Builder chain(int links)
     for (int i = 1; i <= links; ++i) {
         body(&b, pool_print(b.pool, "link%d", i));
         int line = JOINT_LINE + LINES; /* nobody asks for these places */
-        Joint hinge = {.name = pool_print(b.pool, "hinge%d", i), .at = place(&b, line), .type = JOINT_REVOLUTE,
+        Joint hinge = {.name = pool_print(b.pool, "hinge%d", i),
+                       .at = place(&b, line),
+                       .type = JOINT_REVOLUTE,
                        .body = {i - 1, i}};
         *POOL_PUSH(b.pool, b.model.joint, b.model.joints) = hinge;
-        Coordinate angle = {.name = pool_print(b.pool, "angle%d", i), .at = place(&b, line), .type = COORDINATE_ANGLE,
+        Coordinate angle = {.name = pool_print(b.pool, "angle%d", i),
+                            .at = place(&b, line),
+                            .type = COORDINATE_ANGLE,
                             .body = {i - 1, i}};
         *POOL_PUSH(b.pool, b.model.coordinate, b.model.coordinates) = angle;
     }

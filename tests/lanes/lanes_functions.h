@@ -9,8 +9,8 @@
 /* X(name, NAME) of one argument, and of two */
 #define OF_ONE(X) \
     X(sin, SIN) \
-    X(cos, COS) X(tan, TAN) X(asin, ASIN) X(acos, ACOS) X(atan, ATAN) X(exp, EXP) X(log, LOG) X(tanh, TANH) \
-        X(sqrt, SQRT)
+    X(cos, COS) \
+    X(tan, TAN) X(asin, ASIN) X(acos, ACOS) X(atan, ATAN) X(exp, EXP) X(log, LOG) X(tanh, TANH) X(sqrt, SQRT)
 #define OF_TWO(X) X(atan2, ATAN2) X(pow, POW)
 
 #ifdef __cplusplus

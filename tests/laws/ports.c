@@ -27,7 +27,8 @@ int main(void)
     printf("%.3g\n", largest);
     /* 1e-12: two orders of the same sums; and the port must have been felt */
     a.port[CART_PORT_HOOK] = 1000;
-    if (cart_rhs(&a, 0, a.state, first) != GIC_OK || fabs(first[CART_STATE_STRUT_R_RATE] - second[CART_STATE_STRUT_R_RATE]) < 0.1)
+    if (cart_rhs(&a, 0, a.state, first) != GIC_OK ||
+        fabs(first[CART_STATE_STRUT_R_RATE] - second[CART_STATE_STRUT_R_RATE]) < 0.1)
         return 1;
     a.parameter[CART_PARAMETER_K] = NAN;
     return !(largest < 1e-12) || cart_rhs(&a, 0, a.state, first) != GIC_ERROR_INPUT;

@@ -133,7 +133,8 @@ for signal in TERM INT KILL; do
     while [ $i -lt $times ]; do
         i=$((i + 1))
         old
-        timeout -s $signal 0.0$((1 + 3 * (i % 3))) "$gicrun" -q --engine tape "$model" long.scene -o place/old.csv >out 2>err
+        # whoever runs this in the background may have had SIGINT ignored, which is inherited
+        env --default-signal=INT timeout -s $signal 0.0$((1 + 3 * (i % 3))) "$gicrun" -q --engine tape "$model" long.scene -o place/old.csv >out 2>err
         status=$?
         [ $signal != KILL ] || rm -f place/*.tmp
         # the shell says 124 or 137; gicrun keeps what was computed and ends by the signal or with 1

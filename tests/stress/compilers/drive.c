@@ -17,7 +17,8 @@
 
 static uint64_t seed = 7;
 
-/* Evenly in [-1, 1), by integers up to the last step: the same number whatever the compiler does, in either precision. */
+/* Evenly in [-1, 1), by integers up to the last step: the same number whatever the compiler does, in either precision.
+ */
 static gic_real even(void)
 {
     seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
