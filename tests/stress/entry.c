@@ -251,6 +251,7 @@ static void check_recovery(Trial *t, int accepted)
     const struct {
         size_t offset, bytes;
     } own[] = {{code->state_offset, states(t) * sizeof(double)},
+               {code->rate_offset, states(t) * sizeof(double)},
                {code->history_offset, 2 * states(t) * sizeof(double)},
                {code->discrete_offset, (size_t)code->discrete_count * sizeof(int32_t)},
                {code->input_offset, (size_t)code->input_count * sizeof(double)},
