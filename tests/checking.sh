@@ -6,6 +6,9 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 passed=0
 failed=0
+# check() shows them, whether there was a run or not
+: >"$work/out"
+: >"$work/err"
 
 # check NAME CONDITION...: the command must succeed
 check() {

@@ -3,34 +3,12 @@
 # test_gicrun.sh GICRUN: scenes and --eval from end to end: results against closed solutions, messages, and what is
 # left behind.
 gicrun=$1
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 TMPDIR=$work/tmp
 export TMPDIR
 mkdir "$TMPDIR"
 
-# check NAME CONDITION...: the command must succeed
-check() {
-    name=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        sed 's/^/    /' "$work/err"
-    fi
-}
-
-# run ARGUMENT...: gicrun with its output in $work/out and $work/err, its exit status in $status
-run() {
-    "$gicrun" "$@" >"$work/out" 2>"$work/err"
-    status=$?
-}
-exits() { [ "$status" -eq "$1" ]; }
-says() { grep -q -- "$1" "$work/err"; }
 clean() { [ -z "$(ls -A "$TMPDIR")" ]; }
 
 # Two carts on a wall, side by side. `left` hangs on a spring without damping: x = 0.1 cos(6 t) from rest at 0.1

@@ -7,8 +7,6 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/tests/checking.sh"
 model=$root/models/hmmwv14.veh
 general=$work/general.scene
-: >"$work/out"
-: >"$work/err"
 
 sed 's/^step:.*/&\noutputs: [chassis, spring_f_l, force_f_l]/' "$root/models/scenes/hmmwv14.scene" >"$general"
 # without KG: the scene in which bodies below that have no mass

@@ -3,31 +3,8 @@
 # test_variable.sh GICRUN: integration with variable steps: against published and closed solutions, against constant
 # steps, at kinks of inputs, over changes of the dependent Euler parameter, and what users are told.
 gicrun=$1
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-# check NAME CONDITION...: the command must succeed
-check() {
-    name=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        sed 's/^/    /' "$work/err"
-    fi
-}
-
-# run ARGUMENT...: gicrun with its messages in $work/err, its exit status in $status
-run() {
-    "$gicrun" "$@" >"$work/out" 2>"$work/err"
-    status=$?
-}
-exits() { [ "$status" -eq "$1" ]; }
-says() { grep -q -- "$1" "$work/err"; }
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 # near A B TOLERANCE
 near() { awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN {d = a - b; exit !(d * d <= t * t && a != "" && b != "")}' || {
     echo "$1 is not $2 within $3" >>"$work/err"
