@@ -13,19 +13,8 @@
 # compared modulo 2 pi. All errors are absolute, in rad and rad/s, though velocities reach 1424 rad/s.
 gicrun=$1
 models=$(dirname "$0")/../models
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
 cat >"$work/converged" <<'END'
 15.8107711951537 1139.9203022591
@@ -50,7 +39,7 @@ END
 simulate() {
     printf '%s\n' "gicscene: 1" "duration: 0.03" "step: $1" "integrator: rk4" "output_step: 0.03" >"$work/scene"
     "$gicrun" --quiet "$models/andrews.veh" "$work/scene" -o "$work/csv"
-    check $? "no run at step $1"
+    verdict $? "no run at step $1"
     awk -F, -v OFMT=%.17g '
         NR == 1 { for (i = 1; i <= NF; ++i) { split($i, word, " "); column[word[1]] = i } }
         { for (name in column) value[name] = $column[name] }
@@ -91,7 +80,7 @@ errors() {
 # within "ANGLES VELOCITIES" TOLERANCE TOLERANCE LABEL
 within() {
     echo "$1" | awk -v a="$2" -v v="$3" '{ exit !($1 ~ /^[0-9]/ && $2 ~ /^[0-9]/ && $1 <= a && $2 <= v) }'
-    check $? "$4: errors of angles and velocities $1"
+    verdict $? "$4: errors of angles and velocities $1"
 }
 
 # fourth order: half the step, a sixteenth of the error (somewhat less, for these steps still show the next order); the
@@ -102,7 +91,7 @@ simulate 5e-6
 fine=$(errors converged)
 echo "$coarse $fine" | awk '{ a = log($1 / $3) / log(2); v = log($2 / $4) / log(2)
                               exit !(a > 3.6 && a < 4.4 && v > 3.6 && v < 4.4) }'
-check $? "errors $coarse fall to $fine with half the step: not fourth order"
+verdict $? "errors $coarse fall to $fine with half the step: not fourth order"
 
 for step in 1e-6 5e-7; do
     simulate $step

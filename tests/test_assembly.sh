@@ -5,20 +5,9 @@
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 runtime=$(cd "$(dirname "$0")/../runtime" && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
 
 # vectors.awk: what the checks below compute with; at(BODY, POINT, out): world place of a body-fixed point of the
 # dumped model
@@ -98,11 +87,11 @@ AWK
 # fits NAME ROWS: the dumped design of NAME.veh fulfils its joints (ROWS of them counted) to 1e-12
 fits() {
     "$gicgen" --dump-model "$1.veh" >"$1.dump" 2>"$1.err"
-    check $? "$1 is not assembled: $(cat "$1.err")"
+    verdict $? "$1 is not assembled: $(cat "$1.err")"
     cat vectors.awk residual.awk >both.awk
     residual=$(awk -v joints="$2" -f both.awk "$1.dump")
     echo "$residual" | awk '{ exit !(NF == 1 && $1 ~ /^[0-9]/ && $1 <= 1e-12) }'
-    check $? "$1: joints of the design are off by $residual"
+    verdict $? "$1: joints of the design are off by $residual"
 }
 
 # ---- a four-bar with a longer coupler than drawn -------------------------------------------------------------
@@ -152,14 +141,14 @@ END {
 }
 AWK
     awk -v length_given=$length -f both.awk longer.dump
-    check $? "coupler of $length: not where two circles meet: $(cat longer.dump)"
+    verdict $? "coupler of $length: not where two circles meet: $(cat longer.dump)"
 done
 
 # as drawn: nothing moves, to the bit
 four_bar drawn 2 >drawn.veh
 fits drawn 3
 grep -q '"name": "rocker".*"position": \[2.5, 0, 1\], "euler": \[1, 0, 0, 0\]' drawn.dump
-check $? "a length as drawn moves the rocker: $(cat drawn.dump)"
+verdict $? "a length as drawn moves the rocker: $(cat drawn.dump)"
 
 # ---- a wheel suspension: both lengths of an upper arm, its offset, and a tie rod -----------------------------
 
@@ -192,29 +181,29 @@ grep '"name": "\(chassis\|arm\)", "mass"' corner.dump >as_drawn
 cat assembled as_drawn | awk '{ gsub(/[^-0-9.e+]+/, " "); for (i = 1; i <= NF; ++i) v[NR, i] = $i; n[NR] = NF }
     END { for (r = 1; r <= 2; ++r) for (i = 1; i <= n[r]; ++i) if ((v[r, i] - v[r + 2, i]) ^ 2 > 1e-24) bad = 1
           exit bad || NR != 4 || n[1] < 17 || n[1] != n[3] }'
-check $? "assembly moves what the spring holds: $(cat assembled as_drawn)"
+verdict $? "assembly moves what the spring holds: $(cat assembled as_drawn)"
 # and the knuckle has really been moved
 cat vectors.awk residual.awk >both.awk
 sed 's/"length": 0.4[0-9]*/"length": 0.44/' corner.dump | awk -v joints=5 -f both.awk | awk '{ exit !($1 > 1e-3) }'
-check $? "the check of residuals does not see that lengths differ"
+verdict $? "the check of residuals does not see that lengths differ"
 
 # ---- initial values ------------------------------------------------------------------------------------------
 
 printf '%s\n' "gicscene: 1" "duration: 0.3" "step: 0.001" "integrator: rk4" "output_step: 0.3" >plain.scene
 four_bar begun 2.3 ", initial: 0.25" >begun.veh
 "$gicrun" --quiet begun.veh plain.scene -o begun.csv 2>begun.err
-check $? "no run from an initial value: $(cat begun.err)"
+verdict $? "no run from an initial value: $(cat begun.err)"
 # (columns: time B C turn rate acceleration energy)
 awk -F, 'NR == 2 { exit !($8 == 0.25 && ($2 - 2 * sin(0.25)) ^ 2 < 1e-24 && ($4 - 2 * cos(0.25)) ^ 2 < 1e-24 &&
     (sqrt(($5 - $2) ^ 2 + ($7 - $4) ^ 2) - 2.3) ^ 2 < 1e-24 && (($5 - 3) ^ 2 + $7 ^ 2 - 5) ^ 2 < 1e-23) }' begun.csv
-check $? "the run does not begin at 0.25: $(head -n 2 begun.csv)"
+verdict $? "the run does not begin at 0.25: $(head -n 2 begun.csv)"
 
 # the scene's word is the last
 printf '%s\n' "initial: {coordinates: {turn: 0.75}}" | cat plain.scene - >given.scene
 "$gicrun" --quiet begun.veh given.scene -o given.csv 2>given.err
 awk -F, 'NR == 2 { exit !($8 == 0.75 && ($2 - 2 * sin(0.75)) ^ 2 < 1e-24 &&
     (sqrt(($5 - $2) ^ 2 + ($7 - $4) ^ 2) - 2.3) ^ 2 < 1e-24) }' given.csv
-check $? "the run does not begin at 0.75: $(head -n 2 given.csv)"
+verdict $? "the run does not begin at 0.75: $(head -n 2 given.csv)"
 
 # ---- angles over several turns -------------------------------------------------------------------------------
 
@@ -238,7 +227,7 @@ for rate in 10 -10; do
     printf '%s\n' "gicscene: 1" "duration: 4" "step: 0.0005" "integrator: rk4" "output_step: 0.01" \
         "initial: {rates: {angle: $rate}}" >turns.scene
     "$gicrun" --quiet pendulum.veh turns.scene -o turns.csv 2>turns.err
-    check $? "pendulum at $rate rad/s: $(cat turns.err)"
+    verdict $? "pendulum at $rate rad/s: $(cat turns.err)"
     # (columns: time bob angle rate acceleration)
     awk -F, -v rate=$rate '
         function size(x) { return x < 0 ? -x : x }
@@ -264,7 +253,7 @@ for rate in 10 -10; do
             print bad
             exit bad != ""
         }' turns.csv >bad
-    check $? "pendulum at $rate rad/s, wrong at: $(cut -c 1-200 bad)"
+    verdict $? "pendulum at $rate rad/s, wrong at: $(cut -c 1-200 bad)"
 done
 
 # a crank that turns with its rocker swinging: ground 3, crank 0.5, coupler 3, rocker 1; the rocker's tip stays above
@@ -292,7 +281,7 @@ END
 printf '%s\n' "gicscene: 1" "duration: 6" "step: 0.001" "integrator: rk4" "output_step: 0.01" \
     "initial: {rates: {turn: 6}}" >crank.scene
 "$gicrun" --quiet crank.veh crank.scene -o crank.csv 2>crank.err
-check $? "crank: $(cat crank.err)"
+verdict $? "crank: $(cat crank.err)"
 awk -F, '
     function size(x) { return x < 0 ? -x : x }
     NR == 2 { energy = $11 }
@@ -308,7 +297,7 @@ awk -F, '
         print bad
         exit bad != ""
     }' crank.csv >bad
-check $? "crank, wrong at: $(cut -c 1-200 bad)"
+verdict $? "crank, wrong at: $(cut -c 1-200 bad)"
 
 # ---- Newton from the wrong side ------------------------------------------------------------------------------
 
@@ -385,15 +374,15 @@ int main(void)
 END
 "$gicgen" sides.veh -o sides.c &&
     cc -std=c99 -O1 -I. -I"$runtime" main.c "$runtime/gic_runtime.c" -lm -o sides && ./sides >sides.out
-check $? "wrong side: no program, or it can't be set up"
+verdict $? "wrong side: no program, or it can't be set up"
 [ "$(wc -l <sides.out)" -eq 60 ]
-check $? "wrong side: $(wc -l <sides.out) trials"
+verdict $? "wrong side: $(wc -l <sides.out) trials"
 while read -r body axis angle status off; do
     case $body.$axis.$angle in
     *.0 | *.0.05) [ "$status" -eq 0 ] && echo "$off" | awk '{ exit !($1 < 1e-13) }' ;;
     *) [ "$status" -ne 0 ] || echo "$off" | awk '{ exit !($1 < 1e-13) }' ;;
     esac
-    check $? "$body, start turned by $angle about $axis: status $status, result off by $off"
+    verdict $? "$body, start turned by $angle about $axis: status $status, result off by $off"
 done <sides.out
 
 echo "$passed passed, $failed failed"

@@ -3,25 +3,10 @@
 # test_bench.sh GICBENCH: a short benchmark from end to end: all files are there and whole, tables can be read, what is
 # unstable is called so, errors are those of the integrators. No time is tested but against others of the same page.
 gicbench=$1
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 GICGEN_CACHE=$work/kept
 export GICGEN_CACHE
-passed=0
-failed=0
-
-# check NAME CONDITION...: the command must succeed
-check() {
-    name=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        sed 's/^/    /' "$work/err"
-    fi
-}
 
 # A cart on a spring: x'' + 2 d x' + w^2 x = 0 with w = 30 / s swings freely, and with d = 300 / s has a fast eigenvalue
 # of -598 / s. AB3 is stable on the negative real axis up to 6/11: h < 0.912 ms.

@@ -4,29 +4,15 @@
 # stale or half-written is ever run, and a run ends well without a place to keep anything. Results are compared with
 # those of the engine tape, which has no compiler and agrees digit by digit.
 gicrun=$1
-work=$(mktemp -d) || exit 1
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 mounted=
 trap '[ -z "$mounted" ] || umount "$work/full"; rm -rf "$work"' EXIT
-passed=0
-failed=0
 GICGEN_CACHE=$work/kept
 TMPDIR=$work/tmp
 export GICGEN_CACHE TMPDIR
 unset GICGEN_CACHE_SIZE
 mkdir "$TMPDIR" "$work/bin"
-
-# check NAME CONDITION...: the command must succeed
-check() {
-    name=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        sed 's/^/    /' "$work/err"
-    fi
-}
 
 # a compiler that counts its starts
 cat >"$work/bin/counting" <<END

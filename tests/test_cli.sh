@@ -3,20 +3,10 @@
 # test_cli.sh GICGEN: the command line: exit statuses, files and messages, and that no partial output is left behind.
 gicgen=$(realpath "$1")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
 cd "$work" || exit 1
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
 
 # run STATUS ARGUMENT...: calls gicgen; its words are in out and err
 run() {
@@ -25,13 +15,13 @@ run() {
     "$gicgen" "$@" >out 2>err </dev/null
     status=$?
     [ "$status" -eq "$wanted" ]
-    check $? "gicgen $*: exit status $status instead of $wanted: $(head -n 3 err)"
+    verdict $? "gicgen $*: exit status $status instead of $wanted: $(head -n 3 err)"
 }
 
 # says FILE TEXT
 says() {
     grep -q -F -e "$2" "$1"
-    check $? "$1 lacks '$2': $(head -n 3 "$1")"
+    verdict $? "$1 lacks '$2': $(head -n 3 "$1")"
 }
 
 model=$root/models/hmmwv.veh
@@ -73,21 +63,21 @@ says err "missing.veh: error: can't open"
 run 1 "$root/models"
 says err "error: can't read"
 [ -z "$(find . -name '*.c' -o -name '*.h' -o -name '*.tmp')" ]
-check $? "a refused call left files: $(ls)"
+verdict $? "a refused call left files: $(ls)"
 
 # the code goes where it is asked for, and its include names the header beside it
 run 0 "$model"
 [ -s hmmwv.c ] && [ -s hmmwv.h ]
-check $? "no hmmwv.c and hmmwv.h"
+verdict $? "no hmmwv.c and hmmwv.h"
 run 0 "$model" -o other.c
 grep -q '^#include "other.h"$' other.c && cmp -s hmmwv.h other.h
-check $? "other.c does not include other.h"
+verdict $? "other.c does not include other.h"
 run 0 "$model" -o -
 cat hmmwv.h hmmwv.c | grep -v '^#include "hmmwv.h"$' >together
 grep -v '^$' together >a && grep -v '^$' out >b && cmp -s a b
-check $? "standard output is not header and code"
+verdict $? "standard output is not header and code"
 (cd "$root/models" && "$gicgen" - -o "$work/stdin.c") <"$model" && sed 's/"stdin.h"/"hmmwv.h"/' stdin.c | cmp -s - hmmwv.c
-check $? "a model from standard input gives other code"
+verdict $? "a model from standard input gives other code"
 
 # an old file survives whatever goes wrong, and nothing else is left
 echo old >kept.c
@@ -96,7 +86,7 @@ sed "s/damping: 500/damping: minus/; s|parts/|$root/models/parts/|g" "$model" >b
 run 1 broken.veh -o kept.c
 [ "$(cat kept.c kept.h)" = "old
 old" ]
-check $? "a broken model touched the old output"
+verdict $? "a broken model touched the old output"
 mkdir locked
 echo old >locked/kept.c
 chmod a-w locked
@@ -104,13 +94,13 @@ if [ ! -w locked ]; then # root may write anyway
     run 1 "$model" -o locked/kept.c
     says err "error: can't create"
     [ "$(cat locked/kept.c)" = old ]
-    check $? "an unwritable folder touched the old output"
+    verdict $? "an unwritable folder touched the old output"
 fi
 run 1 "$model" -o nowhere/code.c
 says err "nowhere/code.h: error: can't create"
 "$gicgen" "$model" -o - >/dev/full 2>err
 [ $? -eq 1 ]
-check $? "a full disk is no failure"
+verdict $? "a full disk is no failure"
 says err "can't write"
 
 # pictures
@@ -124,7 +114,7 @@ says hmmwv.svg "</svg>"
 mkdir bin
 PATH=$work/bin "$gicgen" --graph none.svg "$model" 2>err
 [ $? -eq 1 ] && [ ! -e none.svg ]
-check $? "a picture without Graphviz"
+verdict $? "a picture without Graphviz"
 says err "install the package graphviz"
 
 # what is no file stays what it is: as root a rename would replace a device
@@ -133,16 +123,16 @@ cat pipe >piped &
 run 0 --dump-model "$model" -o pipe
 wait
 [ -p pipe ]
-check $? "a pipe is gone"
+verdict $? "a pipe is gone"
 "$gicgen" --dump-model "$model" | cmp -s - piped
-check $? "what comes through a pipe"
+verdict $? "what comes through a pipe"
 
 # templates of one's own
 mkdir templates
 cp "$root"/templates/* templates
 run 0 --templates templates "$model" -o same.c
 sed 's/"same.h"/"hmmwv.h"/' same.c | cmp -s - hmmwv.c
-check $? "the same templates give other code"
+verdict $? "the same templates give other code"
 sed -i 's/^int PREFIX_setup(/\/* our own *\/\n&/' templates/model.c.in
 run 0 --templates templates "$model" -o own.c
 says own.c "/* our own */"

@@ -3,20 +3,9 @@
 # test_diagnosis.sh GICGEN: what is said about mechanisms whose coordinates don't determine them: everywhere, at the
 # design only, or from some value of a coordinate on. The values are derived by hand beside each mechanism.
 gicgen=$(realpath "$1")
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
 
 # model NAME: NAME.veh from standard input, on the ground
 model() {
@@ -30,9 +19,9 @@ run() {
     "$gicgen" "$name.veh" -o "$name.c" >"$name.out" 2>"$name.err"
     status=$?
     [ $status -eq "$1" ]
-    check $? "$name: exit status $status instead of $1"
+    verdict $? "$name: exit status $status instead of $1"
     [ ! -s "$name.out" ]
-    check $? "$name: words on standard output"
+    verdict $? "$name: words on standard output"
 }
 
 # refused KEY WORD...: one error at the line of KEY, with all the words; nothing written
@@ -41,30 +30,30 @@ refused() {
     shift
     run 1
     [ "$(grep -c 'error:' "$name.err")" -eq 1 ] && [ "$(grep -c 'warning:' "$name.err")" -eq 0 ]
-    check $? "$name: not one error: $(cat "$name.err")"
+    verdict $? "$name: not one error: $(cat "$name.err")"
     at_place error "$key"
     for word in "$@"; do
         grep -q -F -e "$word" "$name.err"
-        check $? "$name: says nothing about $word: $(cat "$name.err")"
+        verdict $? "$name: says nothing about $word: $(cat "$name.err")"
     done
     [ "$(grep -c '^  remedy: ..*' "$name.err")" -eq 1 ]
-    check $? "$name: no remedy"
+    verdict $? "$name: no remedy"
     [ ! -e "$name.c" ] && [ ! -e "$name.h" ]
-    check $? "$name: output in spite of an error"
+    verdict $? "$name: output in spite of an error"
 }
 
 # at_place KIND KEY: messages of this kind stand at the line of KEY, which is shown, with a caret under its first letter
 at_place() {
     line=$(grep -n "^ *$2:" "$name.veh" | cut -d: -f1)
     grep -q "^$name\.veh:$line:3: $1: " "$name.err" && grep -A 1 "^    $2: " "$name.err" | grep -q '^    ^$'
-    check $? "$name: not at line $line: $(cat "$name.err")"
+    verdict $? "$name: not at line $line: $(cat "$name.err")"
 }
 
 # silent NAME...: the messages don't accuse them
 silent() {
     for word in "$@"; do
         ! grep -q "'$word'" "$name.err"
-        check $? "$name: accuses $word: $(cat "$name.err")"
+        verdict $? "$name: accuses $word: $(cat "$name.err")"
     done
 }
 
@@ -78,18 +67,18 @@ warned() {
         "$name.err" >"$name.values"
     printf '%s\n' "$@" | paste -d ' ' - "$name.values" |
         awk '{ d = $1 - $2; if (NF != 2 || d > 1e-3 || d < -1e-3) bad = 1 } END { exit bad }'
-    check $? "$name: warnings at $(tr '\n' ' ' <"$name.values")instead of $*"
+    verdict $? "$name: warnings at $(tr '\n' ' ' <"$name.values")instead of $*"
     [ "$(grep -c 'warning:' "$name.err")" -eq $# ] && [ "$(grep -c 'error:' "$name.err")" -eq 0 ]
-    check $? "$name: not $# warnings: $(cat "$name.err")"
+    verdict $? "$name: not $# warnings: $(cat "$name.err")"
     [ -s "$name.c" ] && [ -s "$name.h" ]
-    check $? "$name: no output after a warning"
+    verdict $? "$name: no output after a warning"
 }
 
 # good: not a word
 good() {
     run 0
     [ ! -s "$name.err" ] && [ -s "$name.c" ] && [ -s "$name.h" ]
-    check $? "$name: $(cat "$name.err")"
+    verdict $? "$name: $(cat "$name.err")"
 }
 
 # pendulum NAME X Y Z LOW HIGH: 1 m along x, hinged about y in the origin, with a strut of that range from (X, Y, Z)

@@ -13,24 +13,11 @@ states=$(realpath "$3")
 reference=$(realpath "$4")
 agree=$(realpath "$5")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
-passed=0
-failed=0
 rig=$root/tests/powertrain/rig.veh
 car=$root/models/hmmwv_vehicle.veh
-
-# check STATUS LABEL: counts, and shows $work/said where it failed
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-        cat said
-    fi
-}
 
 # what is on trial is not the compiler
 echo "exec ${CC:-cc} \"\$@\" -O0" >cc
@@ -43,11 +30,11 @@ for model in "$rig" "$car"; do
         "$states" dump --count "${ROWS:-60}" --seed 1 -o states.csv 2>said &&
         { sh "$root/tests/reactions.sh" dump "$model" && sh "$root/tests/wheels.sh" dump; } >variant.veh &&
         "$reference" dump states.csv -o accelerations.csv 2>said
-    check $? "reference at states of $model"
+    verdict $? "reference at states of $model"
     for engine in cc:1e-12 gic:1e-10 gcp1:1e-10 gcp2:1e-10; do
         "$gicrun" --engine "${engine%:*}" --cc "$cc" --eval states.csv variant.veh -o results.csv >said 2>&1 &&
             "$agree" dump accelerations.csv results.csv --reactions --wheels --tolerance "${engine#*:}" >said
-        check $? "${engine%:*} at states of $model"
+        verdict $? "${engine%:*} at states of $model"
     done
 done
 
@@ -63,11 +50,11 @@ for engine in cc gic gcp1; do
     "$gicrun" --engine $engine --cc "$cc" --eval short.csv "$car" -o short.out >said 2>&1 &&
         "$gicrun" --engine $engine --cc "$cc" --eval long.csv "$car" -o long.out >said 2>&1 &&
         cmp short.out long.out >said && ! cut_columns '^status|^message' short.out | grep -q ',,'
-    check $? "$engine: missing columns are as at set-up"
+    verdict $? "$engine: missing columns are as at set-up"
     sed 's/,1,1$/,4,1/' long.csv >none.csv
     "$gicrun" --engine $engine --cc "$cc" --eval none.csv "$car" -o none.out >said 2>&1
     [ "$(grep -c ',-2,' none.out)" -eq "$(($(wc -l <none.csv) - 1))" ]
-    check $? "$engine: a gear that does not exist"
+    verdict $? "$engine: a gear that does not exist"
 done
 
 # ---- runs -------------------------------------------------------------------------------------------------------
@@ -192,13 +179,13 @@ END
 through() {
     "$gicrun" --quiet --engine cc --cc "$cc" "$1" "$2" -o generated.csv >said 2>&1 &&
         shifts generated.csv "$3" "$4" "$5" "$6" "$7" "$8" "$9" >said
-    check $? "$2 with generated code"
+    verdict $? "$2 with generated code"
     "$gicrun" --quiet --engine gic "$1" "$2" -o interpreted.csv >said 2>&1 &&
         shifts interpreted.csv "$3" "$4" "$5" "$6" "$7" "$8" "$9" >said && near generated.csv interpreted.csv 1e-9 >said
-    check $? "$2 with gic"
+    verdict $? "$2 with gic"
     "$gicrun" --quiet --engine gcp1 "$1" "$2" -o interpreted.csv >said 2>&1 &&
         shifts interpreted.csv "$3" "$4" "$5" "$6" "$7" "$8" "$9" >said && near generated.csv interpreted.csv 1e-4 >said
-    check $? "$2 with gcp1"
+    verdict $? "$2 with gcp1"
 }
 through rig.veh shift.scene 4 0 0.4002 0.2 '1 - 2 * c["input.grip"]' \
     'g == 1 ? 300 : g == 2 ? 280 + 100 * c["input.accelerator"] : 300 + 50 * c["pitch.value"]' \
@@ -210,19 +197,19 @@ sed 's/^step: .*/step: 0.0046\nratio: 2/; s/^duration: .*/duration: 7.36/' drive
 "$gicrun" --quiet --engine cc --cc "$cc" car.veh dual.scene -o generated.csv >said 2>&1 &&
     "$gicrun" --quiet --engine gic car.veh dual.scene -o interpreted.csv >said 2>&1 &&
     near generated.csv interpreted.csv 1e-9 >said
-check $? "dual rate with gic"
+verdict $? "dual rate with gic"
 sed 's/^step: .*/output_step: 0.1/; s/^duration: .*/duration: 2/' drive.scene >variable.scene
 for engine in cc gic; do
     "$gicrun" --quiet --engine $engine --cc "$cc" --integrator rkck --tolerance 1e-9 car.veh variable.scene \
         -o $engine.csv >said 2>&1
-    check $? "variable steps with $engine"
+    verdict $? "variable steps with $engine"
 done
 for engine in cc gic; do
     awk -F, 'NR == 1 || $1 < 1.25' $engine.csv >$engine.before
     cut -d, -f5 $engine.csv >$engine.gear
 done
 near cc.before gic.before 1e-6 >said && cmp cc.gear gic.gear >said && [ "$(sort -u cc.gear | wc -l)" -eq 3 ]
-check $? "variable steps agree until gear 2, which both reach in the same tenth of a second"
+verdict $? "variable steps agree until gear 2, which both reach in the same tenth of a second"
 
 # ---- mistakes ---------------------------------------------------------------------------------------------------
 
@@ -231,7 +218,7 @@ mistake() {
     sed "$2" drive.scene >bad.scene
     "$gicrun" --engine tape "$1" bad.scene -o bad.csv >said 2>&1
     [ $? -eq 1 ] && grep -q "^bad.scene:$3: error: .*$4" said && [ ! -e bad.csv ]
-    check $? "mistake: $4"
+    verdict $? "mistake: $4"
 }
 mistake car.veh 's/gear: 2/gear: 4/' 4:27 'gear must be a whole number from -1 to 3'
 mistake car.veh 's/gear: 2/gear: 0.5/' 4:27 'gear must be a whole number from -1 to 3'

@@ -4,20 +4,8 @@
 # power of the step, and generated code and the paper's method, interpreted, agree.
 gicrun=$1
 models=$(dirname "$0")/../models
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0 failed=0
-
-check() {
-    name=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $name"
-    fi
-}
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
 # drive ENGINE STEP MORE: half a second of a bend and some braking at 12 m/s; results in $work/ENGINE_STEP.csv
 drive() {

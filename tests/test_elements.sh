@@ -5,20 +5,9 @@
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
 
 rig=$root/tests/elements/rig.veh
 
@@ -35,7 +24,7 @@ awk 'BEGIN {
         }
 }' >states
 "$gicrun" --eval states "$rig" -o results
-check $? "the rig does not run"
+verdict $? "the rig does not run"
 paste -d , states results | awk -F, '
     function max(a, b) { return a > b ? a : b }
     function wrapped(x) { return x - 2 * pi * (x > pi) + 2 * pi * (x < -pi) }
@@ -74,7 +63,7 @@ paste -d , states results | awk -F, '
         if (!held) { print "damping never wanted to pull: nothing tried that"; bad = 1 }
         exit bad
     }' >said
-check $? "$(head -n 5 said)"
+verdict $? "$(head -n 5 said)"
 
 # ---- a slider against a strap: energy goes into it and comes back --------------------------------------------
 
@@ -89,7 +78,7 @@ initial:
   rates: {strap: 3}
 END
 "$gicrun" --quiet strap.veh bounce.scene -o bounce.csv
-check $? "the slider does not run"
+verdict $? "the slider does not run"
 # 0.1 m to the strap, 0.1342 m into it: 2 kg and 1000 N/m, 9 J; potential at its deepest is all of that
 awk -F, '
     NR == 1 { for (i = 1; i <= NF; ++i) { split($i, word, " "); column[word[1]] = i }; next }
@@ -107,14 +96,14 @@ awk -F, '
         if ((last + 3)^2 > 1e-10) bad = bad " comes back with " last
         if (bad) { print bad; exit 1 }
     }' bounce.csv >said
-check $? "$(head -c 300 said)"
+verdict $? "$(head -c 300 said)"
 
 # ---- all kinds of elements on a free base: the energy balance of the generated self-test -----------------------
 
 "$gicgen" "$root/tests/laws/cart.veh" -o cart.c &&
     cc -std=c99 -O1 -ffp-contract=off -I. -I"$root/runtime" "$root/tests/elements/balance.c" cart.c \
         "$root/runtime/gic_runtime.c" -lm -o balance && ./balance >said
-check $? "energy balance: $(cat said)"
+verdict $? "energy balance: $(cat said)"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -5,19 +5,8 @@
 # is installed.
 gicgen=$(realpath "$1")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
 names=
 for model in "$root"/models/*.veh; do
@@ -65,12 +54,12 @@ while read -r how; do
     for name in $compiled; do
         # shellcheck disable=SC2086  # lists of words
         $how -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -O0 -fsyntax-only -I. "$name.c"
-        check $? "$how $name.c"
+        verdict $? "$how $name.c"
     done
 done <compilers
 for name in $compiled; do
     tcc -std=c99 -Wall -Werror -I. -c "$name.c" -o tcc.o && tcc -DGIC_FLOAT -Wall -Werror -I. -c "$name.c" -o tcc.o
-    check $? "tcc $name.c"
+    verdict $? "tcc $name.c"
 done
 
 # ---- freestanding ------------------------------------------------------------------------------------------
@@ -81,7 +70,7 @@ objects() {
     shift
     for name in $compiled; do
         cc -std=c99 -O2 -Wall -Wextra -Werror -ffp-contract=off -fno-pie -I. "$@" -c "$name.c" -o "$name.$suffix.o"
-        check $? "cc -O2 $* $name.c"
+        verdict $? "cc -O2 $* $name.c"
     done
 }
 objects double
@@ -96,11 +85,11 @@ for name in $compiled; do
         mathematics="(sqrt|sin|cos|sincos|tan|atan2|asin|acos|atan|exp|log|tanh|pow|fabs|floor)$f"
         foreign=$(nm -u "$name.$real.o" | awk '{ print $2 }' | grep -Evx "gic_.*|$mathematics|$memory")
         [ -z "$foreign" ]
-        check $? "$name in $real precision needs $foreign"
+        verdict $? "$name in $real precision needs $foreign"
         # writable data or common symbols would be globals
         variables=$(nm "$name.$real.o" | awk '$2 ~ /^[DdBbC]$/ { print $3 }')
         [ -z "$variables" ]
-        check $? "$name has variables: $variables"
+        verdict $? "$name has variables: $variables"
     done
 done
 
@@ -110,11 +99,11 @@ if [ "$(uname -m)" = x86_64 ]; then
     for name in $compiled; do
         objdump -d --no-show-raw-insn "$name.float.o" | grep -Ew "$doubles" >found
         [ ! -s found ]
-        check $? "$name in single precision computes in double: $(head -n 3 found)"
+        verdict $? "$name in single precision computes in double: $(head -n 3 found)"
     done
     # the search finds them where they are
     objdump -d --no-show-raw-insn gic_runtime.double.o | grep -Ewq "$doubles"
-    check $? "no arithmetic found in double precision"
+    verdict $? "no arithmetic found in double precision"
 fi
 
 # ---- programs ----------------------------------------------------------------------------------------------
@@ -122,12 +111,12 @@ fi
 # README's example: the first block of C there, compiled by the two lines of shell that follow it
 sed -n '/^```c$/,/^```$/p' "$root/README.md" | sed '/^```/d' >main.c
 cc -Wall -Wextra -Werror -O2 -I. main.c hmmwv.double.o gic_runtime.double.o -no-pie -lm -o example
-check $? "README's example does not compile"
+verdict $? "README's example does not compile"
 answer=$(./example)
-check $? "README's example fails: $answer"
+verdict $? "README's example fails: $answer"
 # the model says that it rests within a millimetre of its design configuration, whose chassis stands at 0.474
 echo "$answer" | awk '/^ok: / { z = $6 } END { exit !(z > 0.473 && z < 0.475) }'
-check $? "README's example prints: $answer"
+verdict $? "README's example prints: $answer"
 
 # two vehicles and a pendulum in one program, as C and C++: the same digits; in float: to five of them, for the run
 # takes 400 steps of 1e-7 each
@@ -135,41 +124,41 @@ program="$root/tests/embed/two_vehicles.c"
 parts="hmmwv.c pendulum.c gic_runtime.c gic_road.c"
 cc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Werror -O2 -I. "$program" hmmwv.double.o pendulum.double.o \
     gic_runtime.double.o gic_road.double.o -no-pie -lm -o ride && ./ride >ride.double
-check $? "two vehicles in C"
+verdict $? "two vehicles in C"
 awk 'NF != 4 { bad = 1 } END { exit bad || NR != 3 }' ride.double
-check $? "two vehicles print: $(cat ride.double)"
+verdict $? "two vehicles print: $(cat ride.double)"
 # the pendulum is where the benchmark has it at 2 s (RK4 at 5 ms is right to 1e-7), the cars 10 m down the road
 awk 'NR < 3 && ($2 < 9.99 || $2 > 10.01) { bad = 1 }
     NR == 3 && (($2 + 0.793566195343)^2 + ($3 + 0.608483930444)^2 > 1e-14) { bad = 1 } END { exit bad }' ride.double
-check $? "two vehicles went elsewhere: $(cat ride.double)"
+verdict $? "two vehicles went elsewhere: $(cat ride.double)"
 # shellcheck disable=SC2086  # lists of words
 g++ -x c++ -std=c++17 -Wall -Wextra -Wpedantic -Wconversion -Werror -O1 -ffp-contract=off -I. "$program" $parts -lm \
     -o ride && ./ride | cmp - ride.double
-check $? "two vehicles in C++"
+verdict $? "two vehicles in C++"
 # shellcheck disable=SC2086  # lists of words
 tcc -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
-check $? "two vehicles with tcc"
+verdict $? "two vehicles with tcc"
 if command -v clang >/dev/null; then
     # shellcheck disable=SC2086  # lists of words
     clang -std=c99 -O1 -ffp-contract=off -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
-    check $? "two vehicles with clang"
+    verdict $? "two vehicles with clang"
     # shellcheck disable=SC2086  # lists of words
     clang++ -x c++ -std=c++17 -O1 -ffp-contract=off -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
-    check $? "two vehicles with clang++"
+    verdict $? "two vehicles with clang++"
 fi
 cc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror -DGIC_FLOAT -O2 -I. "$program" hmmwv.float.o \
     pendulum.float.o gic_runtime.float.o gic_road.float.o -no-pie -lm -o ride && ./ride >ride.float
-check $? "two vehicles in single precision"
+verdict $? "two vehicles in single precision"
 paste ride.double ride.float | awk '{ for (i = 1; i <= 4; ++i) if (($i - $(i + 4))^2 > 1e-10 * (1 + $i^2)) bad = 1 }
     END { exit bad || NR != 3 }'
-check $? "two vehicles in single precision end elsewhere: $(cat ride.float)"
+verdict $? "two vehicles in single precision end elsewhere: $(cat ride.float)"
 
 # the example that gicgen writes for each model: short, without a warning in C and C++, for two seconds or, where the
 # model wants shorter steps than the example's, until a message says so
 for name in $names; do
     "$gicgen" --main "$root/models/$name.veh" -o "main_$name.c"
     [ "$(wc -l <"main_$name.c")" -lt 60 ]
-    check $? "the example of $name is too long"
+    verdict $? "the example of $name is too long"
     cc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -I. "main_$name.c" "$name.double.o" \
         gic_runtime.double.o -no-pie -lm -o example && ./example >results 2>messages
     status=$?
@@ -179,27 +168,27 @@ for name in $names; do
         [ $status -eq 0 ] && awk -F, 'NR == 1 { n = NF } NF != n || /nan|inf/ { bad = 1 }
             END { exit bad || NR != 102 || $1 != 2 }' results
     fi
-    check $? "the example of $name: $(cat messages)"
+    verdict $? "the example of $name: $(cat messages)"
     g++ -x c++ -std=c++11 -Wall -Wextra -Wpedantic -Wconversion -Werror -fsyntax-only -I. "main_$name.c"
-    check $? "the example of $name in C++"
+    verdict $? "the example of $name in C++"
 done
 # AB3 at 2 ms is right to 1e-6
 "$gicgen" --main "$root/models/pendulum.veh" -o main.c && cc -I. main.c pendulum.double.o gic_runtime.double.o -no-pie -lm \
     -o example && ./example | awk -F, 'END { exit ($2 + 0.793566195343)^2 + ($4 + 0.608483930444)^2 > 1e-12 }'
-check $? "the example of the pendulum ends elsewhere"
+verdict $? "the example of the pendulum ends elsewhere"
 
 # ---- versions that do not fit -------------------------------------------------------------------------------
 
 cc -O0 -I. "$program" hmmwv.double.o pendulum.double.o gic_runtime.float.o gic_road.float.o -no-pie -lm -o mixed 2>messages
 [ $? -ne 0 ] && grep -q gic_step messages
-check $? "number types can be mixed"
+verdict $? "number types can be mixed"
 mkdir later
 sed 's/^#define GIC_ABI_VERSION .*/#define GIC_ABI_VERSION 999/' gic_runtime.h >later/gic_runtime.h
 for name in $names; do
     cp "$name.c" "$name.h" later/
     cc -Ilater -fsyntax-only "later/$name.c" 2>messages
     [ $? -ne 0 ] && grep -q "error.*$name.h was generated for version .* of gic_runtime.h" messages
-    check $? "$name compiles with another version of the runtime"
+    verdict $? "$name compiles with another version of the runtime"
 done
 
 echo "$passed passed, $failed failed"

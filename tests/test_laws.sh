@@ -9,26 +9,15 @@ states=$(realpath "$3")
 reference=$(realpath "$4")
 agree=$(realpath "$5")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
 
 cart=$root/tests/laws/cart.veh
 "$gicgen" --dump-model "$cart" >dump && "$states" dump --count 50 --seed 4 -o states.csv &&
     "$reference" dump states.csv -o accelerations.csv && "$gicrun" --eval states.csv "$cart" -o results.csv &&
     "$agree" dump accelerations.csv results.csv
-check $? "accelerations"
+verdict $? "accelerations"
 
 # the port's numbers as a load, the tunable parameters' other values baked in
 sed 's/^model: .*/model: tuned/; s/value: 4000/value: 5000/; s/value: 25,/value: -8,/; s/, tunable: true//
@@ -37,7 +26,7 @@ sed 's/^model: .*/model: tuned/; s/value: 4000/value: 5000/; s/value: 25,/value:
 "$gicgen" "$cart" -o cart.c && "$gicgen" tuned.veh -o tuned.c &&
     cc -std=c99 -O1 -ffp-contract=off -I. -I"$root/runtime" "$root/tests/laws/ports.c" cart.c tuned.c "$root/runtime/gic_runtime.c" \
         -lm -o ports && ./ports
-check $? "ports and tunable parameters"
+verdict $? "ports and tunable parameters"
 
 # a scene's parameter is the model's with that value: the same run to rounding
 scene='gicscene: 1
@@ -50,13 +39,13 @@ printf '%s\nparameters: {k: 5500}\n' "$scene" >tuned.scene
 sed 's/value: 4000/value: 5500/' "$cart" >stiff.veh
 "$gicrun" --quiet stiff.veh plain.scene -o plain.csv && "$gicrun" --quiet "$cart" tuned.scene -o tuned.csv &&
     [ "$(tail -n 1 plain.csv)" = "$(tail -n 1 tuned.csv)" ]
-check $? "parameters of a scene"
+verdict $? "parameters of a scene"
 "$gicrun" --quiet "$cart" plain.scene -o soft.csv && [ "$(tail -n 1 plain.csv)" != "$(tail -n 1 soft.csv)" ]
-check $? "a parameter changes the run"
+verdict $? "a parameter changes the run"
 printf '%s\nparameters: {half: 1}\n' "$scene" >fixed.scene
 "$gicrun" --quiet "$cart" fixed.scene -o fixed.csv 2>message
 [ $? -eq 1 ] && grep -q "fixed.scene:6:14: error: parameter 'half' is fixed" message && [ ! -e fixed.csv ]
-check $? "a parameter that is not tunable: $(cat message)"
+verdict $? "a parameter that is not tunable: $(cat message)"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

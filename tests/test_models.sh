@@ -7,19 +7,8 @@ gicgen=$1
 gicrun=$2
 root=$(dirname "$0")/..
 models=$root/models
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
 # scene LINES...: writes $work/scene
 scene() {
@@ -30,7 +19,7 @@ scene() {
 run() {
     rm -f "$work/csv"
     "$gicrun" --quiet "$models/$1.veh" "${2:-$work/scene}" -o "$work/csv"
-    check $? "$1 does not run"
+    verdict $? "$1 does not run"
 }
 
 # at TIME COLUMN: a value of $work/csv; TIME may be `end`
@@ -45,7 +34,7 @@ at() {
 # near VALUE EXPECTED TOLERANCE LABEL
 near() {
     awk -v x="$1" -v y="$2" -v t="$3" 'BEGIN { exit !(x ~ /^-?[0-9]/ && (x - y)^2 <= t * t) }'
-    check $? "$4: $1 instead of $2 (+- $3)"
+    verdict $? "$4: $1 instead of $2 (+- $3)"
 }
 
 # ---- sequences, against tests/expected/MODEL.txt -------------------------------------------------------------
@@ -91,14 +80,14 @@ subsets() {
 for file in "$models"/*.veh; do
     name=$(basename "$file" .veh)
     "$gicgen" --sequence "$file" >"$work/sequence"
-    check $? "$name has no sequence"
+    verdict $? "$name has no sequence"
     grep -v '^#' "$root/tests/expected/$name.txt" >"$work/expected"
-    check $? "no expected sequence for $name"
+    verdict $? "no expected sequence for $name"
     {
         sed -n 's/^\([0-9]* coordinates, [0-9]* equations\) .*), /total: \1, /p' "$work/sequence"
         subsets "$work/sequence"
     } | diff "$work/expected" - >"$work/difference"
-    check $? "sequence of $name: $(cat "$work/difference")"
+    verdict $? "sequence of $name: $(cat "$work/difference")"
 done
 
 # ---- the pendulum's published positions (IFToMM benchmark A01) ---------------------------------------------
@@ -127,7 +116,7 @@ order() {
     near "$(awk -v a="$coarse" -v b="$error" -v h="$3" -v k="$4" 'BEGIN { print log(a / b) / log(h / k) }')" "$2" 0.1 \
         "observed order of $1"
     awk -v a="$lost" -v b="$energy" -v h="$3" -v k="$4" -v n="$2" 'BEGIN { exit !(log(a / b) / log(h / k) > n - 0.1) }'
-    check $? "energy of the pendulum with $1: $lost J at step $3, $energy J at step $4"
+    verdict $? "energy of the pendulum with $1: $lost J at step $3, $energy J at step $4"
 }
 
 order ab3 3 0.001 0.0005
@@ -220,7 +209,7 @@ awk -F, '
             if (!(most[i] > 20 && most[i] < 30)) bad = bad " deepest " most[i]
         if (bad) { print bad; exit 1 }
     }' "$work/csv" >"$work/said"
-check $? "stops: $(head -c 300 "$work/said")"
+verdict $? "stops: $(head -c 300 "$work/said")"
 
 # ---- cost grows with the number of bodies, not faster ------------------------------------------------------------
 

@@ -4,20 +4,8 @@
 # obeys balances of power and momentum and formulas of POWERTRAIN.md worked out here.
 gicrun=$1
 models=$(cd "$(dirname "$0")/../models" && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0 failed=0
-
-check() {
-    name=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $name"
-    fi
-}
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
 # within LOW VALUE HIGH
 within() {

@@ -7,20 +7,9 @@
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
 
 # balances FORM LABEL PROGRAM: an awk program over the rows of `results` says with same(label, is, should, scale) what
 # must be equal; v["name"] is a cell of the row, 0 where there is no such column. There must be a row for each state.
@@ -36,7 +25,7 @@ balances() {
         v["status"] != 0 { print "row " NR - 1 ": status " v["status"]; bad = 1 }
         '"$3"'
         END { exit bad || NR - 1 != rows }' rows="$(($(wc -l <states) - 1))" results
-    check $? "$1: $2"
+    verdict $? "$1: $2"
 }
 
 # ---- pendulum: m = 1, centre of mass at d = 0.5 from the pivot, angle'' = g cos(angle), force = m (a - g), no torque
@@ -60,7 +49,7 @@ angle,angle.rate
 END
 for form in reduced augmented; do
     "$gicrun" --solve $form --eval states pendulum.veh -o results
-    check $? "pendulum, $form"
+    verdict $? "pendulum, $form"
     # shellcheck disable=SC2016
     balances $form "pendulum" '{
         getline state <"states"
@@ -120,7 +109,7 @@ bounce,bounce.rate,bounce.acceleration,spring,spring.rate,spring.acceleration
 END
 for form in reduced augmented; do
     "$gicrun" --solve $form --eval states still.veh -o results
-    check $? "standing quarter car, $form"
+    verdict $? "standing quarter car, $form"
     balances $form "standing quarter car" '
         '"$masses"'
         {
@@ -154,7 +143,7 @@ bounce,bounce.rate,spring,spring.rate
 END
 for form in reduced augmented; do
     "$gicrun" --solve $form --eval states moving.veh -o results
-    check $? "moving quarter car, $form"
+    verdict $? "moving quarter car, $form"
     balances $form "moving quarter car" '
         '"$masses"'
         {
@@ -178,7 +167,7 @@ for form in reduced augmented; do
         FNR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^spring.acceleration/) column = i }
         { print line[FNR] "," (FNR == 1 ? "spring.acceleration" : $column) }' states "moving.$form" >driven
     "$gicrun" --solve $form --eval driven replaced.veh -o results
-    check $? "drive in the place of the spring, $form"
+    verdict $? "drive in the place of the spring, $form"
     sed 's/ \[[^],]*\]//g' "moving.$form" >spring
     balances $form "drive in the place of the spring" '
         {
@@ -206,15 +195,15 @@ asks() {
 # solves COUNT LABEL: number of subsets whose multipliers the code solves for
 solves() {
     "$gicgen" hmmwv.veh -o hmmwv.c
-    check $? "gicgen, $2"
+    verdict $? "gicgen, $2"
     count=$(grep -c '^    hmmwv_react_.*&links' hmmwv.c)
     [ "$count" -eq "$1" ]
-    check $? "$2: multipliers of $count subsets instead of $1"
+    verdict $? "$2: multipliers of $count subsets instead of $1"
 }
 asks
 solves 0 "no reactions"
 ! grep -q 'hmmwv_react' hmmwv.c
-check $? "functions for reactions that nobody asks for"
+verdict $? "functions for reactions that nobody asks for"
 asks upper_r_r # a leaf
 solves 1 "a wheel's link"
 asks arm_r_r # carries the wheel
@@ -252,22 +241,22 @@ END
 flags="-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -I$root/runtime -I."
 for form in reduced augmented; do
     "$gicgen" --solve $form hmmwv.veh -o hmmwv.c
-    check $? "gicgen --solve $form"
+    verdict $? "gicgen --solve $form"
     grep -q "^ \* Equations of motion in the $form form" hmmwv.c
-    check $? "$form: the head of the code does not say so"
+    verdict $? "$form: the head of the code does not say so"
     # shellcheck disable=SC2086
     ${CC:-cc} -std=c99 -O0 $flags -o drive drive.c hmmwv.c "$root/runtime/gic_runtime.c" -lm
-    check $? "$form: compiled as C99"
+    verdict $? "$form: compiled as C99"
     # the balance is that of the reduced form's equations: in the other form the accelerations' rounding shows in it
     ./drive >said && awk '{ exit !(NF == 6 && $1 == 0 && $2 <= 1e-13 && $3 <= 1e-13 && $4 <= 1e-11 && $5 <= 1e-12 &&
         $6 > 0) }' said
-    check $? "$form: self-test: $(cat said)"
+    verdict $? "$form: self-test: $(cat said)"
     # shellcheck disable=SC2086
     ${CC:-cc} -std=c99 -O0 $flags -Wdouble-promotion -Wfloat-conversion -DGIC_FLOAT -c -o single.o hmmwv.c
-    check $? "$form: single precision"
+    verdict $? "$form: single precision"
     # shellcheck disable=SC2086
     ${CXX:-c++} -x c++ -O0 $flags -c -o cxx.o hmmwv.c
-    check $? "$form: compiled as C++"
+    verdict $? "$form: compiled as C++"
 done
 
 echo "$passed passed, $failed failed"

@@ -4,19 +4,8 @@
 # roughness grows as its class says, and mistakes in scenes and their files are refused where they stand.
 gicrun=$1
 models=$(cd "$(dirname "$0")/../models" && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
 # scene ROAD [SED]: the HMMWV from rest on its springs at 6 m/s over the road that follows `road: `, in $work/scene
 scene() {
@@ -30,14 +19,14 @@ drive() {
     shift
     scene "$@"
     "$gicrun" --quiet "$models/hmmwv.veh" "$work/scene" -o "$work/$name.csv" 2>"$work/err"
-    check $? "$name: $(cat "$work/err")"
+    verdict $? "$name: $(cat "$work/err")"
 }
 # same A B TOLERANCE: all numbers of two results are as near as that
 same() {
     paste -d, "$work/$1.csv" "$work/$2.csv" | awk -F, -v most="$3" 'NR > 1 {
         for (i = 1; i <= NF / 2; ++i) { d = $i - $(i + NF / 2); if (d < 0) d = -d; if (!(d <= most)) bad = 1 }
     } END { exit bad || NR != 202 }'
-    check $? "$1 and $2 differ"
+    verdict $? "$1 and $2 differ"
 }
 
 # ---- the same road in two forms ----------------------------------------------------------------------------
@@ -86,20 +75,20 @@ done
 # springs and tires are linear in the small: twice the road, twice the motion
 echo "$(deviation A) $(deviation B) $(deviation C)" |
     awk '{ exit !($1 > 1e-4 && $2 / $1 > 1.9 && $2 / $1 < 2.1 && $3 / $2 > 1.9 && $3 / $2 < 2.1) }'
-check $? "motions on classes A, B, C: $(deviation A) $(deviation B) $(deviation C)"
+verdict $? "motions on classes A, B, C: $(deviation A) $(deviation B) $(deviation C)"
 drive again '{type: iso8608, class: C, seed: 5, length: 40, start: 2}'
 same C again 0
 drive other '{type: iso8608, class: C, seed: 6, length: 40, start: 2}'
 ! cmp -s "$work/C.csv" "$work/other.csv"
-check $? "another seed, the same road"
+verdict $? "another seed, the same road"
 
 # every scene with a road of the models runs, and the vehicle stays on it
 for name in rough_road field_track; do
     "$gicrun" --quiet "$models/hmmwv.veh" "$models/scenes/$name.scene" -o "$work/$name.csv" 2>"$work/err"
-    check $? "$name.scene: $(cat "$work/err")"
+    verdict $? "$name.scene: $(cat "$work/err")"
     awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^chassis.z/) z = i; next }
         $z < 0.35 || $z > 0.75 { bad = 1 } END { exit bad || NR < 300 }' "$work/$name.csv"
-    check $? "$name.scene: the vehicle leaves the road"
+    verdict $? "$name.scene: the vehicle leaves the road"
 done
 
 # ---- mistakes ----------------------------------------------------------------------------------------------
@@ -109,7 +98,7 @@ refused() {
     "$gicrun" "$models/hmmwv.veh" "$work/scene" --cc false >"$work/out" 2>"$work/err"
     [ $? -eq 1 ] && grep -q "^$work/$1 error: .*$2" "$work/err" && [ "$(grep -c 'error: ' "$work/err")" -eq 1 ] &&
         grep -q '^  remedy: ' "$work/err"
-    check $? "not refused at $1 with '$2': $(cat "$work/err")"
+    verdict $? "not refused at $1 with '$2': $(cat "$work/err")"
 }
 # bad ROAD COLUMN TEXT: the road is refused at that column of its line, the scene's tenth
 bad() {

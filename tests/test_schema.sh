@@ -4,22 +4,11 @@
 # and misplaced keys, wrong kinds) does not; the committed schema, the list of keys and the pages FORMAT.md, TIRES.md and POWERTRAIN.md are those of the reader.
 gicgen=$1
 root=$(dirname "$0")/..
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
 "$gicgen" --schema >"$work/schema" && cmp "$work/schema" "$root/models/veh.schema.json"
-check $? "models/veh.schema.json is not what --schema prints"
+verdict $? "models/veh.schema.json is not what --schema prints"
 # fits FILE
 fits() {
     /usr/bin/python3 "$root/tests/schema.py" "$work/schema" "$1" >"$work/said" && grep -q '^good' "$work/said"
@@ -28,7 +17,7 @@ fits() {
 for model in "$root"/models/*.veh "$root"/models/parts/*.veh "$root"/tests/dump/*.veh "$root"/tests/dump/parts/*.veh \
     "$root"/tests/laws/*.veh "$root"/tests/elements/*.veh "$root"/tests/tuning/*.veh "$root"/tests/symmetry/*.veh; do
     fits "$model"
-    check $? "$(cat "$work/said")"
+    verdict $? "$(cat "$work/said")"
 done
 
 # structure is what a schema can see; values that contradict each other are left to the reader
@@ -44,16 +33,16 @@ for name in body_key_missing body_key_unknown body_not_map coordinate_angle_poin
     wheel_spin_plain wheel_spin_zero wheel_tire_radius; do
     fits "$root/tests/bad/$name.veh"
     grep -q '^bad' "$work/said"
-    check $? "$name fits the schema"
+    verdict $? "$name fits the schema"
 done
 
 "$gicgen" --list-keys >"$work/keys"
 /usr/bin/python3 "$root/tests/schema_texts.py" "$work/schema" "$work/keys" >"$work/said" &&
     ! grep '^bad' "$work/said" && [ "$(sed -n '$s/ described$//p' "$work/said")" -gt 60 ]
-check $? "descriptions of keys: $(cat "$work/said")"
+verdict $? "descriptions of keys: $(cat "$work/said")"
 for key in $(sed -n 's/^  \([a-z][a-z0-9_]*\) .*/\1/p' "$work/keys" | sort -u); do
     grep -q "[\`{ ]$key[\`:]" "$root/models/FORMAT.md" "$root/models/TIRES.md" "$root/models/POWERTRAIN.md" && grep -q "\"$key\": " "$work/schema"
-    check $? "key '$key' is missing in FORMAT.md, TIRES.md and POWERTRAIN.md, or in the schema"
+    verdict $? "key '$key' is missing in FORMAT.md, TIRES.md and POWERTRAIN.md, or in the schema"
 done
 
 echo "$passed passed, $failed failed"

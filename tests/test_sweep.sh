@@ -4,26 +4,11 @@
 # they should; a killed sweep goes on and ends with the same bytes; without a compiler the same bytes; clear errors.
 gicsweep=$1
 gicrun=$2
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 GICGEN_CACHE=$work/kept
 OMP_NUM_THREADS=2
 export GICGEN_CACHE OMP_NUM_THREADS
-passed=0
-failed=0
-
-# check NAME CONDITION...: the command must succeed
-check() {
-    name=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        sed 's/^/    /' "$work/err"
-    fi
-}
 
 # says TEXT STATUS COMMAND...: it ends with the status and the text in its message
 says() {

@@ -9,20 +9,8 @@ gicrun=$2
 states=$3
 random_vehicle=$4
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-        sed 's/^/    /' "$work/said"
-    fi
-}
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
 # compiles in a quarter of the time
 echo "exec ${CC:-cc} \"\$@\" -O0" >"$work/cc"
@@ -74,9 +62,9 @@ same_states() {
         tape "$@" --eval "$work/states" "$model" -o "$work/played" 2>"$work/said.played" &&
         cmp "$work/said.compiled" "$work/said.played" >"$work/said" &&
         diff "$work/compiled" "$work/played" >"$work/said"
-    check $? "states of $label"
+    verdict $? "states of $label"
     grep -q ',0,"ok"' "$work/played" && grep -q ',-[0-9]*,"[^"]*"' "$work/played"
-    check $? "states of $label, of either kind"
+    verdict $? "states of $label, of either kind"
 }
 
 # same_run MODEL SCENE LABEL: results and summary, but for the time it took
@@ -86,7 +74,7 @@ same_run() {
         sed -i '/CPU time/d' "$work/said.compiled" "$work/said.played" &&
         diff "$work/said.compiled" "$work/said.played" >"$work/said" &&
         cmp "$work/compiled" "$work/run" >"$work/said"
-    check $? "run of $3"
+    verdict $? "run of $3"
 }
 
 sed "s|parts/|$root/models/parts/|g; s/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/" \
@@ -124,7 +112,7 @@ road: {type: sine, amplitude: 0.02, wavelength: 3}
 END
 same_run "$work/steered.veh" "$work/steered.scene" "steered"
 grep -q 'parameter switches *[1-9]' "$work/said.played"
-check $? "the dependent parameter changes"
+verdict $? "the dependent parameter changes"
 
 # wheels with tires: rolling, steering, locking up on patches of ice, in one rate and in two
 for ratio in 1 4; do
@@ -156,11 +144,11 @@ compiled=$?
 tape -q "$root/models/hmmwv.veh" "$work/hmmwv.scene" -o "$work/played" 2>"$work/said.played"
 [ $? -eq 1 ] && [ $compiled -eq 1 ] && cmp "$work/compiled" "$work/played" &&
     cmp "$work/said.compiled" "$work/said.played"
-check $? "a run that fails"
+verdict $? "a run that fails"
 
 "$gicrun" --engine taep "$root/models/hmmwv.veh" "$work/hmmwv.scene" 2>"$work/said"
 [ $? -eq 2 ] && grep -q 'tape' "$work/said"
-check $? "an engine that there is not"
+verdict $? "an engine that there is not"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -8,19 +8,8 @@ gicgen=$1
 targets=$(cd "$(dirname "$0")/targets" && pwd)
 runtime=$(cd "$(dirname "$0")/../runtime" && pwd)
 models=$(cd "$(dirname "$0")/../models" && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
 "$gicgen" "$models/hmmwv.veh" -o "$work/hmmwv.c" || exit 1
 cp "$runtime"/gic_runtime.[ch] "$runtime"/gic_road.[ch] "$targets"/* "$work/"
@@ -38,18 +27,18 @@ for real in double float; do
     define=$([ $real = float ] && echo -DGIC_FLOAT)
     # shellcheck disable=SC2086  # lists of words
     cc $options $define $code hosted.c -o "host_$real" -lm && "./host_$real" >"host_$real.txt"
-    check $? "host, $real"
+    verdict $? "host, $real"
     [ "$(wc -l <"host_$real.txt")" -eq $((8 * 24 + 1)) ]
-    check $? "host, $real: numbers printed"
+    verdict $? "host, $real: numbers printed"
     height "host_$real.txt" | awk '{ exit !($1 > 0.3 && $1 < 2) }'
-    check $? "host, $real: the chassis stays on its wheels ($(height "host_$real.txt"))"
+    verdict $? "host, $real: the chassis stays on its wheels ($(height "host_$real.txt"))"
 
     # shellcheck disable=SC2086
     aarch64-linux-gnu-gcc $options $define -static $code hosted.c -o "arm64_$real" -lm &&
         qemu-aarch64 "./arm64_$real" >"arm64_$real.txt"
-    check $? "aarch64, $real"
+    verdict $? "aarch64, $real"
     cmp "host_$real.txt" "arm64_$real.txt"
-    check $? "aarch64, $real: same bits as the host"
+    verdict $? "aarch64, $real: same bits as the host"
 
     # fpv5-d16: the Cortex-M7 with double precision; -nostartfiles: cortex_m.c starts it
     # shellcheck disable=SC2086
@@ -57,12 +46,12 @@ for real in double float; do
         -fno-math-errno -nostartfiles -Wl,--gc-sections -T mps2_an500.ld cortex_m.c $code -o "m7_$real" -lm &&
         qemu-system-arm -M mps2-an500 -display none -monitor none -serial none -semihosting-config enable=on,target=native \
             -kernel "m7_$real" >"m7_$real.out" 2>&1
-    check $? "Cortex-M7, $real"
+    verdict $? "Cortex-M7, $real"
     grep -v '^stack' "m7_$real.out" | cmp - "host_$real.txt"
-    check $? "Cortex-M7, $real: same bits as the host"
+    verdict $? "Cortex-M7, $real: same bits as the host"
     stack=$(sed -n 's/^stack 0*\([1-9][0-9]*\) bytes$/\1/p' "m7_$real.out")
     [ -n "$stack" ] && [ "$stack" -lt 16384 ]
-    check $? "Cortex-M7, $real: stack of '$stack' bytes is below 16 kB"
+    verdict $? "Cortex-M7, $real: stack of '$stack' bytes is below 16 kB"
     arm-none-eabi-size "m7_$real" | awk -v real="$real" -v stack="$stack" \
         'NR == 2 { print "Cortex-M7, " real ": " $1 + $2 " bytes of code and constants, " $3 " of data, " stack " of stack" }'
 done

@@ -6,20 +6,9 @@
 case $1 in /*) gicgen=$1 ;; *) gicgen=$PWD/$1 ;; esac
 root=$(cd "$(dirname "$0")/.." && pwd)
 good=$root/models/tires/hmmwv_pac2002.tir
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
 
 cat >cart.veh <<'END'
 gicgen: 1
@@ -36,14 +25,14 @@ END
 # reads LABEL: t.tir is read without a word
 reads() {
     "$gicgen" --dump-model cart.veh >dump 2>err && [ ! -s err ]
-    check $? "$1: $(cat err)"
+    verdict $? "$1: $(cat err)"
 }
 
 # same LABEL: and gives the numbers of the HMMWV's tire
 same() {
     reads "$1"
     cmp -s dump plain
-    check $? "$1: other numbers"
+    verdict $? "$1: other numbers"
 }
 
 # broken SCRIPT LINE COLUMN MESSAGE REMEDY: the tire that sed's SCRIPT spoils is refused at the first line that begins
@@ -59,7 +48,7 @@ refused() {
     [ $? -eq 1 ] && [ ! -s dump ] && [ "$(grep -c 'error: ' err)" -eq 1 ] && grep -q '^  *^$' err &&
         grep -qF -e "t.tir:${line:-none}:$2: error: " err && grep 'error: ' err | grep -qF -e "$3" &&
         grep '^  remedy: ' err | grep -qF -e "$4"
-    check $? "$5: not '$1':$2 '$3' '$4' but $(head -c 600 err)"
+    verdict $? "$5: not '$1':$2 '$3' '$4' but $(head -c 600 err)"
 }
 
 # ---- what is right ---------------------------------------------------------------------------------------------------
@@ -68,7 +57,7 @@ cp "$good" t.tir
 reads 'the file of the HMMWV'
 cp dump plain
 /usr/bin/python3 "$root/tests/tir.py" numbers "$good" dump >said 2>&1
-check $? "numbers: $(tail -n 1 said)"
+verdict $? "numbers: $(tail -n 1 said)"
 
 # units: 1e-15 is a few roundings of one multiplication and one division
 for units in 'mm kN degree second' 'millimeter kilonewton deg ms' 'cm N radians minute' 'inch lbf degrees s'; do
@@ -76,9 +65,9 @@ for units in 'mm kN degree second' 'millimeter kilonewton deg ms' 'cm N radians 
     /usr/bin/python3 "$root/tests/tir.py" convert "$good" $units >t.tir
     reads "units $units"
     cmp -s t.tir "$good"
-    check $((! $?)) "units $units: the file is the same"
+    verdict $((! $?)) "units $units: the file is the same"
     /usr/bin/python3 "$root/tests/tir.py" same plain dump 1e-15 >said 2>&1
-    check $? "units $units: $(tail -n 1 said)"
+    verdict $? "units $units: $(tail -n 1 said)"
 done
 
 sed 's/$/\r/' "$good" >t.tir
@@ -110,10 +99,10 @@ reads 'MF5.2 without ranges and mode'
 sed 's/^PCX1 = .*/&\nPXC1 = 3/' "$good" >t.tir
 "$gicgen" --dump-model cart.veh >dump 2>err && cmp -s dump plain && grep -q "t.tir:[0-9]*:1: warning: .*'PXC1'" err &&
     grep -q "remedy: did you mean 'PCX1'?" err
-check $? "an unknown key: $(cat err)"
+verdict $? "an unknown key: $(cat err)"
 { cat "$good" && seq -f 'NOTHING_%.0f = 1' 1000; } >t.tir
 "$gicgen" --dump-model cart.veh >dump 2>err && [ "$(grep -c warning err)" -eq 11 ] && grep -q '990 more' err
-check $? 'a thousand unknown keys'
+verdict $? 'a thousand unknown keys'
 
 # ---- what is wrong ---------------------------------------------------------------------------------------------------
 
@@ -169,7 +158,7 @@ refused 'LENGTH' 7 'this is no text: byte 0' '.tir file'
 : >t.tir
 "$gicgen" --dump-model cart.veh >dump 2>err
 [ $? -eq 1 ] && grep -q "t.tir:1:1: error: .*\[MODEL\]" err
-check $? "an empty file: $(cat err)"
+verdict $? "an empty file: $(cat err)"
 long=$(head -c 10000 /dev/zero | tr '\0' 9)
 sed "s/^PCX1 = .*/PCX1 = $long/" "$good" >t.tir
 refused 'PCX1' 8 "PCX1 of tire 'all': 999" '1.8e308' 'a number of 10 kB'
@@ -177,12 +166,12 @@ sed "s/^PCX1 = .*/K$long/" "$good" >t.tir
 refused 'K999' 1 'neither a [SECTION] nor KEY = value' 'KEY = value' 'a key of 10 kB'
 sed "s/^PCX1 = .*/&\nK$long = 1/" "$good" >t.tir
 "$gicgen" --dump-model cart.veh >dump 2>err && cmp -s dump plain && grep -q "'K999*' is not known" err
-check $? 'an unknown key of 10 kB'
+verdict $? 'an unknown key of 10 kB'
 
 # ---- anything -------------------------------------------------------------------------------------------------------
 
 /usr/bin/python3 "$root/tests/tir.py" fuzz "$good" 300 "$gicgen" cart.veh t.tir >said 2>&1
-check $? "fuzz: $(tail -n 3 said)"
+verdict $? "fuzz: $(tail -n 3 said)"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

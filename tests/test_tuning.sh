@@ -10,20 +10,9 @@ states=$(realpath "$3")
 reference=$(realpath "$4")
 agree=$(realpath "$5")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
 
 # gicrun's own flags for what is compared with the baked file; the others compile in a quarter of the time without
 # optimization
@@ -89,12 +78,12 @@ for model in car rig hand; do
         awk 'NR == FNR { column[NR] = $0; next } { print $0 column[FNR == 1 ? 1 : 2] }' columns.csv states.csv >tuned.csv
         "$gicrun" --eval tuned.csv "$tuned" -o results.csv &&
             "$gicrun" --eval states.csv baked.veh -o baked.csv && same baked.csv results.csv
-        check $? "$model, values $seed: set up with them, against the values baked in"
+        verdict $? "$model, values $seed: set up with them, against the values baked in"
         sh "$root/tests/reactions.sh" dump "$tuned" >reacting.veh
         for solve in reduced augmented; do
             "$gicrun" --cc "sh $work/cc" --solve $solve --eval tuned.csv reacting.veh -o results.csv &&
                 "$agree" dump accelerations.csv results.csv --reactions >said
-            check $? "$model, values $seed, $solve form: set up with them, against the reference"
+            verdict $? "$model, values $seed, $solve form: set up with them, against the reference"
             tail -n 1 said
         done
     done
@@ -107,7 +96,7 @@ done
 for how in "cc -std=c99" "cc -std=c99 -DGIC_FLOAT" "c++ -x c++" "c++ -x c++ -DGIC_FLOAT"; do
     $how -O1 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -ffp-contract=off -I. -I"$root/runtime" \
         "$root/tests/tuning/statuses.c" car.c hand.c "$root/runtime/gic_runtime.c" -x none -lm -o statuses && ./statuses
-    check $? "$how: what set-up says"
+    verdict $? "$how: what set-up says"
 done
 
 # a scene's parameters are the model's with those values: the same run to rounding, from the state that they move
@@ -125,7 +114,7 @@ printf 'gicscene: 1\nduration: 0.2\nstep: 0.002\nintegrator: rk4\noutput_step: 0
         NR > 2 && !(NR % 2) { for (i = 1; i <= NF; ++i) { d = a[i] - $i; x = a[i]
             if (d * d > 1e-18 * (1 + x * x)) { print "column " i ": " a[i] " " $i; bad = 1 } } }
         END { exit bad || NR < 6 }'
-check $? "parameters of a scene"
+verdict $? "parameters of a scene"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
