@@ -113,6 +113,13 @@ void subsets_forget(Pool *pool, const Model *model, const Sequence *sequence, Fo
  * vectors found on the way and checks that they are within reach, and return true. */
 bool subset_closed(Work *w, Motion *pose, Block *block);
 
+/* determinant.c: checks in `solve` of the pivots, and with `guarded`, where poses may be on a wrong branch, of the
+ * guards of w->row. Returns the determinant of J relative to that at the design, as the share of it that is relied on;
+ * 0: it does not vary. */
+Ex determinant_check(Work *w, Formula *formula, const Factors *factors, bool guarded);
+/* A check that this determinant (0: none) is not lost before `ahead` is over, the bodies moving as given [bodies]. */
+void determinant_check_ahead(Work *w, Formula *formula, Ex determinant, const Motion *motion);
+
 /* inertia.c: what the bodies, moving as given, add to the equations of motion: [inertia_size]. */
 Ex *subset_inertia(Work *w, const Layout *layout, const Motion *motion);
 
