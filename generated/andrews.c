@@ -173,7 +173,7 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
         const gic_real t11 = t7 * (t3 * t8);
         const gic_real t12 = R(1.0000000000000002) * t11;
         const gic_real t13 = t4 * t10 + t2 * t12;
-        if (!(GIC_FABS(t13) > R(1.0000000000000002e-06)))
+        if (!(GIC_FABS(t13) > R(0.00010000000000000003)))
             return GIC_ERROR_SINGULAR;
         const gic_real t14 = R(0.061674723509842204) * t9 + R(0.9980963022073495) * t11;
         const gic_real t15 = R(-0.9980963022073495) * t9 + R(0.061674723509842204) * t11;
@@ -419,7 +419,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t25 = R(-0.027999999999999997) * (R(1.0) - (t24 + q[6] * t19));
             const gic_real t26 = t22 + t25 - (R(-0.03635) + t14);
             const gic_real t27 = t6 * t13 - t14 * t16 + (t13 * t21 - t16 * t26);
-            if (!(GIC_FABS(t27) > R(3.1434830806293325e-08)))
+            if (!(GIC_FABS(t27) > R(3.143483080629333e-06)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t28 = R(0.8981380230369522) * t5 + R(0.43971364724701906) * t15;
             const gic_real t29 = R(0.8981380230369522) * t9 + R(0.43971364724701906) * t12;
@@ -428,7 +428,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t32 = R(1.0) / t27;
             const gic_real t33 = t31 * t32;
             const gic_real t34 = t28 * t25 - t29 * t20 - t30 * t33;
-            if (!(GIC_FABS(t34) > R(3.092243737396613e-08)))
+            if (!(GIC_FABS(t34) > R(3.0922437373966134e-06)))
                 return GIC_ERROR_SINGULAR;
             if (!(R(1.0) - (t2 + t11) > R(0.0)))
                 return GIC_ERROR_SINGULAR;
@@ -443,7 +443,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t41 = t32 * (t38 - t30 * t39);
             const gic_real t42 = rate[0] * t41;
             const gic_real t43 = t27 * t34 * R(586.9076113243804) - (GIC_FABS(t40) + GIC_FABS(t42)) * ahead[0];
-            if (!(t43 > R(0.0005)))
+            if (!(t43 > R(0.004)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t44 = q[13] * t10;
             const gic_real t45 = q[10] * t1;
@@ -881,7 +881,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t14 = R(1.0) - (t12 + t13);
             const gic_real t15 = k[4] * t10 + k[5] * t14;
             const gic_real t16 = t5 * t15;
-            if (!(GIC_FABS(t16) > R(1.0000000000000002e-06)))
+            if (!(GIC_FABS(t16) > R(0.00010000000000000003)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t17 = q[4] * t6;
             const gic_real t18 = R(1.0) - (t17 + t13);
@@ -895,7 +895,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t26 = k[6] * t18 + k[7] * t19;
             const gic_real t27 = t5 * t26;
             const gic_real t28 = t21 * t25 - t27;
-            if (!(GIC_FABS(t28) > R(1.0146238103623228e-06)))
+            if (!(GIC_FABS(t28) > R(0.0001014623810362323)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t29 = k[2] * t10 + k[3] * t14;
             const gic_real t30 = R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6];
@@ -919,7 +919,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t48 = R(1.0) / t28;
             const gic_real t49 = (t21 * t44 - t43 * t30) * t48;
             const gic_real t50 = t29 * t30 - t31 * t32 - t42 * t44 - t47 * t49;
-            if (!(GIC_FABS(t50) > R(3.0091658962122926e-08)))
+            if (!(GIC_FABS(t50) > R(3.009165896212293e-06)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t51 = q[12] * t1;
             const gic_real t52 = q[10] * t37;
@@ -938,7 +938,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t65 = R(1.0) / t50;
             const gic_real t66 = t64 * t65;
             const gic_real t67 = t62 - t63 * t66;
-            if (!(GIC_FABS(t67) > R(1.0121428177496222e-07)))
+            if (!(GIC_FABS(t67) > R(1.0121428177496223e-05)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t68 = R(1.0) - (t17 + t12);
             if (!(t68 > R(0.0)))
@@ -970,7 +970,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t91 = rate[0] * t83;
             const gic_real t92 = GIC_FABS(t86) + (GIC_FABS(t88) + GIC_FABS(t90) + GIC_FABS(t91));
             const gic_real t93 = t67 * (t50 * (t16 * t28)) * k[8] - t92 * ahead[0];
-            if (!(t93 > R(0.0005)))
+            if (!(t93 > R(0.004)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t94 = t71 * R(0.5);
             const gic_real t95 = t74 * R(0.5);

@@ -270,12 +270,12 @@ static int five_link_solve_lca_f_l(five_link *self, const gic_real *GIC_RESTRICT
         const gic_real t8 = t7 - R(0.19748500000000002);
         const gic_real t9 = k[3] + t6 - k[4];
         const gic_real t10 = t6 * t8 - t7 * t9;
-        if (!(GIC_FABS(t10) > R(6.106551104266464e-08)))
+        if (!(GIC_FABS(t10) > R(6.1065511042664645e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t11 = R(1.0) / t10;
         const gic_real t12 = x[0] * t11;
         const gic_real t13 = rate[0] * t12;
-        if (!(t10 * k[5] - GIC_FABS(t13) * ahead[0] > R(0.0005)))
+        if (!(t10 * k[5] - GIC_FABS(t13) * ahead[0] > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t14 = t5 * k[6] + t4 * R(209.3566321652691);
         const gic_real t15 = t5 * R(-209.35663216526908) + t4 * k[7];
@@ -572,7 +572,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
         /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
         {
             const gic_real t1 = q[0] - R(-1.465699);
-            if (!(GIC_FABS(t1) > R(1.5777149692119319e-07)))
+            if (!(GIC_FABS(t1) > R(1.577714969211932e-05)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t2 = q[5] + q[5];
             const gic_real t3 = q[6] * t2;
@@ -595,7 +595,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t20 = q[2] + t19 - R(0.22759419999999997);
             const gic_real t21 = q[1] + t13 - k[2];
             const gic_real t22 = t13 * t20 - t19 * t21;
-            if (!(GIC_FABS(t22) > R(8.541960994359942e-08)))
+            if (!(GIC_FABS(t22) > R(8.541960994359944e-06)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t23 = q[4] * t9;
             const gic_real t24 = q[3] * t2;
@@ -623,7 +623,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t46 = R(1.0) / t22;
             const gic_real t47 = (t44 * t38 - t27 * t45) * t46;
             const gic_real t48 = t27 * t37 - t36 * t38 - t41 * t47;
-            if (!(GIC_FABS(t48) > R(7.239494819332874e-08)))
+            if (!(GIC_FABS(t48) > R(7.2394948193328745e-06)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t49 = R(0.10883900000000002) * t28 + (k[4] * t32 + R(0.10472159999999997) * t34);
             const gic_real t50 = R(0.10883900000000002) * t6 + (k[4] * t11 + R(0.10472159999999997) * t42);
@@ -637,7 +637,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t58 = R(1.0) / t48;
             const gic_real t59 = (t54 * t52 - t49 * t55 - t41 * t56) * t58;
             const gic_real t60 = t49 * t51 - t50 * t52 - t53 * t56 - t57 * t59;
-            if (!(GIC_FABS(t60) > R(5.553502285728826e-08)))
+            if (!(GIC_FABS(t60) > R(5.553502285728827e-06)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t61 = q[1] + t43 - k[0];
             const gic_real t62 = q[1] - k[0];
@@ -658,7 +658,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t77 = R(1.0) / t60;
             const gic_real t78 = t76 * t77;
             const gic_real t79 = t73 - t75 * t78;
-            if (!(GIC_FABS(t79) > R(1.3143287125939887e-06)))
+            if (!(GIC_FABS(t79) > R(0.00013143287125939887)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t80 = R(0.079756) * t15 + (k[6] * t17 + R(-0.16944599999999999) * t25);
             const gic_real t81 = q[2] + t80 - R(0.32308800000000004);
@@ -681,7 +681,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t98 = R(1.0) / t79;
             const gic_real t99 = (t97 - t75 * t94) * t98;
             const gic_real t100 = t91 - t92 * t94 - t96 * t99;
-            if (!(GIC_FABS(t100) > R(3.8578395319135713e-07)))
+            if (!(GIC_FABS(t100) > R(3.857839531913572e-05)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t101 = t100 * (t79 * (t60 * (t48 * (t1 * t22)))) * k[8];
             const gic_real t102 = R(1.0) / t100;
@@ -695,7 +695,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t110 = rate[0] * t106;
             const gic_real t111 = rate[0] * t105;
             const gic_real t112 = (GIC_FABS(t109) + GIC_FABS(t110) + GIC_FABS(t111)) * ahead[0];
-            if (!(t101 - t112 > R(0.0005)))
+            if (!(t101 - t112 > R(0.004)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t113 = q[2] * q[2] + (t62 * t62 + t1 * t1) - R(0.26866948516099987);
             const gic_real t114 = t113 * R(0.5);
@@ -1143,7 +1143,7 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t39 = t5 + t38 - R(0.05422899999999997);
         const gic_real t40 = t2 + t36 - t20;
         const gic_real t41 = t36 * t39 - t38 * t40;
-        if (!(GIC_FABS(t41) > R(4.7885913623932104e-08)))
+        if (!(GIC_FABS(t41) > R(4.7885913623932105e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t42 = t2 + t22 - k[2];
         const gic_real t43 = R(1.653405) + t23 - R(1.593883);
@@ -1155,7 +1155,7 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t49 = R(1.0) / t41;
         const gic_real t50 = (t22 * t48 - t19 * t42) * t49;
         const gic_real t51 = t23 * t42 - t22 * t43 - t47 * t50;
-        if (!(GIC_FABS(t51) > R(1.5702185883473093e-07)))
+        if (!(GIC_FABS(t51) > R(1.5702185883473093e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t52 = t38 * t46 - t45 * t39;
         const gic_real t53 = (R(0.21526024724178433) * t22 - k[4] * t19) * t49;
@@ -1163,7 +1163,7 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t55 = R(1.0) / t51;
         const gic_real t56 = (k[4] * t23 - R(0.9665541626242249) * t22 - t47 * t53) * t55;
         const gic_real t57 = R(0.9665541626242249) * t19 - R(0.21526024724178433) * t23 - t52 * t53 - t54 * t56;
-        if (!(GIC_FABS(t57) > R(3.3266643612763756e-07)))
+        if (!(GIC_FABS(t57) > R(3.326664361276376e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t58 = t40 * t50;
         const gic_real t59 = R(1.0) / t57;
@@ -1182,7 +1182,7 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t72 = rate[0] * t60 + rate[1] * t68;
         const gic_real t73 = rate[1] * t69 - rate[0] * t61;
         const gic_real t74 = (GIC_FABS(t71) + GIC_FABS(t72) + GIC_FABS(t73)) * ahead[0];
-        if (!(t57 * (t41 * t51) * R(-334.7683100636247) - t74 > R(0.0005)))
+        if (!(t57 * (t41 * t51) * R(-334.7683100636247) - t74 > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t75 = t22 * t37 - t19 * t35;
         const gic_real t76 = t75 * k[7] + (t44 * R(-6.332169372123424) + t23 * R(-0.14982584743276875));

@@ -304,12 +304,12 @@ static int hmmwv14_solve_lca_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, 
         const gic_real t8 = t7 - k[10];
         const gic_real t9 = k[11] + t6 - k[12];
         const gic_real t10 = t6 * t8 - t7 * t9;
-        if (!(GIC_FABS(t10) > R(7.426200502961346e-08)))
+        if (!(GIC_FABS(t10) > R(7.426200502961347e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t11 = R(1.0) / t10;
         const gic_real t12 = x[0] * t11;
         const gic_real t13 = rate[0] * t12;
-        if (!(t10 * k[13] - GIC_FABS(t13) * ahead[0] > R(0.0005)))
+        if (!(t10 * k[13] - GIC_FABS(t13) * ahead[0] > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t14 = t5 * k[14] + t4 * k[15];
         const gic_real t15 = t5 * k[16] + t4 * k[17];
@@ -506,9 +506,9 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         if (!(t40 - t36 * R(1.8302069843604057e-05) > R(0.0)))
             return GIC_ERROR_SINGULAR;
         const gic_real t41 = t22 + t18 * k[13];
-        if (!(GIC_FABS(t41) > R(2.9891921463069924e-07)))
+        if (!(GIC_FABS(t41) > R(2.989192146306993e-05)))
             return GIC_ERROR_SINGULAR;
-        if (!(GIC_FABS(t21) > R(3.35289809163178e-07)))
+        if (!(GIC_FABS(t21) > R(3.3528980916317805e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t42 = t19 - t1;
         const gic_real t43 = t27 + t22 * k[14];
@@ -520,7 +520,7 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t49 = R(1.0) / t21;
         const gic_real t50 = t48 * t49;
         const gic_real t51 = t29 - t42 * t45 + t47 * t50;
-        if (!(GIC_FABS(t51) > R(1.8566393830364031e-06)))
+        if (!(GIC_FABS(t51) > R(0.00018566393830364033)))
             return GIC_ERROR_SINGULAR;
         const gic_real t52 = k[7] * GIC_SQRT(t40);
         const gic_real t53 = t33 * t39 + (t29 * t34 - t24 * t35) * t52;
@@ -554,7 +554,7 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t81 = R(1.0) / t51;
         const gic_real t82 = (t77 * t70 - t60 * t78 + t47 * t79) * t81;
         const gic_real t83 = t60 * t67 - t66 * t70 - t71 * t79 + t80 * t82;
-        if (!(GIC_FABS(t83) > R(5.646236108046465e-08)))
+        if (!(GIC_FABS(t83) > R(5.646236108046465e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t84 = R(1.0) / t83;
         const gic_real t85 = t67 * t84;
@@ -582,7 +582,7 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t107 = rate[0] * t85 + rate[1] * t93;
         const gic_real t108 = GIC_FABS(t97) + GIC_FABS(t100) + GIC_FABS(t102) + (GIC_FABS(t105) + GIC_FABS(t106) + GIC_FABS(t107));
         const gic_real t109 = t83 * (t51 * (t21 * t41)) * R(72.06231092195328) - t108 * ahead[0];
-        if (!(t109 > R(0.0005)))
+        if (!(t109 > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t110 = t17 * R(-0.20230352269044816) + t16 * k[20];
         const gic_real t111 = t17 * k[21] + t16 * R(-0.20230352269044816);
@@ -1009,9 +1009,9 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         if (!(t39 - t35 * R(1.83001068413443e-05) > R(0.0)))
             return GIC_ERROR_SINGULAR;
         const gic_real t40 = t19 - t1;
-        if (!(GIC_FABS(t40) > R(3.3640475456795196e-07)))
+        if (!(GIC_FABS(t40) > R(3.36404754567952e-05)))
             return GIC_ERROR_SINGULAR;
-        if (!(GIC_FABS(t21) > R(3.3640475456795196e-07)))
+        if (!(GIC_FABS(t21) > R(3.36404754567952e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t41 = t18 + t22 * k[13];
         const gic_real t42 = t41 * k[14] - t22 * R(-0.01408190770438876);
@@ -1022,7 +1022,7 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t47 = R(1.0) / t21;
         const gic_real t48 = t46 * t47;
         const gic_real t49 = t22 + t26 * k[14] + t42 * t44 + t45 * t48;
-        if (!(GIC_FABS(t49) > R(2.6266726675619257e-07)))
+        if (!(GIC_FABS(t49) > R(2.6266726675619257e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t50 = GIC_SQRT(t39) * k[15];
         const gic_real t51 = t32 * t38 + (t28 * t33 - t24 * t34) * t50;
@@ -1057,7 +1057,7 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t80 = R(1.0) / -t49;
         const gic_real t81 = (t42 * t76 + t45 * t77) * t80;
         const gic_real t82 = t78 - t79 * t81;
-        if (!(GIC_FABS(t82) > R(5.8613941165189956e-08)))
+        if (!(GIC_FABS(t82) > R(5.861394116518996e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t83 = R(1.0) / t82;
         const gic_real t84 = m0[24] * t1;
@@ -1080,7 +1080,7 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t101 = rate[0] * t88;
         const gic_real t102 = GIC_FABS(t90) + GIC_FABS(t93) + GIC_FABS(t95) + (GIC_FABS(t97) + GIC_FABS(t100) + GIC_FABS(t101));
         const gic_real t103 = t82 * (t49 * (t21 * t40)) * R(319.45566790062634) + t102 * ahead[0];
-        if (!(-t103 > R(0.0005)))
+        if (!(-t103 > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t104 = t17 * R(-0.01409667407318452) + t16 * k[21];
         const gic_real t105 = t17 * k[22] + t16 * R(-0.01409667407318452);

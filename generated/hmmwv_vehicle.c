@@ -307,12 +307,12 @@ static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_
         const gic_real t8 = t7 - k[10];
         const gic_real t9 = k[11] + t6 - k[12];
         const gic_real t10 = t6 * t8 - t7 * t9;
-        if (!(GIC_FABS(t10) > R(7.634226118793066e-08)))
+        if (!(GIC_FABS(t10) > R(7.634226118793067e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t11 = R(1.0) / t10;
         const gic_real t12 = x[0] * t11;
         const gic_real t13 = rate[0] * t12;
-        if (!(t10 * k[13] - GIC_FABS(t13) * ahead[0] > R(0.0005)))
+        if (!(t10 * k[13] - GIC_FABS(t13) * ahead[0] > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t14 = t5 * k[14] + t4 * k[15];
         const gic_real t15 = t5 * k[16] + t4 * k[17];
@@ -499,7 +499,7 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t39 = t5 + t38 - R(0.054228999999999916);
         const gic_real t40 = t2 + t36 - t20;
         const gic_real t41 = t36 * t39 - t38 * t40;
-        if (!(GIC_FABS(t41) > R(4.9361761369890886e-08)))
+        if (!(GIC_FABS(t41) > R(4.936176136989089e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t42 = t2 + t22 - k[2];
         const gic_real t43 = R(1.653405) + t23 - R(1.593883);
@@ -511,7 +511,7 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t49 = R(1.0) / t41;
         const gic_real t50 = (t22 * t48 - t19 * t42) * t49;
         const gic_real t51 = t23 * t42 - t22 * t43 - t47 * t50;
-        if (!(GIC_FABS(t51) > R(1.683634808211138e-07)))
+        if (!(GIC_FABS(t51) > R(1.6836348082111382e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t52 = t38 * t46 - t45 * t39;
         const gic_real t53 = (R(0.21526024724178433) * t22 - k[4] * t19) * t49;
@@ -519,7 +519,7 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t55 = R(1.0) / t51;
         const gic_real t56 = (k[4] * t23 - R(0.9665541626242249) * t22 - t47 * t53) * t55;
         const gic_real t57 = R(0.9665541626242249) * t19 - R(0.21526024724178433) * t23 - t52 * t53 - t54 * t56;
-        if (!(GIC_FABS(t57) > R(3.5356653954367223e-07)))
+        if (!(GIC_FABS(t57) > R(3.5356653954367225e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t58 = t40 * t50;
         const gic_real t59 = R(1.0) / t57;
@@ -538,7 +538,7 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t72 = rate[0] * t60 + rate[1] * t68;
         const gic_real t73 = rate[1] * t69 - rate[0] * t61;
         const gic_real t74 = (GIC_FABS(t71) + GIC_FABS(t72) + GIC_FABS(t73)) * ahead[0];
-        if (!(t57 * (t41 * t51) * R(-334.76831006362477) - t74 > R(0.0005)))
+        if (!(t57 * (t41 * t51) * R(-334.76831006362477) - t74 > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t75 = t22 * t37 - t19 * t35;
         const gic_real t76 = t75 * k[7] + (t44 * R(-6.332169372123424) + t23 * R(-0.14982584743276878));
@@ -815,14 +815,14 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t18 = t4 + t17 - R(0.22567900000000002);
         const gic_real t19 = t2 + t16 - k[2];
         const gic_real t20 = t16 * t18 - t17 * t19;
-        if (!(GIC_FABS(t20) > R(8.609794593596228e-08)))
+        if (!(GIC_FABS(t20) > R(8.60979459359623e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t21 = R(1.0) / t20;
         const gic_real t22 = m0[24] * t4;
         const gic_real t23 = m0[24] * t1;
         const gic_real t24 = t21 * (t19 * t22 - t18 * t23);
         const gic_real t25 = rate[0] * t24;
-        if (!(t20 * k[6] - GIC_FABS(t25) * ahead[0] > R(0.0005)))
+        if (!(t20 * k[6] - GIC_FABS(t25) * ahead[0] > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t26 = -t15;
         const gic_real t27 = rate[0] * t22;

@@ -146,7 +146,7 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t6 = t4 * (t2 * t5);
         const gic_real t7 = t4 * (t1 * t5);
         const gic_real t8 = t2 * t6 + t1 * t7;
-        if (!(GIC_FABS(t8) > R(1e-06)))
+        if (!(GIC_FABS(t8) > R(0.0001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t9 = R(1.0) / -t8;
         const gic_real t10 = t8 * t9;

@@ -216,12 +216,12 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         const gic_real t16 = t2 + t15 - t1;
         const gic_real t17 = R(0.307086) + t14 - R(0.509778);
         const gic_real t18 = t14 * t16 - t15 * t17;
-        if (!(GIC_FABS(t18) > R(6.171290232860449e-08)))
+        if (!(GIC_FABS(t18) > R(6.17129023286045e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t19 = R(1.0) / t18;
         const gic_real t20 = x[0] * t19;
         const gic_real t21 = rate[0] * t20;
-        if (!(t18 * R(-8.917091066652832) - GIC_FABS(t21) * ahead[0] > R(0.0005)))
+        if (!(t18 * R(-8.917091066652832) - GIC_FABS(t21) * ahead[0] > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t22 = t13 * R(-0.9709689408513393) + R(0.23920559337529682) * t12;
         const gic_real t23 = t13 * R(-0.23920559337529687) + R(-0.9709689408513391) * t12;
@@ -358,7 +358,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t41 = t7 + t40 - t19;
         const gic_real t42 = t2 + t38 - R(0.448437);
         const gic_real t43 = t38 * t41 - t40 * t42;
-        if (!(GIC_FABS(t43) > R(4.304353877485568e-08)))
+        if (!(GIC_FABS(t43) > R(4.304353877485568e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t44 = t2 + t24 - R(0.4527638);
         const gic_real t45 = R(-0.035559999999999994) + t25 - R(-0.095082);
@@ -370,7 +370,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t51 = R(1.0) / t43;
         const gic_real t52 = (t24 * t50 - t22 * t44) * t51;
         const gic_real t53 = t25 * t44 - t24 * t45 - t49 * t52;
-        if (!(GIC_FABS(t53) > R(1.2633210609740422e-07)))
+        if (!(GIC_FABS(t53) > R(1.2633210609740423e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t54 = t40 * t48 - t47 * t41;
         const gic_real t55 = (R(0.21526024724178433) * t24 - R(-0.1394133303209898) * t22) * t51;
@@ -378,7 +378,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t57 = R(1.0) / t53;
         const gic_real t58 = (R(-0.1394133303209898) * t25 - R(0.9665541626242249) * t24 - t49 * t55) * t57;
         const gic_real t59 = R(0.9665541626242249) * t22 - R(0.21526024724178433) * t25 - t54 * t55 - t56 * t58;
-        if (!(GIC_FABS(t59) > R(3.2601841366889304e-07)))
+        if (!(GIC_FABS(t59) > R(3.260184136688931e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t60 = m1[24] * t6;
         const gic_real t61 = m1[24] * t1;
@@ -393,7 +393,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t70 = rate[1] * t66;
         const gic_real t71 = rate[1] * t67;
         const gic_real t72 = (GIC_FABS(t69) + GIC_FABS(t70) + GIC_FABS(t71)) * ahead[0];
-        if (!(t59 * (t43 * t53) * R(-334.7683100636245) - t72 > R(0.0005)))
+        if (!(t59 * (t43 * t53) * R(-334.7683100636245) - t72 > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t73 = t24 * t39 - t22 * t37;
         const gic_real t74 = t73 * R(-7.5372227832688194) + (t46 * R(-6.332169372123424) + t25 * R(-0.1498258474327685));

@@ -265,12 +265,12 @@ static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRI
         const gic_real t8 = t7 - R(0.19748500000000002);
         const gic_real t9 = k[3] + t6 - k[4];
         const gic_real t10 = t6 * t8 - t7 * t9;
-        if (!(GIC_FABS(t10) > R(6.106551104266464e-08)))
+        if (!(GIC_FABS(t10) > R(6.1065511042664645e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t11 = R(1.0) / t10;
         const gic_real t12 = x[0] * t11;
         const gic_real t13 = rate[0] * t12;
-        if (!(t10 * k[5] - GIC_FABS(t13) * ahead[0] > R(0.0005)))
+        if (!(t10 * k[5] - GIC_FABS(t13) * ahead[0] > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t14 = t5 * k[6] + t4 * R(209.3566321652691);
         const gic_real t15 = t5 * R(-209.35663216526908) + t4 * k[7];
@@ -564,7 +564,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
         /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
         {
             const gic_real t1 = q[0] - R(-1.05);
-            if (!(GIC_FABS(t1) > R(5.713652174950159e-07)))
+            if (!(GIC_FABS(t1) > R(5.713652174950159e-05)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t2 = q[4] + q[4];
             const gic_real t3 = q[4] * t2;
@@ -595,7 +595,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t28 = q[0] + t27 - R(-0.9);
             const gic_real t29 = q[2] + t17 - R(-0.05399999999999999);
             const gic_real t30 = t17 * t28 - t27 * t29;
-            if (!(GIC_FABS(t30) > R(2.1666629935035974e-07)))
+            if (!(GIC_FABS(t30) > R(2.1666629935035977e-05)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t31 = R(0.62) * t22;
             const gic_real t32 = t19 + (t26 + t31);
@@ -618,7 +618,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t49 = R(1.0) / t30;
             const gic_real t50 = (t47 * t41 - t32 * t48) * t49;
             const gic_real t51 = t32 * t40 - t39 * t41 - t45 * t50;
-            if (!(GIC_FABS(t51) > R(7.485177140633895e-07)))
+            if (!(GIC_FABS(t51) > R(7.485177140633896e-05)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t52 = R(0.24) * t37;
             const gic_real t53 = q[1] + t52 - R(0.45);
@@ -637,7 +637,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t66 = R(1.0) / t51;
             const gic_real t67 = (t55 * t53 - t52 * t56 - t45 * t63) * t66;
             const gic_real t68 = t53 - t54 * t58 - t60 * t63 - t65 * t67;
-            if (!(GIC_FABS(t68) > R(6.799390158721218e-07)))
+            if (!(GIC_FABS(t68) > R(6.799390158721218e-05)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t69 = R(-0.16999999999999998) * t33;
             const gic_real t70 = R(-0.09999999999999987) * t35;
@@ -662,7 +662,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t89 = R(1.0) / t68;
             const gic_real t90 = t88 * t89;
             const gic_real t91 = t85 - t86 * t90;
-            if (!(GIC_FABS(t91) > R(2.372369036614256e-07)))
+            if (!(GIC_FABS(t91) > R(2.3723690366142562e-05)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t92 = t72 + (t11 + t73);
             const gic_real t93 = q[2] + t92 - R(0.30600000000000005);
@@ -686,7 +686,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t111 = R(1.0) / t91;
             const gic_real t112 = (t110 - t86 * t107) * t111;
             const gic_real t113 = t104 - t105 * t107 - t109 * t112;
-            if (!(GIC_FABS(t113) > R(6.450377358561879e-07)))
+            if (!(GIC_FABS(t113) > R(6.45037735856188e-05)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t114 = t113 * (t91 * (t68 * (t51 * (t1 * t30)))) * R(90.99405386861822);
             const gic_real t115 = R(1.0) / t113;
@@ -706,7 +706,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t129 = rate[0] * t124 + rate[1] * t128;
             const gic_real t130 = rate[0] * t122 + rate[1] * t126;
             const gic_real t131 = (GIC_FABS(t120) + GIC_FABS(t129) + GIC_FABS(t130)) * ahead[0];
-            if (!(t114 - t131 > R(0.0005)))
+            if (!(t114 - t131 > R(0.004)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t132 = t94 * t94 + (t54 * t54 + t1 * t1) - R(0.43540000000000006);
             const gic_real t133 = t132 * R(0.5);
@@ -1195,7 +1195,7 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t39 = t5 + t38 - R(0.05422899999999997);
         const gic_real t40 = t2 + t36 - t20;
         const gic_real t41 = t36 * t39 - t38 * t40;
-        if (!(GIC_FABS(t41) > R(4.7885913623932104e-08)))
+        if (!(GIC_FABS(t41) > R(4.7885913623932105e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t42 = t2 + t22 - k[2];
         const gic_real t43 = R(1.653405) + t23 - R(1.593883);
@@ -1207,7 +1207,7 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t49 = R(1.0) / t41;
         const gic_real t50 = (t22 * t48 - t19 * t42) * t49;
         const gic_real t51 = t23 * t42 - t22 * t43 - t47 * t50;
-        if (!(GIC_FABS(t51) > R(1.5702185883473093e-07)))
+        if (!(GIC_FABS(t51) > R(1.5702185883473093e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t52 = t38 * t46 - t45 * t39;
         const gic_real t53 = (R(0.21526024724178433) * t22 - k[4] * t19) * t49;
@@ -1215,7 +1215,7 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t55 = R(1.0) / t51;
         const gic_real t56 = (k[4] * t23 - R(0.9665541626242249) * t22 - t47 * t53) * t55;
         const gic_real t57 = R(0.9665541626242249) * t19 - R(0.21526024724178433) * t23 - t52 * t53 - t54 * t56;
-        if (!(GIC_FABS(t57) > R(3.3266643612763756e-07)))
+        if (!(GIC_FABS(t57) > R(3.326664361276376e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t58 = t40 * t50;
         const gic_real t59 = R(1.0) / t57;
@@ -1234,7 +1234,7 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t72 = rate[0] * t60 + rate[1] * t68;
         const gic_real t73 = rate[1] * t69 - rate[0] * t61;
         const gic_real t74 = (GIC_FABS(t71) + GIC_FABS(t72) + GIC_FABS(t73)) * ahead[0];
-        if (!(t57 * (t41 * t51) * R(-334.7683100636247) - t74 > R(0.0005)))
+        if (!(t57 * (t41 * t51) * R(-334.7683100636247) - t74 > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t75 = t22 * t37 - t19 * t35;
         const gic_real t76 = t75 * k[7] + (t44 * R(-6.332169372123424) + t23 * R(-0.14982584743276875));

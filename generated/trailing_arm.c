@@ -266,7 +266,7 @@ static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RE
         const gic_real t9 = R(0.9999999999999996) * t8;
         const gic_real t10 = t6 * (t2 * t7);
         const gic_real t11 = t3 * t9 + t1 * (k[0] * t10);
-        if (!(GIC_FABS(t11) > R(9.999999999999995e-07)))
+        if (!(GIC_FABS(t11) > R(9.999999999999998e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t12 = k[2] * t8 + R(0.9709689408513393) * t10;
         const gic_real t13 = R(-0.9709689408513391) * t8 + k[3] * t10;
@@ -464,7 +464,7 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t39 = t5 + t38 - R(0.05422899999999997);
         const gic_real t40 = t2 + t36 - t20;
         const gic_real t41 = t36 * t39 - t38 * t40;
-        if (!(GIC_FABS(t41) > R(4.467951214483012e-08)))
+        if (!(GIC_FABS(t41) > R(4.467951214483012e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t42 = t2 + t22 - k[2];
         const gic_real t43 = R(1.653405) + t23 - R(1.593883);
@@ -476,7 +476,7 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t49 = R(1.0) / t41;
         const gic_real t50 = (t22 * t48 - t19 * t42) * t49;
         const gic_real t51 = t23 * t42 - t22 * t43 - t47 * t50;
-        if (!(GIC_FABS(t51) > R(1.420810704487063e-07)))
+        if (!(GIC_FABS(t51) > R(1.4208107044870633e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t52 = t38 * t46 - t45 * t39;
         const gic_real t53 = (R(0.21526024724178433) * t22 - k[4] * t19) * t49;
@@ -484,7 +484,7 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t55 = R(1.0) / t51;
         const gic_real t56 = (k[4] * t23 - R(0.9665541626242249) * t22 - t47 * t53) * t55;
         const gic_real t57 = R(0.9665541626242249) * t19 - R(0.21526024724178433) * t23 - t52 * t53 - t54 * t56;
-        if (!(GIC_FABS(t57) > R(3.3389210228282587e-07)))
+        if (!(GIC_FABS(t57) > R(3.338921022828259e-05)))
             return GIC_ERROR_SINGULAR;
         const gic_real t58 = t40 * t50;
         const gic_real t59 = R(1.0) / t57;
@@ -503,7 +503,7 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t72 = rate[0] * t60 + rate[1] * t68;
         const gic_real t73 = rate[1] * t69 - rate[0] * t61;
         const gic_real t74 = (GIC_FABS(t71) + GIC_FABS(t72) + GIC_FABS(t73)) * ahead[0];
-        if (!(t57 * (t41 * t51) * R(-334.7683100636247) - t74 > R(0.0005)))
+        if (!(t57 * (t41 * t51) * R(-334.7683100636247) - t74 > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t75 = t22 * t37 - t19 * t35;
         const gic_real t76 = t75 * k[7] + (t44 * R(-6.332169372123424) + t23 * R(-0.14982584743276875));
@@ -771,7 +771,7 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
         const gic_real t8 = k[0] * t7;
         const gic_real t9 = t5 * (t2 * t6);
         const gic_real t10 = t3 * t8 + t1 * t9;
-        if (!(GIC_FABS(t10) > R(1e-06)))
+        if (!(GIC_FABS(t10) > R(0.0001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t11 = k[1] * t7;
         const gic_real t12 = R(1.0) / t10;

@@ -17,7 +17,7 @@ enum { CHORDS = 6, PASSES = 10, PIECES = 1000 };
 static const double leap = 0.2;
 /* A determinant this small relative to that at the design, or of the other sign: coordinates cease to be independent
  * (Serban and Haug 2000, equation 6). No rigid motion changes it. */
-static const double singular = 1e-3;
+static const double singular = 8e-3;
 /* a correction below this that no longer shrinks is rounding, near a singular configuration a larger one */
 static const double rounding = 1e-9;
 /* rad or relative to a subset's size: how far a body may move in one piece */
