@@ -2,6 +2,7 @@
  * The powertrain: POWERTRAIN.md section 1. */
 #include "read.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { POWER_ENGINE, POWER_CONVERTER, POWER_TRANSMISSION, POWER_DIFFERENTIALS, POWER_KEYS };
@@ -410,6 +411,47 @@ static void states_check(Reader *reader, Place at)
     generated_names_check(reader, "state", name, place, (int)count);
 }
 
+/* The speed of a differential's input for each of a wheel's spin. */
+static double geared(const Powertrain *powertrain, int index, int wheel)
+{
+    const Differential *differential = &powertrain->differential[index];
+    double sum = 0;
+    for (int k = 0; k < differential->outputs; ++k) {
+        const double share = differential->ratio * (k ? 1 - differential->split : differential->split);
+        const int other = differential->differential[k];
+        sum += share * (other >= 0 ? geared(powertrain, other, wheel) : differential->wheel[k] == wheel);
+    }
+    return sum;
+}
+
+/* What turns with a wheel, as the wheel feels it, may be a million times its own moment of inertia: the equations of
+ * the wheels' spins lose as many digits. */
+static void inertias_check(const Model *model, const Powertrain *powertrain, Place transmission)
+{
+    const double most = 1e6;
+    double gear = 0;
+    for (int i = 0; i < powertrain->reverse + 1 + powertrain->forward; ++i)
+        gear = fmax(gear, fabs(powertrain->gear[i]));
+    for (int w = 0; w < model->wheels; ++w) {
+        const Wheel *wheel = &model->wheel[w];
+        for (int i = 0; i < powertrain->differentials; ++i) {
+            const Differential *differential = &powertrain->differential[i];
+            const double ratio = geared(powertrain, i, w), square = ratio * ratio;
+            if (differential->inertia * square > most * wheel->spin_inertia)
+                diag_fail(differential->at, "give it less inertia, or the wheel more spin_inertia",
+                          "at wheel '%s' the inertia of differential '%s' counts as %g kg m^2, above %g times that of "
+                          "the wheel's spin",
+                          wheel->name, differential->name, differential->inertia * square, most);
+            if (i == powertrain->differentials - 1 &&
+                powertrain->turbine * gear * gear * square > most * wheel->spin_inertia)
+                diag_fail(transmission, "give it less inertia, or the wheel more spin_inertia",
+                          "at wheel '%s' the inertia of the transmission counts as %g kg m^2, above %g times that of "
+                          "the wheel's spin",
+                          wheel->name, powertrain->turbine * gear * gear * square, most);
+        }
+    }
+}
+
 void powertrain_read(Reader *reader, const Item *item)
 {
     Value value[POWER_KEYS];
@@ -422,6 +464,7 @@ void powertrain_read(Reader *reader, const Item *item)
     converter_read(reader, value[POWER_CONVERTER].item, powertrain);
     transmission_read(reader, value[POWER_TRANSMISSION].item, powertrain);
     differentials_read(reader, value[POWER_DIFFERENTIALS].item, powertrain);
+    inertias_check(reader->model, powertrain, value[POWER_TRANSMISSION].item->at);
     states_check(reader, item->at);
     reader->model->powertrain = powertrain;
     reader->model->fast_states += POWERTRAIN_FAST;
