@@ -63,11 +63,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   70       111       1      1         0
+ *   subset 'lca_f_l' (2 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_r_l' (2 times)                             597       680       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                307       408       5      2         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   forces and equations of motion                           703       657      11      0         4
- *   all together                                            2666      3080      35      6         4
+ *   all together                                            2658      3082      35      6         4
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H

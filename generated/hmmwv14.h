@@ -71,11 +71,11 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   70       111       1      1         0
- *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        517       648       6      2         0
- *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        431       539       6      2         0
+ *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
+ *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        514       648       6      2         0
+ *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        427       538       6      2         0
  *   forces and equations of motion                           855       777      15      4         4
- *   all together                                            3046      3620      43     16         4
+ *   all together                                            3028      3618      43     16         4
  *   outputs, when asked for                                  933      1137       4      4        19
  */
 #ifndef HMMWV14_H

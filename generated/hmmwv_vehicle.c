@@ -69,16 +69,16 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   70       111       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                307       408       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                 88       129       2      1         0
+ *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 87       129       2      1         0
  *   forces and equations of motion                           591       507       9      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         1       0      0         0
  *   wheel 'tire_f_l' (4 times)                               194       313      23     12        37
  *   powertrain                                                47        68       6      0         4
  *   a fast step: all of these                                823      1321      98     48       152
- *   all together                                            2698      3573     125     58       152
+ *   all together                                            2686      3575     125     58       152
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #include "hmmwv_vehicle.h"
@@ -242,42 +242,42 @@ static GIC_COLD gic_real hmmwv_vehicle_residual_rack(const gic_real *GIC_RESTRIC
     return worst;
 }
 
-static const gic_real hmmwv_vehicle_k_lca_f_l[4][27] = {
+static const gic_real hmmwv_vehicle_k_lca_f_l[4][28] = {
     { /* lca_f_l */
-        R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.038649583990999964),
-        R(-0.056072097532999944), R(-0.038649583990999964), R(0.056072097532999944), R(50.90547521989429),
+        R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(-0.9999999999999999),
+        R(8.917091066652826), R(-0.038649583990999964), R(0.056072097532999944), R(0.038649583990999964),
+        R(-0.056072097532999944), R(51.57660077184115), R(209.3566321652692), R(-209.35663216526913),
+        R(51.57660077184116), R(-51.57660077184115), R(209.35663216526913), R(50.90547521989429),
         R(10.049655409199135), R(-10.049655409199135), R(0.19748499999999997), R(0.307086),
-        R(0.509778), R(-8.917091066652828), R(51.57660077184115), R(209.3566321652692),
-        R(-209.35663216526913), R(51.57660077184116), R(-51.57660077184115), R(209.35663216526913),
-        R(3.0379110359107786e-06), R(0.24689200985615367), R(1.688965), R(40.476046225),
-        R(0.01121887479261392), R(0.2403881036540444), R(7.8923759275231005),
+        R(0.509778), R(3.0379110359107786e-06), R(0.24689200985615367), R(1.688965),
+        R(40.476046225), R(0.01121887479261392), R(0.2403881036540444), R(7.8923759275231005),
     },
     { /* lca_f_r */
-        R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.038649583990999964),
-        R(-0.056072097532999944), R(0.038649583990999964), R(-0.056072097532999944), R(-50.90547521989429),
+        R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.9999999999999999),
+        R(8.917091066652826), R(0.038649583990999964), R(-0.056072097532999944), R(0.038649583990999964),
+        R(-0.056072097532999944), R(-51.57660077184115), R(209.3566321652692), R(-209.35663216526913),
+        R(-51.57660077184116), R(51.57660077184115), R(209.35663216526913), R(-50.90547521989429),
         R(10.049655409199135), R(-10.049655409199135), R(0.19748499999999997), R(-0.307086),
-        R(-0.509778), R(8.917091066652828), R(-51.57660077184115), R(209.3566321652692),
-        R(-209.35663216526913), R(-51.57660077184116), R(51.57660077184115), R(209.35663216526913),
-        R(3.0379110359107786e-06), R(-0.24689200985615367), R(1.688965), R(40.476046225),
-        R(0.01121887479261392), R(-0.2403881036540444), R(7.8923759275231005),
+        R(-0.509778), R(3.0379110359107786e-06), R(-0.24689200985615367), R(1.688965),
+        R(40.476046225), R(0.01121887479261392), R(-0.2403881036540444), R(7.8923759275231005),
     },
     { /* lca_r_l */
-        R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(0.033962503042599984),
-        R(-0.06962018656579992), R(-0.033962503042599984), R(0.06962018656579992), R(39.34606605646902),
+        R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(-1.0000000000000002),
+        R(7.181825051954386), R(-0.033962503042599984), R(0.06962018656579992), R(0.033962503042599984),
+        R(-0.06962018656579992), R(39.864795135905354), R(161.81677595488466), R(-161.8167759548846),
+        R(39.86479513590536), R(-39.864795135905354), R(161.8167759548846), R(39.34606605646902),
         R(7.767620356494953), R(-7.767620356494953), R(0.2564891999999999), R(0.307086),
-        R(0.5015738), R(-7.181825051954384), R(39.864795135905354), R(161.81677595488466),
-        R(-161.8167759548846), R(39.86479513590536), R(-39.864795135905354), R(161.8167759548846),
-        R(-3.0379110358344508e-06), R(0.246867347245056), R(-1.688965), R(-40.476046225),
-        R(0.011218874792613923), R(0.24038810365404442), R(6.355965194292886),
+        R(0.5015738), R(-3.0379110358344508e-06), R(0.246867347245056), R(-1.688965),
+        R(-40.476046225), R(0.011218874792613923), R(0.24038810365404442), R(6.355965194292886),
     },
     { /* lca_r_r */
-        R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(0.033962503042599984),
-        R(-0.06962018656579992), R(0.033962503042599984), R(-0.06962018656579992), R(-39.34606605646902),
+        R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(1.0000000000000002),
+        R(7.181825051954386), R(0.033962503042599984), R(-0.06962018656579992), R(0.033962503042599984),
+        R(-0.06962018656579992), R(-39.864795135905354), R(161.81677595488466), R(-161.8167759548846),
+        R(-39.86479513590536), R(39.864795135905354), R(161.8167759548846), R(-39.34606605646902),
         R(7.767620356494953), R(-7.767620356494953), R(0.2564891999999999), R(-0.307086),
-        R(-0.5015738), R(7.181825051954384), R(-39.864795135905354), R(161.81677595488466),
-        R(-161.8167759548846), R(-39.86479513590536), R(39.864795135905354), R(161.8167759548846),
-        R(-3.0379110358344508e-06), R(-0.246867347245056), R(-1.688965), R(-40.476046225),
-        R(0.011218874792613923), R(-0.24038810365404442), R(6.355965194292886),
+        R(-0.5015738), R(-3.0379110358344508e-06), R(-0.246867347245056), R(-1.688965),
+        R(-40.476046225), R(0.011218874792613923), R(-0.24038810365404442), R(6.355965194292886),
     },
 };
 
@@ -300,106 +300,102 @@ static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_
         if (!(t2 - k[2] > R(0.0)))
             return GIC_ERROR_SINGULAR;
         const gic_real t3 = GIC_SQRT(t2);
-        const gic_real t4 = k[3] * t1 - t3 * k[4];
-        const gic_real t5 = t3 * k[5] + k[6] * t1;
-        const gic_real t6 = t4 * k[7] + t5 * k[8];
-        const gic_real t7 = t4 * k[9] + t5 * k[7];
-        const gic_real t8 = t7 - k[10];
-        const gic_real t9 = k[11] + t6 - k[12];
-        const gic_real t10 = t6 * t8 - t7 * t9;
-        if (!(GIC_FABS(t10) > R(7.634226118793067e-06)))
+        const gic_real t4 = t3 * (R(1.0) / (t2 * k[3]));
+        const gic_real t5 = x[0] * t4;
+        const gic_real t6 = rate[0] * t5;
+        if (!(t3 * k[4] - GIC_FABS(t6) * ahead[0] > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t11 = R(1.0) / t10;
-        const gic_real t12 = x[0] * t11;
-        const gic_real t13 = rate[0] * t12;
-        if (!(t10 * k[13] - GIC_FABS(t13) * ahead[0] > R(0.004)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t14 = t5 * k[14] + t4 * k[15];
-        const gic_real t15 = t5 * k[16] + t4 * k[17];
-        const gic_real t16 = t5 * k[15] + t4 * k[18];
-        const gic_real t17 = t5 * k[17] + t4 * k[19];
-        const gic_real t18 = t6 * t13;
-        const gic_real t19 = t7 * t13;
-        const gic_real t20 = t18 * t18 + t19 * t19 - (t8 * (t13 * t19) + t9 * (t13 * t18));
-        const gic_real t21 = t11 * (rate[0] * rate[0] - t20);
-        const gic_real t22 = t15 * k[20] + t14 * k[21];
-        const gic_real t23 = k[11] + t22;
+        const gic_real t7 = t3 * k[5] + k[6] * t1;
+        const gic_real t8 = k[7] * t1 - t3 * k[8];
+        const gic_real t9 = t7 * k[9] + t8 * k[10];
+        const gic_real t10 = t7 * k[11] + t8 * k[12];
+        const gic_real t11 = t7 * k[10] + t8 * k[13];
+        const gic_real t12 = t7 * k[12] + t8 * k[14];
+        const gic_real t13 = t8 * k[15] + t7 * k[16];
+        const gic_real t14 = t13 * t6;
+        const gic_real t15 = t8 * k[17] + t7 * k[15];
+        const gic_real t16 = t15 * t6;
+        const gic_real t17 = (t15 - k[18]) * (t6 * t16) + (k[19] + t13 - k[20]) * (t6 * t14);
+        const gic_real t18 = rate[0] * rate[0] - (t14 * t14 + t16 * t16 - t17);
+        const gic_real t19 = t4 * t18;
+        const gic_real t20 = t10 * k[21] + t9 * k[22];
+        const gic_real t21 = k[19] + t20;
+        const gic_real t22 = R(23.965) * t21;
+        const gic_real t23 = t12 * k[21] + t11 * k[22];
         const gic_real t24 = R(23.965) * t23;
-        const gic_real t25 = t17 * k[20] + t16 * k[21];
-        const gic_real t26 = R(23.965) * t25;
-        const gic_real t27 = t23 * t24;
-        const gic_real t28 = t25 * t26;
-        const gic_real t29 = t15 * R(0.4469);
-        const gic_real t30 = R(0.4469) + t15 * t29;
-        const gic_real t31 = R(0.4469) + t17 * (t17 * R(0.4469));
-        const gic_real t32 = t17 * t29;
-        const gic_real t33 = t13 * t22;
-        const gic_real t34 = t33 + (t33 + (turn[0] * t23 - k[22] * turn[1]));
-        const gic_real t35 = t13 * t25;
-        const gic_real t36 = k[22] * turn[2] - turn[0] * t25 - t35 - t35;
-        const gic_real t37 = R(23.965) * (turn[1] * t34 - turn[2] * t36);
-        const gic_real t38 = turn[1] * t25 - turn[2] * t23;
-        const gic_real t39 = turn[2] * t38 - turn[0] * t34 - t13 * t33 - t21 * t25;
+        const gic_real t25 = t21 * t22;
+        const gic_real t26 = t23 * t24;
+        const gic_real t27 = t10 * R(0.4469);
+        const gic_real t28 = R(0.4469) + t10 * t27;
+        const gic_real t29 = R(0.4469) + t12 * (t12 * R(0.4469));
+        const gic_real t30 = t12 * t27;
+        const gic_real t31 = t6 * t20;
+        const gic_real t32 = t31 + (t31 + (turn[0] * t21 - k[23] * turn[1]));
+        const gic_real t33 = t6 * t23;
+        const gic_real t34 = k[23] * turn[2] - turn[0] * t23 - t33 - t33;
+        const gic_real t35 = R(23.965) * (turn[1] * t32 - turn[2] * t34);
+        const gic_real t36 = turn[1] * t23 - turn[2] * t21;
+        const gic_real t37 = turn[2] * t36 - turn[0] * t32 - t6 * t31 - t19 * t23;
+        const gic_real t38 = R(23.965) * t37;
+        const gic_real t39 = turn[0] * t34 - turn[1] * t36 - t6 * t33 + t19 * t20;
         const gic_real t40 = R(23.965) * t39;
-        const gic_real t41 = turn[0] * t36 - turn[1] * t38 - t13 * t35 + t21 * t22;
-        const gic_real t42 = R(23.965) * t41;
-        const gic_real t43 = turn[2] * t31 + turn[1] * t32;
-        const gic_real t44 = turn[2] * t32 + turn[1] * t30;
-        const gic_real t45 = t21 * R(0.4469) + (turn[1] * t43 - turn[2] * t44);
-        const gic_real t46 = t13 * turn[2];
-        const gic_real t47 = t13 * turn[1];
-        const gic_real t48 = t13 + turn[0];
-        const gic_real t49 = R(0.4469) * t48;
-        const gic_real t50 = t30 * t46 - t32 * t47 + (turn[2] * t49 - t48 * t43);
-        const gic_real t51 = t32 * t46 - t31 * t47 + (t48 * t44 - turn[1] * t49);
-        const gic_real t52 = t12 * t25;
+        const gic_real t41 = turn[2] * t29 + turn[1] * t30;
+        const gic_real t42 = turn[2] * t30 + turn[1] * t28;
+        const gic_real t43 = t19 * R(0.4469) + (turn[1] * t41 - turn[2] * t42);
+        const gic_real t44 = t6 * turn[2];
+        const gic_real t45 = t6 * turn[1];
+        const gic_real t46 = t6 + turn[0];
+        const gic_real t47 = R(0.4469) * t46;
+        const gic_real t48 = t28 * t44 - t30 * t45 + (turn[2] * t47 - t46 * t41);
+        const gic_real t49 = t30 * t44 - t29 * t45 + (t46 * t42 - turn[1] * t47);
+        const gic_real t50 = t5 * t23;
+        const gic_real t51 = R(23.965) * t50;
+        const gic_real t52 = t5 * t20;
         const gic_real t53 = R(23.965) * t52;
-        const gic_real t54 = t12 * t22;
-        const gic_real t55 = R(23.965) * t54;
-        const gic_real t56 = t12 * R(0.4469);
-        const gic_real t57 = R(0.4469) + (t27 + t28);
-        const gic_real t58 = t30 + (R(68.36262541240713) + t28);
-        const gic_real t59 = t31 + (R(68.36262541240713) + t27);
-        const gic_real t60 = -(t23 * k[23]);
-        const gic_real t61 = -(t25 * k[23]);
-        const gic_real t62 = t32 - t25 * t24;
-        const gic_real t63 = t45 + (t23 * t42 - t25 * t40);
-        const gic_real t64 = t50 + (t25 * t37 - k[23] * t41);
-        const gic_real t65 = t51 + (k[23] * t39 - t23 * t37);
-        const gic_real t66 = -t53;
-        const gic_real t67 = t56 + (t25 * t53 + t23 * t55);
-        const gic_real t68 = -(k[23] * t54);
-        const gic_real t69 = -(k[23] * t52);
-        const gic_real t70 = t12 * t45 + (t42 * t54 - t40 * t52);
-        const gic_real t71 = t12 * t56 + (t54 * t55 + t52 * t53);
-        motion[7] = t14;
-        motion[8] = t15;
-        motion[10] = t16;
-        motion[11] = t17;
-        motion[12] = t13;
-        motion[18] = t21;
-        motion[24] = t12;
-        inertia[1] = t24;
-        inertia[2] = t26;
-        inertia[3] = t57;
-        inertia[4] = t58;
-        inertia[5] = t59;
-        inertia[6] = t60;
-        inertia[7] = t61;
-        inertia[8] = t62;
-        inertia[9] = t37;
-        inertia[10] = t40;
-        inertia[11] = t42;
-        inertia[12] = t63;
-        inertia[13] = t64;
-        inertia[14] = t65;
-        inertia[16] = t66;
-        inertia[17] = t55;
-        inertia[18] = t67;
-        inertia[19] = t68;
-        inertia[20] = t69;
-        inertia[21] = t70;
-        inertia[22] = t71;
+        const gic_real t54 = t5 * R(0.4469);
+        const gic_real t55 = R(0.4469) + (t25 + t26);
+        const gic_real t56 = t28 + (R(68.36262541240713) + t26);
+        const gic_real t57 = t29 + (R(68.36262541240713) + t25);
+        const gic_real t58 = -(t21 * k[24]);
+        const gic_real t59 = -(t23 * k[24]);
+        const gic_real t60 = t30 - t23 * t22;
+        const gic_real t61 = t43 + (t21 * t40 - t23 * t38);
+        const gic_real t62 = t48 + (t23 * t35 - k[24] * t39);
+        const gic_real t63 = t49 + (k[24] * t37 - t21 * t35);
+        const gic_real t64 = -t51;
+        const gic_real t65 = t54 + (t23 * t51 + t21 * t53);
+        const gic_real t66 = -(k[24] * t52);
+        const gic_real t67 = -(k[24] * t50);
+        const gic_real t68 = t5 * t43 + (t40 * t52 - t38 * t50);
+        const gic_real t69 = t5 * t54 + (t52 * t53 + t50 * t51);
+        motion[7] = t9;
+        motion[8] = t10;
+        motion[10] = t11;
+        motion[11] = t12;
+        motion[12] = t6;
+        motion[18] = t19;
+        motion[24] = t5;
+        inertia[1] = t22;
+        inertia[2] = t24;
+        inertia[3] = t55;
+        inertia[4] = t56;
+        inertia[5] = t57;
+        inertia[6] = t58;
+        inertia[7] = t59;
+        inertia[8] = t60;
+        inertia[9] = t35;
+        inertia[10] = t38;
+        inertia[11] = t40;
+        inertia[12] = t61;
+        inertia[13] = t62;
+        inertia[14] = t63;
+        inertia[16] = t64;
+        inertia[17] = t53;
+        inertia[18] = t65;
+        inertia[19] = t66;
+        inertia[20] = t67;
+        inertia[21] = t68;
+        inertia[22] = t69;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -413,27 +409,27 @@ static GIC_COLD gic_real hmmwv_vehicle_residual_lca_f_l(const gic_real *GIC_REST
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10] - k[10];
-        const gic_real t2 = k[11] + (k[24] * motion[8] + k[25] * motion[7]) - k[12];
+        const gic_real t1 = k[25] * motion[11] + k[26] * motion[10] - k[18];
+        const gic_real t2 = k[19] + (k[25] * motion[8] + k[26] * motion[7]) - k[20];
         const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[26]));
+        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[27]));
         worst = t4;
     }
     return worst;
 }
 
-static const gic_real hmmwv_vehicle_k_wheel_f_l[2][14] = {
+static const gic_real hmmwv_vehicle_k_wheel_f_l[2][15] = {
     { /* wheel_f_l */
         R(0.49375935710120966), R(0.307086), R(0.4527638), R(0.008298160247365965),
-        R(-0.1394133303209898), R(-1.0), R(0.448437), R(-7.53722278326882),
-        R(2.5885748225120313), R(-0.6086675051956221), R(-4.242021150632486), R(0.08910630000000008),
-        R(0.03459480000000004), R(-0.07099299999999997),
+        R(-0.1394133303209898), R(-1.0), R(0.448437), R(-2.9280756565520325),
+        R(-7.53722278326882), R(2.5885748225120313), R(-0.6086675051956221), R(-4.242021150632486),
+        R(0.08910630000000008), R(0.03459480000000004), R(-0.07099299999999997),
     },
     { /* wheel_f_r */
         R(-0.49375935710120966), R(-0.307086), R(-0.4527638), R(-0.008298160247365965),
-        R(0.1394133303209898), R(1.0), R(-0.448437), R(7.53722278326882),
-        R(-2.5885748225120313), R(0.6086675051956221), R(4.242021150632486), R(-0.08910630000000008),
-        R(-0.03459480000000004), R(0.07099299999999997),
+        R(0.1394133303209898), R(1.0), R(-0.448437), R(2.9280756565520325),
+        R(7.53722278326882), R(-2.5885748225120313), R(0.6086675051956221), R(4.242021150632486),
+        R(-0.08910630000000008), R(-0.03459480000000004), R(0.07099299999999997),
     },
 };
 
@@ -458,279 +454,283 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t6 = R(0.23411769999999993) - t5;
         const gic_real t7 = R(-0.012812720436325503) - R(0.9665541626242249) * t6;
         const gic_real t8 = k[4] * t6 - R(0.21526024724178433) * t3;
-        const gic_real t9 = R(1.0) / (t4 * t4 + (t7 * t7 + t8 * t8));
+        const gic_real t9 = t4 * t4 + (t7 * t7 + t8 * t8);
         const gic_real t10 = R(0.21526024724178433) * t6 + (k[4] * t3 + R(-0.05753123686771919));
         const gic_real t11 = R(4.3116545195287515e-08) + t10;
         const gic_real t12 = t6 * t6 + (t3 * t3 + R(0.0035428684840000087));
         const gic_real t13 = R(0.5) * (t12 + R(0.04548219048831001));
-        const gic_real t14 = t9 * (t11 * t12 - t10 * t13);
-        const gic_real t15 = t9 * (t13 - t10 * t11);
-        const gic_real t16 = t9 * (R(0.116636750597) - t11 * t14 - t13 * t15);
+        const gic_real t14 = t11 * t12 - t10 * t13;
+        const gic_real t15 = t13 - t10 * t11;
+        const gic_real t16 = R(0.116636750597) * t9 - t11 * t14 - t13 * t15;
         if (!(t16 > R(0.0)))
             return GIC_ERROR_NEWTON;
         if (!(t16 - t9 * R(1.16636750597e-05) > R(0.0)))
             return GIC_ERROR_SINGULAR;
         const gic_real t17 = R(0.054228999999999916) - t5;
-        const gic_real t18 = GIC_SQRT(t16) * k[5];
-        const gic_real t19 = R(0.21526024724178433) * t14 + t6 * t15 + t4 * t18;
-        const gic_real t20 = k[6] + m0[1];
-        const gic_real t21 = t20 - t2;
-        const gic_real t22 = k[4] * t14 + t3 * t15 + t7 * t18;
-        const gic_real t23 = R(0.9665541626242249) * t14 + R(-0.059522000000000075) * t15 + t8 * t18;
-        const gic_real t24 = t17 * t19 + (t21 * t22 + R(-0.2147570000000001) * t23);
-        const gic_real t25 = R(8.573627050492616) * t24;
-        const gic_real t26 = t17 - t19 * t25;
-        const gic_real t27 = t21 - t22 * t25;
-        const gic_real t28 = R(-0.2147570000000001) - t23 * t25;
-        const gic_real t29 = R(1.0) / (t26 * t26 + (t27 * t27 + t28 * t28));
-        const gic_real t30 = R(0.5) * (t17 * t17 + (t21 * t21 + R(0.04612056904900004)) + R(-0.11818284750480001));
-        const gic_real t31 = t30 - R(0.2910617987184667) * t24;
-        const gic_real t32 = t29 * t31;
-        const gic_real t33 = R(8.573627050492616) * (t29 * (R(0.021346939557573212) - t31 * t32));
-        if (!(t33 > R(0.0)))
+        const gic_real t18 = R(1.0) / t9;
+        const gic_real t19 = t14 * t18;
+        const gic_real t20 = t15 * t18;
+        const gic_real t21 = GIC_SQRT(t16);
+        const gic_real t22 = t18 * (t21 * k[5]);
+        const gic_real t23 = R(0.21526024724178433) * t19 + t6 * t20 + t4 * t22;
+        const gic_real t24 = k[6] + m0[1];
+        const gic_real t25 = t24 - t2;
+        const gic_real t26 = k[4] * t19 + t3 * t20 + t7 * t22;
+        const gic_real t27 = R(0.9665541626242249) * t19 + R(-0.059522000000000075) * t20 + t8 * t22;
+        const gic_real t28 = t17 * t23 + (t25 * t26 + R(-0.2147570000000001) * t27);
+        const gic_real t29 = R(8.573627050492616) * t28;
+        const gic_real t30 = t17 - t23 * t29;
+        const gic_real t31 = t25 - t26 * t29;
+        const gic_real t32 = R(-0.2147570000000001) - t27 * t29;
+        const gic_real t33 = t30 * t30 + (t31 * t31 + t32 * t32);
+        const gic_real t34 = R(0.5) * (t17 * t17 + (t25 * t25 + R(0.04612056904900004)) + R(-0.11818284750480001));
+        const gic_real t35 = t34 - R(0.2910617987184667) * t28;
+        const gic_real t36 = R(0.021346939557573212) * t33 - t35 * t35;
+        if (!(t36 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t33 - t29 * R(1.8302069843604057e-05) > R(0.0)))
+        if (!(t36 - t33 * R(2.1346939557573214e-06) > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t34 = k[5] * GIC_SQRT(t33);
-        const gic_real t35 = t27 * t32 + (t19 * t28 - t23 * t26) * t34;
-        const gic_real t36 = t35 + t22 * R(0.2910617987184667);
-        const gic_real t37 = t26 * t32 + (t23 * t27 - t22 * t28) * t34;
-        const gic_real t38 = t37 + t19 * R(0.2910617987184667);
-        const gic_real t39 = t5 + t38 - R(0.054228999999999916);
-        const gic_real t40 = t2 + t36 - t20;
-        const gic_real t41 = t36 * t39 - t38 * t40;
-        if (!(GIC_FABS(t41) > R(4.936176136989089e-06)))
+        const gic_real t37 = R(1.0) / t33;
+        const gic_real t38 = t37 * t35;
+        const gic_real t39 = GIC_SQRT(t36);
+        const gic_real t40 = t37 * (t39 * k[7]);
+        const gic_real t41 = t31 * t38 + (t23 * t32 - t27 * t30) * t40;
+        const gic_real t42 = t41 + t26 * R(0.2910617987184667);
+        const gic_real t43 = t30 * t38 + (t27 * t31 - t26 * t32) * t40;
+        const gic_real t44 = t43 + t23 * R(0.2910617987184667);
+        const gic_real t45 = t5 + t44 - R(0.054228999999999916);
+        const gic_real t46 = t2 + t42 - t24;
+        const gic_real t47 = t42 * t45 - t44 * t46;
+        if (!(GIC_FABS(t47) > R(4.93617613698909e-06)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t42 = t2 + t22 - k[2];
-        const gic_real t43 = R(1.653405) + t23 - R(1.593883);
-        const gic_real t44 = t28 * t32 + (t22 * t26 - t19 * t27) * t34;
-        const gic_real t45 = t44 + t23 * R(0.2910617987184667);
-        const gic_real t46 = R(1.653405) + t45 - R(1.438648);
-        const gic_real t47 = t45 * t40 - t36 * t46;
-        const gic_real t48 = t5 + t19 - R(0.23411769999999993);
-        const gic_real t49 = R(1.0) / t41;
-        const gic_real t50 = (t22 * t48 - t19 * t42) * t49;
-        const gic_real t51 = t23 * t42 - t22 * t43 - t47 * t50;
-        if (!(GIC_FABS(t51) > R(1.6836348082111382e-05)))
+        const gic_real t48 = t2 + t26 - k[2];
+        const gic_real t49 = R(1.653405) + t27 - R(1.593883);
+        const gic_real t50 = t32 * t38 + (t26 * t30 - t23 * t31) * t40;
+        const gic_real t51 = t50 + t27 * R(0.2910617987184667);
+        const gic_real t52 = R(1.653405) + t51 - R(1.438648);
+        const gic_real t53 = t51 * t46 - t42 * t52;
+        const gic_real t54 = t5 + t23 - R(0.23411769999999993);
+        const gic_real t55 = R(1.0) / t47;
+        const gic_real t56 = (t26 * t54 - t23 * t48) * t55;
+        const gic_real t57 = t27 * t48 - t26 * t49 - t53 * t56;
+        if (!(GIC_FABS(t57) > R(1.6836348082111396e-05)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t52 = t38 * t46 - t45 * t39;
-        const gic_real t53 = (R(0.21526024724178433) * t22 - k[4] * t19) * t49;
-        const gic_real t54 = t19 * t43 - t23 * t48 - t52 * t50;
-        const gic_real t55 = R(1.0) / t51;
-        const gic_real t56 = (k[4] * t23 - R(0.9665541626242249) * t22 - t47 * t53) * t55;
-        const gic_real t57 = R(0.9665541626242249) * t19 - R(0.21526024724178433) * t23 - t52 * t53 - t54 * t56;
-        if (!(GIC_FABS(t57) > R(3.5356653954367225e-05)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t58 = t40 * t50;
+        const gic_real t58 = t21 * t39;
         const gic_real t59 = R(1.0) / t57;
-        const gic_real t60 = t59 * (t56 * t58 - t40 * t53);
-        const gic_real t61 = t55 * (t58 + t54 * t60);
-        const gic_real t62 = t49 * (t40 + t47 * t61 - t52 * t60);
-        const gic_real t63 = m1[24] * t5;
-        const gic_real t64 = m1[24] * t1;
-        const gic_real t65 = t40 * t63 - t39 * t64;
-        const gic_real t66 = t42 * t63 - t48 * t64 - t50 * t65;
-        const gic_real t67 = k[4] * t63 - R(0.21526024724178433) * t64 - t53 * t65 - t56 * t66;
-        const gic_real t68 = t59 * t67;
-        const gic_real t69 = t55 * (t66 - t54 * t68);
-        const gic_real t70 = t49 * (t65 - t47 * t69 - t52 * t68);
-        const gic_real t71 = rate[0] * t62 + rate[1] * t70;
-        const gic_real t72 = rate[0] * t60 + rate[1] * t68;
-        const gic_real t73 = rate[1] * t69 - rate[0] * t61;
-        const gic_real t74 = (GIC_FABS(t71) + GIC_FABS(t72) + GIC_FABS(t73)) * ahead[0];
-        if (!(t57 * (t41 * t51) * R(-334.76831006362477) - t74 > R(0.004)))
+        const gic_real t60 = t46 * t56;
+        const gic_real t61 = t44 * t52 - t51 * t45;
+        const gic_real t62 = t23 * t49 - t27 * t54 - t61 * t56;
+        const gic_real t63 = t47 * t57 * (t58 * (R(1.0) / (t36 * (t16 * R(-0.3415212300824061)))));
+        const gic_real t64 = (R(0.21526024724178433) * t26 - k[4] * t23) * t55;
+        const gic_real t65 = (k[4] * t27 - R(0.9665541626242249) * t26 - t53 * t64) * t59;
+        const gic_real t66 = t63 * (t65 * t60 - t46 * t64);
+        const gic_real t67 = t59 * (t60 + t62 * t66);
+        const gic_real t68 = t55 * (t46 + t53 * t67 - t61 * t66);
+        const gic_real t69 = m1[24] * t5;
+        const gic_real t70 = m1[24] * t1;
+        const gic_real t71 = t46 * t69 - t45 * t70;
+        const gic_real t72 = t48 * t69 - t54 * t70 - t56 * t71;
+        const gic_real t73 = k[4] * t69 - R(0.21526024724178433) * t70 - t64 * t71 - t65 * t72;
+        const gic_real t74 = t63 * t73;
+        const gic_real t75 = t59 * (t72 - t62 * t74);
+        const gic_real t76 = t55 * (t71 - t53 * t75 - t61 * t74);
+        const gic_real t77 = rate[0] * t68 + rate[1] * t76;
+        const gic_real t78 = rate[0] * t66 + rate[1] * t74;
+        const gic_real t79 = rate[1] * t75 - rate[0] * t67;
+        const gic_real t80 = (GIC_FABS(t77) + GIC_FABS(t78) + GIC_FABS(t79)) * ahead[0];
+        if (!(t58 * R(114.33048504553747) - t80 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t75 = t22 * t37 - t19 * t35;
-        const gic_real t76 = t75 * k[7] + (t44 * R(-6.332169372123424) + t23 * R(-0.14982584743276878));
-        const gic_real t77 = t75 * R(-18.07838873614245) + (t44 * k[8] + t23 * k[9]);
-        const gic_real t78 = t75 * k[10] + (t44 * R(0.21916659821076587) + t23 * R(2.860192849101719));
-        const gic_real t79 = t19 * t44 - t23 * t37;
-        const gic_real t80 = t79 * k[7] + (t35 * R(-6.332169372123424) + t22 * R(-0.14982584743276878));
-        const gic_real t81 = t79 * R(-18.07838873614245) + (t35 * k[8] + t22 * k[9]);
-        const gic_real t82 = t79 * k[10] + (t35 * R(0.21916659821076587) + t22 * R(2.860192849101719));
-        const gic_real t83 = t23 * t35 - t22 * t44;
-        const gic_real t84 = t83 * k[7] + (t37 * R(-6.332169372123424) + t19 * R(-0.14982584743276878));
-        const gic_real t85 = t83 * R(-18.07838873614245) + (t37 * k[8] + t19 * k[9]);
-        const gic_real t86 = t83 * k[10] + (t37 * R(0.21916659821076587) + t19 * R(2.860192849101719));
-        const gic_real t87 = rate[1] * t63;
-        const gic_real t88 = rate[1] * t64;
-        const gic_real t89 = m1[12] * (m1[12] * t1) + m1[18] * t5;
-        const gic_real t90 = t36 * t71 - t45 * t72;
-        const gic_real t91 = t88 + t90;
-        const gic_real t92 = t45 * t73 - t38 * t71;
-        const gic_real t93 = t92 - t87 - m0[16];
-        const gic_real t94 = t38 * t72 - t36 * t73;
-        const gic_real t95 = t40 * (t73 * t94 - t71 * t90) + t46 * (t72 * t90 - t73 * t92);
-        const gic_real t96 = t91 * t91 + (t93 * t93 + t94 * t94) + (t39 * (t71 * t92 - t72 * t94) + t95);
-        const gic_real t97 = m1[18] * t1 - m1[12] * (m1[12] * t5);
-        const gic_real t98 = t89 * t40 - t96 - t97 * t39;
-        const gic_real t99 = t22 * t71 - t23 * t72;
-        const gic_real t100 = t88 + t99;
-        const gic_real t101 = t23 * t73 - t19 * t71;
-        const gic_real t102 = t101 - t87;
-        const gic_real t103 = t19 * t72 - t22 * t73;
-        const gic_real t104 = t71 * t101 - t72 * t103;
-        const gic_real t105 = t73 * t103 - t71 * t99;
-        const gic_real t106 = t72 * t99 - t73 * t101;
-        const gic_real t107 = t100 * t100 + (t102 * t102 + t103 * t103) + (t48 * t104 + (t42 * t105 + t43 * t106));
-        const gic_real t108 = t89 * t42 - t107 - t97 * t48 - t50 * t98;
-        const gic_real t109 = k[4] * t89 - (R(0.21526024724178433) * t104 + (k[4] * t105 + R(0.9665541626242249) * t106));
-        const gic_real t110 = t109 - R(0.21526024724178433) * t97 - t53 * t98 - t56 * t108;
-        const gic_real t111 = t59 * t110;
-        const gic_real t112 = t55 * (t108 - t54 * t111);
-        const gic_real t113 = t49 * (t98 - t47 * t112 - t52 * t111);
-        const gic_real t114 = t78 * R(0.09182099999999999) + (t77 * k[11] + t76 * R(-0.004825999999999997));
-        const gic_real t115 = R(1.653405) + t114;
-        const gic_real t116 = R(90.555) * t115;
-        const gic_real t117 = t82 * R(0.09182099999999999) + (t81 * k[11] + t80 * R(-0.004825999999999997));
-        const gic_real t118 = t2 + t117;
-        const gic_real t119 = R(90.555) * t118;
-        const gic_real t120 = t86 * R(0.09182099999999999) + (t85 * k[11] + t84 * R(-0.004825999999999997));
-        const gic_real t121 = t5 + t120;
+        const gic_real t81 = t26 * t43 - t23 * t41;
+        const gic_real t82 = t81 * k[8] + (t50 * R(-6.332169372123424) + t27 * R(-0.14982584743276878));
+        const gic_real t83 = t81 * R(-18.07838873614245) + (t50 * k[9] + t27 * k[10]);
+        const gic_real t84 = t81 * k[11] + (t50 * R(0.21916659821076587) + t27 * R(2.860192849101719));
+        const gic_real t85 = t23 * t50 - t27 * t43;
+        const gic_real t86 = t85 * k[8] + (t41 * R(-6.332169372123424) + t26 * R(-0.14982584743276878));
+        const gic_real t87 = t85 * R(-18.07838873614245) + (t41 * k[9] + t26 * k[10]);
+        const gic_real t88 = t85 * k[11] + (t41 * R(0.21916659821076587) + t26 * R(2.860192849101719));
+        const gic_real t89 = t27 * t41 - t26 * t50;
+        const gic_real t90 = t89 * k[8] + (t43 * R(-6.332169372123424) + t23 * R(-0.14982584743276878));
+        const gic_real t91 = t89 * R(-18.07838873614245) + (t43 * k[9] + t23 * k[10]);
+        const gic_real t92 = t89 * k[11] + (t43 * R(0.21916659821076587) + t23 * R(2.860192849101719));
+        const gic_real t93 = rate[1] * t69;
+        const gic_real t94 = rate[1] * t70;
+        const gic_real t95 = m1[12] * (m1[12] * t1) + m1[18] * t5;
+        const gic_real t96 = t42 * t77 - t51 * t78;
+        const gic_real t97 = t94 + t96;
+        const gic_real t98 = t51 * t79 - t44 * t77;
+        const gic_real t99 = t98 - t93 - m0[16];
+        const gic_real t100 = t44 * t78 - t42 * t79;
+        const gic_real t101 = t46 * (t79 * t100 - t77 * t96) + t52 * (t78 * t96 - t79 * t98);
+        const gic_real t102 = t97 * t97 + (t99 * t99 + t100 * t100) + (t45 * (t77 * t98 - t78 * t100) + t101);
+        const gic_real t103 = m1[18] * t1 - m1[12] * (m1[12] * t5);
+        const gic_real t104 = t95 * t46 - t102 - t103 * t45;
+        const gic_real t105 = t26 * t77 - t27 * t78;
+        const gic_real t106 = t94 + t105;
+        const gic_real t107 = t27 * t79 - t23 * t77;
+        const gic_real t108 = t107 - t93;
+        const gic_real t109 = t23 * t78 - t26 * t79;
+        const gic_real t110 = t77 * t107 - t78 * t109;
+        const gic_real t111 = t79 * t109 - t77 * t105;
+        const gic_real t112 = t78 * t105 - t79 * t107;
+        const gic_real t113 = t106 * t106 + (t108 * t108 + t109 * t109) + (t54 * t110 + (t48 * t111 + t49 * t112));
+        const gic_real t114 = t95 * t48 - t113 - t103 * t54 - t56 * t104;
+        const gic_real t115 = k[4] * t95 - (R(0.21526024724178433) * t110 + (k[4] * t111 + R(0.9665541626242249) * t112));
+        const gic_real t116 = t115 - R(0.21526024724178433) * t103 - t64 * t104 - t65 * t114;
+        const gic_real t117 = t63 * t116;
+        const gic_real t118 = t59 * (t114 - t62 * t117);
+        const gic_real t119 = t55 * (t104 - t53 * t118 - t61 * t117);
+        const gic_real t120 = t84 * R(0.09182099999999999) + (t83 * k[12] + t82 * R(-0.004825999999999997));
+        const gic_real t121 = R(1.653405) + t120;
         const gic_real t122 = R(90.555) * t121;
-        const gic_real t123 = t77 * R(-4.5794204999999994);
-        const gic_real t124 = t76 * R(0.12192999999999987);
-        const gic_real t125 = R(4.7728205) + (t77 * t123 + t76 * t124);
-        const gic_real t126 = t118 * t119;
-        const gic_real t127 = t121 * t122;
-        const gic_real t128 = t81 * R(-4.5794204999999994);
-        const gic_real t129 = t80 * R(0.12192999999999987);
-        const gic_real t130 = R(4.7728205) + (t81 * t128 + t80 * t129);
-        const gic_real t131 = t115 * t116;
-        const gic_real t132 = R(4.7728205) + (t85 * (t85 * R(-4.5794204999999994)) + t84 * (t84 * R(0.12192999999999987)));
-        const gic_real t133 = t81 * t123 + t80 * t124;
-        const gic_real t134 = t85 * t123 + t84 * t124;
-        const gic_real t135 = t85 * t128 + t84 * t129;
-        const gic_real t136 = t71 * t117 - t72 * t114;
-        const gic_real t137 = t88 + t136;
-        const gic_real t138 = t137 + (t137 + (turn[0] * t118 - turn[1] * t115));
-        const gic_real t139 = t73 * t114 - t71 * t120;
-        const gic_real t140 = t139 - t87;
-        const gic_real t141 = t140 + (t140 + (turn[2] * t115 - turn[0] * t121));
-        const gic_real t142 = turn[1] * t138 - turn[2] * t141 + (t72 * t136 - t73 * t139);
-        const gic_real t143 = R(90.555) * (t142 + (t111 * t120 - t112 * t117));
-        const gic_real t144 = t72 * t120 - t73 * t117;
-        const gic_real t145 = t144 + (t144 + (turn[1] * t121 - turn[2] * t118));
-        const gic_real t146 = turn[2] * t145 - turn[0] * t138 + (t73 * t144 - t71 * t136);
-        const gic_real t147 = R(90.555) * (t146 + (t112 * t114 - t113 * t120) - t89);
-        const gic_real t148 = turn[0] * t141 - turn[1] * t145 + (t71 * t139 - t72 * t144);
-        const gic_real t149 = R(90.555) * (t97 + (t148 + (t113 * t117 - t111 * t114)));
-        const gic_real t150 = t112 + (t72 * turn[0] - t71 * turn[1]);
-        const gic_real t151 = t111 + (t71 * turn[2] - t73 * turn[0]);
-        const gic_real t152 = t113 + (t73 * turn[1] - t72 * turn[2]);
-        const gic_real t153 = t72 + turn[1];
-        const gic_real t154 = t73 + turn[2];
-        const gic_real t155 = t71 + turn[0];
-        const gic_real t156 = t132 * t154 + (t135 * t153 + t134 * t155);
-        const gic_real t157 = t135 * t154 + (t130 * t153 + t133 * t155);
-        const gic_real t158 = t134 * t150 + (t133 * t151 + t125 * t152) + (t153 * t156 - t154 * t157);
-        const gic_real t159 = t134 * t154 + (t133 * t153 + t125 * t155);
-        const gic_real t160 = t135 * t150 + (t130 * t151 + t133 * t152) + (t154 * t159 - t155 * t156);
-        const gic_real t161 = t132 * t150 + (t135 * t151 + t134 * t152) + (t155 * t157 - t153 * t159);
-        const gic_real t162 = t61 * t117 + t60 * t120;
-        const gic_real t163 = R(90.555) * t162;
-        const gic_real t164 = t62 * t120 + t61 * t114;
-        const gic_real t165 = R(90.555) * t164;
-        const gic_real t166 = t62 * t117 - t60 * t114;
-        const gic_real t167 = R(90.555) * t166;
-        const gic_real t168 = t60 * t133 + t62 * t125 - t61 * t134;
-        const gic_real t169 = t60 * t130 + t62 * t133 - t61 * t135;
-        const gic_real t170 = t60 * t135 + t62 * t134 - t61 * t132;
-        const gic_real t171 = t60 * t160 + t62 * t158 - t61 * t161 + (t149 * t166 + (t143 * t162 - t147 * t164));
-        const gic_real t172 = t68 * t120 - t69 * t117;
+        const gic_real t123 = t88 * R(0.09182099999999999) + (t87 * k[12] + t86 * R(-0.004825999999999997));
+        const gic_real t124 = t2 + t123;
+        const gic_real t125 = R(90.555) * t124;
+        const gic_real t126 = t92 * R(0.09182099999999999) + (t91 * k[12] + t90 * R(-0.004825999999999997));
+        const gic_real t127 = t5 + t126;
+        const gic_real t128 = R(90.555) * t127;
+        const gic_real t129 = t83 * R(-4.5794204999999994);
+        const gic_real t130 = t82 * R(0.12192999999999987);
+        const gic_real t131 = R(4.7728205) + (t83 * t129 + t82 * t130);
+        const gic_real t132 = t124 * t125;
+        const gic_real t133 = t127 * t128;
+        const gic_real t134 = t87 * R(-4.5794204999999994);
+        const gic_real t135 = t86 * R(0.12192999999999987);
+        const gic_real t136 = R(4.7728205) + (t87 * t134 + t86 * t135);
+        const gic_real t137 = t121 * t122;
+        const gic_real t138 = R(4.7728205) + (t91 * (t91 * R(-4.5794204999999994)) + t90 * (t90 * R(0.12192999999999987)));
+        const gic_real t139 = t87 * t129 + t86 * t130;
+        const gic_real t140 = t91 * t129 + t90 * t130;
+        const gic_real t141 = t91 * t134 + t90 * t135;
+        const gic_real t142 = t77 * t123 - t78 * t120;
+        const gic_real t143 = t94 + t142;
+        const gic_real t144 = t143 + (t143 + (turn[0] * t124 - turn[1] * t121));
+        const gic_real t145 = t79 * t120 - t77 * t126;
+        const gic_real t146 = t145 - t93;
+        const gic_real t147 = t146 + (t146 + (turn[2] * t121 - turn[0] * t127));
+        const gic_real t148 = turn[1] * t144 - turn[2] * t147 + (t78 * t142 - t79 * t145);
+        const gic_real t149 = R(90.555) * (t148 + (t117 * t126 - t118 * t123));
+        const gic_real t150 = t78 * t126 - t79 * t123;
+        const gic_real t151 = t150 + (t150 + (turn[1] * t127 - turn[2] * t124));
+        const gic_real t152 = turn[2] * t151 - turn[0] * t144 + (t79 * t150 - t77 * t142);
+        const gic_real t153 = R(90.555) * (t152 + (t118 * t120 - t119 * t126) - t95);
+        const gic_real t154 = turn[0] * t147 - turn[1] * t151 + (t77 * t145 - t78 * t150);
+        const gic_real t155 = R(90.555) * (t103 + (t154 + (t119 * t123 - t117 * t120)));
+        const gic_real t156 = t118 + (t78 * turn[0] - t77 * turn[1]);
+        const gic_real t157 = t117 + (t77 * turn[2] - t79 * turn[0]);
+        const gic_real t158 = t119 + (t79 * turn[1] - t78 * turn[2]);
+        const gic_real t159 = t78 + turn[1];
+        const gic_real t160 = t79 + turn[2];
+        const gic_real t161 = t77 + turn[0];
+        const gic_real t162 = t138 * t160 + (t141 * t159 + t140 * t161);
+        const gic_real t163 = t141 * t160 + (t136 * t159 + t139 * t161);
+        const gic_real t164 = t140 * t156 + (t139 * t157 + t131 * t158) + (t159 * t162 - t160 * t163);
+        const gic_real t165 = t140 * t160 + (t139 * t159 + t131 * t161);
+        const gic_real t166 = t141 * t156 + (t136 * t157 + t139 * t158) + (t160 * t165 - t161 * t162);
+        const gic_real t167 = t138 * t156 + (t141 * t157 + t140 * t158) + (t161 * t163 - t159 * t165);
+        const gic_real t168 = t67 * t123 + t66 * t126;
+        const gic_real t169 = R(90.555) * t168;
+        const gic_real t170 = t68 * t126 + t67 * t120;
+        const gic_real t171 = R(90.555) * t170;
+        const gic_real t172 = t68 * t123 - t66 * t120;
         const gic_real t173 = R(90.555) * t172;
-        const gic_real t174 = t69 * t114 - t70 * t120 - t63;
-        const gic_real t175 = R(90.555) * t174;
-        const gic_real t176 = t64 + (t70 * t117 - t68 * t114);
-        const gic_real t177 = R(90.555) * t176;
-        const gic_real t178 = t69 * t134 + (t68 * t133 + t70 * t125);
-        const gic_real t179 = t69 * t135 + (t68 * t130 + t70 * t133);
-        const gic_real t180 = t69 * t132 + (t68 * t135 + t70 * t134);
-        const gic_real t181 = t69 * t161 + (t68 * t160 + t70 * t158) + (t149 * t176 + (t147 * t174 + t143 * t172));
-        const gic_real t182 = t60 * t169 + t62 * t168 - t61 * t170 + (t166 * t167 + (t164 * t165 + t162 * t163));
-        const gic_real t183 = t60 * t179 + t62 * t178 - t61 * t180 + (t166 * t177 + (t162 * t173 - t164 * t175));
-        const gic_real t184 = t69 * t180 + (t68 * t179 + t70 * t178) + (t176 * t177 + (t174 * t175 + t172 * t173));
-        const gic_real t185 = -t87;
-        const gic_real t186 = -t89;
-        const gic_real t187 = -t61;
-        const gic_real t188 = -t63;
-        const gic_real t189 = t125 + (t126 + t127);
-        const gic_real t190 = t130 + (t131 + t127);
-        const gic_real t191 = t132 + (t131 + t126);
-        const gic_real t192 = t133 - t118 * t116;
-        const gic_real t193 = t134 - t121 * t116;
-        const gic_real t194 = t135 - t121 * t119;
-        const gic_real t195 = t158 + (t118 * t149 - t121 * t147);
-        const gic_real t196 = t160 + (t121 * t143 - t115 * t149);
-        const gic_real t197 = t161 + (t115 * t147 - t118 * t143);
-        const gic_real t198 = -t165;
-        const gic_real t199 = t168 + (t121 * t165 + t118 * t167);
-        const gic_real t200 = t169 + (t121 * t163 - t115 * t167);
-        const gic_real t201 = t170 - (t118 * t163 + t115 * t165);
-        const gic_real t202 = t178 + (t118 * t177 - t121 * t175);
-        const gic_real t203 = t179 + (t121 * t173 - t115 * t177);
-        const gic_real t204 = t180 + (t115 * t175 - t118 * t173);
+        const gic_real t174 = t66 * t139 + t68 * t131 - t67 * t140;
+        const gic_real t175 = t66 * t136 + t68 * t139 - t67 * t141;
+        const gic_real t176 = t66 * t141 + t68 * t140 - t67 * t138;
+        const gic_real t177 = t66 * t166 + t68 * t164 - t67 * t167 + (t155 * t172 + (t149 * t168 - t153 * t170));
+        const gic_real t178 = t74 * t126 - t75 * t123;
+        const gic_real t179 = R(90.555) * t178;
+        const gic_real t180 = t75 * t120 - t76 * t126 - t69;
+        const gic_real t181 = R(90.555) * t180;
+        const gic_real t182 = t70 + (t76 * t123 - t74 * t120);
+        const gic_real t183 = R(90.555) * t182;
+        const gic_real t184 = t75 * t140 + (t74 * t139 + t76 * t131);
+        const gic_real t185 = t75 * t141 + (t74 * t136 + t76 * t139);
+        const gic_real t186 = t75 * t138 + (t74 * t141 + t76 * t140);
+        const gic_real t187 = t75 * t167 + (t74 * t166 + t76 * t164) + (t155 * t182 + (t153 * t180 + t149 * t178));
+        const gic_real t188 = t66 * t175 + t68 * t174 - t67 * t176 + (t172 * t173 + (t170 * t171 + t168 * t169));
+        const gic_real t189 = t66 * t185 + t68 * t184 - t67 * t186 + (t172 * t183 + (t168 * t179 - t170 * t181));
+        const gic_real t190 = t75 * t186 + (t74 * t185 + t76 * t184) + (t182 * t183 + (t180 * t181 + t178 * t179));
+        const gic_real t191 = -t93;
+        const gic_real t192 = -t95;
+        const gic_real t193 = -t67;
+        const gic_real t194 = -t69;
+        const gic_real t195 = t131 + (t132 + t133);
+        const gic_real t196 = t136 + (t137 + t133);
+        const gic_real t197 = t138 + (t137 + t132);
+        const gic_real t198 = t139 - t124 * t122;
+        const gic_real t199 = t140 - t127 * t122;
+        const gic_real t200 = t141 - t127 * t125;
+        const gic_real t201 = t164 + (t124 * t155 - t127 * t153);
+        const gic_real t202 = t166 + (t127 * t149 - t121 * t155);
+        const gic_real t203 = t167 + (t121 * t153 - t124 * t149);
+        const gic_real t204 = -t171;
+        const gic_real t205 = t174 + (t127 * t171 + t124 * t173);
+        const gic_real t206 = t175 + (t127 * t169 - t121 * t173);
+        const gic_real t207 = t176 - (t124 * t169 + t121 * t171);
+        const gic_real t208 = t184 + (t124 * t183 - t127 * t181);
+        const gic_real t209 = t185 + (t127 * t179 - t121 * t183);
+        const gic_real t210 = t186 + (t121 * t181 - t124 * t179);
         motion[1] = t2;
         motion[2] = t5;
-        motion[3] = t76;
-        motion[4] = t77;
-        motion[5] = t78;
-        motion[6] = t80;
-        motion[7] = t81;
-        motion[8] = t82;
-        motion[9] = t84;
-        motion[10] = t85;
-        motion[11] = t86;
-        motion[12] = t71;
-        motion[13] = t72;
-        motion[14] = t73;
-        motion[16] = t185;
-        motion[17] = t88;
-        motion[18] = t113;
-        motion[19] = t111;
-        motion[20] = t112;
-        motion[22] = t186;
-        motion[23] = t97;
-        motion[24] = t62;
-        motion[25] = t60;
-        motion[26] = t187;
-        motion[30] = t70;
-        motion[31] = t68;
-        motion[32] = t69;
-        motion[34] = t188;
-        motion[35] = t64;
-        inertia[0] = t116;
-        inertia[1] = t119;
-        inertia[2] = t122;
-        inertia[3] = t189;
-        inertia[4] = t190;
-        inertia[5] = t191;
-        inertia[6] = t192;
-        inertia[7] = t193;
-        inertia[8] = t194;
-        inertia[9] = t143;
-        inertia[10] = t147;
-        inertia[11] = t149;
-        inertia[12] = t195;
-        inertia[13] = t196;
-        inertia[14] = t197;
-        inertia[15] = t163;
-        inertia[16] = t198;
-        inertia[17] = t167;
-        inertia[18] = t199;
-        inertia[19] = t200;
-        inertia[20] = t201;
-        inertia[21] = t171;
-        inertia[22] = t173;
-        inertia[23] = t175;
-        inertia[24] = t177;
-        inertia[25] = t202;
-        inertia[26] = t203;
-        inertia[27] = t204;
-        inertia[28] = t181;
-        inertia[29] = t182;
-        inertia[30] = t183;
-        inertia[31] = t184;
+        motion[3] = t82;
+        motion[4] = t83;
+        motion[5] = t84;
+        motion[6] = t86;
+        motion[7] = t87;
+        motion[8] = t88;
+        motion[9] = t90;
+        motion[10] = t91;
+        motion[11] = t92;
+        motion[12] = t77;
+        motion[13] = t78;
+        motion[14] = t79;
+        motion[16] = t191;
+        motion[17] = t94;
+        motion[18] = t119;
+        motion[19] = t117;
+        motion[20] = t118;
+        motion[22] = t192;
+        motion[23] = t103;
+        motion[24] = t68;
+        motion[25] = t66;
+        motion[26] = t193;
+        motion[30] = t76;
+        motion[31] = t74;
+        motion[32] = t75;
+        motion[34] = t194;
+        motion[35] = t70;
+        inertia[0] = t122;
+        inertia[1] = t125;
+        inertia[2] = t128;
+        inertia[3] = t195;
+        inertia[4] = t196;
+        inertia[5] = t197;
+        inertia[6] = t198;
+        inertia[7] = t199;
+        inertia[8] = t200;
+        inertia[9] = t149;
+        inertia[10] = t153;
+        inertia[11] = t155;
+        inertia[12] = t201;
+        inertia[13] = t202;
+        inertia[14] = t203;
+        inertia[15] = t169;
+        inertia[16] = t204;
+        inertia[17] = t173;
+        inertia[18] = t205;
+        inertia[19] = t206;
+        inertia[20] = t207;
+        inertia[21] = t177;
+        inertia[22] = t179;
+        inertia[23] = t181;
+        inertia[24] = t183;
+        inertia[25] = t208;
+        inertia[26] = t209;
+        inertia[27] = t210;
+        inertia[28] = t187;
+        inertia[29] = t188;
+        inertia[30] = t189;
+        inertia[31] = t190;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -745,20 +745,20 @@ static GIC_COLD gic_real hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RE
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m1[7] + k[1])) * R(2.9280756565520325)));
-        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[12] * motion[10] + R(-0.14025880000000002) * motion[9]));
+        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.9280756565520325) * (motion[1] - (k[0] * m1[7] + k[1]))));
+        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]));
         const gic_real t3 = t2 - R(0.054228999999999916);
-        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[12] * motion[7] + R(-0.14025880000000002) * motion[6]));
+        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]));
         const gic_real t5 = t4 - (k[6] + m0[1]);
-        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[12] * motion[4] + R(-0.14025880000000002) * motion[3]));
+        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]));
         const gic_real t7 = t6 - R(1.438648);
         const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
-        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m1[10]) * R(2.9280756565520325))), GIC_FABS(t8 * R(3.9285226675160794)));
-        const gic_real t10 = motion[2] + (R(0.3336036) * motion[11] + (k[13] * motion[10] + R(-0.017475200000000024) * motion[9]));
+        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS(R(2.9280756565520325) * (motion[2] - k[0] * m1[10]))), GIC_FABS(t8 * R(3.9285226675160794)));
+        const gic_real t10 = motion[2] + (R(0.3336036) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]));
         const gic_real t11 = t10 - R(0.23411769999999993);
-        const gic_real t12 = motion[1] + (R(0.3336036) * motion[8] + (k[13] * motion[7] + R(-0.017475200000000024) * motion[6]));
+        const gic_real t12 = motion[1] + (R(0.3336036) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]));
         const gic_real t13 = t12 - k[2];
-        const gic_real t14 = R(1.653405) + (R(0.3336036) * motion[5] + (k[13] * motion[4] + R(-0.017475200000000024) * motion[3]));
+        const gic_real t14 = R(1.653405) + (R(0.3336036) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]));
         const gic_real t15 = t14 - R(1.593883);
         const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
         const gic_real t17 = R(0.21526024724178433) * t11 + (k[4] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
@@ -768,14 +768,14 @@ static GIC_COLD gic_real hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RE
     return worst;
 }
 
-static const gic_real hmmwv_vehicle_k_wheel_r_l[2][8] = {
+static const gic_real hmmwv_vehicle_k_wheel_r_l[2][7] = {
     { /* wheel_r_l */
         R(0.49375935710120966), R(0.307086), R(0.462153), R(-0.07099299999999997),
-        R(-1.0), R(0.07099299999999997), R(-5.957189034897722), R(0.08910630000000008),
+        R(-1.0), R(0.07099299999999997), R(0.08910630000000008),
     },
     { /* wheel_r_r */
         R(-0.49375935710120966), R(-0.307086), R(-0.462153), R(0.07099299999999997),
-        R(1.0), R(-0.07099299999999997), R(5.957189034897722), R(-0.08910630000000008),
+        R(1.0), R(-0.07099299999999997), R(-0.08910630000000008),
     },
 };
 
@@ -806,47 +806,45 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
             return GIC_ERROR_NEWTON;
         if (!(t11 - t8 * R(0.0001) > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t12 = R(1.0) / t8;
-        const gic_real t13 = GIC_SQRT(t11) * k[4];
-        const gic_real t14 = t12 * (t10 * t7 - t6 * t13);
-        const gic_real t15 = t12 * (t7 * t13 + t10 * t6);
-        const gic_real t16 = R(-0.3340099999999999) * t14 + k[5] * t15;
-        const gic_real t17 = k[3] * t14 + R(-0.3340099999999999) * t15;
-        const gic_real t18 = t4 + t17 - R(0.22567900000000002);
-        const gic_real t19 = t2 + t16 - k[2];
-        const gic_real t20 = t16 * t18 - t17 * t19;
-        if (!(GIC_FABS(t20) > R(8.60979459359623e-06)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t21 = R(1.0) / t20;
-        const gic_real t22 = m0[24] * t4;
+        const gic_real t12 = GIC_SQRT(t11);
+        const gic_real t13 = t12 * (R(1.0) / (t11 * k[4]));
+        const gic_real t14 = R(1.0) / t8;
+        const gic_real t15 = t12 * k[4];
+        const gic_real t16 = t14 * (t10 * t7 - t6 * t15);
+        const gic_real t17 = t14 * (t7 * t15 + t10 * t6);
+        const gic_real t18 = R(-0.3340099999999999) * t16 + k[5] * t17;
+        const gic_real t19 = t2 + t18 - k[2];
+        const gic_real t20 = m0[24] * t4;
+        const gic_real t21 = k[3] * t16 + R(-0.3340099999999999) * t17;
+        const gic_real t22 = t4 + t21 - R(0.22567900000000002);
         const gic_real t23 = m0[24] * t1;
-        const gic_real t24 = t21 * (t19 * t22 - t18 * t23);
+        const gic_real t24 = t13 * (t19 * t20 - t22 * t23);
         const gic_real t25 = rate[0] * t24;
-        if (!(t20 * k[6] - GIC_FABS(t25) * ahead[0] > R(0.004)))
+        if (!(t12 * R(5.957189034897722) - GIC_FABS(t25) * ahead[0] > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t26 = -t15;
-        const gic_real t27 = rate[0] * t22;
+        const gic_real t26 = -t17;
+        const gic_real t27 = rate[0] * t20;
         const gic_real t28 = rate[0] * t23;
-        const gic_real t29 = t17 * t25;
-        const gic_real t30 = t16 * t25;
+        const gic_real t29 = t21 * t25;
+        const gic_real t30 = t18 * t25;
         const gic_real t31 = t28 + t30;
         const gic_real t32 = t27 + t29;
-        const gic_real t33 = t18 * (t25 * t29) + t19 * (t25 * t30) - (t31 * t31 + t32 * t32);
+        const gic_real t33 = t22 * (t25 * t29) + t19 * (t25 * t30) - (t31 * t31 + t32 * t32);
         const gic_real t34 = m0[12] * (m0[12] * t1) + m0[18] * t4;
         const gic_real t35 = m0[18] * t1 - m0[12] * (m0[12] * t4);
-        const gic_real t36 = t21 * (t33 + t34 * t19 - t35 * t18);
-        const gic_real t37 = t14 * R(0.09182099999999999) + t15 * k[7];
+        const gic_real t36 = t13 * (t33 + t34 * t19 - t35 * t22);
+        const gic_real t37 = t16 * R(0.09182099999999999) + t17 * k[6];
         const gic_real t38 = t2 - t37;
         const gic_real t39 = R(90.555) * t38;
-        const gic_real t40 = t14 * k[7] - t15 * R(0.09182099999999999);
+        const gic_real t40 = t16 * k[6] - t17 * R(0.09182099999999999);
         const gic_real t41 = t4 + t40;
         const gic_real t42 = R(90.555) * t41;
         const gic_real t43 = t38 * t39;
         const gic_real t44 = t41 * t42;
-        const gic_real t45 = t15 * R(-4.5794204999999994);
-        const gic_real t46 = R(4.7728205) + t15 * t45;
-        const gic_real t47 = R(4.7728205) + t14 * (t14 * R(-4.5794204999999994));
-        const gic_real t48 = t14 * t45;
+        const gic_real t45 = t17 * R(-4.5794204999999994);
+        const gic_real t46 = R(4.7728205) + t17 * t45;
+        const gic_real t47 = R(4.7728205) + t16 * (t16 * R(-4.5794204999999994));
+        const gic_real t48 = t16 * t45;
         const gic_real t49 = t25 * t37;
         const gic_real t50 = t28 - t49;
         const gic_real t51 = t50 + (t50 + (turn[0] * t38 - R(-1.653405) * turn[1]));
@@ -870,15 +868,15 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t69 = R(4.8947505) * t68;
         const gic_real t70 = t48 * t66 + t46 * t67 + (turn[2] * t69 - t68 * t63);
         const gic_real t71 = t68 * t64 - turn[1] * t69 - (t47 * t66 + t48 * t67);
-        const gic_real t72 = t22 + t24 * t40;
+        const gic_real t72 = t20 + t24 * t40;
         const gic_real t73 = R(90.555) * t72;
         const gic_real t74 = t23 - t24 * t37;
         const gic_real t75 = R(90.555) * t74;
         const gic_real t76 = t24 * R(4.8947505);
-        const gic_real t77 = -t14;
+        const gic_real t77 = -t16;
         const gic_real t78 = -t27;
         const gic_real t79 = -t34;
-        const gic_real t80 = -t22;
+        const gic_real t80 = -t20;
         const gic_real t81 = R(4.8947505) + (t43 + t44);
         const gic_real t82 = t46 + (R(247.5545586544339) + t44);
         const gic_real t83 = t47 + (R(247.5545586544339) + t43);
@@ -898,7 +896,7 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
         motion[2] = t4;
         motion[7] = t26;
         motion[8] = t77;
-        motion[10] = t14;
+        motion[10] = t16;
         motion[11] = t26;
         motion[12] = t25;
         motion[16] = t78;

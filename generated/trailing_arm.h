@@ -62,10 +62,10 @@
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
  *   subset 'lca_f_l' (2 times, closed form)                   61       116       2      1         2
- *   subset 'wheel_f_l' (2 times, closed form)                307       408       5      2         0
+ *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'lca_f_l_2' (2 times, closed form)                 76       121       2      1         2
  *   forces and equations of motion                           743       706      14      4         4
- *   all together                                            1646      2021      32     12        12
+ *   all together                                            1640      2023      32     12        12
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H

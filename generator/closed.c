@@ -42,6 +42,7 @@ typedef struct Closed {
     Dag *dag;
     Motion *pose;
     Block *block;
+    Branches *branches;
     Hold *hold; /* [bodies] */
 } Closed;
 
@@ -91,7 +92,9 @@ static void combine(Dag *dag, int count, const Ex *s, const Ex *const *a, Ex out
 static const double meeting = 0.01;
 
 /* The root of `square` with the sign that `probe` has at the design; beyond reach the square is negative. whole: what
- * the square is where the two solutions are opposite. */
+ * the square is where the two solutions are opposite. How fast what the step's equations say changes with what it finds
+ * is to be the root, but for a constant factor; no division comes before it, so that a processor can do one meanwhile.
+ */
 static Ex branch_root(Closed *z, Ex square, Ex whole, Ex probe)
 {
     double sign[z->w->class->members];
@@ -100,6 +103,7 @@ static Ex branch_root(Closed *z, Ex square, Ex whole, Ex probe)
     block_check(z->block, square, false, 0, "GIC_ERROR_NEWTON");
     Ex least = ex_mul(z->dag, ex_literal(z->dag, meeting * meeting), whole);
     block_check(z->block, ex_sub(z->dag, square, least), false, 0, "GIC_ERROR_SINGULAR");
+    *POOL_PUSH(z->w->pool, z->branches->square, z->branches->count) = square;
     return ex_mul(z->dag, ex_constant(z->dag, sign), ex_sqrt(z->dag, square));
 }
 
@@ -118,11 +122,14 @@ static bool meet(Closed *z, const Ex v1[3], Ex k1, const Ex v2[3], Ex k2, Ex squ
     Ex det = ex_dot(dag, n, n), g11 = ex_dot(dag, v1, v1), g12 = ex_dot(dag, v1, v2), g22 = ex_dot(dag, v2, v2);
     if (!is_sound(z, det, ex_mul(dag, g11, g22)))
         return false;
-    Ex inverse = ex_div(dag, one, det);
-    Ex along1 = ex_mul(dag, ex_sub(dag, ex_mul(dag, k1, g22), ex_mul(dag, k2, g12)), inverse);
-    Ex along2 = ex_mul(dag, ex_sub(dag, ex_mul(dag, k2, g11), ex_mul(dag, k1, g12)), inverse);
-    Ex rest = ex_sub(dag, ex_sub(dag, square, ex_mul(dag, along1, k1)), ex_mul(dag, along2, k2));
-    Ex across = branch_root(z, ex_mul(dag, rest, inverse), ex_mul(dag, square, inverse), ex_dot(dag, n, followed));
+    /* det times the shares of v1 and v2, and det times the square of what is left for n */
+    Ex share1 = ex_sub(dag, ex_mul(dag, k1, g22), ex_mul(dag, k2, g12));
+    Ex share2 = ex_sub(dag, ex_mul(dag, k2, g11), ex_mul(dag, k1, g12));
+    Ex whole = ex_mul(dag, square, det);
+    Ex rest = ex_sub(dag, ex_sub(dag, whole, ex_mul(dag, share1, k1)), ex_mul(dag, share2, k2));
+    Ex inverse = ex_div(dag, one, det), root = branch_root(z, rest, whole, ex_dot(dag, n, followed));
+    Ex along1 = ex_mul(dag, share1, inverse), along2 = ex_mul(dag, share2, inverse);
+    Ex across = ex_mul(dag, root, inverse);
     combine(dag, 3, (Ex[]){along1, along2, across}, (const Ex *[]){v1, v2, n}, out);
     return true;
 }
@@ -486,12 +493,12 @@ static bool turn_arm(Closed *z, int body, const Projection *p)
         return false;
     ex_cross(dag, image, level, n);
     Ex inverse = ex_div(dag, one, square), k = ex_sub(dag, p->k, ex_mul(dag, share, along));
-    Ex beside = ex_mul(dag, k, inverse);
-    Ex rest = ex_mul(dag, ex_sub(dag, square2, ex_mul(dag, k, beside)), inverse);
     followed_vector(z, body, p->b, followed);
-    Ex scale = ex_div(dag, one, square1), most = ex_mul(dag, ex_mul(dag, square2, inverse), scale);
-    Ex root = branch_root(z, ex_mul(dag, rest, scale), most, ex_dot(dag, n, followed));
-    combine(dag, 2, (Ex[]){beside, root}, (const Ex *[]){level, n}, y);
+    /* of the angle itself: n is as long as level and arm together */
+    Ex most = ex_mul(dag, square2, square), rest = ex_sub(dag, most, ex_mul(dag, k, k));
+    Ex root = branch_root(z, rest, most, ex_dot(dag, n, followed)), scale = ex_sqrt(dag, ex_div(dag, one, square1));
+    Ex beside = ex_mul(dag, k, inverse), along_n = ex_mul(dag, ex_mul(dag, scale, root), inverse);
+    combine(dag, 2, (Ex[]){beside, along_n}, (const Ex *[]){level, n}, y);
     turn_pair(z, body, arm, image, across, y);
     combine(dag, 2, (Ex[]){share, one}, (const Ex *[]){image, y}, whole);
     set_image(z, body, arm, image);
@@ -645,23 +652,24 @@ static bool is_confirmed(const Closed *z)
     return true;
 }
 
-bool subset_closed(Work *w, Motion *pose, Block *block)
+bool subset_closed(Work *w, Motion *pose, Block *block, Branches *branches)
 {
     Closed z = {.w = w,
                 .dag = w->dag,
                 .pose = pose,
                 .block = block,
+                .branches = branches,
                 .hold = pool_alloc(w->pool, (size_t)w->first->bodies * sizeof *z.hold)};
     int placed = 0, before;
     do {
         before = placed;
         for (int b = 0; b < w->first->bodies; ++b)
             if (!z.hold[b].placed) {
-                int checks = block->checks;
+                int checks = block->checks, roots = branches->count;
                 if (place_body(&z, b))
                     ++placed;
                 else
-                    block->checks = checks;
+                    block->checks = checks, branches->count = roots;
             }
     } while (placed > before);
     return placed == w->first->bodies && is_confirmed(&z);

@@ -32,33 +32,74 @@ static bool is_steady(const Work *w, Ex e)
     return seen > 0;
 }
 
-Ex determinant_check(Work *w, Formula *formula, const Factors *factors, bool guarded)
+/* The product of the roots as a determinant, and its reciprocal, for which no division waits for a root. False: it is
+ * not as the determinant of J everywhere, `determinant`, but for a factor [members]. */
+static bool from_roots(Work *w, const Branches *branches, Ex determinant, Ex *product, Ex *reciprocal)
 {
-    Ex determinant = 0;
+    Dag *dag = w->dag;
+    Ex root = ex_literal(dag, 1);
+    double scale[w->class->members];
+    for (int i = 0; i < branches->count; ++i)
+        root = ex_mul(dag, root, ex_sqrt(dag, branches->square[i]));
+    if (!is_steady(w, ex_div(dag, determinant, root)))
+        return false;
+    for (int i = 0; i < w->class->members; ++i)
+        scale[i] = ex_value(dag, determinant, i * w->configurations) / ex_value(dag, root, i * w->configurations);
+    /* the factor first: products of squares alone may be too small for single precision */
+    Ex factor = ex_constant(dag, scale), square = factor;
+    for (int i = 0; i < branches->count; ++i)
+        square = ex_mul(dag, square, branches->square[i]);
+    *product = ex_mul(dag, factor, root);
+    *reciprocal = ex_mul(dag, root, ex_div(dag, ex_literal(dag, 1), square));
+    return true;
+}
+
+/* Is nothing divided by the k-th pivot but what it solves for itself? */
+static bool is_last(const Factors *factors, int k)
+{
+    for (int r = k + 1; r < factors->n; ++r)
+        if (factors->entry[factors->n * r + k])
+            return false;
+    return true;
+}
+
+Ex determinant_check(Work *w, Formula *formula, Factors *factors, const Branches *branches)
+{
+    Dag *dag = w->dag;
+    Ex determinant = 0, before = ex_literal(dag, 1), product, reciprocal;
+    int last = -1;
+    for (int k = 0; k < w->n; ++k)
+        if (dag->node[factors->pivot[k]].level == LEVEL_VARIABLE) {
+            before = last < 0 ? before : ex_mul(dag, before, factors->pivot[last]);
+            determinant = ex_mul(dag, before, factors->pivot[k]);
+            last = k;
+        }
+    const bool rooted = branches && last >= 0 && is_last(factors, last) && !is_steady(w, determinant) &&
+                        from_roots(w, branches, determinant, &product, &reciprocal);
+    if (rooted) {
+        determinant = product;
+        factors->entry[w->n * last + last] = ex_mul(dag, before, reciprocal);
+    }
     for (int k = 0; k < w->n; ++k) {
         Ex pivot = factors->pivot[k];
-        if (w->dag->node[pivot].level < LEVEL_VARIABLE)
+        if (dag->node[pivot].level < LEVEL_VARIABLE || (rooted && k == last))
             continue;
         double usual = 0;
-        for (int s = 0; s < w->dag->samples; ++s)
-            usual = fmax(usual, fabs(ex_value(w->dag, pivot, s)));
+        for (int s = 0; s < dag->samples; ++s)
+            usual = fmax(usual, fabs(ex_value(dag, pivot, s)));
         block_check(&formula->solve, pivot, true, pivot_loss * usual, "GIC_ERROR_SINGULAR");
-        determinant = determinant ? ex_mul(w->dag, determinant, pivot) : pivot;
     }
-    for (int r = 0; guarded && r < w->n; ++r)
+    for (int r = 0; !branches && r < w->n; ++r)
         if (w->row[r].guard)
             block_check(&formula->solve, w->row[r].guard, false, 0, "GIC_ERROR_SINGULAR");
     if (!determinant || is_steady(w, determinant))
         return 0;
     double scale[w->class->members];
     for (int i = 0; i < w->class->members; ++i)
-        scale[i] = reserve / ex_value(w->dag, determinant, i * w->configurations);
-    return ex_mul(w->dag, ex_constant(w->dag, scale), determinant);
+        scale[i] = reserve / ex_value(dag, determinant, i * w->configurations);
+    return ex_mul(dag, ex_constant(dag, scale), determinant);
 }
 
-/* The determinant may not be lost before `ahead` is over, either: a step that passes the place would see the
- * coordinates turn back there, and miss that the bodies go on, into the other assembly mode. It is an angle, which
- * bodies that turn, or glide, at most reduce by theirs. */
 /* A step that passes the place would see the coordinates turn back there, and miss that the bodies go on, into the
  * other assembly mode. The determinant is an angle, which bodies that turn, or glide, at most reduce by theirs. */
 void determinant_check_ahead(Work *w, Formula *formula, Ex determinant, const Motion *motion)

@@ -591,7 +591,7 @@ static Formula *formulate_newton(Work *w, Solve solve)
     Factors *factors = factor(&found);
     Ex *q = pool_alloc(w->pool, (size_t)(7 * bodies) * sizeof *q);
     make_predict(&found, formula);
-    Ex determinant = determinant_check(&found, formula, factors, true);
+    Ex determinant = determinant_check(&found, formula, factors, NULL);
     make_step(&found, factors, &formula->solve, q);
     Motion *motion = pool_alloc(w->pool, (size_t)bodies * sizeof *motion);
     make_motion(&found, factors, motion);
@@ -610,14 +610,15 @@ static Formula *formulate_newton(Work *w, Solve solve)
 static Formula *formulate_closed(Work *w, Solve solve)
 {
     Formula *formula = formula_new(w, true);
+    Branches branches = {0};
     size_t bodies = (size_t)w->first->bodies;
     Work found = elsewhere(w, pool_alloc(w->pool, bodies * sizeof *found.pose));
-    if (!subset_closed(w, found.pose, &formula->solve))
+    if (!subset_closed(w, found.pose, &formula->solve, &branches))
         return NULL;
     make_rows(&found, found.pose, found.row, found.row_of);
     make_jacobian(&found, found.row, found.row_of, found.J);
     Factors *factors = factor(&found);
-    Ex determinant = determinant_check(&found, formula, factors, false);
+    Ex determinant = determinant_check(&found, formula, factors, &branches);
     Motion *motion = pool_alloc(w->pool, bodies * sizeof *motion);
     make_motion(&found, factors, motion);
     determinant_check_ahead(&found, formula, determinant, motion);
