@@ -45,8 +45,8 @@
  *   subset 'K1' (1 times, closed form)                        21        57       2      1         2
  *   subset 'K2_K3' (1 times)                                 287       396       2      0         0
  *   subset 'K5_K4' (2 times)                                 491       643       4      0         0
- *   forces and equations of motion                            18        15       2      1         0
- *   all together                                            1308      1754      14      2         2
+ *   forces and equations of motion                            17        14       2      1         0
+ *   all together                                            1307      1753      14      2         2
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #include "andrews.h"
@@ -1433,6 +1433,14 @@ static int andrews_settle(andrews *self, gic_real *y)
     return gic_bounded(y, ANDREWS_STATES) ? GIC_OK : GIC_ERROR_INPUT;
 }
 
+/* A status about a subset and a number of the state, -1: about none. */
+static GIC_COLD int andrews_about(andrews *self, int status, int32_t subset, int32_t number)
+{
+    self->head.subset = subset;
+    self->head.grown = number;
+    return status;
+}
+
 /* Applied forces, composite inertia, and elimination of 1 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
 static int andrews_dynamics(andrews *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
@@ -1446,8 +1454,8 @@ static int andrews_dynamics(andrews *self, gic_real time, const gic_real *y, con
     (void)lambda;
     {
         const gic_real t1 = n[22] + n[45] + n[68] + n[91];
-        if (!(t1 - t1 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t1 > R(0.0)))
+            return andrews_about(self, GIC_ERROR_MASS, 0, 0);
         const gic_real t2 = m[67] * R(-0.018000000000000002) + m[66] * R(0.020000000000000004);
         const gic_real t3 = m[64] * R(-0.018000000000000002) + m[63] * R(0.020000000000000004);
         const gic_real t4 = R(-0.03635) + t3 - R(0.014);
@@ -2157,6 +2165,13 @@ const char *andrews_status_subset(const andrews *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < andrews_model.subset_count ? andrews_model.subset_name[subset] : NULL;
+}
+
+const char *andrews_status_state(const andrews *self)
+{
+    const int32_t number = self->head.grown;
+    const int about = self->head.status == GIC_ERROR_MASS || self->head.status == GIC_ERROR_UNSTABLE;
+    return about && number >= 0 && number < ANDREWS_STATES ? andrews_model.state[number].name : NULL;
 }
 
 const char *andrews_status_condition(const andrews *self)

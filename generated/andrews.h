@@ -45,8 +45,8 @@
  *   subset 'K1' (1 times, closed form)                        21        57       2      1         2
  *   subset 'K2_K3' (1 times)                                 287       396       2      0         0
  *   subset 'K5_K4' (2 times)                                 491       643       4      0         0
- *   forces and equations of motion                            18        15       2      1         0
- *   all together                                            1308      1754      14      2         2
+ *   forces and equations of motion                            17        14       2      1         0
+ *   all together                                            1307      1753      14      2         2
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #ifndef ANDREWS_H
@@ -197,9 +197,11 @@ int andrews_poses(andrews *self, gic_real *pose);
 /* Present time, s. */
 gic_real andrews_time(const andrews *self);
 
-/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
+ * parameters violate, NULL: none. */
 const char *andrews_status_text(int status);
 const char *andrews_status_subset(const andrews *self);
+const char *andrews_status_state(const andrews *self);
 const char *andrews_status_condition(const andrews *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */

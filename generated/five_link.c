@@ -66,8 +66,8 @@
  *   subset 'lca_f_l' (2 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_r_l' (2 times)                             597       680       6      0         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
- *   forces and equations of motion                           703       657      11      0         4
- *   all together                                            2658      3082      35      6         4
+ *   forces and equations of motion                           700       654      11      0         4
+ *   all together                                            2655      3079      35      6         4
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #include "five_link.h"
@@ -1628,6 +1628,14 @@ static int road_height(const five_link *self, gic_real time, gic_real x, gic_rea
     return gic_finite(out, 3);
 }
 
+/* A status about a subset and a number of the state, -1: about none. */
+static GIC_COLD int five_link_about(five_link *self, int status, int32_t subset, int32_t number)
+{
+    self->head.subset = subset;
+    self->head.grown = number;
+    return status;
+}
+
 /* Applied forces, composite inertia, and elimination of 11 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
 static int five_link_dynamics(five_link *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
@@ -1640,13 +1648,13 @@ static int five_link_dynamics(five_link *self, gic_real time, const gic_real *y,
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        if (!(n[91] - n[91] * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
-        if (!(n[114] - n[114] * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(n[91] > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, 4, 9);
+        if (!(n[114] > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, 5, 10);
         const gic_real t1 = n[45] + n[146];
-        if (!(t1 - t1 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t1 > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, 2, 7);
         const gic_real t2 = n[3] + n[26] + n[49] + n[72] + n[95] + n[118] + n[150];
         const gic_real t3 = t2 + R(1173.18332588);
         const gic_real t4 = R(1.0) / n[91];
@@ -1657,8 +1665,8 @@ static int five_link_dynamics(five_link *self, gic_real time, const gic_real *y,
         const gic_real t9 = R(1.0) / t1;
         const gic_real t10 = t8 * t9;
         const gic_real t11 = t3 - n[87] * t5 - n[110] * t7 - t8 * t10;
-        if (!(t11 - t3 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t11 - t3 * R(1e-06) > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, -1, 15);
         const gic_real t12 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[96] + n[119] + n[151];
         const gic_real t13 = t12 + R(3056.8666525999997);
         const gic_real t14 = n[88] * t4;
@@ -1671,8 +1679,8 @@ static int five_link_dynamics(five_link *self, gic_real time, const gic_real *y,
         const gic_real t21 = R(1.0) / t11;
         const gic_real t22 = t20 * t21;
         const gic_real t23 = t18 - t20 * t22;
-        if (!(t23 - t13 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t23 - t13 * R(1e-06) > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, -1, 16);
         const gic_real t24 = n[5] + n[28] + n[51] + n[74] + n[97] + n[120] + n[152];
         const gic_real t25 = t24 + R(3576.74332672);
         const gic_real t26 = n[89] * t4;
@@ -1689,8 +1697,8 @@ static int five_link_dynamics(five_link *self, gic_real time, const gic_real *y,
         const gic_real t37 = R(1.0) / t23;
         const gic_real t38 = t36 * t37;
         const gic_real t39 = t30 - t32 * t33 - t36 * t38;
-        if (!(t39 - t25 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t39 - t25 * R(1e-06) > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, -1, 17);
         const gic_real t40 = n[84] * t4;
         const gic_real t41 = n[107] * t6;
         const gic_real t42 = n[137] * t9;
@@ -1708,8 +1716,8 @@ static int five_link_dynamics(five_link *self, gic_real time, const gic_real *y,
         const gic_real t54 = R(1.0) / t39;
         const gic_real t55 = t53 * t54;
         const gic_real t56 = t43 - t44 * t45 - t49 * t50 - t53 * t55;
-        if (!(t56 - R(2.505742e-10) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t56 - R(0.0025057419999999996) > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, -1, 12);
         const gic_real t57 = n[85] * t4;
         const gic_real t58 = n[108] * t6;
         const gic_real t59 = n[39] + n[138];
@@ -1729,8 +1737,8 @@ static int five_link_dynamics(five_link *self, gic_real time, const gic_real *y,
         const gic_real t73 = R(1.0) / t56;
         const gic_real t74 = t72 * t73;
         const gic_real t75 = t70 - t72 * t74;
-        if (!(t75 - R(2.505742e-10) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t75 - R(0.0025057419999999996) > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, -1, 13);
         const gic_real t76 = n[86] * t4;
         const gic_real t77 = n[109] * t6;
         const gic_real t78 = n[40] + n[139];
@@ -1753,8 +1761,8 @@ static int five_link_dynamics(five_link *self, gic_real time, const gic_real *y,
         const gic_real t95 = R(1.0) / t75;
         const gic_real t96 = t94 * t95;
         const gic_real t97 = t89 - t91 * t92 - t94 * t96;
-        if (!(t97 - R(2.505742e-10) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t97 - R(0.0025057419999999996) > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, -1, 14);
         const gic_real t98 = n[68] + n[178];
         const gic_real t99 = n[64] + n[172];
         const gic_real t100 = t99 * t21;
@@ -1773,8 +1781,8 @@ static int five_link_dynamics(five_link *self, gic_real time, const gic_real *y,
         const gic_real t113 = R(1.0) / t97;
         const gic_real t114 = t112 * t113;
         const gic_real t115 = t105 - t106 * t107 - t109 * t110 - t112 * t114;
-        if (!(t115 - t98 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t115 - t98 * R(1e-06) > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, 3, 8);
         const gic_real t116 = R(9.072) + n[144] + n[176];
         const gic_real t117 = n[145] * t9;
         const gic_real t118 = R(-0.4919654879999997) + n[133] + n[165] - n[145] * t10;
@@ -1800,8 +1808,8 @@ static int five_link_dynamics(five_link *self, gic_real time, const gic_real *y,
         const gic_real t138 = R(1.0) / t115;
         const gic_real t139 = t137 * t138;
         const gic_real t140 = t132 - t134 * t135 - t137 * t139;
-        if (!(t140 - t116 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t140 - t116 * R(1e-06) > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, 1, 11);
         const gic_real t141 = y[17] * R(0.5);
         const gic_real t142 = y[16] * R(0.5);
         const gic_real t143 = y[15] * R(0.5);
@@ -3256,6 +3264,13 @@ const char *five_link_status_subset(const five_link *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < five_link_model.subset_count ? five_link_model.subset_name[subset] : NULL;
+}
+
+const char *five_link_status_state(const five_link *self)
+{
+    const int32_t number = self->head.grown;
+    const int about = self->head.status == GIC_ERROR_MASS || self->head.status == GIC_ERROR_UNSTABLE;
+    return about && number >= 0 && number < FIVE_LINK_STATES ? five_link_model.state[number].name : NULL;
 }
 
 const char *five_link_status_condition(const five_link *self)

@@ -66,8 +66,8 @@
  *   subset 'lca_f_l' (2 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_r_l' (2 times)                             597       680       6      0         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
- *   forces and equations of motion                           703       657      11      0         4
- *   all together                                            2658      3082      35      6         4
+ *   forces and equations of motion                           700       654      11      0         4
+ *   all together                                            2655      3079      35      6         4
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
@@ -269,9 +269,11 @@ int five_link_poses(five_link *self, gic_real *pose);
 /* Present time, s. */
 gic_real five_link_time(const five_link *self);
 
-/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
+ * parameters violate, NULL: none. */
 const char *five_link_status_text(int status);
 const char *five_link_status_subset(const five_link *self);
+const char *five_link_status_state(const five_link *self);
 const char *five_link_status_condition(const five_link *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */

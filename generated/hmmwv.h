@@ -72,8 +72,8 @@
  *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'wheel_r_l' (2 times, closed form)                 87       129       2      1         0
- *   forces and equations of motion                           681       587      10      0         4
- *   all together                                            1754      2132      28     10         4
+ *   forces and equations of motion                           679       585      10      0         4
+ *   all together                                            1752      2130      28     10         4
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #ifndef HMMWV_H
@@ -269,9 +269,11 @@ int hmmwv_poses(hmmwv *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_time(const hmmwv *self);
 
-/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
+ * parameters violate, NULL: none. */
 const char *hmmwv_status_text(int status);
 const char *hmmwv_status_subset(const hmmwv *self);
+const char *hmmwv_status_state(const hmmwv *self);
 const char *hmmwv_status_condition(const hmmwv *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */

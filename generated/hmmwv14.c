@@ -74,8 +74,8 @@
  *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
  *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        514       648       6      2         0
  *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        427       538       6      2         0
- *   forces and equations of motion                           855       777      15      4         4
- *   all together                                            3028      3618      43     16         4
+ *   forces and equations of motion                           852       774      15      4         4
+ *   all together                                            3025      3615      43     16         4
  *   outputs, when asked for                                  933      1137       4      4        19
  */
 #include "hmmwv14.h"
@@ -1613,6 +1613,14 @@ static int road_height(const hmmwv14 *self, gic_real time, gic_real x, gic_real 
     return gic_finite(out, 3);
 }
 
+/* A status about a subset and a number of the state, -1: about none. */
+static GIC_COLD int hmmwv14_about(hmmwv14 *self, int status, int32_t subset, int32_t number)
+{
+    self->head.subset = subset;
+    self->head.grown = number;
+    return status;
+}
+
 /* Applied forces, composite inertia, and elimination of 11 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
 static int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
@@ -1626,14 +1634,14 @@ static int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, con
     (void)lambda;
     {
         const gic_real t1 = n[91] + n[201];
-        if (!(t1 - t1 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t1 > R(0.0)))
+            return hmmwv14_about(self, GIC_ERROR_MASS, 4, 9);
         const gic_real t2 = n[114] + n[224];
-        if (!(t2 - t2 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t2 > R(0.0)))
+            return hmmwv14_about(self, GIC_ERROR_MASS, 5, 10);
         const gic_real t3 = n[45] + n[146];
-        if (!(t3 - t3 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t3 > R(0.0)))
+            return hmmwv14_about(self, GIC_ERROR_MASS, 2, 7);
         const gic_real t4 = n[3] + n[26] + n[49] + n[72] + n[95] + n[118] + n[150];
         const gic_real t5 = t4 + n[182] + n[205] + R(1173.18332588);
         const gic_real t6 = n[87] + n[197];
@@ -1646,8 +1654,8 @@ static int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, con
         const gic_real t13 = R(1.0) / t3;
         const gic_real t14 = t12 * t13;
         const gic_real t15 = t5 - t6 * t8 - t9 * t11 - t12 * t14;
-        if (!(t15 - t5 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t15 - t5 * R(1e-06) > R(0.0)))
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 15);
         const gic_real t16 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[96] + n[119] + n[151];
         const gic_real t17 = t16 + n[183] + n[206] + R(3056.8666525999997);
         const gic_real t18 = n[88] + n[198];
@@ -1663,8 +1671,8 @@ static int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, con
         const gic_real t28 = R(1.0) / t15;
         const gic_real t29 = t27 * t28;
         const gic_real t30 = t24 - t27 * t29;
-        if (!(t30 - t17 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t30 - t17 * R(1e-06) > R(0.0)))
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 16);
         const gic_real t31 = n[5] + n[28] + n[51] + n[74] + n[97] + n[120] + n[152];
         const gic_real t32 = t31 + n[184] + n[207] + R(3576.74332672);
         const gic_real t33 = n[89] + n[199];
@@ -1684,8 +1692,8 @@ static int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, con
         const gic_real t47 = R(1.0) / t30;
         const gic_real t48 = t46 * t47;
         const gic_real t49 = t39 - t42 * t43 - t46 * t48;
-        if (!(t49 - t32 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t49 - t32 * R(1e-06) > R(0.0)))
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 17);
         const gic_real t50 = n[194] * t7;
         const gic_real t51 = n[217] * t10;
         const gic_real t52 = n[137] * t13;
@@ -1704,8 +1712,8 @@ static int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, con
         const gic_real t65 = R(1.0) / t49;
         const gic_real t66 = t64 * t65;
         const gic_real t67 = t53 - t54 * t55 - t59 * t60 - t64 * t66;
-        if (!(t67 - R(2.5769240000000006e-10) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t67 - R(0.0025769240000000004) > R(0.0)))
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 12);
         const gic_real t68 = n[85] + n[195];
         const gic_real t69 = t68 * t7;
         const gic_real t70 = n[108] + n[218];
@@ -1727,8 +1735,8 @@ static int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, con
         const gic_real t86 = R(1.0) / t67;
         const gic_real t87 = t85 * t86;
         const gic_real t88 = t83 - t85 * t87;
-        if (!(t88 - R(2.5769240000000006e-10) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t88 - R(0.0025769240000000004) > R(0.0)))
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 13);
         const gic_real t89 = n[86] + n[196];
         const gic_real t90 = t89 * t7;
         const gic_real t91 = n[109] + n[219];
@@ -1753,8 +1761,8 @@ static int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, con
         const gic_real t110 = R(1.0) / t88;
         const gic_real t111 = t109 * t110;
         const gic_real t112 = t104 - t106 * t107 - t109 * t111;
-        if (!(t112 - R(2.5769240000000006e-10) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t112 - R(0.0025769240000000004) > R(0.0)))
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 14);
         const gic_real t113 = n[68] + n[178];
         const gic_real t114 = n[64] + n[172];
         const gic_real t115 = t114 * t28;
@@ -1773,8 +1781,8 @@ static int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, con
         const gic_real t128 = R(1.0) / t112;
         const gic_real t129 = t127 * t128;
         const gic_real t130 = t120 - t121 * t122 - t124 * t125 - t127 * t129;
-        if (!(t130 - t113 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t130 - t113 * R(1e-06) > R(0.0)))
+            return hmmwv14_about(self, GIC_ERROR_MASS, 3, 8);
         const gic_real t131 = R(9.072) + n[144] + n[176];
         const gic_real t132 = n[145] * t13;
         const gic_real t133 = R(-0.4919654879999997) + n[133] + n[165] - n[145] * t14;
@@ -1800,8 +1808,8 @@ static int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, con
         const gic_real t153 = R(1.0) / t130;
         const gic_real t154 = t152 * t153;
         const gic_real t155 = t147 - t149 * t150 - t152 * t154;
-        if (!(t155 - t131 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t155 - t131 * R(1e-06) > R(0.0)))
+            return hmmwv14_about(self, GIC_ERROR_MASS, 1, 11);
         const gic_real t156 = y[17] * R(0.5);
         const gic_real t157 = y[16] * R(0.5);
         const gic_real t158 = y[15] * R(0.5);
@@ -3810,6 +3818,13 @@ const char *hmmwv14_status_subset(const hmmwv14 *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < hmmwv14_model.subset_count ? hmmwv14_model.subset_name[subset] : NULL;
+}
+
+const char *hmmwv14_status_state(const hmmwv14 *self)
+{
+    const int32_t number = self->head.grown;
+    const int about = self->head.status == GIC_ERROR_MASS || self->head.status == GIC_ERROR_UNSTABLE;
+    return about && number >= 0 && number < HMMWV14_STATES ? hmmwv14_model.state[number].name : NULL;
 }
 
 const char *hmmwv14_status_condition(const hmmwv14 *self)

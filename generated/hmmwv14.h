@@ -74,8 +74,8 @@
  *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
  *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        514       648       6      2         0
  *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        427       538       6      2         0
- *   forces and equations of motion                           855       777      15      4         4
- *   all together                                            3028      3618      43     16         4
+ *   forces and equations of motion                           852       774      15      4         4
+ *   all together                                            3025      3615      43     16         4
  *   outputs, when asked for                                  933      1137       4      4        19
  */
 #ifndef HMMWV14_H
@@ -286,9 +286,11 @@ int hmmwv14_poses(hmmwv14 *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv14_time(const hmmwv14 *self);
 
-/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
+ * parameters violate, NULL: none. */
 const char *hmmwv14_status_text(int status);
 const char *hmmwv14_status_subset(const hmmwv14 *self);
+const char *hmmwv14_status_state(const hmmwv14 *self);
 const char *hmmwv14_status_condition(const hmmwv14 *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */

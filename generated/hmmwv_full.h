@@ -72,8 +72,8 @@
  *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'wheel_r_l' (2 times, closed form)                 87       129       2      1         0
- *   forces and equations of motion                           821       715      14      4        24
- *   all together                                            1894      2260      32     14        24
+ *   forces and equations of motion                           819       713      14      4        24
+ *   all together                                            1892      2258      32     14        24
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H
@@ -277,9 +277,11 @@ int hmmwv_full_poses(hmmwv_full *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_full_time(const hmmwv_full *self);
 
-/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
+ * parameters violate, NULL: none. */
 const char *hmmwv_full_status_text(int status);
 const char *hmmwv_full_status_subset(const hmmwv_full *self);
+const char *hmmwv_full_status_state(const hmmwv_full *self);
 const char *hmmwv_full_status_condition(const hmmwv_full *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */

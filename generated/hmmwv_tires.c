@@ -72,12 +72,12 @@
  *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'wheel_r_l' (2 times, closed form)                 87       129       2      1         0
- *   forces and equations of motion                           551       459       9      0         0
+ *   forces and equations of motion                           549       457       9      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
  *   wheel 'tire_f_l' (4 times)                               195       313      23     12        37
  *   a fast step: all wheels                                  780      1254      92     48       148
- *   all together                                            2603      3460     119     58       148
+ *   all together                                            2601      3458     119     58       148
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #include "hmmwv_tires.h"
@@ -1738,6 +1738,14 @@ static int hmmwv_tires_recover_once(hmmwv_tires *self, const gic_real turn[3])
     return hmmwv_tires_recover(self, turn, 0);
 }
 
+/* A status about a subset and a number of the state, -1: about none. */
+static GIC_COLD int hmmwv_tires_about(hmmwv_tires *self, int status, int32_t subset, int32_t number)
+{
+    self->head.subset = subset;
+    self->head.grown = number;
+    return status;
+}
+
 /* Applied forces, composite inertia, and elimination of 10 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
 static int hmmwv_tires_dynamics(hmmwv_tires *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
@@ -1751,11 +1759,11 @@ static int hmmwv_tires_dynamics(hmmwv_tires *self, gic_real time, const gic_real
     (void)lambda;
     {
         const gic_real t1 = n[91] + n[201];
-        if (!(t1 - t1 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t1 > R(0.0)))
+            return hmmwv_tires_about(self, GIC_ERROR_MASS, 4, 9);
         const gic_real t2 = n[114] + n[224];
-        if (!(t2 - t2 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t2 > R(0.0)))
+            return hmmwv_tires_about(self, GIC_ERROR_MASS, 5, 10);
         const gic_real t3 = n[3] + n[26] + n[49] + n[72] + n[95] + n[118] + n[150];
         const gic_real t4 = t3 + n[182] + n[205] + R(1173.18332588);
         const gic_real t5 = n[87] + n[197];
@@ -1765,8 +1773,8 @@ static int hmmwv_tires_dynamics(hmmwv_tires *self, gic_real time, const gic_real
         const gic_real t9 = R(1.0) / t2;
         const gic_real t10 = t8 * t9;
         const gic_real t11 = t4 - t5 * t7 - t8 * t10;
-        if (!(t11 - t4 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t11 - t4 * R(1e-06) > R(0.0)))
+            return hmmwv_tires_about(self, GIC_ERROR_MASS, -1, 14);
         const gic_real t12 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[96] + n[119] + n[151];
         const gic_real t13 = t12 + n[183] + n[206] + R(3056.8666525999997);
         const gic_real t14 = R(0.4919654879999992) + n[25] + n[48] + n[71] + n[94] + n[117] + n[149];
@@ -1782,8 +1790,8 @@ static int hmmwv_tires_dynamics(hmmwv_tires *self, gic_real time, const gic_real
         const gic_real t24 = R(1.0) / t11;
         const gic_real t25 = t23 * t24;
         const gic_real t26 = t21 - t23 * t25;
-        if (!(t26 - t13 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t26 - t13 * R(1e-06) > R(0.0)))
+            return hmmwv_tires_about(self, GIC_ERROR_MASS, -1, 15);
         const gic_real t27 = n[5] + n[28] + n[51] + n[74] + n[97] + n[120] + n[152];
         const gic_real t28 = t27 + n[184] + n[207] + R(3576.74332672);
         const gic_real t29 = n[1] + n[24] + n[47] + n[70] + n[93] + n[116] + n[148];
@@ -1803,8 +1811,8 @@ static int hmmwv_tires_dynamics(hmmwv_tires *self, gic_real time, const gic_real
         const gic_real t43 = R(1.0) / t26;
         const gic_real t44 = t42 * t43;
         const gic_real t45 = t36 - t38 * t39 - t42 * t44;
-        if (!(t45 - t28 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t45 - t28 * R(1e-06) > R(0.0)))
+            return hmmwv_tires_about(self, GIC_ERROR_MASS, -1, 16);
         const gic_real t46 = n[85] + n[195];
         const gic_real t47 = t46 * t6;
         const gic_real t48 = n[108] + n[218];
@@ -1820,8 +1828,8 @@ static int hmmwv_tires_dynamics(hmmwv_tires *self, gic_real time, const gic_real
         const gic_real t58 = R(1.0) / t45;
         const gic_real t59 = t57 * t58;
         const gic_real t60 = t52 - t53 * t54 - t57 * t59;
-        if (!(t60 - R(2.553672e-10) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t60 - R(0.002553672) > R(0.0)))
+            return hmmwv_tires_about(self, GIC_ERROR_MASS, -1, 12);
         const gic_real t61 = n[86] + n[196];
         const gic_real t62 = t61 * t6;
         const gic_real t63 = n[109] + n[219];
@@ -1838,8 +1846,8 @@ static int hmmwv_tires_dynamics(hmmwv_tires *self, gic_real time, const gic_real
         const gic_real t74 = R(1.0) / t60;
         const gic_real t75 = t73 * t74;
         const gic_real t76 = t67 - t68 * t69 - t70 * t71 - t73 * t75;
-        if (!(t76 - R(2.553672e-10) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t76 - R(0.002553672) > R(0.0)))
+            return hmmwv_tires_about(self, GIC_ERROR_MASS, -1, 13);
         const gic_real t77 = n[45] + n[146];
         const gic_real t78 = n[137] * R(0.00039159296886992533);
         const gic_real t79 = n[41] + n[140];
@@ -1856,8 +1864,8 @@ static int hmmwv_tires_dynamics(hmmwv_tires *self, gic_real time, const gic_real
         const gic_real t90 = R(1.0) / t76;
         const gic_real t91 = t89 * t90;
         const gic_real t92 = t83 - t84 * t85 - t86 * t87 - t89 * t91;
-        if (!(t92 - t77 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t92 - t77 * R(1e-06) > R(0.0)))
+            return hmmwv_tires_about(self, GIC_ERROR_MASS, 2, 7);
         const gic_real t93 = n[68] + n[178];
         const gic_real t94 = n[169] * R(0.00039159296886992533);
         const gic_real t95 = n[64] + n[172];
@@ -1878,8 +1886,8 @@ static int hmmwv_tires_dynamics(hmmwv_tires *self, gic_real time, const gic_real
         const gic_real t110 = R(1.0) / t92;
         const gic_real t111 = t109 * t110;
         const gic_real t112 = t107 - t109 * t111;
-        if (!(t112 - t93 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t112 - t93 * R(1e-06) > R(0.0)))
+            return hmmwv_tires_about(self, GIC_ERROR_MASS, 3, 8);
         const gic_real t113 = y[16] * R(0.5);
         const gic_real t114 = y[15] * R(0.5);
         const gic_real t115 = y[14] * R(0.5);
@@ -3616,6 +3624,13 @@ const char *hmmwv_tires_status_subset(const hmmwv_tires *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < hmmwv_tires_model.subset_count ? hmmwv_tires_model.subset_name[subset] : NULL;
+}
+
+const char *hmmwv_tires_status_state(const hmmwv_tires *self)
+{
+    const int32_t number = self->head.grown;
+    const int about = self->head.status == GIC_ERROR_MASS || self->head.status == GIC_ERROR_UNSTABLE;
+    return about && number >= 0 && number < HMMWV_TIRES_STATES ? hmmwv_tires_model.state[number].name : NULL;
 }
 
 const char *hmmwv_tires_status_condition(const hmmwv_tires *self)

@@ -72,12 +72,12 @@
  *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'wheel_r_l' (2 times, closed form)                 87       129       2      1         0
- *   forces and equations of motion                           551       459       9      0         0
+ *   forces and equations of motion                           549       457       9      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
  *   wheel 'tire_f_l' (4 times)                               160       246      33     14         5
  *   a fast step: all wheels                                  640       986     132     56        20
- *   all together                                            2463      3192     159     66        20
+ *   all together                                            2461      3190     159     66        20
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TMEASY_H
@@ -357,9 +357,11 @@ int hmmwv_tmeasy_poses(hmmwv_tmeasy *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_tmeasy_time(const hmmwv_tmeasy *self);
 
-/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
+ * parameters violate, NULL: none. */
 const char *hmmwv_tmeasy_status_text(int status);
 const char *hmmwv_tmeasy_status_subset(const hmmwv_tmeasy *self);
+const char *hmmwv_tmeasy_status_state(const hmmwv_tmeasy *self);
 const char *hmmwv_tmeasy_status_condition(const hmmwv_tmeasy *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */

@@ -72,13 +72,13 @@
  *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'wheel_r_l' (2 times, closed form)                 87       129       2      1         0
- *   forces and equations of motion                           591       507       9      0         0
+ *   forces and equations of motion                           589       505       9      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         1       0      0         0
  *   wheel 'tire_f_l' (4 times)                               194       313      23     12        37
  *   powertrain                                                47        68       6      0         4
  *   a fast step: all of these                                823      1321      98     48       152
- *   all together                                            2686      3575     125     58       152
+ *   all together                                            2684      3573     125     58       152
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H
@@ -374,9 +374,11 @@ int hmmwv_vehicle_poses(hmmwv_vehicle *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_vehicle_time(const hmmwv_vehicle *self);
 
-/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
+ * parameters violate, NULL: none. */
 const char *hmmwv_vehicle_status_text(int status);
 const char *hmmwv_vehicle_status_subset(const hmmwv_vehicle *self);
+const char *hmmwv_vehicle_status_state(const hmmwv_vehicle *self);
 const char *hmmwv_vehicle_status_condition(const hmmwv_vehicle *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */

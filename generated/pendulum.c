@@ -23,8 +23,8 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rod' (1 times, closed form)                       15        41       2      1         2
- *   forces and equations of motion                             2         3       1      0         0
- *   all together                                              17        44       3      1         2
+ *   forces and equations of motion                             1         2       1      0         0
+ *   all together                                              16        43       3      1         2
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #include "pendulum.h"
@@ -311,6 +311,14 @@ static int pendulum_settle(pendulum *self, gic_real *y)
     return gic_bounded(y, PENDULUM_STATES) ? GIC_OK : GIC_ERROR_INPUT;
 }
 
+/* A status about a subset and a number of the state, -1: about none. */
+static GIC_COLD int pendulum_about(pendulum *self, int status, int32_t subset, int32_t number)
+{
+    self->head.subset = subset;
+    self->head.grown = number;
+    return status;
+}
+
 /* Applied forces, composite inertia, and elimination of 1 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
 static int pendulum_dynamics(pendulum *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
@@ -323,8 +331,8 @@ static int pendulum_dynamics(pendulum *self, gic_real time, const gic_real *y, c
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        if (!(n[22] - n[22] * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(n[22] > R(0.0)))
+            return pendulum_about(self, GIC_ERROR_MASS, 0, 0);
         const gic_real t1 = xd[0];
         const gic_real t2 = -((n[21] + n[17] * R(9.81)) * (R(1.0) / n[22]));
         rate[0] = t1;
@@ -650,6 +658,13 @@ const char *pendulum_status_subset(const pendulum *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < pendulum_model.subset_count ? pendulum_model.subset_name[subset] : NULL;
+}
+
+const char *pendulum_status_state(const pendulum *self)
+{
+    const int32_t number = self->head.grown;
+    const int about = self->head.status == GIC_ERROR_MASS || self->head.status == GIC_ERROR_UNSTABLE;
+    return about && number >= 0 && number < PENDULUM_STATES ? pendulum_model.state[number].name : NULL;
 }
 
 const char *pendulum_status_condition(const pendulum *self)

@@ -23,8 +23,8 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rod' (1 times, closed form)                       15        41       2      1         2
- *   forces and equations of motion                             2         3       1      0         0
- *   all together                                              17        44       3      1         2
+ *   forces and equations of motion                             1         2       1      0         0
+ *   all together                                              16        43       3      1         2
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #ifndef PENDULUM_H
@@ -141,9 +141,11 @@ int pendulum_poses(pendulum *self, gic_real *pose);
 /* Present time, s. */
 gic_real pendulum_time(const pendulum *self);
 
-/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
+ * parameters violate, NULL: none. */
 const char *pendulum_status_text(int status);
 const char *pendulum_status_subset(const pendulum *self);
+const char *pendulum_status_state(const pendulum *self);
 const char *pendulum_status_condition(const pendulum *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */

@@ -715,6 +715,14 @@ static int road_height(const quarter_car *self, gic_real time, gic_real x, gic_r
     return gic_finite(out, 3);
 }
 
+/* A status about a subset and a number of the state, -1: about none. */
+static GIC_COLD int quarter_car_about(quarter_car *self, int status, int32_t subset, int32_t number)
+{
+    self->head.subset = subset;
+    self->head.grown = number;
+    return status;
+}
+
 /* Applied forces, composite inertia, and elimination of 2 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
 static int quarter_car_dynamics(quarter_car *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
@@ -731,8 +739,8 @@ static int quarter_car_dynamics(quarter_car *self, gic_real time, const gic_real
         const gic_real t2 = n[53] + n[85];
         const gic_real t3 = t2 * R(0.0015622314914624045);
         const gic_real t4 = t1 - t2 * t3;
-        if (!(t4 - t1 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t4 - t1 * R(1e-06) > R(0.0)))
+            return quarter_car_about(self, GIC_ERROR_MASS, 1, 1);
         const gic_real t5 = m[71] * R(0.09182100000000004) + (m[70] * R(0.12319000000000002) + m[69] * R(-0.004825999999999997));
         const gic_real t6 = m[77] * R(0.09182100000000004) + (m[76] * R(0.12319000000000002) + m[75] * R(-0.004825999999999997));
         const gic_real t7 = m[74] * R(0.09182100000000004) + (m[73] * R(0.12319000000000002) + m[72] * R(-0.004825999999999997));
@@ -1214,6 +1222,13 @@ const char *quarter_car_status_subset(const quarter_car *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < quarter_car_model.subset_count ? quarter_car_model.subset_name[subset] : NULL;
+}
+
+const char *quarter_car_status_state(const quarter_car *self)
+{
+    const int32_t number = self->head.grown;
+    const int about = self->head.status == GIC_ERROR_MASS || self->head.status == GIC_ERROR_UNSTABLE;
+    return about && number >= 0 && number < QUARTER_CAR_STATES ? quarter_car_model.state[number].name : NULL;
 }
 
 const char *quarter_car_status_condition(const quarter_car *self)

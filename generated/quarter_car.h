@@ -173,9 +173,11 @@ int quarter_car_poses(quarter_car *self, gic_real *pose);
 /* Present time, s. */
 gic_real quarter_car_time(const quarter_car *self);
 
-/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
+ * parameters violate, NULL: none. */
 const char *quarter_car_status_text(int status);
 const char *quarter_car_status_subset(const quarter_car *self);
+const char *quarter_car_status_state(const quarter_car *self);
 const char *quarter_car_status_condition(const quarter_car *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */

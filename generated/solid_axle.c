@@ -1674,6 +1674,14 @@ static int road_height(const solid_axle *self, gic_real time, gic_real x, gic_re
     return gic_finite(out, 3);
 }
 
+/* A status about a subset and a number of the state, -1: about none. */
+static GIC_COLD int solid_axle_about(solid_axle *self, int status, int32_t subset, int32_t number)
+{
+    self->head.subset = subset;
+    self->head.grown = number;
+    return status;
+}
+
 /* Applied forces, composite inertia, and elimination of 11 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
 static int solid_axle_dynamics(solid_axle *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
@@ -1692,8 +1700,8 @@ static int solid_axle_dynamics(solid_axle *self, gic_real time, const gic_real *
         const gic_real t4 = R(94.003507106) + n[69] + n[101] + n[133] + R(116.84512);
         const gic_real t5 = t4 * R(0.00038524629951667);
         const gic_real t6 = t1 - t2 * t3 - t4 * t5;
-        if (!(t6 - t1 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t6 - t1 * R(1e-06) > R(0.0)))
+            return solid_axle_about(self, GIC_ERROR_MASS, -1, 17);
         const gic_real t7 = n[3] + n[26] + n[49] + n[72] + n[104] + n[136] + R(1173.18332588);
         const gic_real t8 = R(0.4919654879999997) + n[25] + n[48] + n[71] + n[103] + n[135] + R(444.4287600000002);
         const gic_real t9 = t8 * R(0.00038524629951667);
@@ -1703,8 +1711,8 @@ static int solid_axle_dynamics(solid_axle *self, gic_real time, const gic_real *
         const gic_real t13 = R(1.0) / t6;
         const gic_real t14 = t12 * t13;
         const gic_real t15 = t7 - t10 - t12 * t14;
-        if (!(t15 - t7 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t15 - t7 * R(1e-06) > R(0.0)))
+            return solid_axle_about(self, GIC_ERROR_MASS, -1, 15);
         const gic_real t16 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[105] + n[137] + R(3056.8666525999997);
         const gic_real t17 = n[8] + n[31] + n[54] + n[77] + n[109] + n[141] + t2 * t9;
         const gic_real t18 = t17 * t13;
@@ -1712,15 +1720,15 @@ static int solid_axle_dynamics(solid_axle *self, gic_real time, const gic_real *
         const gic_real t20 = R(1.0) / t15;
         const gic_real t21 = t19 * t20;
         const gic_real t22 = t16 - t10 - t17 * t18 - t19 * t21;
-        if (!(t22 - t16 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t22 - t16 * R(1e-06) > R(0.0)))
+            return solid_axle_about(self, GIC_ERROR_MASS, -1, 16);
         const gic_real t23 = t2 * t20;
         const gic_real t24 = t4 + t2 * t21;
         const gic_real t25 = R(1.0) / t22;
         const gic_real t26 = t24 * t25;
         const gic_real t27 = R(2595.742) - t2 * t23 - t24 * t26;
-        if (!(t27 - R(2.595742e-10) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t27 - R(0.0025957420000000003) > R(0.0)))
+            return solid_axle_about(self, GIC_ERROR_MASS, -1, 14);
         const gic_real t28 = n[45] + n[132];
         const gic_real t29 = n[123] * R(0.00038524629951667);
         const gic_real t30 = n[39] + n[124];
@@ -1736,8 +1744,8 @@ static int solid_axle_dynamics(solid_axle *self, gic_real time, const gic_real *
         const gic_real t40 = R(1.0) / t27;
         const gic_real t41 = t39 * t40;
         const gic_real t42 = t34 - t35 * t36 - t37 * t38 - t39 * t41;
-        if (!(t42 - t28 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t42 - t28 * R(1e-06) > R(0.0)))
+            return solid_axle_about(self, GIC_ERROR_MASS, 2, 7);
         const gic_real t43 = n[68] + n[164];
         const gic_real t44 = n[155] * R(0.00038524629951667);
         const gic_real t45 = n[62] + n[156];
@@ -1757,8 +1765,8 @@ static int solid_axle_dynamics(solid_axle *self, gic_real time, const gic_real *
         const gic_real t59 = R(1.0) / t42;
         const gic_real t60 = t58 * t59;
         const gic_real t61 = t56 - t58 * t60;
-        if (!(t61 - t43 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t61 - t43 * R(1e-06) > R(0.0)))
+            return solid_axle_about(self, GIC_ERROR_MASS, 3, 8);
         const gic_real t62 = n[84] * R(0.00038524629951667);
         const gic_real t63 = n[85] * R(0.00038524629951667);
         const gic_real t64 = n[89] + n[84] * t3 - n[85] * t5;
@@ -1779,8 +1787,8 @@ static int solid_axle_dynamics(solid_axle *self, gic_real time, const gic_real *
         const gic_real t79 = R(1.0) / t61;
         const gic_real t80 = t78 * t79;
         const gic_real t81 = t73 - t75 * t76 - t78 * t80;
-        if (!(t81 - n[98] * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t81 - n[98] * R(1e-06) > R(0.0)))
+            return solid_axle_about(self, GIC_ERROR_MASS, 4, 9);
         const gic_real t82 = n[91] * R(0.00038524629951667);
         const gic_real t83 = n[92] * R(0.00038524629951667);
         const gic_real t84 = n[96] + n[91] * t3 - n[92] * t5;
@@ -1805,8 +1813,8 @@ static int solid_axle_dynamics(solid_axle *self, gic_real time, const gic_real *
         const gic_real t103 = R(1.0) / t81;
         const gic_real t104 = t102 * t103;
         const gic_real t105 = t93 - t95 * t96 - t98 * t99 - t102 * t104;
-        if (!(t105 - n[100] * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t105 - n[100] * R(1e-06) > R(0.0)))
+            return solid_axle_about(self, GIC_ERROR_MASS, 4, 10);
         const gic_real t106 = R(9.072) + n[130] + n[162];
         const gic_real t107 = n[116] + n[148];
         const gic_real t108 = t107 * R(0.00038524629951667);
@@ -1840,8 +1848,8 @@ static int solid_axle_dynamics(solid_axle *self, gic_real time, const gic_real *
         const gic_real t136 = R(1.0) / t105;
         const gic_real t137 = t135 * t136;
         const gic_real t138 = t132 - t135 * t137;
-        if (!(t138 - t106 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t138 - t106 * R(1e-06) > R(0.0)))
+            return solid_axle_about(self, GIC_ERROR_MASS, 1, 11);
         const gic_real t139 = y[17] * R(0.5);
         const gic_real t140 = y[16] * R(0.5);
         const gic_real t141 = y[15] * R(0.5);
@@ -3201,6 +3209,13 @@ const char *solid_axle_status_subset(const solid_axle *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < solid_axle_model.subset_count ? solid_axle_model.subset_name[subset] : NULL;
+}
+
+const char *solid_axle_status_state(const solid_axle *self)
+{
+    const int32_t number = self->head.grown;
+    const int about = self->head.status == GIC_ERROR_MASS || self->head.status == GIC_ERROR_UNSTABLE;
+    return about && number >= 0 && number < SOLID_AXLE_STATES ? solid_axle_model.state[number].name : NULL;
 }
 
 const char *solid_axle_status_condition(const solid_axle *self)

@@ -261,9 +261,11 @@ int solid_axle_poses(solid_axle *self, gic_real *pose);
 /* Present time, s. */
 gic_real solid_axle_time(const solid_axle *self);
 
-/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
+ * parameters violate, NULL: none. */
 const char *solid_axle_status_text(int status);
 const char *solid_axle_status_subset(const solid_axle *self);
+const char *solid_axle_status_state(const solid_axle *self);
 const char *solid_axle_status_condition(const solid_axle *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */

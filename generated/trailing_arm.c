@@ -64,8 +64,8 @@
  *   subset 'lca_f_l' (2 times, closed form)                   61       116       2      1         2
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'lca_f_l_2' (2 times, closed form)                 76       121       2      1         2
- *   forces and equations of motion                           743       706      14      4         4
- *   all together                                            1640      2023      32     12        12
+ *   forces and equations of motion                           741       704      14      4         4
+ *   all together                                            1638      2021      32     12        12
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #include "trailing_arm.h"
@@ -1113,6 +1113,14 @@ static int road_height(const trailing_arm *self, gic_real time, gic_real x, gic_
     return gic_finite(out, 3);
 }
 
+/* A status about a subset and a number of the state, -1: about none. */
+static GIC_COLD int trailing_arm_about(trailing_arm *self, int status, int32_t subset, int32_t number)
+{
+    self->head.subset = subset;
+    self->head.grown = number;
+    return status;
+}
+
 /* Applied forces, composite inertia, and elimination of 11 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
 static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
@@ -1125,10 +1133,10 @@ static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_re
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        if (!(n[91] - n[91] * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
-        if (!(n[114] - n[114] * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(n[91] > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, 4, 9);
+        if (!(n[114] > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, 5, 10);
         const gic_real t1 = n[3] + n[26] + n[49] + n[72] + n[95] + n[118] + n[150];
         const gic_real t2 = t1 + R(1173.18332588);
         const gic_real t3 = R(0.4919654879999997) + n[25] + n[48] + n[71] + n[94] + n[117] + n[149];
@@ -1139,8 +1147,8 @@ static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_re
         const gic_real t8 = R(1.0) / n[114];
         const gic_real t9 = n[110] * t8;
         const gic_real t10 = t2 - t4 * t5 - n[87] * t7 - n[110] * t9;
-        if (!(t10 - t2 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t10 - t2 * R(1e-06) > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, -1, 15);
         const gic_real t11 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[96] + n[119] + n[151];
         const gic_real t12 = t11 + R(3056.8666525999997);
         const gic_real t13 = n[88] * t6;
@@ -1150,8 +1158,8 @@ static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_re
         const gic_real t17 = R(1.0) / t10;
         const gic_real t18 = t16 * t17;
         const gic_real t19 = t12 - n[88] * t13 - n[111] * t14 - t16 * t18;
-        if (!(t19 - t12 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t19 - t12 * R(1e-06) > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, -1, 16);
         const gic_real t20 = n[5] + n[28] + n[51] + n[74] + n[97] + n[120] + n[152];
         const gic_real t21 = t20 + R(3576.74332672);
         const gic_real t22 = R(94.003507106) + n[69] + n[92] + n[115] + n[147] + R(116.84512);
@@ -1167,8 +1175,8 @@ static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_re
         const gic_real t32 = R(1.0) / t19;
         const gic_real t33 = t31 * t32;
         const gic_real t34 = t26 - t28 * t29 - t31 * t33;
-        if (!(t34 - t21 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t34 - t21 * R(1e-06) > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, -1, 17);
         const gic_real t35 = n[84] * t6;
         const gic_real t36 = n[107] * t8;
         const gic_real t37 = n[84] * t7 + n[107] * t9;
@@ -1182,8 +1190,8 @@ static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_re
         const gic_real t45 = R(1.0) / t34;
         const gic_real t46 = t44 * t45;
         const gic_real t47 = t39 - t40 * t41 - t44 * t46;
-        if (!(t47 - R(2.545742e-10) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t47 - R(0.0025457419999999997) > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, -1, 12);
         const gic_real t48 = n[86] * t6;
         const gic_real t49 = n[109] * t8;
         const gic_real t50 = t42 - n[86] * t7 - n[109] * t9;
@@ -1198,8 +1206,8 @@ static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_re
         const gic_real t59 = R(1.0) / t47;
         const gic_real t60 = t58 * t59;
         const gic_real t61 = t52 - t53 * t54 - t55 * t56 - t58 * t60;
-        if (!(t61 - R(2.545742e-10) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t61 - R(0.0025457419999999997) > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, -1, 14);
         const gic_real t62 = n[45] + n[146];
         const gic_real t63 = n[39] + n[138];
         const gic_real t64 = t63 * R(0.0003928127830707118);
@@ -1217,8 +1225,8 @@ static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_re
         const gic_real t76 = R(1.0) / t61;
         const gic_real t77 = t75 * t76;
         const gic_real t78 = t69 - t70 * t71 - t72 * t73 - t75 * t77;
-        if (!(t78 - t62 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t78 - t62 * R(1e-06) > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, 2, 7);
         const gic_real t79 = n[68] + n[178];
         const gic_real t80 = n[62] + n[170];
         const gic_real t81 = t80 * R(0.0003928127830707118);
@@ -1240,8 +1248,8 @@ static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_re
         const gic_real t97 = R(1.0) / t78;
         const gic_real t98 = t96 * t97;
         const gic_real t99 = t94 - t96 * t98;
-        if (!(t99 - t79 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t99 - t79 * R(1e-06) > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, 3, 8);
         const gic_real t100 = R(9.072) + n[144] + n[176];
         const gic_real t101 = R(9.072) + n[131] + n[163];
         const gic_real t102 = t101 * R(0.0003928127830707118);
@@ -1268,8 +1276,8 @@ static int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_re
         const gic_real t123 = R(1.0) / t99;
         const gic_real t124 = t122 * t123;
         const gic_real t125 = t116 - t118 * t119 - t122 * t124;
-        if (!(t125 - t100 * R(1e-13) > R(0.0)))
-            return GIC_ERROR_MASS;
+        if (!(t125 - t100 * R(1e-06) > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, 1, 11);
         const gic_real t126 = y[17] * R(0.5);
         const gic_real t127 = y[16] * R(0.5);
         const gic_real t128 = y[15] * R(0.5);
@@ -2764,6 +2772,13 @@ const char *trailing_arm_status_subset(const trailing_arm *self)
 {
     const int32_t subset = self->head.subset;
     return subset >= 0 && subset < trailing_arm_model.subset_count ? trailing_arm_model.subset_name[subset] : NULL;
+}
+
+const char *trailing_arm_status_state(const trailing_arm *self)
+{
+    const int32_t number = self->head.grown;
+    const int about = self->head.status == GIC_ERROR_MASS || self->head.status == GIC_ERROR_UNSTABLE;
+    return about && number >= 0 && number < TRAILING_ARM_STATES ? trailing_arm_model.state[number].name : NULL;
 }
 
 const char *trailing_arm_status_condition(const trailing_arm *self)

@@ -64,8 +64,8 @@
  *   subset 'lca_f_l' (2 times, closed form)                   61       116       2      1         2
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'lca_f_l_2' (2 times, closed form)                 76       121       2      1         2
- *   forces and equations of motion                           743       706      14      4         4
- *   all together                                            1640      2023      32     12        12
+ *   forces and equations of motion                           741       704      14      4         4
+ *   all together                                            1638      2021      32     12        12
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H
@@ -271,9 +271,11 @@ int trailing_arm_poses(trailing_arm *self, gic_real *pose);
 /* Present time, s. */
 gic_real trailing_arm_time(const trailing_arm *self);
 
-/* What a status means; about which subset of bodies the last status was, and which condition parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
+ * parameters violate, NULL: none. */
 const char *trailing_arm_status_text(int status);
 const char *trailing_arm_status_subset(const trailing_arm *self);
+const char *trailing_arm_status_state(const trailing_arm *self);
 const char *trailing_arm_status_condition(const trailing_arm *self);
 
 /* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */

@@ -377,6 +377,17 @@ static void store_rates(System *s, Block *block, const Ex *driven)
     whole_store_rates(whole, block, z);
 }
 
+/* The subset that a joint or coordinate guides: the one solved last of those that it connects; -1: none. */
+static int equation_subset(const Whole *whole, const Equation *equation)
+{
+    int last = -1;
+    for (int end = 0; end < 2; ++end) {
+        const int own = whole->plan->sequence->body_subset[equation->body[end]];
+        last = own > last ? own : last;
+    }
+    return last;
+}
+
 Block *augmented_block(Whole *whole)
 {
     /* a pivot this small against its diagonal entry: the equation says next to nothing new, and the digits that
@@ -390,6 +401,7 @@ Block *augmented_block(Whole *whole)
                   "the augmented form of the equations of motion needs the mass of '%s'", model_massless(whole->model));
     Block *block = pool_alloc(dag->pool, sizeof *block);
     block->dag = dag;
+    block->model = whole->model->name;
     System s = open_system(whole);
     for (int b = 0; b < whole->model->bodies; ++b)
         block_loads(block, s.loads->wrench[b], 6);
@@ -399,9 +411,10 @@ Block *augmented_block(Whole *whole)
     const Factors *factors = linear_factor_symmetric(dag, s.unknowns, H, topology_order(&s));
     for (int k = 0; k < s.equations; ++k) {
         Ex diagonal = H[s.unknowns * factors->row[k] + factors->row[k]];
+        const Ex left = ex_sub(dag, factors->pivot[k], ex_mul(dag, ex_literal(dag, independent), diagonal));
         if (dag->node[factors->pivot[k]].level == LEVEL_VARIABLE)
-            block_check(block, ex_sub(dag, factors->pivot[k], ex_mul(dag, ex_literal(dag, independent), diagonal)),
-                        false, 0, "GIC_ERROR_SINGULAR");
+            block_check_about(block, left, "GIC_ERROR_SINGULAR", equation_subset(whole, &s.equation[factors->row[k]]),
+                              -1);
     }
     for (int b = 1; b < whole->model->bodies; ++b) {
         memcpy(s.acceleration[b], s.wrench[b], sizeof s.acceleration[b]);

@@ -173,6 +173,14 @@ static void insert_batch(void *context, const char *name, Text *out, int indent)
             insert_file(b, out, "batch_road.c.in", insert_batch);
     } else if (!strcmp(name, "integrate")) {
         insert_file(b, out, "batch_integrate.c.in", insert_batch);
+    } else if (!strcmp(name, "about")) {
+        if (block_is_about(g->formulation->dynamics))
+            insert_file(b, out, "batch_about.c.in", insert_batch);
+    } else if (!strcmp(name, "abouts")) {
+        emit_abouts(out, g->formulation->dynamics, indent);
+    } else if (!strcmp(name, "blame")) {
+        if (block_is_about(g->formulation->dynamics))
+            line(out, indent, "%s_about(head);", g->model->name);
     } else if (!strcmp(name, "tuned")) {
         write_batch_tuned(g, out, indent);
     } else if (!strcmp(name, "load") || !strcmp(name, "store")) {

@@ -13,14 +13,37 @@ void block_store(Block *block, Ex value, const char *format, ...)
     *POOL_PUSH(block->dag->pool, block->store, block->stores) = (Store){target, value};
 }
 
-void block_check(Block *block, Ex value, bool magnitude, double least, const char *status)
+void block_check_like(Block *block, Ex value, const Check *check)
 {
-    if (magnitude && block->dag->node[value].op == OP_NEG)
+    if (check->magnitude && block->dag->node[value].op == OP_NEG)
         value = block->dag->node[value].arg[0];
     for (int i = 0; i < block->checks; ++i)
-        if (block->check[i].value == value && block->check[i].magnitude == magnitude && block->check[i].least >= least)
+        if (block->check[i].value == value && block->check[i].magnitude == check->magnitude &&
+            block->check[i].least >= check->least)
             return;
-    *POOL_PUSH(block->dag->pool, block->check, block->checks) = (Check){value, least, magnitude, status};
+    Check *own = POOL_PUSH(block->dag->pool, block->check, block->checks);
+    *own = *check;
+    own->value = value;
+}
+
+void block_check(Block *block, Ex value, bool magnitude, double least, const char *status)
+{
+    const Check check = {.least = least, .magnitude = magnitude, .status = status, .subset = -1, .state = -1};
+    block_check_like(block, value, &check);
+}
+
+void block_check_about(Block *block, Ex value, const char *status, int subset, int state)
+{
+    const Check check = {.status = status, .subset = subset, .state = state};
+    block_check_like(block, value, &check);
+}
+
+bool block_is_about(const Block *block)
+{
+    for (int i = 0; i < block->checks; ++i)
+        if (block->check[i].subset >= 0 || block->check[i].state >= 0)
+            return true;
+    return false;
 }
 
 void block_loads(Block *block, const Ex *load, int count)

@@ -342,6 +342,42 @@ static void write_temporaries(Emitter *m, Ex root)
     }
 }
 
+static bool is_about(const Check *check)
+{
+    return check->subset >= 0 || check->state >= 0;
+}
+
+void emit_abouts(Text *out, const Block *block, int indent)
+{
+    for (const Check *check = block->check; check < block->check + block->checks; ++check)
+        if (is_about(check))
+            text_print(out, "%*s{%s, %d, %d},\n", indent, "", check->status, check->subset, check->state);
+}
+
+/* The end of a function with a check's status. */
+static void write_failure(const Emitter *m, const Check *check, int indent)
+{
+    if (is_about(check))
+        text_print(m->out, "%*sreturn %s_about(self, %s, %d, %d);\n", indent, "", m->block->model, check->status,
+                   check->subset, check->state);
+    else
+        text_print(m->out, "%*sreturn %s;\n", indent, "", check->status);
+}
+
+/* Some lane of a vector fails: which one? */
+static void write_failures(const Emitter *m, const Check *check, const char *vector)
+{
+    if (!check->lane || !is_about(check)) {
+        write_failure(m, check, m->indent + 4);
+        return;
+    }
+    for (int l = 0; l < m->dag->lanes; ++l) {
+        if (l < m->dag->lanes - 1)
+            text_print(m->out, "%*sif (!((%s)[%d] > %s))\n", m->indent + 4, "", vector, l, literal_text(m, check->least));
+        write_failure(m, check->lane[l], m->indent + (l < m->dag->lanes - 1 ? 8 : 4));
+    }
+}
+
 static void write_check(Emitter *m, const Check *check)
 {
     Text line = {.pool = m->dag->pool};
@@ -355,9 +391,21 @@ static void write_check(Emitter *m, const Check *check)
         if (m->style->width) {
             text_print(m->out, "%*s%s_NEED(%s > %s, %s);\n", m->indent, "", function, value, least, check->status);
         } else {
-            text_print(m->out, "%*sif (!%s_EVERY(%s > %s))\n", m->indent, "", function, value, least);
-            text_print(m->out, "%*sreturn %s;\n", m->indent + 4, "", check->status);
+            const bool several = check->lane && is_about(check);
+            text_print(m->out, "%*sif (!%s_EVERY(%s > %s))%s\n", m->indent, "", function, value, least,
+                       several ? " {" : "");
+            write_failures(m, check, value);
+            if (several)
+                text_print(m->out, "%*s}\n", m->indent, "");
         }
+        return;
+    }
+    if (m->style->lanes && is_about(check)) {
+        int number = 0;
+        for (const Check *other = m->block->check; other < check; ++other)
+            number += is_about(other);
+        text_print(m->out, "%*sNEED(%s > %s, ABOUT(%d));\n", m->indent, "", line.s, literal_text(m, check->least),
+                   number);
         return;
     }
     if (m->style->lanes) {
@@ -367,7 +415,7 @@ static void write_check(Emitter *m, const Check *check)
     }
     text_print(m->out, check->magnitude ? "%*sif (!(GIC_FABS(%s) > %s))\n" : "%*sif (!(%s > %s))\n", m->indent, "",
                line.s, literal_text(m, check->least));
-    text_print(m->out, "%*sreturn %s;\n", m->indent + 4, "", check->status);
+    write_failure(m, check, m->indent + 4);
 }
 
 void block_emit(Text *out, const Block *block, const Style *style, Constants *constants, int indent)

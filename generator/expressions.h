@@ -306,7 +306,7 @@ double *sampling_pose(const Sampling *sampling, int step, int configuration, int
 /* ---- block.c: straight-line code before it is text ------------------------------------------------------------ */
 
 /* `target` = value once everything is computed; or a status returned where value is not above `least` (of |value| with
- * `magnitude`). */
+ * `magnitude`), and where it is about a subset or a number of the state, which. */
 typedef struct Store {
     const char *target;
     Ex value;
@@ -317,10 +317,13 @@ typedef struct Check {
     double least;
     bool magnitude;
     const char *status;
+    int subset, state;               /* what it is about, -1: nothing of the kind */
+    const struct Check *const *lane; /* [lanes] of a vector: the checks that it stands for; NULL: they are alike */
 } Check;
 
 typedef struct Block {
     Dag *dag;
+    const char *model; /* its name, of a block with checks that are about something */
     int stores, checks, loads;
     Store *store;
     Check *check;
@@ -330,6 +333,12 @@ typedef struct Block {
 
 void block_store(Block *block, Ex value, const char *format, ...) __attribute__((format(printf, 3, 4)));
 void block_check(Block *block, Ex value, bool magnitude, double least, const char *status);
+/* `status` where value is not above 0, about a subset and a number of the state; -1: about none. */
+void block_check_about(Block *block, Ex value, const char *status, int subset, int state);
+/* Has it such checks? */
+bool block_is_about(const Block *block);
+/* The check of another block for a value of this one. */
+void block_check_like(Block *block, Ex value, const Check *check);
 void block_loads(Block *block, const Ex *load, int count);
 Count block_count(const Block *block);
 /* Of these the operations on vectors. */

@@ -509,6 +509,9 @@ void insert_code(void *context, const char *name, Text *out, int indent)
             write_road(g, out);
         if (g->model->wheels && g->plan->pack)
             write_lane_road(g, out);
+    } else if (!strcmp(name, "about")) {
+        if (block_is_about(g->formulation->dynamics))
+            insert_template(g, out, "about.c.in");
     } else if (!strcmp(name, "reactions")) {
         if (formulation_reacts(g->formulation))
             template_expand(g->pool, out, g->templates, "reactions.c.in", g->model->name, NULL, insert_code, g);

@@ -423,6 +423,8 @@ const char *style_real(const Style *style);
  * checks as soon as their values are there, stores at the end (a target may be read before). Constants met on the way
  * get slots. */
 void block_emit(Text *out, const Block *block, const Style *style, Constants *constants, int indent);
+/* What its checks are about, as far as they are, in order: {status, subset, number of the state}, */
+void emit_abouts(Text *out, const Block *block, int indent);
 /* A number as C source that reads back bit-exactly: R(0.5). */
 const char *emit_number(Pool *pool, double value);
 

@@ -695,6 +695,17 @@ static Ex number_of(Packing *p, Ex from)
 /* ---- the block
  * ------------------------------------------------------------------------------------------------------------ */
 
+/* A pack is checked in all lanes at once: the checks of its members. */
+static const Check *const *checks_of_group(const Packing *p, const Group *group)
+{
+    const Check **check = pool_alloc(p->pool, (size_t)p->lanes * sizeof *check);
+    for (int l = 0; l < p->lanes; ++l)
+        for (int i = 0; i < p->block->checks; ++i)
+            if (p->same[p->block->check[i].value] == group->member[l])
+                check[l] = &p->block->check[i];
+    return check;
+}
+
 Block *block_pack(Pool *pool, const Block *block, const LaneInput *input, int inputs, int lanes)
 {
     const size_t nodes = (size_t)block->dag->nodes + 1;
@@ -732,14 +743,16 @@ Block *block_pack(Pool *pool, const Block *block, const LaneInput *input, int in
     p.vector_made = pool_alloc(pool, ((size_t)p.groups + 1) * sizeof *p.vector_made);
     Block *packed = pool_alloc(pool, sizeof *packed);
     packed->dag = p.out;
+    packed->model = block->model;
     for (int i = 0; i < block->checks; ++i) {
-        const Check *check = &block->check[i];
-        const Ex e = p.same[check->value];
-        Ex value = number_of(&p, check->value);
-        /* of a pack, all lanes at once */
-        if (p.out->node[value].op == OP_LANE && p.group_of[p.group[e]]->members == lanes)
+        Check check = block->check[i];
+        const Ex e = p.same[check.value];
+        Ex value = number_of(&p, check.value);
+        if (p.out->node[value].op == OP_LANE && p.group_of[p.group[e]]->members == lanes) {
             value = p.out->node[value].arg[0];
-        block_check(packed, value, check->magnitude, check->least, check->status);
+            check.lane = checks_of_group(&p, p.group_of[p.group[e]]);
+        }
+        block_check_like(packed, value, &check);
     }
     for (int i = 0; i < block->stores; ++i)
         block_store(packed, number_of(&p, block->store[i].value), "%s", block->store[i].target);

@@ -240,7 +240,7 @@ static Ex *roots_of(const Block *block, int *count)
 
 Block partial_block(Partial *p, const Block *block)
 {
-    Block out = {.dag = p->to, .across = p->across};
+    Block out = {.dag = p->to, .model = block->model, .across = p->across};
     int roots;
     const Ex *root = roots_of(block, &roots);
     const bool *needed = dag_needed(p->from, root, roots);
@@ -250,7 +250,7 @@ Block partial_block(Partial *p, const Block *block)
     for (int i = 0; i < block->checks; ++i) {
         const Check *check = &block->check[i];
         if (!holds(p->to, of(p, check->value), check))
-            block_check(&out, of(p, check->value), check->magnitude, check->least, check->status);
+            block_check_like(&out, of(p, check->value), check);
     }
     for (int i = 0; i < block->stores; ++i)
         block_store(&out, of(p, block->store[i].value), "%s", block->store[i].target);

@@ -75,12 +75,12 @@ static Ex merge(Merge *m, Ex a, Ex b)
 
 static Block merge_block(Merge *m, const Block *a, const Block *b)
 {
-    Block out = {.dag = m->dag};
+    Block out = {.dag = m->dag, .model = a->model};
     m->failed = m->failed || a->stores != b->stores || a->checks != b->checks;
     for (int i = 0; i < a->checks && !m->failed; ++i) {
         const Check *x = &a->check[i], *y = &b->check[i];
         m->failed = x->magnitude != y->magnitude || x->least != y->least || strcmp(x->status, y->status) != 0;
-        block_check(&out, merge(m, x->value, y->value), x->magnitude, x->least, x->status);
+        block_check_like(&out, merge(m, x->value, y->value), x);
     }
     for (int i = 0; i < a->stores && !m->failed; ++i) {
         m->failed = strcmp(a->store[i].target, b->store[i].target) != 0;

@@ -117,6 +117,10 @@ const char *instance_status(Pool *pool, const gic_model *model, const gic_head *
         return pool_print(pool, "%s: '%s' is at %.4g %s and changes by %.3g a second", gic_status_text(status),
                           signal->name, value, signal->unit, rate);
     }
+    if (status == GIC_ERROR_MASS && self->grown >= 0 && self->grown < model->slow_count)
+        return pool_print(pool, "%s: '%s' of %s '%s'", gic_status_text(status), model->state[self->grown].name,
+                          self->subset < 0 ? "body" : "subset",
+                          self->subset < 0 ? model->body_name[0] : model->subset_name[self->subset]);
     if (self->subset < 0 || self->subset >= model->subset_count)
         return gic_status_text(status);
     return pool_print(pool, "%s: subset '%s'", gic_status_text(status), model->subset_name[self->subset]);

@@ -48,7 +48,7 @@ typedef double gic_real;
     X(GIC_ERROR_REACH, -4, "a coordinate is too far from the last good one to be followed") \
     X(GIC_ERROR_NEWTON, -5, "the dependent coordinates of a subset were not found (out of reach, or no solution)") \
     X(GIC_ERROR_SINGULAR, -6, "a subset is near a singular configuration: its coordinates stop being independent") \
-    X(GIC_ERROR_MASS, -7, "the mass matrix is not positive definite") \
+    X(GIC_ERROR_MASS, -7, "the mass matrix is not positive definite, or so near to singular that too few digits would be left") \
     X(GIC_ERROR_RESULT, -8, "a result is not a finite number") \
     X(GIC_ERROR_ROAD, -9, "the road has no finite height under a wheel") \
     X(GIC_ERROR_ABI, -10, "generated code and runtime have different versions or number types") \
@@ -106,7 +106,7 @@ typedef struct gic_head {
     int32_t status;      /* of the last call */
     int32_t subset;      /* that the status is about, -1: none; see the descriptor's subset_name */
     int32_t condition;  /* that GIC_ERROR_GEOMETRY or _ASSUMPTION is about, -1: none; the descriptor's condition_text */
-    int32_t grown;      /* index in state[] of what GIC_ERROR_UNSTABLE is about, -1: none */
+    int32_t grown;      /* index in state[] of what GIC_ERROR_UNSTABLE or _MASS is about, -1: none */
     int64_t rhs_count;  /* right-hand sides evaluated */
     int64_t fast_count; /* rates of the fast states alone evaluated, by gic_step_dual */
     int64_t newton_count; /* subset solutions, and the corrections they took in total */

@@ -125,7 +125,7 @@ static int rate_along(const Linear *linear, const Instance *self, const double *
     status = recover(linear, y, dy);
     if (status != GIC_OK)
         return status;
-    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, NULL};
+    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, &linear->value->head};
     tape_arrays(linear->value, &time, y, e, linear->rate, NULL, NULL, array);
     tape_arrays(linear->slope, &dtime, dy, de, drate, NULL, NULL, slope);
     if (engine->wheel)

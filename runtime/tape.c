@@ -167,7 +167,13 @@ static TapeCheck check_of(const Recorder *r, const Check *check)
 #undef STATUS
     };
     const char *comma = strchr(check->status, ',');
-    TapeCheck out = {slot_of(r, check->value), check->least, check->magnitude, GIC_ERROR_GEOMETRY, 0};
+    TapeCheck out = {.slot = slot_of(r, check->value),
+                     .least = check->least,
+                     .magnitude = check->magnitude,
+                     .status = GIC_ERROR_GEOMETRY,
+                     .condition = -1,
+                     .subset = check->subset,
+                     .state = check->state};
     if (comma)
         out.condition = atoi(comma + 1);
     for (size_t s = 0; s < sizeof status / sizeof *status; ++s)

@@ -25,7 +25,8 @@ typedef struct TapeCheck {
     int slot;
     double least;
     bool magnitude;
-    int status, condition; /* where the number is not above `least`; GIC_ERROR_GEOMETRY: about which condition */
+    int status; /* where the number is not above `least` */
+    int condition, subset, state; /* that it is about, -1: none */
 } TapeCheck;
 
 /* A block ready to run. Its numbers live in a frame: constants, inputs, then what is computed, in slots that are used
@@ -46,7 +47,7 @@ typedef struct TapeWorld {
     const gic_road *road; /* NULL: flat at z = 0 */
     int32_t lane;
     double time;
-    int32_t *condition; /* where a check that is about a condition says which; only blocks at set-up have such */
+    gic_head *head; /* where checks that are about something say of what; NULL: the block has none of them */
 } TapeWorld;
 
 /* tape.c. `array` names what the block reads and writes as in `array[i]`, or `array` alone; tape_play() takes their

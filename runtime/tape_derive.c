@@ -20,7 +20,7 @@ static int play(Instance *self, const Tape *tape, double rest)
 {
     const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
-    const TapeWorld world = {.table = engine->table, .condition = &self->head.condition};
+    const TapeWorld world = {.table = engine->table, .head = &self->head};
     double *const array[TUNED_COUNT] = {
         [TUNED_PARAMETER] = tape_array(self, code->parameter_offset),
         [TUNED_REST] = &rest,

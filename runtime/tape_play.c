@@ -84,8 +84,12 @@ int tape_checked(const Tape *tape, const TapeWorld *world, const double *frame)
         const TapeCheck *check = &tape->check[i];
         const double value = frame[check->slot];
         if (!((check->magnitude ? fabs(value) : value) > check->least)) {
-            if (check->status == GIC_ERROR_GEOMETRY)
-                *world->condition = check->condition;
+            if (check->condition >= 0)
+                world->head->condition = check->condition;
+            if (check->subset >= 0 || check->state >= 0) {
+                world->head->subset = check->subset;
+                world->head->grown = check->state;
+            }
             return check->status;
         }
     }

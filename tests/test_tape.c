@@ -35,11 +35,11 @@ typedef struct Memory {
     double a[INPUTS], b[INPUTS], out[RESULTS], alone;
 } Memory;
 
-static int play_about(Pool *pool, const Tape *tape, int member, Memory *m, const gic_road *road, int32_t *condition)
+static int play_about(Pool *pool, const Tape *tape, int member, Memory *m, const gic_road *road, gic_head *head)
 {
     double *const array[ARRAYS] = {m->a, m->b, m->out, &m->alone};
     double *frame = pool_alloc(pool, (size_t)(tape->slots + 1) * sizeof *frame);
-    const TapeWorld world = {table, road, 4, 0.5, condition};
+    const TapeWorld world = {table, road, 4, 0.5, head};
     for (int i = 0; i < tape->slots; ++i)
         frame[i] = NAN; /* what was in it must not matter */
     return tape_play(tape, member, array, &world, frame);
@@ -261,12 +261,33 @@ static void test_conditions(void **state)
     block_check(&block, input(block.dag, "a[1]"), false, 0, "car_refuse(self, 14)");
     const Tape *tape = tape_record(pool, &block, name, ARRAYS);
     Memory m = {.a = {1, -1}};
-    int32_t condition = -1;
-    assert_int_equal(play_about(pool, tape, 0, &m, NULL, &condition), GIC_ERROR_GEOMETRY);
-    assert_int_equal(condition, 14);
+    gic_head head = {.condition = -1};
+    assert_int_equal(play_about(pool, tape, 0, &m, NULL, &head), GIC_ERROR_GEOMETRY);
+    assert_int_equal(head.condition, 14);
     m.a[0] = -1;
-    assert_int_equal(play_about(pool, tape, 0, &m, NULL, &condition), GIC_ERROR_GEOMETRY);
-    assert_int_equal(condition, 3);
+    assert_int_equal(play_about(pool, tape, 0, &m, NULL, &head), GIC_ERROR_GEOMETRY);
+    assert_int_equal(head.condition, 3);
+    pool_free(pool);
+}
+
+static void test_abouts(void **state)
+{
+    (void)state;
+    Pool *pool = pool_new();
+    Block block = {.dag = dag_new(pool, 1, 1)};
+    block_check_about(&block, input(block.dag, "a[0]"), "GIC_ERROR_MASS", -1, 12);
+    block_check_about(&block, input(block.dag, "a[1]"), "GIC_ERROR_SINGULAR", 3, -1);
+    const Tape *tape = tape_record(pool, &block, name, ARRAYS);
+    gic_head head = {.condition = 5, .subset = 6, .grown = 7};
+    Memory m = {.a = {1, 1}};
+    assert_int_equal(play_about(pool, tape, 0, &m, NULL, &head), GIC_OK);
+    assert_true(head.condition == 5 && head.subset == 6 && head.grown == 7);
+    m.a[1] = NAN;
+    assert_int_equal(play_about(pool, tape, 0, &m, NULL, &head), GIC_ERROR_SINGULAR);
+    assert_true(head.condition == 5 && head.subset == 3 && head.grown == -1);
+    m.a[0] = 0;
+    assert_int_equal(play_about(pool, tape, 0, &m, NULL, &head), GIC_ERROR_MASS);
+    assert_true(head.condition == 5 && head.subset == -1 && head.grown == 12);
     pool_free(pool);
 }
 
@@ -336,13 +357,10 @@ static void test_loads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_graphs),
-        cmocka_unit_test(test_two_roundings),
-        cmocka_unit_test(test_exchange),
-        cmocka_unit_test(test_checks),
-        cmocka_unit_test(test_conditions),
-        cmocka_unit_test(test_road),
-        cmocka_unit_test(test_places_are_used_again),
+        cmocka_unit_test(test_random_graphs), cmocka_unit_test(test_two_roundings),
+        cmocka_unit_test(test_exchange),      cmocka_unit_test(test_checks),
+        cmocka_unit_test(test_conditions),    cmocka_unit_test(test_abouts),
+        cmocka_unit_test(test_road),          cmocka_unit_test(test_places_are_used_again),
         cmocka_unit_test(test_loads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
