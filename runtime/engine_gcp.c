@@ -28,7 +28,8 @@ typedef struct Gcp {
     Instance *start;
     Share share[SHARES];
     int64_t uses;
-    Partition *partition; /* of the instance that is being evaluated */
+    Partition *partition;      /* of the instance that is being evaluated */
+    const Instance *recovered; /* of which the World has the Jacobian; NULL: of none, for its recovery failed */
     int (*outputs)(void *self), (*poses)(void *self, double *pose);
     int columns;
     double *b; /* [rows of the partition] */
@@ -37,6 +38,7 @@ typedef struct Gcp {
 /* What an instance remembers. */
 typedef struct Memory {
     double *chosen;  /* [columns] of its partition */
+    double *usual;   /* of its partition; 0: none was ever chosen, for set-up failed */
     double *shift;   /* [2 columns] from the integrated q, q' to the recovered ones at the start of a step */
     double *shifted; /* 1: shift is there */
     double *checks;  /* how often its partition was looked at */
@@ -47,7 +49,8 @@ static Memory memory_of(const Interpreted *context, const Instance *self)
 {
     const Gcp *gcp = context->engine;
     Memory memory = {.chosen = instance_own(self)};
-    memory.shift = memory.chosen + gcp->columns;
+    memory.usual = memory.chosen + gcp->columns;
+    memory.shift = memory.usual + 1;
     memory.shifted = memory.shift + 2 * gcp->columns;
     memory.checks = memory.shifted + 1;
     memory.near = memory.checks + 1;
@@ -263,28 +266,35 @@ static int use_partition(const Interpreted *context, const Instance *self, const
     const Gcp *gcp = context->engine;
     take_share(context, self);
     Partition *partition = gcp->partition;
+    if (*memory->usual == 0)
+        return GIC_ERROR_SINGULAR;
     if (!memcmp(partition->chosen, memory->chosen, sizeof(double) * (size_t)gcp->columns))
         return GIC_OK;
     find_jacobian(context->world);
-    return partition_adopt(partition, memory->chosen) ? GIC_OK : GIC_ERROR_SINGULAR;
+    return partition_adopt(partition, memory->chosen, *memory->usual) ? GIC_OK : GIC_ERROR_SINGULAR;
 }
 
 static int recover(const Interpreted *context, Instance *self, const Memory *memory, const double *state)
 {
     World *world = context->world;
     EngineProfile *profile = context->profile;
-    const Gcp *gcp = context->engine;
+    Gcp *gcp = context->engine;
     const double begun = profile_clock(profile), solver = profile->recovery_solver;
     set_positions(world, state);
     set_rates(world, state + gcp->columns);
     gather_driven(world);
+    gcp->recovered = NULL;
     int status = use_partition(context, self, memory);
     if (status == GIC_OK)
         status = recover_positions(context, self);
     if (status == GIC_OK)
         status = find_jacobian(world) ? recover_rates(context) : GIC_ERROR_NEWTON;
-    if (status == GIC_OK)
+    if (status == GIC_OK) {
         find_coordinates(world, memory);
+        gcp->recovered = self;
+    } else {
+        partition_forget(gcp->partition); /* factors of where it failed */
+    }
     const double taken = profile_clock(profile) - begun;
     profile->recovery += taken;
     profile->recovery_functions += taken - (profile->recovery_solver - solver);
@@ -350,7 +360,7 @@ static bool degraded(const Memory *memory, Partition *partition)
 {
     const double most = 2;
     return partition->columns > partition->rows &&
-           !(partition_amplification(partition, (int64_t)(*memory->checks)++) < most * partition->usual);
+           !(partition_amplification(partition, (int64_t)*memory->checks) < most * partition->usual);
 }
 
 static int choose(const Interpreted *context, const Memory *memory)
@@ -360,40 +370,51 @@ static int choose(const Interpreted *context, const Memory *memory)
     if (!partition_choose(gcp->partition))
         return GIC_ERROR_SINGULAR;
     memcpy(memory->chosen, gcp->partition->chosen, sizeof(double) * (size_t)gcp->columns);
+    *memory->usual = gcp->partition->usual;
     return GIC_OK;
 }
 
 /* The end of a step: dependent coordinates move by what their recovery at its start found, so that they do not drift
- * from the independent ones, and the choice is made anew where it has become bad. */
+ * from the independent ones, and the choice is made anew where it has become bad. A state that is refused leaves
+ * everything as it was. */
 static int settle(void *instance, double *state)
 {
     Instance *self = instance;
     const Interpreted *context = self->context;
     const Gcp *gcp = context->engine;
+    World *world = context->world;
     const Memory memory = memory_of(context, self);
+    const size_t size = 2 * sizeof *state * (size_t)gcp->columns;
+    double moved[2 * gcp->columns + 1];
     if (!gic_bounded(state, context->code.slow_count + context->code.fast_count))
         return GIC_ERROR_INPUT;
-    take_share(context, self);
     const bool shifted = *memory.shifted > 0;
-    for (int j = 0; shifted && j < 2 * gcp->columns; ++j)
-        state[j] += memory.shift[j];
-    *memory.shifted = 0;
-    if (!degraded(&memory, gcp->partition))
-        return GIC_OK;
+    for (int j = 0; j < 2 * gcp->columns; ++j)
+        moved[j] = state[j] + (shifted ? memory.shift[j] : 0);
+    set_positions(world, moved);
+    if (gcp->recovered != self)
+        find_jacobian(world);
+    int status = use_partition(context, self, &memory);
+    const bool bad = status == GIC_OK && degraded(&memory, gcp->partition);
     /* What becomes independent must fit what was, or the change would be felt. An integrator of variable steps has no
      * state here at their start, but the inputs of their end. */
-    if (!shifted) {
-        const int status = recover(context, self, &memory, state);
-        if (status != GIC_OK)
-            return status;
-        memcpy(state, context->world->q[context->world->first], sizeof *state * (size_t)gcp->columns);
-        memcpy(state + gcp->columns, context->world->qd[context->world->first], sizeof *state * (size_t)gcp->columns);
-    } else {
-        set_positions(context->world, state);
+    if (bad && !shifted) {
+        status = recover(context, self, &memory, state);
+        if (status == GIC_OK) {
+            memcpy(moved, world->q[world->first], size / 2);
+            memcpy(moved + gcp->columns, world->qd[world->first], size / 2);
+        }
     }
-    ++self->head.switch_count;
-    ++context->profile->repartitions;
-    return choose(context, &memory);
+    if (bad && status == GIC_OK)
+        status = choose(context, &memory);
+    if (status != GIC_OK)
+        return status;
+    memcpy(state, moved, size);
+    *memory.shifted = 0;
+    ++*memory.checks;
+    self->head.switch_count += bad;
+    context->profile->repartitions += bad;
+    return GIC_OK;
 }
 
 /* ---- to and from states in dual coordinates --------------------------------------------------------------------- */
@@ -428,6 +449,7 @@ static int enter(gic_head *head, const double *standard)
     world->input = instance_array(head, own->input_offset);
     gather_driven(world);
     take_share(context, self);
+    ((Gcp *)context->engine)->recovered = NULL;
     return head->status = choose(context, &memory);
 }
 
@@ -554,7 +576,7 @@ static const Engine *open_gcp(Pool *pool, const char *name, const Model *drawn, 
     const Sequence *sequence = sequence_find(pool, drawn);
     const Model *model = model_assemble(pool, drawn, sequence);
     const int bodies = model->bodies - !model->free_base, columns = BODY_Q * bodies;
-    Interpreted *context = interpreted_new(pool, model, sequence, (size_t)(3 * columns + 2 + model->coordinates));
+    Interpreted *context = interpreted_new(pool, model, sequence, (size_t)(3 * columns + 3 + model->coordinates));
     World *world = context->world;
     Gcp *gcp = pool_alloc(pool, sizeof *gcp);
     const int rows = world->constraint_rows + bodies;

@@ -62,6 +62,7 @@ Partition *partition_new(Pool *pool, int rows, int columns, const PartitionRow *
     factors->dependent = columns_new(pool, rows, entries);
     factors->value = pool_alloc(pool, entries * sizeof(double));
     gather_all(partition, &factors->all);
+    partition_forget(partition);
     klu_defaults(&factors->common);
     factors->common.scale = -1; /* rows are lengths and directions of about the same size */
     factors->common.tol = 0.5;  /* pivots must stay good while the mechanism moves */
@@ -193,25 +194,38 @@ static bool analyse(Partition *partition)
     gather_dependent(partition);
     load(factors, partition->rows);
     factors->symbolic = klu_analyze(partition->rows, start, row, &factors->common);
-    if (!factors->symbolic)
+    if (factors->symbolic)
+        factors->numeric = klu_factor(start, row, factors->value, factors->symbolic, &factors->common);
+    if (!factors->numeric) {
+        partition_forget(partition); /* or the choice would look as if there were factors */
         return false;
-    factors->numeric = klu_factor(start, row, factors->value, factors->symbolic, &factors->common);
-    if (!factors->numeric)
-        return false;
+    }
+    return true;
+}
+
+static void find_usual(Partition *partition)
+{
     partition->usual = 1;
     for (int i = 0; i < partition->columns - partition->rows; ++i)
         partition->usual = fmax(partition->usual, partition_amplification(partition, i));
-    return true;
 }
 
 bool partition_choose(Partition *partition)
 {
-    return choose_columns(partition) && analyse(partition);
+    if (!choose_columns(partition)) {
+        partition_forget(partition);
+        return false;
+    }
+    if (!analyse(partition))
+        return false;
+    find_usual(partition);
+    return true;
 }
 
-bool partition_adopt(Partition *partition, const double *chosen)
+bool partition_adopt(Partition *partition, const double *chosen, double usual)
 {
     memmove(partition->chosen, chosen, (size_t)partition->columns * sizeof *chosen);
+    partition->usual = usual;
     return analyse(partition);
 }
 
@@ -248,7 +262,9 @@ double partition_amplification(Partition *partition, int64_t i)
 
 void partition_forget(Partition *partition)
 {
-    memset(partition->chosen, 0, (size_t)partition->columns * sizeof *partition->chosen);
+    const double neither = -1; /* no choice looks like that */
+    for (int j = 0; j < partition->columns; ++j)
+        partition->chosen[j] = neither;
 }
 
 void partition_close(Partition *partition)

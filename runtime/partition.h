@@ -22,7 +22,7 @@ typedef struct Partition {
     int rows, columns;       /* equations, coordinates; rows <= columns */
     const PartitionRow *row; /* Phi_q */
     int *dependent;          /* [rows] columns of the dependent coordinates, u */
-    double *chosen;          /* [columns] 1: independent, 0: dependent; what an instance remembers of a choice */
+    double *chosen;          /* [columns] 1: independent, 0: dependent, -1: no choice yet; an instance remembers it */
     double usual;            /* largest partition_amplification() when it was chosen, at least 1 */
     struct PartitionFactors *factors;
     double *dense; /* [rows][columns], and in the search for pivots the largest of each row that is left, its column */
@@ -32,10 +32,11 @@ typedef struct Partition {
 
 /* No choice is made yet. `row` is kept. */
 Partition *partition_new(Pool *pool, int rows, int columns, const PartitionRow *row);
-/* Choose by the present values, analyse and factor. False where the equations are dependent. */
+/* Choose by the present values, analyse and factor. False where the equations are dependent; then nothing is chosen. */
 bool partition_choose(Partition *partition);
-/* Make the choice `chosen` [columns] of an earlier time. False where Phi_u is singular at the present values. */
-bool partition_adopt(Partition *partition, const double *chosen);
+/* Make the choice `chosen` [columns] of an earlier time, when `usual` was found. False where Phi_u is singular at the
+ * present values; then nothing is chosen. */
+bool partition_adopt(Partition *partition, const double *chosen, double usual);
 /* Factor Phi_u of the present values with the pivots of the choice. False where it is singular. */
 bool partition_factor(Partition *partition);
 /* b [rows] becomes Phi_u^-1 b, in the order of `dependent`. */
