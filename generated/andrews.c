@@ -1324,7 +1324,7 @@ static int andrews_recover_piece(andrews *self, andrews_links *links, const gic_
     links->known[0] = self->motion + 0; /* K1 */
     links->x[0] = start[0]; /* beta */
     links->rate[0] = xd[0];
-    links->change[0] = start[0] - old[0];
+    links->change[0] = gic_unwound(start[0] - old[0]);
     status = andrews_solve_K2_K3(self, andrews_k_K2_K3[0], links, old + 1, start + 1, self->motion + 30, self->inertia + 23);
     if (status != GIC_OK) {
         self->head.subset = 1;
@@ -1334,7 +1334,7 @@ static int andrews_recover_piece(andrews *self, andrews_links *links, const gic_
     links->known[0] = self->motion + 60; /* K3 */
     links->x[0] = start[0]; /* beta */
     links->rate[0] = xd[0];
-    links->change[0] = start[0] - old[0];
+    links->change[0] = gic_unwound(start[0] - old[0]);
     status = andrews_solve_K5_K4(self, andrews_k_K5_K4[0], links, old + 35, start + 35, self->motion + 90, self->inertia + 46);
     if (status != GIC_OK) {
         self->head.subset = 2;
@@ -1344,7 +1344,7 @@ static int andrews_recover_piece(andrews *self, andrews_links *links, const gic_
     links->known[0] = self->motion + 60; /* K3 */
     links->x[0] = start[0]; /* beta */
     links->rate[0] = xd[0];
-    links->change[0] = start[0] - old[0];
+    links->change[0] = gic_unwound(start[0] - old[0]);
     status = andrews_solve_K5_K4(self, andrews_k_K5_K4[1], links, old + 86, start + 86, self->motion + 150, self->inertia + 69);
     if (status != GIC_OK) {
         self->head.subset = 3;
@@ -1361,6 +1361,7 @@ static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
     const gic_real *const from = self->start[first];
     gic_real *const at = self->recovered_at;
     int32_t now = first, next = 0;
+    gic_real way[ANDREWS_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered == 1 + first && !memcmp(at + 2 * ANDREWS_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
@@ -1372,8 +1373,12 @@ static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     links.ahead[0] = self->head.ahead;
+    for (i = 0; i < ANDREWS_COORDINATES; ++i)
+        way[i] = self->x[i] - from[i];
+    if (!(GIC_FABS(way[0]) < R(GIC_PIECES) * andrews_piece[0])) /* beta */
+        way[0] = gic_unwound(way[0]);
     for (i = 0; i < ANDREWS_COORDINATES; ++i) {
-        const gic_real parts = GIC_FABS(self->x[i] - from[i]) / andrews_piece[i];
+        const gic_real parts = GIC_FABS(way[i]) / andrews_piece[i];
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
@@ -1387,7 +1392,7 @@ static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
             ++next;
         start = self->start[next];
         for (i = 0; i < ANDREWS_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * way[i];
         status = andrews_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;

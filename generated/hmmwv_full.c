@@ -1097,6 +1097,7 @@ static int hmmwv_full_recover(hmmwv_full *self, const gic_real turn[3], int cold
     const gic_real *const from = self->start[first];
     gic_real *const at = self->recovered_at;
     int32_t now = first, next = 0;
+    gic_real way[HMMWV_FULL_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered == 1 + first && !memcmp(at + 2 * HMMWV_FULL_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
@@ -1108,8 +1109,10 @@ static int hmmwv_full_recover(hmmwv_full *self, const gic_real turn[3], int cold
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     links.ahead[0] = self->head.ahead;
+    for (i = 0; i < HMMWV_FULL_COORDINATES; ++i)
+        way[i] = self->x[i] - from[i];
     for (i = 0; i < HMMWV_FULL_COORDINATES; ++i) {
-        const gic_real parts = GIC_FABS(self->x[i] - from[i]) / hmmwv_full_piece[i];
+        const gic_real parts = GIC_FABS(way[i]) / hmmwv_full_piece[i];
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
@@ -1123,7 +1126,7 @@ static int hmmwv_full_recover(hmmwv_full *self, const gic_real turn[3], int cold
             ++next;
         start = self->start[next];
         for (i = 0; i < HMMWV_FULL_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * way[i];
         status = hmmwv_full_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;

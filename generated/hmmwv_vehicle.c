@@ -1102,6 +1102,7 @@ static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], in
     const gic_real *const from = self->start[first];
     gic_real *const at = self->recovered_at;
     int32_t now = first, next = 0;
+    gic_real way[HMMWV_VEHICLE_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered == 1 + first && !memcmp(at + 2 * HMMWV_VEHICLE_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
@@ -1113,8 +1114,10 @@ static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], in
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     links.ahead[0] = self->head.ahead;
+    for (i = 0; i < HMMWV_VEHICLE_COORDINATES; ++i)
+        way[i] = self->x[i] - from[i];
     for (i = 0; i < HMMWV_VEHICLE_COORDINATES; ++i) {
-        const gic_real parts = GIC_FABS(self->x[i] - from[i]) / hmmwv_vehicle_piece[i];
+        const gic_real parts = GIC_FABS(way[i]) / hmmwv_vehicle_piece[i];
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
@@ -1128,7 +1131,7 @@ static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], in
             ++next;
         start = self->start[next];
         for (i = 0; i < HMMWV_VEHICLE_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * way[i];
         status = hmmwv_vehicle_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;

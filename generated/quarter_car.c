@@ -631,6 +631,7 @@ static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int co
     const gic_real *const from = self->start[first];
     gic_real *const at = self->recovered_at;
     int32_t now = first, next = 0;
+    gic_real way[QUARTER_CAR_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered == 1 + first && !memcmp(at + 2 * QUARTER_CAR_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
@@ -642,8 +643,10 @@ static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int co
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     links.ahead[0] = self->head.ahead;
+    for (i = 0; i < QUARTER_CAR_COORDINATES; ++i)
+        way[i] = self->x[i] - from[i];
     for (i = 0; i < QUARTER_CAR_COORDINATES; ++i) {
-        const gic_real parts = GIC_FABS(self->x[i] - from[i]) / quarter_car_piece[i];
+        const gic_real parts = GIC_FABS(way[i]) / quarter_car_piece[i];
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
@@ -657,7 +660,7 @@ static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int co
             ++next;
         start = self->start[next];
         for (i = 0; i < QUARTER_CAR_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * way[i];
         status = quarter_car_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;

@@ -1576,6 +1576,7 @@ static int solid_axle_recover(solid_axle *self, const gic_real turn[3], int cold
     const gic_real *const from = self->start[first];
     gic_real *const at = self->recovered_at;
     int32_t now = first, next = 0;
+    gic_real way[SOLID_AXLE_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered == 1 + first && !memcmp(at + 2 * SOLID_AXLE_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
@@ -1587,8 +1588,10 @@ static int solid_axle_recover(solid_axle *self, const gic_real turn[3], int cold
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     links.ahead[0] = self->head.ahead;
+    for (i = 0; i < SOLID_AXLE_COORDINATES; ++i)
+        way[i] = self->x[i] - from[i];
     for (i = 0; i < SOLID_AXLE_COORDINATES; ++i) {
-        const gic_real parts = GIC_FABS(self->x[i] - from[i]) / solid_axle_piece[i];
+        const gic_real parts = GIC_FABS(way[i]) / solid_axle_piece[i];
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
@@ -1602,7 +1605,7 @@ static int solid_axle_recover(solid_axle *self, const gic_real turn[3], int cold
             ++next;
         start = self->start[next];
         for (i = 0; i < SOLID_AXLE_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * way[i];
         status = solid_axle_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;

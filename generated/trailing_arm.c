@@ -1015,6 +1015,7 @@ static int trailing_arm_recover(trailing_arm *self, const gic_real turn[3], int 
     const gic_real *const from = self->start[first];
     gic_real *const at = self->recovered_at;
     int32_t now = first, next = 0;
+    gic_real way[TRAILING_ARM_COORDINATE_ROOM];
     int i, piece, pieces = 1;
     links.cold = cold;
     links.again = self->recovered == 1 + first && !memcmp(at + 2 * TRAILING_ARM_COORDINATE_ROOM, turn, 3 * sizeof *turn) &&
@@ -1026,8 +1027,18 @@ static int trailing_arm_recover(trailing_arm *self, const gic_real turn[3], int 
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     links.ahead[0] = self->head.ahead;
+    for (i = 0; i < TRAILING_ARM_COORDINATES; ++i)
+        way[i] = self->x[i] - from[i];
+    if (!(GIC_FABS(way[0]) < R(GIC_PIECES) * trailing_arm_piece[0])) /* bar_f_l */
+        way[0] = gic_unwound(way[0]);
+    if (!(GIC_FABS(way[1]) < R(GIC_PIECES) * trailing_arm_piece[1])) /* bar_f_r */
+        way[1] = gic_unwound(way[1]);
+    if (!(GIC_FABS(way[2]) < R(GIC_PIECES) * trailing_arm_piece[2])) /* bar_r_l */
+        way[2] = gic_unwound(way[2]);
+    if (!(GIC_FABS(way[3]) < R(GIC_PIECES) * trailing_arm_piece[3])) /* bar_r_r */
+        way[3] = gic_unwound(way[3]);
     for (i = 0; i < TRAILING_ARM_COORDINATES; ++i) {
-        const gic_real parts = GIC_FABS(self->x[i] - from[i]) / trailing_arm_piece[i];
+        const gic_real parts = GIC_FABS(way[i]) / trailing_arm_piece[i];
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
@@ -1041,7 +1052,7 @@ static int trailing_arm_recover(trailing_arm *self, const gic_real turn[3], int 
             ++next;
         start = self->start[next];
         for (i = 0; i < TRAILING_ARM_COORDINATES; ++i)
-            start[i] = piece == pieces ? self->x[i] : from[i] + share * (self->x[i] - from[i]);
+            start[i] = piece == pieces ? self->x[i] : from[i] + share * way[i];
         status = trailing_arm_recover_piece(self, &links, self->start[now], start);
         if (status != GIC_OK)
             return status;

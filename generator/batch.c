@@ -76,7 +76,8 @@ static void write_batch_calls(const Generation *g, Text *out, int indent)
                  g->model->coordinate[subset->dep[j]].name);
             line(out, indent, "links->rate[%d] = xd[%d];", j, subset->dep[j]);
             if (!closed)
-                line(out, indent, "links->change[%d] = start[%d] - old[%d];", j, subset->dep[j], subset->dep[j]);
+                line(out, indent, "links->change[%d] = %s;", j,
+                     change_text(g, "lane_unwound(%s, R(0.0))", subset->dep[j]));
         }
         if (plan->formula[subset->class]->derived)
             line(out, indent, "links->derived = self->derived + %d;", plan->derived_offset[s]);
@@ -166,6 +167,8 @@ static void insert_batch(void *context, const char *name, Text *out, int indent)
             line(out, indent, "%s_lane derived[%s_DERIVED];", g->model->name, g->upper);
     } else if (!strcmp(name, "calls")) {
         write_batch_calls(g, out, indent);
+    } else if (!strcmp(name, "unwind")) {
+        write_unwinding(g, out, indent, true);
     } else if (!strcmp(name, "base")) {
         insert_file(b, out, g->model->free_base ? "batch_free.c.in" : "batch_fixed.c.in", insert_batch);
     } else if (!strcmp(name, "road")) {

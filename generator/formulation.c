@@ -122,6 +122,11 @@ double coordinate_piece(const Formulation *f, int coordinate)
     return most > 0 ? swing / most : c->range[1] - c->range[0];
 }
 
+bool coordinate_unwinds(const Formulation *f, int coordinate)
+{
+    return f->model->coordinate[coordinate].type == COORDINATE_ANGLE && coordinate_piece(f, coordinate) < 3;
+}
+
 void body_design(const Formulation *f, int body, double q[7])
 {
     if (f->model->tuning) {

@@ -495,6 +495,8 @@ void insert_code(void *context, const char *name, Text *out, int indent)
         write_pieces(g, out, indent);
     } else if (!strcmp(name, "calls")) {
         write_recovery_calls(g, out, indent);
+    } else if (!strcmp(name, "unwind")) {
+        write_unwinding(g, out, indent, false);
     } else if (!strcmp(name, "gather")) {
         write_gathered(g, out, indent);
     } else if (!strcmp(name, "base")) {

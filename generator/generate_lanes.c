@@ -318,6 +318,21 @@ static void write_known(const LaneRow *row, Text *out, int indent, int known)
     line(out, indent, "row.known[%d] = (const gic_real *)known%d;", known, known);
 }
 
+static void write_change(const LaneRow *row, Text *out, int indent, int j, const int *place)
+{
+    bool unwinds = false;
+    for (int l = 0; l < row->lanes; ++l)
+        unwinds = unwinds || coordinate_unwinds(row->g->formulation, place[l]);
+    if (!unwinds) {
+        line(out, indent, "row.change[%d] = row.x[%d] - %s;", j, j, numbers_text(row, "old", place));
+        return;
+    }
+    text_print(out, "%*srow.change[%d] = lane_%d_set(", indent, "", j, row->lanes);
+    for (int l = 0; l < row->lanes; ++l)
+        text_print(out, "%s%s", l ? ", " : "", change_text(row->g, "gic_unwound(%s)", place[l]));
+    text_print(out, ");\n");
+}
+
 static void write_coordinates(const LaneRow *row, Text *out, int indent, bool closed)
 {
     for (int j = 0; j < row_subset(row, 0)->deps; ++j) {
@@ -327,7 +342,7 @@ static void write_coordinates(const LaneRow *row, Text *out, int indent, bool cl
         line(out, indent, "row.x[%d] = %s;", j, numbers_text(row, "start", place));
         line(out, indent, "row.rate[%d] = %s;", j, numbers_text(row, "xd", place));
         if (!closed)
-            line(out, indent, "row.change[%d] = row.x[%d] - %s;", j, j, numbers_text(row, "old", place));
+            write_change(row, out, indent, j, place);
     }
 }
 

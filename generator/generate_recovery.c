@@ -70,6 +70,29 @@ static int open_kept(Generation *g, Text *out, int indent, const Subset *subset,
     return indent + 4;
 }
 
+const char *change_text(const Generation *g, const char *unwinding, int coordinate)
+{
+    const char *change = pool_print(g->pool, "start[%d] - old[%d]", coordinate, coordinate);
+    return coordinate_unwinds(g->formulation, coordinate) ? pool_print(g->pool, unwinding, change) : change;
+}
+
+void write_unwinding(const Generation *g, Text *out, int indent, bool lanes)
+{
+    const char *model = g->model->name;
+    for (int w = 0; w < g->model->coordinates; ++w) {
+        if (!coordinate_unwinds(g->formulation, w))
+            continue;
+        if (lanes) {
+            line(out, indent, "way[%d] = lane_unwound(way[%d], R(GIC_PIECES) * %s_piece[%d]); /* %s */", w, w, model, w,
+                 g->model->coordinate[w].name);
+            continue;
+        }
+        line(out, indent, "if (!(GIC_FABS(way[%d]) < R(GIC_PIECES) * %s_piece[%d])) /* %s */", w, model, w,
+             g->model->coordinate[w].name);
+        line(out, indent + 4, "way[%d] = gic_unwound(way[%d]);", w, w);
+    }
+}
+
 /* Through a pointer in recover_piece, an object in residual: the same lines serve both. */
 void write_recovery_calls(Generation *g, Text *out, int indent)
 {
@@ -105,7 +128,7 @@ void write_recovery_calls(Generation *g, Text *out, int indent)
                  g->model->coordinate[subset->dep[j]].name);
             line(out, indent, "links->rate[%d] = xd[%d];", j, subset->dep[j]);
             if (!closed)
-                line(out, indent, "links->change[%d] = start[%d] - old[%d];", j, subset->dep[j], subset->dep[j]);
+                line(out, indent, "links->change[%d] = %s;", j, change_text(g, "gic_unwound(%s)", subset->dep[j]));
         }
         if (g->plan->formula[subset->class]->derived)
             line(out, indent, "links->derived = self->derived + %d;", g->plan->derived_offset[s]);

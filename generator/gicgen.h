@@ -388,6 +388,8 @@ typedef struct StateNumber {
 StateNumber state_number(Pool *pool, const Formulation *f, int index);
 /* Change of a coordinate that is followed in one piece: no body turns by more than about a tenth of a radian. */
 double coordinate_piece(const Formulation *f, int coordinate);
+/* Is it an angle whose pieces are less than half a turn, so that a change by whole turns is none of poses? */
+bool coordinate_unwinds(const Formulation *f, int coordinate);
 /* Design pose of a body relative to the base, as a Newton start has it: reference point, Euler parameters. Of a model
  * with a tuning that in the drawing, from where set-up goes on. */
 void body_design(const Formulation *f, int body, double q[7]);

@@ -245,7 +245,8 @@ static void bounds(const Report *r, Text *out)
         "<p><code>GIC_CHORDS</code> = %d chords and <code>GIC_PASSES</code> = %d solves a subset; beyond them a call "
         "ends with a status. A change that turns some body by more than about 0.1 rad (or moves it by 0.1 of its "
         "subset's size) is followed in several pieces, each of them one recovery of all subsets; a call in more "
-        "than <code>GIC_PIECES</code> = %d pieces ends with a status.</p>\n",
+        "than <code>GIC_PIECES</code> = %d pieces ends with a status; whole turns of an angle that far away do not "
+        "count.</p>\n",
         r->chords, r->passes, measure_number(r->measure[0], "GIC_PIECES"));
 }
 

@@ -276,12 +276,16 @@ static int recover(const Interpreted *context, Instance *self, bool cold)
     const double begun = profile_clock(context->profile);
     const int32_t first = self->head.flip, hold = self->head.hold;
     const double *const from = start_of(context, self, first);
-    double last[count + 1];
+    double last[count + 1], way[count + 1];
     int32_t now = first;
     int pieces = 1;
     for (int c = 0; c < count; ++c) {
         last[c] = world->x[c];
-        const double parts = fabs(last[c] - from[c]) / gic->piece[c];
+        way[c] = last[c] - from[c];
+        /* whole turns out of an angle that is out of reach with them */
+        if (world->model->coordinate[c].type == COORDINATE_ANGLE && !(fabs(way[c]) < PIECES * gic->piece[c]))
+            way[c] = gic_unwound(way[c]);
+        const double parts = fabs(way[c]) / gic->piece[c];
         if (!(parts < PIECES))
             return GIC_ERROR_REACH;
         pieces = (int)parts + 1 > pieces ? (int)parts + 1 : pieces;
@@ -291,7 +295,7 @@ static int recover(const Interpreted *context, Instance *self, bool cold)
         while (next == first || next == now || next == hold)
             ++next;
         for (int c = 0; c < count; ++c)
-            world->x[c] = piece == pieces ? last[c] : from[c] + (last[c] - from[c]) * piece / pieces;
+            world->x[c] = piece == pieces ? last[c] : from[c] + way[c] * piece / pieces;
         const int status =
             recover_piece(context, self, start_of(context, self, now), start_of(context, self, next), cold);
         if (status != GIC_OK)

@@ -61,6 +61,15 @@ int gic_bounded(const gic_real *x, int32_t count)
     return below(x, count, EXPONENT_OF_BOUND);
 }
 
+gic_real gic_unwound(gic_real change)
+{
+    const gic_real turn = GIC_R(6.283185307179586), half = GIC_R(0.5) * turn, mean = GIC_R(0.5) * change;
+    if ((change <= half && change >= -half) || !gic_bounded(&mean, 1))
+        return change;
+    const int32_t turns = (int32_t)(change / turn + (change < GIC_R(0.0) ? GIC_R(-0.5) : GIC_R(0.5)));
+    return change - (gic_real)turns * turn;
+}
+
 /* ---- integrators ---------------------------------------------------------------------------------------- */
 
 static gic_real *array_at(void *self, size_t offset)

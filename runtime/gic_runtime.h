@@ -220,6 +220,11 @@ int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t rat
 #define gic_step_steady GIC_NAME(gic_step_steady)
 int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t ratio, gic_real steady);
 
+/* The change of an angle (rad) without whole turns: within half a turn, and as it is where it is that already. One too
+ * large to lie between two states is given back as it is, too. */
+#define gic_unwound GIC_NAME(gic_unwound)
+gic_real gic_unwound(gic_real change);
+
 /* The present time of an instance, s. */
 #define gic_time GIC_NAME(gic_time)
 gic_real gic_time(const void *self);

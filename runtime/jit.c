@@ -95,6 +95,7 @@ static void add_host_functions(TCCState *state)
         HOST_FUNCTION(gic_status_text),
         HOST_FUNCTION(gic_finite),
         HOST_FUNCTION(gic_bounded),
+        HOST_FUNCTION(gic_unwound),
         HOST_FUNCTION(gic_step),
         HOST_FUNCTION(gic_time),
         HOST_FUNCTION(gic_orientation),

@@ -118,6 +118,8 @@ static int recover_piece(Instance *self, TapeLinks *links, double *old, double *
             links->x[j] = start[w];
             links->rate[j] = xd[w];
             links->change[j] = start[w] - old[w];
+            if (coordinate_unwinds(tape_of(self)->formulation, w))
+                links->change[j] = gic_unwound(links->change[j]);
         }
         int status = solve_subset(self, links, s, old + plan->start_offset[s], start + plan->start_offset[s]);
         if (status != GIC_OK) {
@@ -139,7 +141,7 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
     int pieces = 1;
     double *at = tape_array(self, engine->recovered_offset), *at_rate = at + coordinates,
            *at_turn = at_rate + coordinates;
-    double *recovered = at_turn + 4;
+    double *recovered = at_turn + 4, way[coordinates + 1];
     const double *xd = tape_array(self, engine->xd_offset);
     links.cold = cold;
     links.again =
@@ -150,7 +152,10 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
     memcpy(links.turn, turn, sizeof links.turn);
     links.ahead[0] = self->head.ahead;
     for (int i = 0; i < coordinates; ++i) {
-        const double parts = fabs(x[i] - from[i]) / engine->piece[i];
+        way[i] = x[i] - from[i];
+        if (coordinate_unwinds(engine->formulation, i) && !(fabs(way[i]) < GIC_PIECES * engine->piece[i]))
+            way[i] = gic_unwound(way[i]);
+        const double parts = fabs(way[i]) / engine->piece[i];
         if (!(parts < GIC_PIECES))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
@@ -163,7 +168,7 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
         double *start = tape_array(self, engine->start_offset[next]);
         const double share = (double)piece / (double)pieces;
         for (int i = 0; i < coordinates; ++i)
-            start[i] = piece == pieces ? x[i] : from[i] + share * (x[i] - from[i]);
+            start[i] = piece == pieces ? x[i] : from[i] + share * way[i];
         int status = recover_piece(self, &links, old, start);
         if (status != GIC_OK)
             return status;

@@ -337,6 +337,28 @@ static void test_bounded(void **unused)
         assert_false(gic_bounded(&bad[i], 1));
 }
 
+/* An angle's change is the same but for whole turns, and no more than half of one. */
+static void test_unwound(void **unused)
+{
+    (void)unused;
+    const gic_real turn = GIC_R(6.283185307179586);
+    const gic_real small[] = {0, 1, -1, 3, -3, (gic_real)1e-30};
+    for (int i = 0; i < 6; ++i)
+        assert_true(gic_unwound(small[i]) == small[i]);
+    /* (change - turns 2 pi): roundings of the change and of 2 pi, once a turn */
+    for (int turns = -5000; turns <= 5000; turns += 500)
+        for (int i = 0; i < 6; ++i)
+            assert_true(fabs((double)(gic_unwound(small[i] + (gic_real)turns * turn) - small[i])) <=
+                        2 * fabs(turns * 6.3) * (double)EPSILON);
+    for (gic_real change = -100; change < 100; change += GIC_R(0.01))
+        assert_true(fabs((double)gic_unwound(change)) < 3.1415927 + 100 * (double)EPSILON);
+    /* what lies between two states is turned back; what is no angle of any state stays what it is */
+    const gic_real bound = (gic_real)(sizeof(gic_real) == 8 ? 0x1p30 : 0x1p20);
+    assert_true(fabs((double)gic_unwound(GIC_R(1.9) * bound)) < 4);
+    assert_true(gic_unwound(2 * bound) == 2 * bound);
+    assert_true(gic_unwound((gic_real)-INFINITY) == (gic_real)-INFINITY);
+}
+
 /* What is to blame for a step that fails: 2 coordinates of a free base, the second of which is driven. */
 static void test_blame(void **unused)
 {
@@ -482,9 +504,9 @@ int main(void)
         cmocka_unit_test(test_rate_and_input), cmocka_unit_test(test_failure_changes_nothing),
         cmocka_unit_test(test_snapshot),       cmocka_unit_test(test_time),
         cmocka_unit_test(test_arguments),      cmocka_unit_test(test_finite),
-        cmocka_unit_test(test_bounded),        cmocka_unit_test(test_blame),
-        cmocka_unit_test(test_status_text),    cmocka_unit_test(test_orientation),
-        cmocka_unit_test(test_quintic),
+        cmocka_unit_test(test_bounded),        cmocka_unit_test(test_unwound),
+        cmocka_unit_test(test_blame),          cmocka_unit_test(test_status_text),
+        cmocka_unit_test(test_orientation),    cmocka_unit_test(test_quintic),
     };
     return cmocka_run_group_tests_name("runtime", tests, NULL, NULL);
 }
