@@ -184,40 +184,40 @@ static int hmmwv_solve_rack(hmmwv *self, const gic_real *GIC_RESTRICT k, const h
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)inertia;
     {
-        const gic_real t1 = x[0] * R(9.072);
-        const gic_real t2 = x[0] * t1;
-        const gic_real t3 = x[0] * turn[0] - R(1.438648) * turn[1];
-        const gic_real t4 = rate[0] + (rate[0] + (R(1.438648) * turn[2] - R(0.05422899999999997) * turn[0]));
-        const gic_real t5 = turn[1] * t3 - turn[2] * t4;
-        const gic_real t6 = R(9.072) * t5;
-        const gic_real t7 = R(0.05422899999999997) * turn[1] - x[0] * turn[2];
-        const gic_real t8 = turn[2] * t7 - turn[0] * t3;
-        const gic_real t9 = R(9.072) * t8;
-        const gic_real t10 = turn[0] * t4 - turn[1] * t7;
-        const gic_real t11 = R(9.072) * t10;
-        const gic_real t12 = x[0];
-        const gic_real t13 = rate[0];
-        const gic_real t14 = R(1.0) + (t2 + R(0.026678796448751967));
-        const gic_real t15 = R(1.0) + (R(18.776391592025085) + t2);
-        const gic_real t16 = -(t12 * R(13.051414655999999));
-        const gic_real t17 = -(t12 * R(0.4919654879999997));
-        const gic_real t18 = t12 * t11 - R(0.4919654879999997) * t8;
-        const gic_real t19 = R(0.4919654879999997) * t5 - R(13.051414655999999) * t10;
-        const gic_real t20 = R(13.051414655999999) * t8 - t12 * t6;
-        motion[1] = t12;
-        motion[16] = t13;
-        inertia[1] = t1;
-        inertia[3] = t14;
-        inertia[5] = t15;
-        inertia[6] = t16;
-        inertia[8] = t17;
-        inertia[9] = t6;
-        inertia[10] = t9;
-        inertia[11] = t11;
-        inertia[12] = t18;
-        inertia[13] = t19;
-        inertia[14] = t20;
-        inertia[21] = t9;
+        const gic_real t1 = x[0];
+        const gic_real t2 = t1 * turn[0] - R(1.438648) * turn[1];
+        const gic_real t3 = R(0.05422899999999997) * turn[1] - t1 * turn[2];
+        const gic_real t4 = rate[0];
+        const gic_real t5 = t4 + (t4 + (R(1.438648) * turn[2] - R(0.05422899999999997) * turn[0]));
+        const gic_real t6 = t1 * R(9.072);
+        const gic_real t7 = -(t1 * R(13.051414655999999));
+        const gic_real t8 = -(t1 * R(0.4919654879999997));
+        const gic_real t9 = turn[2] * t3 - turn[0] * t2;
+        const gic_real t10 = t1 * t6;
+        const gic_real t11 = R(1.0) + (t10 + R(0.026678796448751967));
+        const gic_real t12 = R(1.0) + (R(18.776391592025085) + t10);
+        const gic_real t13 = R(9.072) * t9;
+        const gic_real t14 = turn[1] * t2 - turn[2] * t5;
+        const gic_real t15 = turn[0] * t5 - turn[1] * t3;
+        const gic_real t16 = R(9.072) * t14;
+        const gic_real t17 = R(9.072) * t15;
+        const gic_real t18 = R(0.4919654879999997) * t14 - R(13.051414655999999) * t15;
+        const gic_real t19 = R(13.051414655999999) * t9 - t1 * t16;
+        const gic_real t20 = t1 * t17 - R(0.4919654879999997) * t9;
+        motion[1] = t1;
+        motion[16] = t4;
+        inertia[1] = t6;
+        inertia[3] = t11;
+        inertia[5] = t12;
+        inertia[6] = t7;
+        inertia[8] = t8;
+        inertia[9] = t16;
+        inertia[10] = t13;
+        inertia[11] = t17;
+        inertia[12] = t20;
+        inertia[13] = t18;
+        inertia[14] = t19;
+        inertia[21] = t13;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -240,38 +240,38 @@ static GIC_COLD gic_real hmmwv_residual_rack(const gic_real *GIC_RESTRICT k, con
 static const gic_real hmmwv_k_lca_f_l[4][28] = {
     { /* lca_f_l */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(-0.9999999999999998),
-        R(8.917091066652826), R(-0.038649583990999964), R(0.05607209753299996), R(0.038649583990999964),
-        R(-0.05607209753299996), R(51.57660077184113), R(209.3566321652691), R(-209.35663216526908),
-        R(51.576600771841136), R(-51.57660077184113), R(209.35663216526908), R(50.90547521989428),
-        R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(0.307086),
-        R(0.509778), R(3.0379110359107786e-06), R(0.24689200985615367), R(1.688965),
+        R(-0.038649583990999964), R(0.05607209753299996), R(0.038649583990999964), R(-0.05607209753299996),
+        R(51.57660077184113), R(209.3566321652691), R(-209.35663216526908), R(51.576600771841136),
+        R(-51.57660077184113), R(209.35663216526908), R(50.90547521989428), R(10.049655409199131),
+        R(-10.049655409199131), R(3.0379110359107786e-06), R(0.24689200985615367), R(8.917091066652826),
+        R(0.307086), R(0.19748500000000002), R(0.509778), R(1.688965),
         R(40.476046225), R(0.01121887479261392), R(0.2403881036540444), R(7.8923759275231005),
     },
     { /* lca_f_r */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.9999999999999998),
-        R(8.917091066652826), R(0.038649583990999964), R(-0.05607209753299996), R(0.038649583990999964),
-        R(-0.05607209753299996), R(-51.57660077184113), R(209.3566321652691), R(-209.35663216526908),
-        R(-51.576600771841136), R(51.57660077184113), R(209.35663216526908), R(-50.90547521989428),
-        R(10.049655409199131), R(-10.049655409199131), R(0.19748500000000002), R(-0.307086),
-        R(-0.509778), R(3.0379110359107786e-06), R(-0.24689200985615367), R(1.688965),
+        R(0.038649583990999964), R(-0.05607209753299996), R(0.038649583990999964), R(-0.05607209753299996),
+        R(-51.57660077184113), R(209.3566321652691), R(-209.35663216526908), R(-51.576600771841136),
+        R(51.57660077184113), R(209.35663216526908), R(-50.90547521989428), R(10.049655409199131),
+        R(-10.049655409199131), R(3.0379110359107786e-06), R(-0.24689200985615367), R(8.917091066652826),
+        R(-0.307086), R(0.19748500000000002), R(-0.509778), R(1.688965),
         R(40.476046225), R(0.01121887479261392), R(-0.2403881036540444), R(7.8923759275231005),
     },
     { /* lca_r_l */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(-1.0),
-        R(7.181825051954384), R(-0.03396250304259998), R(0.06962018656579994), R(0.03396250304259998),
-        R(-0.06962018656579994), R(39.86479513590535), R(161.81677595488463), R(-161.8167759548846),
-        R(39.864795135905354), R(-39.86479513590535), R(161.8167759548846), R(39.34606605646901),
-        R(7.767620356494952), R(-7.767620356494952), R(0.2564892), R(0.307086),
-        R(0.5015738), R(-3.0379110358344508e-06), R(0.246867347245056), R(-1.688965),
+        R(-0.03396250304259998), R(0.06962018656579994), R(0.03396250304259998), R(-0.06962018656579994),
+        R(39.86479513590535), R(161.81677595488463), R(-161.8167759548846), R(39.864795135905354),
+        R(-39.86479513590535), R(161.8167759548846), R(39.34606605646901), R(7.767620356494952),
+        R(-7.767620356494952), R(-3.0379110358344508e-06), R(0.246867347245056), R(7.181825051954384),
+        R(0.307086), R(0.2564892), R(0.5015738), R(-1.688965),
         R(-40.476046225), R(0.011218874792613923), R(0.24038810365404442), R(6.355965194292885),
     },
     { /* lca_r_r */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(1.0),
-        R(7.181825051954384), R(0.03396250304259998), R(-0.06962018656579994), R(0.03396250304259998),
-        R(-0.06962018656579994), R(-39.86479513590535), R(161.81677595488463), R(-161.8167759548846),
-        R(-39.864795135905354), R(39.86479513590535), R(161.8167759548846), R(-39.34606605646901),
-        R(7.767620356494952), R(-7.767620356494952), R(0.2564892), R(-0.307086),
-        R(-0.5015738), R(-3.0379110358344508e-06), R(-0.246867347245056), R(-1.688965),
+        R(0.03396250304259998), R(-0.06962018656579994), R(0.03396250304259998), R(-0.06962018656579994),
+        R(-39.86479513590535), R(161.81677595488463), R(-161.8167759548846), R(-39.864795135905354),
+        R(39.86479513590535), R(161.8167759548846), R(-39.34606605646901), R(7.767620356494952),
+        R(-7.767620356494952), R(-3.0379110358344508e-06), R(-0.246867347245056), R(7.181825051954384),
+        R(-0.307086), R(0.2564892), R(-0.5015738), R(-1.688965),
         R(-40.476046225), R(0.011218874792613923), R(-0.24038810365404442), R(6.355965194292885),
     },
 };
@@ -296,101 +296,101 @@ static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, cons
             return GIC_ERROR_SINGULAR;
         const gic_real t3 = GIC_SQRT(t2);
         const gic_real t4 = t3 * (R(1.0) / (t2 * k[3]));
-        const gic_real t5 = x[0] * t4;
-        const gic_real t6 = rate[0] * t5;
-        if (!(t3 * k[4] - GIC_FABS(t6) * ahead[0] > R(0.004)))
+        const gic_real t5 = t3 * k[4] + k[5] * t1;
+        const gic_real t6 = k[6] * t1 - t3 * k[7];
+        const gic_real t7 = t5 * k[8] + t6 * k[9];
+        const gic_real t8 = t5 * k[10] + t6 * k[11];
+        const gic_real t9 = t5 * k[9] + t6 * k[12];
+        const gic_real t10 = t5 * k[11] + t6 * k[13];
+        const gic_real t11 = t6 * k[14] + t5 * k[15];
+        const gic_real t12 = x[0] * t4;
+        const gic_real t13 = t6 * k[16] + t5 * k[14];
+        const gic_real t14 = t8 * k[17] + t7 * k[18];
+        const gic_real t15 = t8 * R(0.4469);
+        const gic_real t16 = rate[0] * t12;
+        const gic_real t17 = t12 * R(0.4469);
+        const gic_real t18 = t10 * k[17] + t9 * k[18];
+        const gic_real t19 = R(0.4469) + t10 * (t10 * R(0.4469));
+        if (!(t3 * k[19] - GIC_FABS(t16) * ahead[0] > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t7 = t3 * k[5] + k[6] * t1;
-        const gic_real t8 = k[7] * t1 - t3 * k[8];
-        const gic_real t9 = t7 * k[9] + t8 * k[10];
-        const gic_real t10 = t7 * k[11] + t8 * k[12];
-        const gic_real t11 = t7 * k[10] + t8 * k[13];
-        const gic_real t12 = t7 * k[12] + t8 * k[14];
-        const gic_real t13 = t8 * k[15] + t7 * k[16];
-        const gic_real t14 = t13 * t6;
-        const gic_real t15 = t8 * k[17] + t7 * k[15];
-        const gic_real t16 = t15 * t6;
-        const gic_real t17 = (t15 - k[18]) * (t6 * t16) + (k[19] + t13 - k[20]) * (t6 * t14);
-        const gic_real t18 = rate[0] * rate[0] - (t14 * t14 + t16 * t16 - t17);
-        const gic_real t19 = t4 * t18;
-        const gic_real t20 = t10 * k[21] + t9 * k[22];
-        const gic_real t21 = k[19] + t20;
-        const gic_real t22 = R(23.965) * t21;
-        const gic_real t23 = t12 * k[21] + t11 * k[22];
-        const gic_real t24 = R(23.965) * t23;
-        const gic_real t25 = t21 * t22;
-        const gic_real t26 = t23 * t24;
-        const gic_real t27 = t10 * R(0.4469);
-        const gic_real t28 = R(0.4469) + t10 * t27;
-        const gic_real t29 = R(0.4469) + t12 * (t12 * R(0.4469));
-        const gic_real t30 = t12 * t27;
-        const gic_real t31 = t6 * t20;
-        const gic_real t32 = t31 + (t31 + (turn[0] * t21 - k[23] * turn[1]));
-        const gic_real t33 = t6 * t23;
-        const gic_real t34 = k[23] * turn[2] - turn[0] * t23 - t33 - t33;
-        const gic_real t35 = R(23.965) * (turn[1] * t32 - turn[2] * t34);
-        const gic_real t36 = turn[1] * t23 - turn[2] * t21;
-        const gic_real t37 = turn[2] * t36 - turn[0] * t32 - t6 * t31 - t19 * t23;
-        const gic_real t38 = R(23.965) * t37;
-        const gic_real t39 = turn[0] * t34 - turn[1] * t36 - t6 * t33 + t19 * t20;
-        const gic_real t40 = R(23.965) * t39;
-        const gic_real t41 = turn[2] * t29 + turn[1] * t30;
-        const gic_real t42 = turn[2] * t30 + turn[1] * t28;
-        const gic_real t43 = t19 * R(0.4469) + (turn[1] * t41 - turn[2] * t42);
-        const gic_real t44 = t6 * turn[2];
-        const gic_real t45 = t6 * turn[1];
-        const gic_real t46 = t6 + turn[0];
-        const gic_real t47 = R(0.4469) * t46;
-        const gic_real t48 = t28 * t44 - t30 * t45 + (turn[2] * t47 - t46 * t41);
-        const gic_real t49 = t30 * t44 - t29 * t45 + (t46 * t42 - turn[1] * t47);
-        const gic_real t50 = t5 * t23;
-        const gic_real t51 = R(23.965) * t50;
-        const gic_real t52 = t5 * t20;
-        const gic_real t53 = R(23.965) * t52;
-        const gic_real t54 = t5 * R(0.4469);
-        const gic_real t55 = R(0.4469) + (t25 + t26);
-        const gic_real t56 = t28 + (R(68.36262541240713) + t26);
-        const gic_real t57 = t29 + (R(68.36262541240713) + t25);
-        const gic_real t58 = -(t21 * k[24]);
-        const gic_real t59 = -(t23 * k[24]);
-        const gic_real t60 = t30 - t23 * t22;
-        const gic_real t61 = t43 + (t21 * t40 - t23 * t38);
-        const gic_real t62 = t48 + (t23 * t35 - k[24] * t39);
-        const gic_real t63 = t49 + (k[24] * t37 - t21 * t35);
-        const gic_real t64 = -t51;
-        const gic_real t65 = t54 + (t23 * t51 + t21 * t53);
-        const gic_real t66 = -(k[24] * t52);
-        const gic_real t67 = -(k[24] * t50);
-        const gic_real t68 = t5 * t43 + (t40 * t52 - t38 * t50);
-        const gic_real t69 = t5 * t54 + (t52 * t53 + t50 * t51);
-        motion[7] = t9;
-        motion[8] = t10;
-        motion[10] = t11;
-        motion[11] = t12;
-        motion[12] = t6;
-        motion[18] = t19;
-        motion[24] = t5;
-        inertia[1] = t22;
-        inertia[2] = t24;
-        inertia[3] = t55;
-        inertia[4] = t56;
-        inertia[5] = t57;
-        inertia[6] = t58;
-        inertia[7] = t59;
-        inertia[8] = t60;
-        inertia[9] = t35;
-        inertia[10] = t38;
-        inertia[11] = t40;
-        inertia[12] = t61;
-        inertia[13] = t62;
-        inertia[14] = t63;
-        inertia[16] = t64;
-        inertia[17] = t53;
-        inertia[18] = t65;
-        inertia[19] = t66;
-        inertia[20] = t67;
-        inertia[21] = t68;
-        inertia[22] = t69;
+        const gic_real t20 = t11 * t16;
+        const gic_real t21 = t13 * t16;
+        const gic_real t22 = k[20] + t14;
+        const gic_real t23 = t16 * t14;
+        const gic_real t24 = R(0.4469) + t8 * t15;
+        const gic_real t25 = t16 * t18;
+        const gic_real t26 = t10 * t15;
+        const gic_real t27 = t16 + turn[0];
+        const gic_real t28 = (t13 - k[21]) * (t16 * t21) + (k[20] + t11 - k[22]) * (t16 * t20);
+        const gic_real t29 = t23 + (t23 + (turn[0] * t22 - k[23] * turn[1]));
+        const gic_real t30 = k[23] * turn[2] - turn[0] * t18 - t25 - t25;
+        const gic_real t31 = turn[1] * t18 - turn[2] * t22;
+        const gic_real t32 = turn[2] * t19 + turn[1] * t26;
+        const gic_real t33 = turn[2] * t26 + turn[1] * t24;
+        const gic_real t34 = t16 * turn[2];
+        const gic_real t35 = t16 * turn[1];
+        const gic_real t36 = R(0.4469) * t27;
+        const gic_real t37 = t12 * t18;
+        const gic_real t38 = t12 * t14;
+        const gic_real t39 = rate[0] * rate[0] - (t20 * t20 + t21 * t21 - t28);
+        const gic_real t40 = R(23.965) * t22;
+        const gic_real t41 = R(23.965) * t18;
+        const gic_real t42 = t24 * t34 - t26 * t35 + (turn[2] * t36 - t27 * t32);
+        const gic_real t43 = R(23.965) * (turn[1] * t29 - turn[2] * t30);
+        const gic_real t44 = t26 * t34 - t19 * t35 + (t27 * t33 - turn[1] * t36);
+        const gic_real t45 = R(23.965) * t37;
+        const gic_real t46 = R(23.965) * t38;
+        const gic_real t47 = t22 * t40;
+        const gic_real t48 = t18 * t41;
+        const gic_real t49 = t26 - t18 * t40;
+        const gic_real t50 = t4 * t39;
+        const gic_real t51 = -(t22 * k[24]);
+        const gic_real t52 = t17 + (t18 * t45 + t22 * t46);
+        const gic_real t53 = t12 * t17 + (t38 * t46 + t37 * t45);
+        const gic_real t54 = turn[2] * t31 - turn[0] * t29 - t16 * t23 - t50 * t18;
+        const gic_real t55 = turn[0] * t30 - turn[1] * t31 - t16 * t25 + t50 * t14;
+        const gic_real t56 = t50 * R(0.4469) + (turn[1] * t32 - turn[2] * t33);
+        const gic_real t57 = R(0.4469) + (t47 + t48);
+        const gic_real t58 = t24 + (R(68.36262541240713) + t48);
+        const gic_real t59 = t19 + (R(68.36262541240713) + t47);
+        const gic_real t60 = -(t18 * k[24]);
+        const gic_real t61 = -(k[24] * t38);
+        const gic_real t62 = -(k[24] * t37);
+        const gic_real t63 = -t45;
+        const gic_real t64 = R(23.965) * t54;
+        const gic_real t65 = t44 + (k[24] * t54 - t22 * t43);
+        const gic_real t66 = R(23.965) * t55;
+        const gic_real t67 = t42 + (t18 * t43 - k[24] * t55);
+        const gic_real t68 = t56 + (t22 * t66 - t18 * t64);
+        const gic_real t69 = t12 * t56 + (t66 * t38 - t64 * t37);
+        motion[7] = t7;
+        motion[8] = t8;
+        motion[10] = t9;
+        motion[11] = t10;
+        motion[12] = t16;
+        motion[18] = t50;
+        motion[24] = t12;
+        inertia[1] = t40;
+        inertia[2] = t41;
+        inertia[3] = t57;
+        inertia[4] = t58;
+        inertia[5] = t59;
+        inertia[6] = t51;
+        inertia[7] = t60;
+        inertia[8] = t49;
+        inertia[9] = t43;
+        inertia[10] = t64;
+        inertia[11] = t66;
+        inertia[12] = t68;
+        inertia[13] = t67;
+        inertia[14] = t65;
+        inertia[16] = t63;
+        inertia[17] = t46;
+        inertia[18] = t52;
+        inertia[19] = t61;
+        inertia[20] = t62;
+        inertia[21] = t69;
+        inertia[22] = t53;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -404,8 +404,8 @@ static GIC_COLD gic_real hmmwv_residual_lca_f_l(const gic_real *GIC_RESTRICT k, 
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = k[25] * motion[11] + k[26] * motion[10] - k[18];
-        const gic_real t2 = k[19] + (k[25] * motion[8] + k[26] * motion[7]) - k[20];
+        const gic_real t1 = k[25] * motion[11] + k[26] * motion[10] - k[21];
+        const gic_real t2 = k[20] + (k[25] * motion[8] + k[26] * motion[7]) - k[22];
         const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
         const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[27]));
         worst = t4;
@@ -415,14 +415,14 @@ static GIC_COLD gic_real hmmwv_residual_lca_f_l(const gic_real *GIC_RESTRICT k, 
 
 static const gic_real hmmwv_k_wheel_f_l[2][15] = {
     { /* wheel_f_l */
-        R(0.49375935710120966), R(0.307086), R(0.4527638), R(0.008298160247365965),
-        R(-0.1394133303209898), R(-1.0), R(0.448437), R(-2.928075656552032),
+        R(0.49375935710120966), R(0.448437), R(0.307086), R(0.4527638),
+        R(-0.1394133303209898), R(0.008298160247365965), R(-1.0), R(-2.928075656552032),
         R(-7.5372227832688194), R(2.5885748225120313), R(-0.608667505195622), R(-4.242021150632486),
         R(0.08910630000000008), R(0.03459480000000004), R(-0.07099299999999997),
     },
     { /* wheel_f_r */
-        R(-0.49375935710120966), R(-0.307086), R(-0.4527638), R(-0.008298160247365965),
-        R(0.1394133303209898), R(1.0), R(-0.448437), R(2.928075656552032),
+        R(-0.49375935710120966), R(-0.448437), R(-0.307086), R(-0.4527638),
+        R(0.1394133303209898), R(-0.008298160247365965), R(1.0), R(2.928075656552032),
         R(7.5372227832688194), R(-2.5885748225120313), R(0.608667505195622), R(4.242021150632486),
         R(-0.08910630000000008), R(-0.03459480000000004), R(0.07099299999999997),
     },
@@ -442,290 +442,290 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = t1 + k[1];
-        const gic_real t3 = k[2] - t2;
-        const gic_real t4 = R(0.9665541626242249) * t3 - k[3];
-        const gic_real t5 = k[0] * m1[10];
-        const gic_real t6 = R(0.23411769999999998) - t5;
-        const gic_real t7 = R(-0.012812720436325503) - R(0.9665541626242249) * t6;
-        const gic_real t8 = k[4] * t6 - R(0.21526024724178433) * t3;
-        const gic_real t9 = t4 * t4 + (t7 * t7 + t8 * t8);
-        const gic_real t10 = R(0.21526024724178433) * t6 + (k[4] * t3 + R(-0.05753123686771919));
-        const gic_real t11 = R(4.3116545195287515e-08) + t10;
-        const gic_real t12 = t6 * t6 + (t3 * t3 + R(0.0035428684840000087));
-        const gic_real t13 = R(0.5) * (t12 + R(0.04548219048831004));
-        const gic_real t14 = t11 * t12 - t10 * t13;
-        const gic_real t15 = t13 - t10 * t11;
-        const gic_real t16 = R(0.11663675059700003) * t9 - t11 * t14 - t13 * t15;
-        if (!(t16 > R(0.0)))
+        const gic_real t2 = k[0] * m1[10];
+        const gic_real t3 = k[1] + m0[1];
+        const gic_real t4 = t1 + k[2];
+        const gic_real t5 = R(0.23411769999999998) - t2;
+        const gic_real t6 = R(0.05422899999999997) - t2;
+        const gic_real t7 = m1[24] * t2;
+        const gic_real t8 = m1[24] * t1;
+        const gic_real t9 = m1[12] * (m1[12] * t1) + m1[18] * t2;
+        const gic_real t10 = k[3] - t4;
+        const gic_real t11 = R(-0.012812720436325503) - R(0.9665541626242249) * t5;
+        const gic_real t12 = t3 - t4;
+        const gic_real t13 = rate[1] * t7;
+        const gic_real t14 = rate[1] * t8;
+        const gic_real t15 = m1[18] * t1 - m1[12] * (m1[12] * t2);
+        const gic_real t16 = t5 * t5 + (t10 * t10 + R(0.0035428684840000087));
+        const gic_real t17 = R(0.21526024724178433) * t5 + (k[4] * t10 + R(-0.05753123686771919));
+        const gic_real t18 = k[4] * t5 - R(0.21526024724178433) * t10;
+        const gic_real t19 = R(0.9665541626242249) * t10 - k[5];
+        const gic_real t20 = R(0.5) * (t6 * t6 + (t12 * t12 + R(0.04612056904900004)) + R(-0.11818284750480001));
+        const gic_real t21 = -t13;
+        const gic_real t22 = -t9;
+        const gic_real t23 = -t7;
+        const gic_real t24 = R(0.5) * (t16 + R(0.04548219048831004));
+        const gic_real t25 = t19 * t19 + (t11 * t11 + t18 * t18);
+        const gic_real t26 = R(4.3116545195287515e-08) + t17;
+        const gic_real t27 = t26 * t16 - t17 * t24;
+        const gic_real t28 = t24 - t17 * t26;
+        const gic_real t29 = R(0.11663675059700003) * t25 - t26 * t27 - t24 * t28;
+        if (!(t29 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t16 - t9 * R(1.1663675059700003e-05) > R(0.0)))
+        if (!(t29 - t25 * R(1.1663675059700003e-05) > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t17 = R(0.05422899999999997) - t5;
-        const gic_real t18 = R(1.0) / t9;
-        const gic_real t19 = t14 * t18;
-        const gic_real t20 = t15 * t18;
-        const gic_real t21 = GIC_SQRT(t16);
-        const gic_real t22 = t18 * (t21 * k[5]);
-        const gic_real t23 = R(0.21526024724178433) * t19 + t6 * t20 + t4 * t22;
-        const gic_real t24 = k[6] + m0[1];
-        const gic_real t25 = t24 - t2;
-        const gic_real t26 = k[4] * t19 + t3 * t20 + t7 * t22;
-        const gic_real t27 = R(0.9665541626242249) * t19 + R(-0.059522000000000075) * t20 + t8 * t22;
-        const gic_real t28 = t17 * t23 + (t25 * t26 + R(-0.2147570000000001) * t27);
-        const gic_real t29 = R(8.573627050492615) * t28;
-        const gic_real t30 = t17 - t23 * t29;
-        const gic_real t31 = t25 - t26 * t29;
-        const gic_real t32 = R(-0.2147570000000001) - t27 * t29;
-        const gic_real t33 = t30 * t30 + (t31 * t31 + t32 * t32);
-        const gic_real t34 = R(0.5) * (t17 * t17 + (t25 * t25 + R(0.04612056904900004)) + R(-0.11818284750480001));
-        const gic_real t35 = t34 - R(0.2910617987184667) * t28;
-        const gic_real t36 = R(0.021346939557573212) * t33 - t35 * t35;
-        if (!(t36 > R(0.0)))
+        const gic_real t30 = GIC_SQRT(t29);
+        const gic_real t31 = R(1.0) / t25;
+        const gic_real t32 = t27 * t31;
+        const gic_real t33 = t28 * t31;
+        const gic_real t34 = t31 * (t30 * k[6]);
+        const gic_real t35 = k[4] * t32 + t10 * t33 + t11 * t34;
+        const gic_real t36 = R(0.9665541626242249) * t32 + R(-0.059522000000000075) * t33 + t18 * t34;
+        const gic_real t37 = R(0.21526024724178433) * t32 + t5 * t33 + t19 * t34;
+        const gic_real t38 = t4 + t35 - k[3];
+        const gic_real t39 = R(1.653405) + t36 - R(1.593883);
+        const gic_real t40 = t6 * t37 + (t12 * t35 + R(-0.2147570000000001) * t36);
+        const gic_real t41 = t2 + t37 - R(0.23411769999999998);
+        const gic_real t42 = R(8.573627050492615) * t40;
+        const gic_real t43 = t20 - R(0.2910617987184667) * t40;
+        const gic_real t44 = t12 - t35 * t42;
+        const gic_real t45 = R(-0.2147570000000001) - t36 * t42;
+        const gic_real t46 = t6 - t37 * t42;
+        const gic_real t47 = t46 * t46 + (t44 * t44 + t45 * t45);
+        const gic_real t48 = R(0.021346939557573212) * t47 - t43 * t43;
+        if (!(t48 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t36 - t33 * R(2.1346939557573214e-06) > R(0.0)))
+        if (!(t48 - t47 * R(2.1346939557573214e-06) > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t37 = R(1.0) / t33;
-        const gic_real t38 = t37 * t35;
-        const gic_real t39 = GIC_SQRT(t36);
-        const gic_real t40 = t37 * (t39 * k[7]);
-        const gic_real t41 = t31 * t38 + (t23 * t32 - t27 * t30) * t40;
-        const gic_real t42 = t41 + t26 * R(0.2910617987184667);
-        const gic_real t43 = t30 * t38 + (t27 * t31 - t26 * t32) * t40;
-        const gic_real t44 = t43 + t23 * R(0.2910617987184667);
-        const gic_real t45 = t5 + t44 - R(0.05422899999999997);
-        const gic_real t46 = t2 + t42 - t24;
-        const gic_real t47 = t42 * t45 - t44 * t46;
-        if (!(GIC_FABS(t47) > R(4.788591362393209e-06)))
+        const gic_real t49 = GIC_SQRT(t48);
+        const gic_real t50 = R(1.0) / t47;
+        const gic_real t51 = t50 * t43;
+        const gic_real t52 = t50 * (t49 * k[7]);
+        const gic_real t53 = t30 * t49;
+        const gic_real t54 = t44 * t51 + (t37 * t45 - t36 * t46) * t52;
+        const gic_real t55 = t46 * t51 + (t36 * t44 - t35 * t45) * t52;
+        const gic_real t56 = t45 * t51 + (t35 * t46 - t37 * t44) * t52;
+        const gic_real t57 = t54 + t35 * R(0.2910617987184667);
+        const gic_real t58 = t55 + t37 * R(0.2910617987184667);
+        const gic_real t59 = t35 * t55 - t37 * t54;
+        const gic_real t60 = t56 + t36 * R(0.2910617987184667);
+        const gic_real t61 = t37 * t56 - t36 * t55;
+        const gic_real t62 = t4 + t57 - t3;
+        const gic_real t63 = t36 * t54 - t35 * t56;
+        const gic_real t64 = t2 + t58 - R(0.05422899999999997);
+        const gic_real t65 = t59 * k[8] + (t56 * R(-6.332169372123424) + t36 * R(-0.14982584743276875));
+        const gic_real t66 = R(1.653405) + t60 - R(1.438648);
+        const gic_real t67 = t59 * R(-18.07838873614245) + (t56 * k[9] + t36 * k[10]);
+        const gic_real t68 = t61 * k[8] + (t54 * R(-6.332169372123424) + t35 * R(-0.14982584743276875));
+        const gic_real t69 = t57 * t64 - t58 * t62;
+        const gic_real t70 = t62 * t7 - t64 * t8;
+        const gic_real t71 = t60 * t62 - t57 * t66;
+        const gic_real t72 = t58 * t66 - t60 * t64;
+        const gic_real t73 = t61 * R(-18.07838873614245) + (t54 * k[9] + t35 * k[10]);
+        if (!(GIC_FABS(t69) > R(4.788591362393209e-06)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t48 = t2 + t26 - k[2];
-        const gic_real t49 = R(1.653405) + t27 - R(1.593883);
-        const gic_real t50 = t32 * t38 + (t26 * t30 - t23 * t31) * t40;
-        const gic_real t51 = t50 + t27 * R(0.2910617987184667);
-        const gic_real t52 = R(1.653405) + t51 - R(1.438648);
-        const gic_real t53 = t51 * t46 - t42 * t52;
-        const gic_real t54 = t5 + t23 - R(0.23411769999999998);
-        const gic_real t55 = R(1.0) / t47;
-        const gic_real t56 = (t26 * t54 - t23 * t48) * t55;
-        const gic_real t57 = t27 * t48 - t26 * t49 - t53 * t56;
-        if (!(GIC_FABS(t57) > R(1.5702185883473093e-05)))
+        const gic_real t74 = R(1.0) / t69;
+        const gic_real t75 = t63 * k[8] + (t55 * R(-6.332169372123424) + t37 * R(-0.14982584743276875));
+        const gic_real t76 = t63 * R(-18.07838873614245) + (t55 * k[9] + t37 * k[10]);
+        const gic_real t77 = t59 * k[11] + (t56 * R(0.2191665982107646) + t36 * R(2.8601928491017183));
+        const gic_real t78 = t61 * k[11] + (t54 * R(0.2191665982107646) + t35 * R(2.8601928491017183));
+        const gic_real t79 = (t35 * t41 - t37 * t38) * t74;
+        const gic_real t80 = (R(0.21526024724178433) * t35 - k[4] * t37) * t74;
+        const gic_real t81 = t63 * k[11] + (t55 * R(0.2191665982107646) + t37 * R(2.8601928491017183));
+        const gic_real t82 = t67 * R(2.8083995);
+        const gic_real t83 = t77 * R(0.09182100000000004) + (t67 * k[12] + t65 * R(-0.004825999999999997));
+        const gic_real t84 = t78 * R(0.09182100000000004) + (t73 * k[12] + t68 * R(-0.004825999999999997));
+        const gic_real t85 = t36 * t38 - t35 * t39 - t71 * t79;
+        const gic_real t86 = t38 * t7 - t41 * t8 - t79 * t70;
+        const gic_real t87 = t62 * t79;
+        const gic_real t88 = t37 * t39 - t36 * t41 - t72 * t79;
+        const gic_real t89 = t81 * R(0.09182100000000004) + (t76 * k[12] + t75 * R(-0.004825999999999997));
+        const gic_real t90 = R(1.653405) + t83;
+        const gic_real t91 = t4 + t84;
+        const gic_real t92 = t65 * R(0.12192999999999987);
+        if (!(GIC_FABS(t85) > R(1.5702185883473093e-05)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t58 = t21 * t39;
-        const gic_real t59 = R(1.0) / t57;
-        const gic_real t60 = t46 * t56;
-        const gic_real t61 = t44 * t52 - t51 * t45;
-        const gic_real t62 = t23 * t49 - t27 * t54 - t61 * t56;
-        const gic_real t63 = t47 * t57 * (t58 * (R(1.0) / (t36 * (t16 * R(-0.34152123008240626)))));
-        const gic_real t64 = (R(0.21526024724178433) * t26 - k[4] * t23) * t55;
-        const gic_real t65 = (k[4] * t27 - R(0.9665541626242249) * t26 - t53 * t64) * t59;
-        const gic_real t66 = t63 * (t65 * t60 - t46 * t64);
-        const gic_real t67 = t59 * (t60 + t62 * t66);
-        const gic_real t68 = t55 * (t46 + t53 * t67 - t61 * t66);
-        const gic_real t69 = m1[24] * t5;
-        const gic_real t70 = m1[24] * t1;
-        const gic_real t71 = t46 * t69 - t45 * t70;
-        const gic_real t72 = t48 * t69 - t54 * t70 - t56 * t71;
-        const gic_real t73 = k[4] * t69 - R(0.21526024724178433) * t70 - t64 * t71 - t65 * t72;
-        const gic_real t74 = t63 * t73;
-        const gic_real t75 = t59 * (t72 - t62 * t74);
-        const gic_real t76 = t55 * (t71 - t53 * t75 - t61 * t74);
-        const gic_real t77 = rate[0] * t68 + rate[1] * t76;
-        const gic_real t78 = rate[0] * t66 + rate[1] * t74;
-        const gic_real t79 = rate[1] * t75 - rate[0] * t67;
-        const gic_real t80 = (GIC_FABS(t77) + GIC_FABS(t78) + GIC_FABS(t79)) * ahead[0];
-        if (!(t58 * R(114.33048504553749) - t80 > R(0.004)))
+        const gic_real t93 = t69 * t85 * (t53 * (R(1.0) / (t48 * (t29 * R(-0.34152123008240626)))));
+        const gic_real t94 = R(1.0) / t85;
+        const gic_real t95 = t2 + t89;
+        const gic_real t96 = t73 * R(2.8083995);
+        const gic_real t97 = t68 * R(0.12192999999999987);
+        const gic_real t98 = R(4.7728205) + (t67 * t82 + t65 * t92);
+        const gic_real t99 = R(4.7728205) + (t76 * (t76 * R(2.8083995)) + t75 * (t75 * R(0.12192999999999987)));
+        const gic_real t100 = R(4.7728205) + (t73 * t96 + t68 * t97);
+        const gic_real t101 = t73 * t82 + t68 * t92;
+        const gic_real t102 = (k[4] * t36 - R(0.9665541626242249) * t35 - t71 * t80) * t94;
+        const gic_real t103 = t76 * t82 + t75 * t92;
+        const gic_real t104 = t76 * t96 + t75 * t97;
+        const gic_real t105 = R(90.555) * t90;
+        const gic_real t106 = R(90.555) * t91;
+        const gic_real t107 = R(90.555) * t95;
+        const gic_real t108 = t90 * t105;
+        const gic_real t109 = t91 * t106;
+        const gic_real t110 = t95 * t107;
+        const gic_real t111 = t101 - t91 * t105;
+        const gic_real t112 = t103 - t95 * t105;
+        const gic_real t113 = t104 - t95 * t106;
+        const gic_real t114 = t99 + (t108 + t109);
+        const gic_real t115 = t98 + (t109 + t110);
+        const gic_real t116 = k[4] * t7 - R(0.21526024724178433) * t8 - t80 * t70 - t102 * t86;
+        const gic_real t117 = t93 * (t102 * t87 - t62 * t80);
+        const gic_real t118 = t100 + (t108 + t110);
+        const gic_real t119 = t94 * (t87 + t88 * t117);
+        const gic_real t120 = t93 * t116;
+        const gic_real t121 = t94 * (t86 - t88 * t120);
+        const gic_real t122 = rate[0] * t117 + rate[1] * t120;
+        const gic_real t123 = t74 * (t62 + t71 * t119 - t72 * t117);
+        const gic_real t124 = t119 * t84 + t117 * t89;
+        const gic_real t125 = t122 + turn[1];
+        const gic_real t126 = -t119;
+        const gic_real t127 = t74 * (t70 - t71 * t121 - t72 * t120);
+        const gic_real t128 = rate[1] * t121 - rate[0] * t119;
+        const gic_real t129 = t120 * t89 - t121 * t84;
+        const gic_real t130 = R(90.555) * t124;
+        const gic_real t131 = t58 * t122 - t57 * t128;
+        const gic_real t132 = t37 * t122 - t35 * t128;
+        const gic_real t133 = t122 * t89 - t128 * t84;
+        const gic_real t134 = t128 + turn[2];
+        const gic_real t135 = t123 * t89 + t119 * t83;
+        const gic_real t136 = rate[0] * t123 + rate[1] * t127;
+        const gic_real t137 = t121 * t83 - t127 * t89 - t7;
+        const gic_real t138 = t117 * t101 + t123 * t98 - t119 * t103;
+        const gic_real t139 = t133 + (t133 + (turn[1] * t95 - turn[2] * t91));
+        const gic_real t140 = t57 * t136 - t60 * t122;
+        const gic_real t141 = t60 * t128 - t58 * t136;
+        const gic_real t142 = t35 * t136 - t36 * t122;
+        const gic_real t143 = t36 * t128 - t37 * t136;
+        const gic_real t144 = t136 * t84 - t122 * t83;
+        const gic_real t145 = t128 * t83 - t136 * t89;
+        const gic_real t146 = t14 + t140;
+        const gic_real t147 = t141 - t13 - m0[16];
+        const gic_real t148 = t62 * (t128 * t131 - t136 * t140) + t66 * (t122 * t140 - t128 * t141);
+        const gic_real t149 = t128 * t132 - t136 * t142;
+        const gic_real t150 = t122 * t142 - t128 * t143;
+        const gic_real t151 = t143 - t13;
+        const gic_real t152 = t136 * t143 - t122 * t132;
+        const gic_real t153 = t14 + t142;
+        const gic_real t154 = t14 + t144;
+        const gic_real t155 = t145 - t13;
+        const gic_real t156 = t136 + turn[0];
+        const gic_real t157 = t117 * t100 + t123 * t101 - t119 * t104;
+        const gic_real t158 = t154 + (t154 + (turn[0] * t91 - turn[1] * t90));
+        const gic_real t159 = t146 * t146 + (t147 * t147 + t131 * t131) + (t64 * (t136 * t141 - t122 * t131) + t148);
+        const gic_real t160 = t153 * t153 + (t151 * t151 + t132 * t132) + (t41 * t152 + (t38 * t149 + t39 * t150));
+        const gic_real t161 = k[4] * t9 - (R(0.21526024724178433) * t152 + (k[4] * t149 + R(0.9665541626242249) * t150));
+        const gic_real t162 = t155 + (t155 + (turn[2] * t90 - turn[0] * t95));
+        const gic_real t163 = turn[2] * t139 - turn[0] * t158 + (t128 * t133 - t136 * t144);
+        const gic_real t164 = t9 * t62 - t159 - t15 * t64;
+        const gic_real t165 = t99 * t134 + (t104 * t125 + t103 * t156);
+        const gic_real t166 = t104 * t134 + (t100 * t125 + t101 * t156);
+        const gic_real t167 = t103 * t134 + (t101 * t125 + t98 * t156);
+        const gic_real t168 = t8 + (t127 * t84 - t120 * t83);
+        const gic_real t169 = turn[1] * t158 - turn[2] * t162 + (t122 * t144 - t128 * t145);
+        const gic_real t170 = t9 * t38 - t160 - t15 * t41 - t79 * t164;
+        const gic_real t171 = turn[0] * t162 - turn[1] * t139 + (t136 * t145 - t122 * t133);
+        const gic_real t172 = t121 * t103 + (t120 * t101 + t127 * t98);
+        const gic_real t173 = t121 * t104 + (t120 * t100 + t127 * t101);
+        const gic_real t174 = t123 * t84 - t117 * t83;
+        const gic_real t175 = t117 * t104 + t123 * t103 - t119 * t99;
+        const gic_real t176 = t121 * t99 + (t120 * t104 + t127 * t103);
+        const gic_real t177 = t161 - R(0.21526024724178433) * t15 - t80 * t164 - t102 * t170;
+        const gic_real t178 = R(90.555) * t135;
+        const gic_real t179 = R(90.555) * t129;
+        const gic_real t180 = R(90.555) * t137;
+        const gic_real t181 = (GIC_FABS(t136) + GIC_FABS(t122) + GIC_FABS(t128)) * ahead[0];
+        const gic_real t182 = R(90.555) * t174;
+        const gic_real t183 = R(90.555) * t168;
+        const gic_real t184 = t175 - (t91 * t130 + t90 * t178);
+        const gic_real t185 = t176 + (t90 * t180 - t91 * t179);
+        const gic_real t186 = t117 * t157 + t123 * t138 - t119 * t175 + (t174 * t182 + (t135 * t178 + t124 * t130));
+        if (!(t53 * R(114.33048504553749) - t181 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t81 = t26 * t43 - t23 * t41;
-        const gic_real t82 = t81 * k[8] + (t50 * R(-6.332169372123424) + t27 * R(-0.14982584743276875));
-        const gic_real t83 = t81 * R(-18.07838873614245) + (t50 * k[9] + t27 * k[10]);
-        const gic_real t84 = t81 * k[11] + (t50 * R(0.2191665982107646) + t27 * R(2.8601928491017183));
-        const gic_real t85 = t23 * t50 - t27 * t43;
-        const gic_real t86 = t85 * k[8] + (t41 * R(-6.332169372123424) + t26 * R(-0.14982584743276875));
-        const gic_real t87 = t85 * R(-18.07838873614245) + (t41 * k[9] + t26 * k[10]);
-        const gic_real t88 = t85 * k[11] + (t41 * R(0.2191665982107646) + t26 * R(2.8601928491017183));
-        const gic_real t89 = t27 * t41 - t26 * t50;
-        const gic_real t90 = t89 * k[8] + (t43 * R(-6.332169372123424) + t23 * R(-0.14982584743276875));
-        const gic_real t91 = t89 * R(-18.07838873614245) + (t43 * k[9] + t23 * k[10]);
-        const gic_real t92 = t89 * k[11] + (t43 * R(0.2191665982107646) + t23 * R(2.8601928491017183));
-        const gic_real t93 = rate[1] * t69;
-        const gic_real t94 = rate[1] * t70;
-        const gic_real t95 = m1[12] * (m1[12] * t1) + m1[18] * t5;
-        const gic_real t96 = t42 * t77 - t51 * t78;
-        const gic_real t97 = t94 + t96;
-        const gic_real t98 = t51 * t79 - t44 * t77;
-        const gic_real t99 = t98 - t93 - m0[16];
-        const gic_real t100 = t44 * t78 - t42 * t79;
-        const gic_real t101 = t46 * (t79 * t100 - t77 * t96) + t52 * (t78 * t96 - t79 * t98);
-        const gic_real t102 = t97 * t97 + (t99 * t99 + t100 * t100) + (t45 * (t77 * t98 - t78 * t100) + t101);
-        const gic_real t103 = m1[18] * t1 - m1[12] * (m1[12] * t5);
-        const gic_real t104 = t95 * t46 - t102 - t103 * t45;
-        const gic_real t105 = t26 * t77 - t27 * t78;
-        const gic_real t106 = t94 + t105;
-        const gic_real t107 = t27 * t79 - t23 * t77;
-        const gic_real t108 = t107 - t93;
-        const gic_real t109 = t23 * t78 - t26 * t79;
-        const gic_real t110 = t77 * t107 - t78 * t109;
-        const gic_real t111 = t79 * t109 - t77 * t105;
-        const gic_real t112 = t78 * t105 - t79 * t107;
-        const gic_real t113 = t106 * t106 + (t108 * t108 + t109 * t109) + (t54 * t110 + (t48 * t111 + t49 * t112));
-        const gic_real t114 = t95 * t48 - t113 - t103 * t54 - t56 * t104;
-        const gic_real t115 = k[4] * t95 - (R(0.21526024724178433) * t110 + (k[4] * t111 + R(0.9665541626242249) * t112));
-        const gic_real t116 = t115 - R(0.21526024724178433) * t103 - t64 * t104 - t65 * t114;
-        const gic_real t117 = t63 * t116;
-        const gic_real t118 = t59 * (t114 - t62 * t117);
-        const gic_real t119 = t55 * (t104 - t53 * t118 - t61 * t117);
-        const gic_real t120 = t84 * R(0.09182100000000004) + (t83 * k[12] + t82 * R(-0.004825999999999997));
-        const gic_real t121 = R(1.653405) + t120;
-        const gic_real t122 = R(90.555) * t121;
-        const gic_real t123 = t88 * R(0.09182100000000004) + (t87 * k[12] + t86 * R(-0.004825999999999997));
-        const gic_real t124 = t2 + t123;
-        const gic_real t125 = R(90.555) * t124;
-        const gic_real t126 = t92 * R(0.09182100000000004) + (t91 * k[12] + t90 * R(-0.004825999999999997));
-        const gic_real t127 = t5 + t126;
-        const gic_real t128 = R(90.555) * t127;
-        const gic_real t129 = t83 * R(2.8083995);
-        const gic_real t130 = t82 * R(0.12192999999999987);
-        const gic_real t131 = R(4.7728205) + (t83 * t129 + t82 * t130);
-        const gic_real t132 = t124 * t125;
-        const gic_real t133 = t127 * t128;
-        const gic_real t134 = t87 * R(2.8083995);
-        const gic_real t135 = t86 * R(0.12192999999999987);
-        const gic_real t136 = R(4.7728205) + (t87 * t134 + t86 * t135);
-        const gic_real t137 = t121 * t122;
-        const gic_real t138 = R(4.7728205) + (t91 * (t91 * R(2.8083995)) + t90 * (t90 * R(0.12192999999999987)));
-        const gic_real t139 = t87 * t129 + t86 * t130;
-        const gic_real t140 = t91 * t129 + t90 * t130;
-        const gic_real t141 = t91 * t134 + t90 * t135;
-        const gic_real t142 = t77 * t123 - t78 * t120;
-        const gic_real t143 = t94 + t142;
-        const gic_real t144 = t143 + (t143 + (turn[0] * t124 - turn[1] * t121));
-        const gic_real t145 = t79 * t120 - t77 * t126;
-        const gic_real t146 = t145 - t93;
-        const gic_real t147 = t146 + (t146 + (turn[2] * t121 - turn[0] * t127));
-        const gic_real t148 = turn[1] * t144 - turn[2] * t147 + (t78 * t142 - t79 * t145);
-        const gic_real t149 = R(90.555) * (t148 + (t117 * t126 - t118 * t123));
-        const gic_real t150 = t78 * t126 - t79 * t123;
-        const gic_real t151 = t150 + (t150 + (turn[1] * t127 - turn[2] * t124));
-        const gic_real t152 = turn[2] * t151 - turn[0] * t144 + (t79 * t150 - t77 * t142);
-        const gic_real t153 = R(90.555) * (t152 + (t118 * t120 - t119 * t126) - t95);
-        const gic_real t154 = turn[0] * t147 - turn[1] * t151 + (t77 * t145 - t78 * t150);
-        const gic_real t155 = R(90.555) * (t103 + (t154 + (t119 * t123 - t117 * t120)));
-        const gic_real t156 = t118 + (t78 * turn[0] - t77 * turn[1]);
-        const gic_real t157 = t117 + (t77 * turn[2] - t79 * turn[0]);
-        const gic_real t158 = t119 + (t79 * turn[1] - t78 * turn[2]);
-        const gic_real t159 = t78 + turn[1];
-        const gic_real t160 = t79 + turn[2];
-        const gic_real t161 = t77 + turn[0];
-        const gic_real t162 = t138 * t160 + (t141 * t159 + t140 * t161);
-        const gic_real t163 = t141 * t160 + (t136 * t159 + t139 * t161);
-        const gic_real t164 = t140 * t156 + (t139 * t157 + t131 * t158) + (t159 * t162 - t160 * t163);
-        const gic_real t165 = t140 * t160 + (t139 * t159 + t131 * t161);
-        const gic_real t166 = t141 * t156 + (t136 * t157 + t139 * t158) + (t160 * t165 - t161 * t162);
-        const gic_real t167 = t138 * t156 + (t141 * t157 + t140 * t158) + (t161 * t163 - t159 * t165);
-        const gic_real t168 = t67 * t123 + t66 * t126;
-        const gic_real t169 = R(90.555) * t168;
-        const gic_real t170 = t68 * t126 + t67 * t120;
-        const gic_real t171 = R(90.555) * t170;
-        const gic_real t172 = t68 * t123 - t66 * t120;
-        const gic_real t173 = R(90.555) * t172;
-        const gic_real t174 = t66 * t139 + t68 * t131 - t67 * t140;
-        const gic_real t175 = t66 * t136 + t68 * t139 - t67 * t141;
-        const gic_real t176 = t66 * t141 + t68 * t140 - t67 * t138;
-        const gic_real t177 = t66 * t166 + t68 * t164 - t67 * t167 + (t155 * t172 + (t149 * t168 - t153 * t170));
-        const gic_real t178 = t74 * t126 - t75 * t123;
-        const gic_real t179 = R(90.555) * t178;
-        const gic_real t180 = t75 * t120 - t76 * t126 - t69;
-        const gic_real t181 = R(90.555) * t180;
-        const gic_real t182 = t70 + (t76 * t123 - t74 * t120);
-        const gic_real t183 = R(90.555) * t182;
-        const gic_real t184 = t75 * t140 + (t74 * t139 + t76 * t131);
-        const gic_real t185 = t75 * t141 + (t74 * t136 + t76 * t139);
-        const gic_real t186 = t75 * t138 + (t74 * t141 + t76 * t140);
-        const gic_real t187 = t75 * t167 + (t74 * t166 + t76 * t164) + (t155 * t182 + (t153 * t180 + t149 * t178));
-        const gic_real t188 = t66 * t175 + t68 * t174 - t67 * t176 + (t172 * t173 + (t170 * t171 + t168 * t169));
-        const gic_real t189 = t66 * t185 + t68 * t184 - t67 * t186 + (t172 * t183 + (t168 * t179 - t170 * t181));
-        const gic_real t190 = t75 * t186 + (t74 * t185 + t76 * t184) + (t182 * t183 + (t180 * t181 + t178 * t179));
-        const gic_real t191 = -t93;
-        const gic_real t192 = -t95;
-        const gic_real t193 = -t67;
-        const gic_real t194 = -t69;
-        const gic_real t195 = t131 + (t132 + t133);
-        const gic_real t196 = t136 + (t137 + t133);
-        const gic_real t197 = t138 + (t137 + t132);
-        const gic_real t198 = t139 - t124 * t122;
-        const gic_real t199 = t140 - t127 * t122;
-        const gic_real t200 = t141 - t127 * t125;
-        const gic_real t201 = t164 + (t124 * t155 - t127 * t153);
-        const gic_real t202 = t166 + (t127 * t149 - t121 * t155);
-        const gic_real t203 = t167 + (t121 * t153 - t124 * t149);
-        const gic_real t204 = -t171;
-        const gic_real t205 = t174 + (t127 * t171 + t124 * t173);
-        const gic_real t206 = t175 + (t127 * t169 - t121 * t173);
-        const gic_real t207 = t176 - (t124 * t169 + t121 * t171);
-        const gic_real t208 = t184 + (t124 * t183 - t127 * t181);
-        const gic_real t209 = t185 + (t127 * t179 - t121 * t183);
-        const gic_real t210 = t186 + (t121 * t181 - t124 * t179);
-        motion[1] = t2;
-        motion[2] = t5;
-        motion[3] = t82;
-        motion[4] = t83;
-        motion[5] = t84;
-        motion[6] = t86;
-        motion[7] = t87;
-        motion[8] = t88;
-        motion[9] = t90;
-        motion[10] = t91;
-        motion[11] = t92;
-        motion[12] = t77;
-        motion[13] = t78;
-        motion[14] = t79;
-        motion[16] = t191;
-        motion[17] = t94;
-        motion[18] = t119;
-        motion[19] = t117;
-        motion[20] = t118;
-        motion[22] = t192;
-        motion[23] = t103;
-        motion[24] = t68;
-        motion[25] = t66;
-        motion[26] = t193;
-        motion[30] = t76;
-        motion[31] = t74;
-        motion[32] = t75;
-        motion[34] = t194;
-        motion[35] = t70;
-        inertia[0] = t122;
-        inertia[1] = t125;
-        inertia[2] = t128;
-        inertia[3] = t195;
-        inertia[4] = t196;
-        inertia[5] = t197;
-        inertia[6] = t198;
-        inertia[7] = t199;
-        inertia[8] = t200;
-        inertia[9] = t149;
-        inertia[10] = t153;
-        inertia[11] = t155;
-        inertia[12] = t201;
-        inertia[13] = t202;
-        inertia[14] = t203;
-        inertia[15] = t169;
-        inertia[16] = t204;
-        inertia[17] = t173;
-        inertia[18] = t205;
-        inertia[19] = t206;
-        inertia[20] = t207;
-        inertia[21] = t177;
+        const gic_real t187 = t93 * t177;
+        const gic_real t188 = t117 * t173 + t123 * t172 - t119 * t176 + (t174 * t183 + (t124 * t179 - t135 * t180));
+        const gic_real t189 = t94 * (t170 - t88 * t187);
+        const gic_real t190 = t187 + (t136 * turn[2] - t128 * turn[0]);
+        const gic_real t191 = t121 * t176 + (t120 * t173 + t127 * t172) + (t168 * t183 + (t137 * t180 + t129 * t179));
+        const gic_real t192 = t138 + (t95 * t178 + t91 * t182);
+        const gic_real t193 = t157 + (t95 * t130 - t90 * t182);
+        const gic_real t194 = t74 * (t164 - t71 * t189 - t72 * t187);
+        const gic_real t195 = t189 + (t122 * turn[0] - t136 * turn[1]);
+        const gic_real t196 = R(90.555) * (t169 + (t187 * t89 - t189 * t84));
+        const gic_real t197 = t172 + (t91 * t183 - t95 * t180);
+        const gic_real t198 = t173 + (t95 * t179 - t90 * t183);
+        const gic_real t199 = -t178;
+        const gic_real t200 = t194 + (t128 * turn[1] - t122 * turn[2]);
+        const gic_real t201 = R(90.555) * (t163 + (t189 * t83 - t194 * t89) - t9);
+        const gic_real t202 = R(90.555) * (t15 + (t171 + (t194 * t84 - t187 * t83)));
+        const gic_real t203 = t103 * t195 + (t101 * t190 + t98 * t200) + (t125 * t165 - t134 * t166);
+        const gic_real t204 = t104 * t195 + (t100 * t190 + t101 * t200) + (t134 * t167 - t156 * t165);
+        const gic_real t205 = t99 * t195 + (t104 * t190 + t103 * t200) + (t156 * t166 - t125 * t167);
+        const gic_real t206 = t203 + (t91 * t202 - t95 * t201);
+        const gic_real t207 = t204 + (t95 * t196 - t90 * t202);
+        const gic_real t208 = t117 * t204 + t123 * t203 - t119 * t205 + (t202 * t174 + (t196 * t124 - t201 * t135));
+        const gic_real t209 = t121 * t205 + (t120 * t204 + t127 * t203) + (t202 * t168 + (t201 * t137 + t196 * t129));
+        const gic_real t210 = t205 + (t90 * t201 - t91 * t196);
+        motion[1] = t4;
+        motion[2] = t2;
+        motion[3] = t65;
+        motion[4] = t67;
+        motion[5] = t77;
+        motion[6] = t68;
+        motion[7] = t73;
+        motion[8] = t78;
+        motion[9] = t75;
+        motion[10] = t76;
+        motion[11] = t81;
+        motion[12] = t136;
+        motion[13] = t122;
+        motion[14] = t128;
+        motion[16] = t21;
+        motion[17] = t14;
+        motion[18] = t194;
+        motion[19] = t187;
+        motion[20] = t189;
+        motion[22] = t22;
+        motion[23] = t15;
+        motion[24] = t123;
+        motion[25] = t117;
+        motion[26] = t126;
+        motion[30] = t127;
+        motion[31] = t120;
+        motion[32] = t121;
+        motion[34] = t23;
+        motion[35] = t8;
+        inertia[0] = t105;
+        inertia[1] = t106;
+        inertia[2] = t107;
+        inertia[3] = t115;
+        inertia[4] = t118;
+        inertia[5] = t114;
+        inertia[6] = t111;
+        inertia[7] = t112;
+        inertia[8] = t113;
+        inertia[9] = t196;
+        inertia[10] = t201;
+        inertia[11] = t202;
+        inertia[12] = t206;
+        inertia[13] = t207;
+        inertia[14] = t210;
+        inertia[15] = t130;
+        inertia[16] = t199;
+        inertia[17] = t182;
+        inertia[18] = t192;
+        inertia[19] = t193;
+        inertia[20] = t184;
+        inertia[21] = t208;
         inertia[22] = t179;
-        inertia[23] = t181;
+        inertia[23] = t180;
         inertia[24] = t183;
-        inertia[25] = t208;
-        inertia[26] = t209;
-        inertia[27] = t210;
-        inertia[28] = t187;
-        inertia[29] = t188;
-        inertia[30] = t189;
-        inertia[31] = t190;
+        inertia[25] = t197;
+        inertia[26] = t198;
+        inertia[27] = t185;
+        inertia[28] = t209;
+        inertia[29] = t186;
+        inertia[30] = t188;
+        inertia[31] = t191;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -740,11 +740,11 @@ static GIC_COLD gic_real hmmwv_residual_wheel_f_l(const gic_real *GIC_RESTRICT k
     gic_real worst;
     (void)k;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (k[0] * m1[7] + k[1]))));
+        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (k[0] * m1[7] + k[2]))));
         const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]));
         const gic_real t3 = t2 - R(0.05422899999999997);
         const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t5 = t4 - (k[6] + m0[1]);
+        const gic_real t5 = t4 - (k[1] + m0[1]);
         const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]));
         const gic_real t7 = t6 - R(1.438648);
         const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
@@ -752,7 +752,7 @@ static GIC_COLD gic_real hmmwv_residual_wheel_f_l(const gic_real *GIC_RESTRICT k
         const gic_real t10 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]));
         const gic_real t11 = t10 - R(0.23411769999999998);
         const gic_real t12 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t13 = t12 - k[2];
+        const gic_real t13 = t12 - k[3];
         const gic_real t14 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]));
         const gic_real t15 = t14 - R(1.593883);
         const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
@@ -766,11 +766,11 @@ static GIC_COLD gic_real hmmwv_residual_wheel_f_l(const gic_real *GIC_RESTRICT k
 static const gic_real hmmwv_k_wheel_r_l[2][8] = {
     { /* wheel_r_l */
         R(0.49375935710120966), R(0.307086), R(0.462153), R(-0.07099299999999997),
-        R(-0.9999999999999999), R(-1.0), R(0.07099299999999997), R(0.08910630000000008),
+        R(-1.0), R(-0.9999999999999999), R(0.07099299999999997), R(0.08910630000000008),
     },
     { /* wheel_r_r */
         R(-0.49375935710120966), R(-0.307086), R(-0.462153), R(0.07099299999999997),
-        R(0.9999999999999999), R(1.0), R(-0.07099299999999997), R(-0.08910630000000008),
+        R(1.0), R(0.9999999999999999), R(-0.07099299999999997), R(-0.08910630000000008),
     },
 };
 
@@ -787,142 +787,142 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = k[0] * m0[7];
-        const gic_real t2 = t1 + k[1];
-        const gic_real t3 = t2 - k[2];
-        const gic_real t4 = k[0] * m0[10];
-        const gic_real t5 = R(0.22567900000000007) - t4;
-        const gic_real t6 = k[3] * t3 - R(0.33401) * t5;
-        const gic_real t7 = R(0.33401) * t3 + k[3] * t5;
-        const gic_real t8 = t6 * t6 + t7 * t7;
-        const gic_real t9 = k[2] - t2;
-        const gic_real t10 = R(0.5) * (t5 * t5 + (t9 * t9 + R(0.031522582115999995)) + R(0.020790651966999973));
-        const gic_real t11 = t8 - t10 * t10;
-        if (!(t11 > R(0.0)))
+        const gic_real t2 = k[0] * m0[10];
+        const gic_real t3 = t1 + k[1];
+        const gic_real t4 = R(0.22567900000000007) - t2;
+        const gic_real t5 = m0[24] * t2;
+        const gic_real t6 = m0[24] * t1;
+        const gic_real t7 = m0[12] * (m0[12] * t1) + m0[18] * t2;
+        const gic_real t8 = k[2] - t3;
+        const gic_real t9 = t3 - k[2];
+        const gic_real t10 = rate[0] * t5;
+        const gic_real t11 = rate[0] * t6;
+        const gic_real t12 = m0[18] * t1 - m0[12] * (m0[12] * t2);
+        const gic_real t13 = R(0.5) * (t4 * t4 + (t8 * t8 + R(0.031522582115999995)) + R(0.020790651966999973));
+        const gic_real t14 = k[3] * t9 - R(0.33401) * t4;
+        const gic_real t15 = R(0.33401) * t9 + k[3] * t4;
+        const gic_real t16 = -t10;
+        const gic_real t17 = -t7;
+        const gic_real t18 = -t5;
+        const gic_real t19 = t14 * t14 + t15 * t15;
+        const gic_real t20 = t19 - t13 * t13;
+        if (!(t20 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t11 - t8 * R(0.0001) > R(0.0)))
+        if (!(t20 - t19 * R(0.0001) > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t12 = GIC_SQRT(t11);
-        const gic_real t13 = t12 * (R(1.0) / (t11 * k[4]));
-        const gic_real t14 = R(1.0) / t8;
-        const gic_real t15 = t12 * k[5];
-        const gic_real t16 = t14 * (t10 * t7 - t6 * t15);
-        const gic_real t17 = t14 * (t7 * t15 + t10 * t6);
-        const gic_real t18 = R(-0.33401) * t16 + k[6] * t17;
-        const gic_real t19 = t2 + t18 - k[2];
-        const gic_real t20 = m0[24] * t4;
-        const gic_real t21 = k[3] * t16 + R(-0.33401) * t17;
-        const gic_real t22 = t4 + t21 - R(0.22567900000000007);
-        const gic_real t23 = m0[24] * t1;
-        const gic_real t24 = t13 * (t19 * t20 - t22 * t23);
-        const gic_real t25 = rate[0] * t24;
-        if (!(t12 * R(5.95718903489772) - GIC_FABS(t25) * ahead[0] > R(0.004)))
+        const gic_real t21 = GIC_SQRT(t20);
+        const gic_real t22 = R(1.0) / t19;
+        const gic_real t23 = t21 * k[4];
+        const gic_real t24 = t21 * (R(1.0) / (t20 * k[5]));
+        const gic_real t25 = t22 * (t13 * t15 - t14 * t23);
+        const gic_real t26 = t22 * (t15 * t23 + t13 * t14);
+        const gic_real t27 = R(4.7728205) + t25 * (t25 * R(2.8083995));
+        const gic_real t28 = -t25;
+        const gic_real t29 = R(-0.33401) * t25 + k[6] * t26;
+        const gic_real t30 = k[3] * t25 + R(-0.33401) * t26;
+        const gic_real t31 = t25 * R(0.09182100000000004) + t26 * k[7];
+        const gic_real t32 = t25 * k[7] - t26 * R(0.09182100000000004);
+        const gic_real t33 = t26 * R(2.8083995);
+        const gic_real t34 = -t26;
+        const gic_real t35 = t3 + t29 - k[2];
+        const gic_real t36 = t2 + t30 - R(0.22567900000000007);
+        const gic_real t37 = R(4.7728205) + t26 * t33;
+        const gic_real t38 = t3 - t31;
+        const gic_real t39 = t25 * t33;
+        const gic_real t40 = t2 + t32;
+        const gic_real t41 = R(90.555) * t38;
+        const gic_real t42 = turn[2] * t27 - turn[1] * t39;
+        const gic_real t43 = t24 * (t35 * t5 - t36 * t6);
+        const gic_real t44 = turn[1] * t40 - turn[2] * t38;
+        const gic_real t45 = turn[1] * t37 - turn[2] * t39;
+        const gic_real t46 = R(90.555) * t40;
+        const gic_real t47 = t38 * t41;
+        const gic_real t48 = -(t39 + t40 * t41);
+        const gic_real t49 = -(t38 * R(-149.724089775));
+        const gic_real t50 = -(t40 * R(-149.724089775));
+        const gic_real t51 = t40 * t46;
+        const gic_real t52 = t27 + (R(247.5545586544339) + t47);
+        const gic_real t53 = rate[0] * t43;
+        const gic_real t54 = t5 + t43 * t32;
+        const gic_real t55 = t6 - t43 * t31;
+        const gic_real t56 = t43 * R(4.8947505);
+        const gic_real t57 = R(4.8947505) + (t47 + t51);
+        if (!(t21 * R(5.95718903489772) - GIC_FABS(t53) * ahead[0] > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t26 = -t17;
-        const gic_real t27 = rate[0] * t20;
-        const gic_real t28 = rate[0] * t23;
-        const gic_real t29 = t21 * t25;
-        const gic_real t30 = t18 * t25;
-        const gic_real t31 = t28 + t30;
-        const gic_real t32 = t27 + t29;
-        const gic_real t33 = t22 * (t25 * t29) + t19 * (t25 * t30) - (t31 * t31 + t32 * t32);
-        const gic_real t34 = m0[12] * (m0[12] * t1) + m0[18] * t4;
-        const gic_real t35 = m0[18] * t1 - m0[12] * (m0[12] * t4);
-        const gic_real t36 = t13 * (t33 + t34 * t19 - t35 * t22);
-        const gic_real t37 = t16 * R(0.09182100000000004) + t17 * k[7];
-        const gic_real t38 = t2 - t37;
-        const gic_real t39 = R(90.555) * t38;
-        const gic_real t40 = t16 * k[7] - t17 * R(0.09182100000000004);
-        const gic_real t41 = t4 + t40;
-        const gic_real t42 = R(90.555) * t41;
-        const gic_real t43 = t38 * t39;
-        const gic_real t44 = t41 * t42;
-        const gic_real t45 = t17 * R(2.8083995);
-        const gic_real t46 = R(4.7728205) + t17 * t45;
-        const gic_real t47 = R(4.7728205) + t16 * (t16 * R(2.8083995));
-        const gic_real t48 = t16 * t45;
-        const gic_real t49 = t25 * t37;
-        const gic_real t50 = t28 - t49;
-        const gic_real t51 = t50 + (t50 + (turn[0] * t38 - R(-1.653405) * turn[1]));
-        const gic_real t52 = t25 * t40;
-        const gic_real t53 = t27 + t52;
-        const gic_real t54 = R(-1.653405) * turn[2] - turn[0] * t41 - t53 - t53;
-        const gic_real t55 = R(90.555) * (turn[1] * t51 - turn[2] * t54);
-        const gic_real t56 = turn[1] * t41 - turn[2] * t38;
-        const gic_real t57 = turn[2] * t56 - turn[0] * t51 + t25 * t49 - t36 * t40;
-        const gic_real t58 = t57 - t34;
-        const gic_real t59 = R(90.555) * t58;
-        const gic_real t60 = turn[0] * t54 - turn[1] * t56 - t25 * t52 - t36 * t37;
-        const gic_real t61 = t35 + t60;
-        const gic_real t62 = R(90.555) * t61;
-        const gic_real t63 = turn[2] * t47 - turn[1] * t48;
-        const gic_real t64 = turn[1] * t46 - turn[2] * t48;
-        const gic_real t65 = t36 * R(4.8947505) + (turn[1] * t63 - turn[2] * t64);
-        const gic_real t66 = t25 * turn[1];
-        const gic_real t67 = t25 * turn[2];
-        const gic_real t68 = t25 + turn[0];
-        const gic_real t69 = R(4.8947505) * t68;
-        const gic_real t70 = t48 * t66 + t46 * t67 + (turn[2] * t69 - t68 * t63);
-        const gic_real t71 = t68 * t64 - turn[1] * t69 - (t47 * t66 + t48 * t67);
-        const gic_real t72 = t20 + t24 * t40;
-        const gic_real t73 = R(90.555) * t72;
-        const gic_real t74 = t23 - t24 * t37;
-        const gic_real t75 = R(90.555) * t74;
-        const gic_real t76 = t24 * R(4.8947505);
-        const gic_real t77 = -t16;
-        const gic_real t78 = -t27;
-        const gic_real t79 = -t34;
-        const gic_real t80 = -t20;
-        const gic_real t81 = R(4.8947505) + (t43 + t44);
-        const gic_real t82 = t46 + (R(247.5545586544339) + t44);
-        const gic_real t83 = t47 + (R(247.5545586544339) + t43);
-        const gic_real t84 = -(t38 * R(-149.724089775));
-        const gic_real t85 = -(t41 * R(-149.724089775));
-        const gic_real t86 = -(t48 + t41 * t39);
-        const gic_real t87 = t65 + (t38 * t62 - t41 * t59);
-        const gic_real t88 = t70 + (t41 * t55 - R(-149.724089775) * t61);
-        const gic_real t89 = t71 + (R(-149.724089775) * t58 - t38 * t55);
-        const gic_real t90 = -t73;
-        const gic_real t91 = t76 + (t41 * t73 + t38 * t75);
-        const gic_real t92 = -(R(-149.724089775) * t74);
-        const gic_real t93 = -(R(-149.724089775) * t72);
-        const gic_real t94 = t24 * t65 + (t62 * t74 - t59 * t72);
-        const gic_real t95 = t24 * t76 + (t74 * t75 + t72 * t73);
-        motion[1] = t2;
-        motion[2] = t4;
-        motion[7] = t26;
-        motion[8] = t77;
-        motion[10] = t16;
-        motion[11] = t26;
-        motion[12] = t25;
-        motion[16] = t78;
-        motion[17] = t28;
-        motion[18] = t36;
-        motion[22] = t79;
-        motion[23] = t35;
-        motion[24] = t24;
-        motion[28] = t80;
-        motion[29] = t23;
-        inertia[1] = t39;
-        inertia[2] = t42;
-        inertia[3] = t81;
-        inertia[4] = t82;
-        inertia[5] = t83;
-        inertia[6] = t84;
-        inertia[7] = t85;
-        inertia[8] = t86;
-        inertia[9] = t55;
-        inertia[10] = t59;
-        inertia[11] = t62;
-        inertia[12] = t87;
-        inertia[13] = t88;
-        inertia[14] = t89;
-        inertia[16] = t90;
-        inertia[17] = t75;
-        inertia[18] = t91;
-        inertia[19] = t92;
-        inertia[20] = t93;
-        inertia[21] = t94;
-        inertia[22] = t95;
+        const gic_real t58 = t30 * t53;
+        const gic_real t59 = t29 * t53;
+        const gic_real t60 = t53 * t31;
+        const gic_real t61 = t53 * t32;
+        const gic_real t62 = t53 + turn[0];
+        const gic_real t63 = t53 * turn[1];
+        const gic_real t64 = t53 * turn[2];
+        const gic_real t65 = R(90.555) * t54;
+        const gic_real t66 = t10 + t58;
+        const gic_real t67 = t11 + t59;
+        const gic_real t68 = t11 - t60;
+        const gic_real t69 = t10 + t61;
+        const gic_real t70 = R(4.8947505) * t62;
+        const gic_real t71 = R(90.555) * t55;
+        const gic_real t72 = t37 + (R(247.5545586544339) + t51);
+        const gic_real t73 = -(R(-149.724089775) * t55);
+        const gic_real t74 = t36 * (t53 * t58) + t35 * (t53 * t59) - (t67 * t67 + t66 * t66);
+        const gic_real t75 = t68 + (t68 + (turn[0] * t38 - R(-1.653405) * turn[1]));
+        const gic_real t76 = R(-1.653405) * turn[2] - turn[0] * t40 - t69 - t69;
+        const gic_real t77 = t39 * t63 + t37 * t64 + (turn[2] * t70 - t62 * t42);
+        const gic_real t78 = t62 * t45 - turn[1] * t70 - (t27 * t63 + t39 * t64);
+        const gic_real t79 = t24 * (t74 + t7 * t35 - t12 * t36);
+        const gic_real t80 = t56 + (t40 * t65 + t38 * t71);
+        const gic_real t81 = t43 * t56 + (t55 * t71 + t54 * t65);
+        const gic_real t82 = R(90.555) * (turn[1] * t75 - turn[2] * t76);
+        const gic_real t83 = -(R(-149.724089775) * t54);
+        const gic_real t84 = -t65;
+        const gic_real t85 = turn[2] * t44 - turn[0] * t75 + t53 * t60 - t79 * t32;
+        const gic_real t86 = turn[0] * t76 - turn[1] * t44 - t53 * t61 - t79 * t31;
+        const gic_real t87 = t79 * R(4.8947505) + (turn[1] * t42 - turn[2] * t45);
+        const gic_real t88 = t85 - t7;
+        const gic_real t89 = t12 + t86;
+        const gic_real t90 = R(90.555) * t88;
+        const gic_real t91 = t78 + (R(-149.724089775) * t88 - t38 * t82);
+        const gic_real t92 = R(90.555) * t89;
+        const gic_real t93 = t77 + (t40 * t82 - R(-149.724089775) * t89);
+        const gic_real t94 = t87 + (t38 * t92 - t40 * t90);
+        const gic_real t95 = t43 * t87 + (t92 * t55 - t90 * t54);
+        motion[1] = t3;
+        motion[2] = t2;
+        motion[7] = t34;
+        motion[8] = t28;
+        motion[10] = t25;
+        motion[11] = t34;
+        motion[12] = t53;
+        motion[16] = t16;
+        motion[17] = t11;
+        motion[18] = t79;
+        motion[22] = t17;
+        motion[23] = t12;
+        motion[24] = t43;
+        motion[28] = t18;
+        motion[29] = t6;
+        inertia[1] = t41;
+        inertia[2] = t46;
+        inertia[3] = t57;
+        inertia[4] = t72;
+        inertia[5] = t52;
+        inertia[6] = t49;
+        inertia[7] = t50;
+        inertia[8] = t48;
+        inertia[9] = t82;
+        inertia[10] = t90;
+        inertia[11] = t92;
+        inertia[12] = t94;
+        inertia[13] = t93;
+        inertia[14] = t91;
+        inertia[16] = t84;
+        inertia[17] = t71;
+        inertia[18] = t80;
+        inertia[19] = t73;
+        inertia[20] = t83;
+        inertia[21] = t95;
+        inertia[22] = t81;
     }
     ++self->head.newton_count;
     return GIC_OK;

@@ -61,6 +61,9 @@ typedef struct Emitter {
     int *leaves;    /* [nodes] size of its text; 0: it gets a temporary */
     int *temporary; /* [nodes] number of its temporary, 0: none yet */
     int temporaries;
+    bool *planned; /* [nodes] is there a step that computes it? */
+    int steps;
+    Step *step;
 } Emitter;
 
 /* Lanes of what a node becomes; 0: one number, or one of each vehicle. */
@@ -317,8 +320,8 @@ static void write_statement(Emitter *m, Ex e)
     text_print(m->out, "%*s%s\n", m->indent, "", line.s);
 }
 
-/* All temporaries that `root` needs, deepest first. */
-static void write_temporaries(Emitter *m, Ex root)
+/* Steps for all temporaries that `root` needs, deepest first. */
+static void plan_temporaries(Emitter *m, Ex root)
 {
     Pool *pool = m->dag->pool;
     int depth = 0;
@@ -330,14 +333,16 @@ static void write_temporaries(Emitter *m, Ex root)
     while (depth) {
         struct Frame *top = &stack[depth - 1];
         const Node *node = &m->dag->node[top->e];
-        bool leaf = node->level < LEVEL_VARIABLE || node->op == OP_INPUT || m->temporary[top->e];
+        bool leaf = node->level < LEVEL_VARIABLE || node->op == OP_INPUT || m->planned[top->e];
         if (!leaf && top->next < op_form[node->op].arity) {
             Ex argument = node->arg[top->next++];
             *POOL_PUSH(pool, stack, depth) = (struct Frame){argument, 0};
             continue;
         }
-        if (!leaf && m->leaves[top->e] == 0)
-            write_statement(m, top->e);
+        if (!leaf && m->leaves[top->e] == 0) {
+            *POOL_PUSH(pool, m->step, m->steps) = (Step){top->e, -1};
+            m->planned[top->e] = true;
+        }
         --depth;
     }
 }
@@ -381,7 +386,6 @@ static void write_failures(const Emitter *m, const Check *check, const char *vec
 static void write_check(Emitter *m, const Check *check)
 {
     Text line = {.pool = m->dag->pool};
-    write_temporaries(m, check->value);
     const int width = width_of(m, check->value);
     write_whole(m, &line, check->value, is_vector(m, check->value), width);
     if (width) {
@@ -430,28 +434,39 @@ void block_emit(Text *out, const Block *block, const Style *style, Constants *co
                  .indent = indent,
                  .uses = pool_alloc(pool, nodes * sizeof(int)),
                  .leaves = pool_alloc(pool, nodes * sizeof(int)),
-                 .temporary = pool_alloc(pool, nodes * sizeof(int))};
+                 .temporary = pool_alloc(pool, nodes * sizeof(int)),
+                 .planned = pool_alloc(pool, nodes * sizeof(bool))};
     for (int i = 0; i < block->checks; ++i)
         mark_uses(&m, block->check[i].value);
     for (int i = 0; i < block->stores; ++i)
         mark_uses(&m, block->store[i].value);
     size_texts(&m);
-    for (int i = 0; i < block->checks; ++i)
-        write_check(&m, &block->check[i]);
+    for (int i = 0; i < block->checks; ++i) {
+        plan_temporaries(&m, block->check[i].value);
+        *POOL_PUSH(pool, m.step, m.steps) = (Step){block->check[i].value, i};
+    }
     for (int i = 0; i < block->stores; ++i)
-        write_temporaries(&m, block->store[i].value);
+        plan_temporaries(&m, block->store[i].value);
     /* a target may be an input of another store: first all values, then all targets */
+    for (int i = 0; i < block->stores; ++i) {
+        const Ex e = block->store[i].value;
+        if (m.planned[e] || block->dag->node[e].level < LEVEL_VARIABLE)
+            continue;
+        m.leaves[e] = 0;
+        m.planned[e] = true;
+        *POOL_PUSH(pool, m.step, m.steps) = (Step){e, -1};
+    }
+    if (block->scheduled)
+        schedule_steps(pool, block->dag, m.step, m.steps);
+    for (int i = 0; i < m.steps; ++i)
+        if (m.step[i].check >= 0)
+            write_check(&m, &block->check[m.step[i].check]);
+        else
+            write_statement(&m, m.step[i].value);
     Text stores = {.pool = pool};
     for (int i = 0; i < block->stores; ++i) {
-        const Store *store = &block->store[i];
-        const Node *node = &block->dag->node[store->value];
-        bool safe = m.temporary[store->value] || node->level < LEVEL_VARIABLE;
-        if (!safe) {
-            m.leaves[store->value] = 0;
-            write_statement(&m, store->value);
-        }
-        text_print(&stores, "%*s%s = ", indent, "", store->target);
-        write_whole(&m, &stores, store->value, style->lanes, style->width);
+        text_print(&stores, "%*s%s = ", indent, "", block->store[i].target);
+        write_whole(&m, &stores, block->store[i].value, style->lanes, style->width);
         text_print(&stores, ";\n");
     }
     if (stores.s)

@@ -12,6 +12,11 @@ static const int op_arity[OP_COUNT] = {
 #undef OP_ARITY
 };
 
+int ex_arity(Op op)
+{
+    return op_arity[op];
+}
+
 Dag *dag_new(Pool *pool, int members, int samples)
 {
     Dag *dag = pool_alloc(pool, sizeof *dag);

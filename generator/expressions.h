@@ -76,6 +76,7 @@ typedef struct Dag {
 } Dag;
 
 Dag *dag_new(Pool *pool, int members, int samples);
+int ex_arity(Op op); /* arguments of its nodes */
 Ex ex_literal(Dag *dag, double value);
 Ex ex_constant(Dag *dag, const double *value); /* [members] */
 Ex ex_number(Dag *dag, double value);          /* a literal that is never folded: an input R(value) */
@@ -327,8 +328,9 @@ typedef struct Block {
     int stores, checks, loads;
     Store *store;
     Check *check;
-    Ex *load;    /* applied forces among its values, for those who count */
-    bool across; /* the road must be the same on both sides, and is looked up on one: narrow.h */
+    Ex *load;       /* applied forces among its values, for those who count */
+    bool scheduled; /* its statements stand as schedule.c orders them; else depth-first from the results */
+    bool across;    /* the road must be the same on both sides, and is looked up on one: narrow.h */
 } Block;
 
 void block_store(Block *block, Ex value, const char *format, ...) __attribute__((format(printf, 3, 4)));

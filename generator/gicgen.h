@@ -421,12 +421,23 @@ extern const Style style_readable, style_direct, style_lanes;
 /* The type of a number. */
 const char *style_real(const Style *style);
 
-/* The statements of a block, each line led by `indent` spaces: temporaries in depth-first order from the results,
- * checks as soon as their values are there, stores at the end (a target may be read before). Constants met on the way
- * get slots. */
+/* The statements of a block, each line led by `indent` spaces: temporaries in depth-first order from the results, or as
+ * schedule.c orders them, checks as soon as their values are there, stores at the end (a target may be read before).
+ * Constants met on the way get slots. */
 void block_emit(Text *out, const Block *block, const Style *style, Constants *constants, int indent);
 /* What its checks are about, as far as they are, in order: {status, subset, number of the state}, */
 void emit_abouts(Text *out, const Block *block, int indent);
+/* schedule.c: a statement that computes a node, or a check of one. */
+typedef struct Step {
+    Ex value;
+    int check; /* of the block; -1: a statement */
+} Step;
+
+/* Put steps [steps], which come with operands before what needs them, into the order in which a processor is the least
+ * time without work. Checks keep theirs, and what may not be computed before a check, roots and quotients, comes after
+ * the checks that it came after. */
+void schedule_steps(Pool *pool, const Dag *dag, Step *step, int steps);
+
 /* A number as C source that reads back bit-exactly: R(0.5). */
 const char *emit_number(Pool *pool, double value);
 

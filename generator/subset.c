@@ -610,6 +610,7 @@ static Formula *formulate_newton(Work *w, Solve solve)
 static Formula *formulate_closed(Work *w, Solve solve)
 {
     Formula *formula = formula_new(w, true);
+    formula->solve.scheduled = true;
     Branches branches = {0};
     size_t bodies = (size_t)w->first->bodies;
     Work found = elsewhere(w, pool_alloc(w->pool, bodies * sizeof *found.pose));

@@ -250,7 +250,7 @@ static void test_random_blocks(void **state)
         Ex term[TERMS];
         dag[i] = dag_new(program.pool, MEMBERS, SAMPLES);
         grow_all(dag[i], &random, term);
-        Block block = {.dag = dag[i]};
+        Block block = {.dag = dag[i], .scheduled = i % 2 == 1};
         Constants constants = {0};
         for (int j = 0; j < STORES; ++j) {
             /* results, but inputs and constants now and then */
