@@ -240,7 +240,7 @@ static Ex *roots_of(const Block *block, int *count)
 
 Block partial_block(Partial *p, const Block *block)
 {
-    Block out = {.dag = p->to, .model = block->model, .across = p->across};
+    Block out = {.dag = p->to, .model = block->model, .scheduled = block->scheduled, .across = p->across};
     int roots;
     const Ex *root = roots_of(block, &roots);
     const bool *needed = dag_needed(p->from, root, roots);
