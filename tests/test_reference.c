@@ -175,6 +175,22 @@ static void test_change_point(void **unused)
     assert_false(solve_positions(solver, state));
     state->w[0] = -1.25;
     assert_true(solve_positions(solver, state));
+    /* the other one, crossed, where only its own poses lead: half of what the angles differ by has the tangent below */
+    const real a = 1.25L, b = a + 2 * atanl(2 * cosl(a) / (2 * sinl(a) - 1));
+    quad pose[3][BODY_COORDINATES] = {{0}, {0, 0, 0, cosl(a / 2), 0, sinl(a / 2), 0}, {2, 0, 0, 0, 0, 0, 0}};
+    const struct {
+        real turned, off;
+    } start[] = {{a, 0}, {a, 1e-3L}, {b, 0}, {b, -1e-3L}};
+    state->w[0] = (quad)a;
+    for (int i = 0; i < 4; ++i) {
+        pose[2][3] = cosl((start[i].turned + start[i].off) / 2);
+        pose[2][5] = sinl((start[i].turned + start[i].off) / 2);
+        assert_true(solve_near(solver, state, pose));
+        near_to(solver->configuration->q[2][3], cosl(start[i].turned / 2), 1);
+        near_to(solver->configuration->q[2][5], sinl(start[i].turned / 2), 1);
+    }
+    pose[2][5] += 0.1;
+    assert_false(solve_near(solver, state, pose));
     state_free(state);
     solver_free(solver);
     model_free(model);

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * reference DUMP STATES [-o ACCEL] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]
+ * reference DUMP STATES [-o ACCEL] [--near POSES] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]
  *     [--friction X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE]
  *
  * Accelerations, poses, drive forces, reactions of joints, what wheels and powertrain do, energies, subset condition
  * and scales of a dumped model (`gicgen --dump-model`) at the states of a CSV file with the columns of `gicrun --eval`;
  * columns of fast states and of inputs that are no coordinates may be missing. The road's friction is 1 but on one
  * patch. A row's status is 0, or 1 where the state can't be reached from design or is singular; its other cells are
- * empty then. */
+ * empty then. With --near bodies are looked for near the poses in the columns of POSES, as `gicrun --eval` writes them,
+ * instead: then the answer is about those, however they were reached. */
 #include "row.h"
 
 #include "support.h"
@@ -15,7 +16,7 @@
 #include <string.h>
 
 static const char usage[] =
-    "usage: reference DUMP STATES [-o ACCEL] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]\n"
+    "usage: reference DUMP STATES [-o ACCEL] [--near POSES] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]\n"
     "                 [--friction X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE]\n";
 
 static void write_head(FILE *out, const Model *model)
@@ -125,14 +126,41 @@ static void write_unreached(FILE *out, const Model *model)
     fputs("1\n", out);
 }
 
+/* The columns of all poses but the base's: [bodies][7]. */
+static int (*pose_columns(const Model *model, const Table *table))[BODY_COORDINATES]
+{
+    static const char *const part[BODY_COORDINATES] = {"x", "y", "z", "e0", "e1", "e2", "e3"};
+    int(*column)[BODY_COORDINATES] = grab((size_t)model->bodies, sizeof *column);
+    for (int k = 1; k < model->bodies; ++k)
+        for (int i = 0; i < BODY_COORDINATES; ++i) {
+            char name[128];
+            snprintf(name, sizeof name, "%s.%s", model->body[k].name, part[i]);
+            column[k][i] = table_want(table, name);
+        }
+    return column;
+}
+
+static bool positions(Solver *solver, const State *state, const Table *near, int row, int (*column)[BODY_COORDINATES],
+                      quad (*pose)[BODY_COORDINATES])
+{
+    if (!near)
+        return solve_positions(solver, state);
+    for (int k = 1; k < solver->model->bodies; ++k)
+        for (int i = 0; i < BODY_COORDINATES; ++i)
+            pose[k][i] = table_number(near, row, column[k][i]);
+    return solve_near(solver, state, pose);
+}
+
 int main(int argc, char **argv)
 {
-    const char *path[2] = {NULL, NULL}, *out_path = NULL;
+    const char *path[2] = {NULL, NULL}, *out_path = NULL, *near_path = NULL;
     int paths = 0, unreached = 0;
     Road road = {0};
     for (int i = 1; i < argc; ++i) {
         if (!strcmp(argv[i], "-o") && i + 1 < argc) {
             out_path = argv[++i];
+        } else if (!strcmp(argv[i], "--near") && i + 1 < argc) {
+            near_path = argv[++i];
         } else if (!strcmp(argv[i], "--road") && i + 1 < argc) {
             road_parse(argv[++i], &road);
         } else if (!strcmp(argv[i], "--friction") && i + 1 < argc) {
@@ -149,14 +177,19 @@ int main(int argc, char **argv)
         return 2;
     }
     Model *model = model_read(path[0]);
-    Table *table = table_read(path[1]);
+    Table *table = table_read(path[1]), *near = near_path ? table_read(near_path) : NULL;
+    if (near && near->rows != table->rows)
+        fail("%s has %d rows, %s has %d", path[1], table->rows, near_path, near->rows);
+    int(*column)[BODY_COORDINATES] = near ? pose_columns(model, near) : NULL;
+    quad(*pose)[BODY_COORDINATES] = grab((size_t)model->bodies, sizeof *pose);
     Solver *solver = solver_new(model);
     State *state = state_new(model);
     FILE *out = output_open(out_path);
     write_head(out, model);
     for (int row = 0; row < table->rows; ++row) {
         state_read(model, table, row, state);
-        bool reached = (!model->free_base || recover_largest(state->e)) && solve_positions(solver, state);
+        bool reached =
+            (!model->free_base || recover_largest(state->e)) && positions(solver, state, near, row, column, pose);
         if (reached) {
             solve_velocities(solver, state);
             reached = solve_accelerations(solver, state, &road);
@@ -172,6 +205,10 @@ int main(int argc, char **argv)
     state_free(state);
     solver_free(solver);
     table_free(table);
+    if (near)
+        table_free(near);
+    free(column);
+    free(pose);
     model_free(model);
     return 0;
 }

@@ -218,6 +218,49 @@ static bool refactor(Solver *solver, const Configuration *configuration)
     return factor_dependent(solver, configuration);
 }
 
+/* From a configuration whose Jacobian is factored to the last digits. */
+static bool polish(Solver *solver, const State *state)
+{
+    const Model *model = solver->model;
+    Configuration *good = solver->configuration;
+    for (int c = 0; c < model->coordinates; ++c)
+        good->w[c] = state->w[c];
+    /* places have the rounding of their distance from the origin */
+    const quad far = fabsq(good->q[0][0]) + fabsq(good->q[0][1]) + fabsq(good->q[0][2]);
+    const quad enough = far > 1000 ? 1e-31 * far : 1e-28;
+    for (int i = 0; i < 20; ++i) {
+        rows_evaluate(model, good, solver->row);
+        if (residual(solver, good) < enough)
+            return refactor(solver, good);
+        correct(solver, good);
+    }
+    return false;
+}
+
+bool solve_near(Solver *solver, const State *state, quad (*pose)[BODY_COORDINATES])
+{
+    const Model *model = solver->model;
+    Configuration *at = solver->configuration;
+    start_at_design(solver, state);
+    for (int k = 1; k < model->bodies; ++k) {
+        static const double origin[3] = {0};
+        quad s[3], arm[3];
+        const quad norm = sqrtq(quad_dot(pose[k] + 3, pose[k] + 3, 4));
+        for (int i = 0; i < 4; ++i)
+            at->q[k][3 + i] = pose[k][3 + i] / norm;
+        from_com(model, k, origin, s);
+        rotate(at->q[k] + 3, s, arm);
+        for (int i = 0; i < 3; ++i)
+            at->q[k][i] = pose[k][i] - arm[i];
+    }
+    for (int c = 0; c < model->coordinates; ++c)
+        at->w[c] = state->w[c];
+    for (quad size = 0.01, last = 1; size > 1e-14; last = size)
+        if (!refactor(solver, at) || !((size = correct(solver, at)) < 0.01) || !(size < last))
+            return false;
+    return refactor(solver, at) && polish(solver, state);
+}
+
 bool solve_positions(Solver *solver, const State *state)
 {
     const Model *model = solver->model;
@@ -243,18 +286,7 @@ bool solve_positions(Solver *solver, const State *state)
                 return false;
         }
     }
-    for (int c = 0; c < model->coordinates; ++c)
-        good->w[c] = state->w[c];
-    /* places have the rounding of their distance from the origin */
-    const quad far = fabsq(good->q[0][0]) + fabsq(good->q[0][1]) + fabsq(good->q[0][2]);
-    const quad enough = far > 1000 ? 1e-31 * far : 1e-28;
-    for (int i = 0; i < 20; ++i) {
-        rows_evaluate(model, good, solver->row);
-        if (residual(solver, good) < enough)
-            return refactor(solver, good);
-        correct(solver, good);
-    }
-    return false;
+    return polish(solver, state);
 }
 
 void solve_velocities(Solver *solver, const State *state)

@@ -61,6 +61,9 @@ bool recover_largest(quad e[4]);
 /* Pose of all bodies by continuation from design along the straight line of coordinates, into
  * solver->configuration->q, w. False when that is not reached: no solution, or a singular configuration on the way. */
 bool solve_positions(Solver *solver, const State *state);
+/* The same by Newton's iteration alone from poses that are near: pose[body][7], of body frames; those of the base are
+ * not looked at. False when that does not converge to one within a hundredth of the model's length, or rad. */
+bool solve_near(Solver *solver, const State *state, quad (*pose)[BODY_COORDINATES]);
 /* Rates of all bodies, into configuration->rate, w_rate. After solve_positions. */
 void solve_velocities(Solver *solver, const State *state);
 /* Everything marked "result". After solve_velocities. */

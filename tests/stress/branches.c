@@ -7,74 +7,19 @@
  * in such pieces, on the straight way back. Refused steps leave the instance as it was. Prints how many steps were
  * tried, taken and refused, how many of those taken were blocked on both ways, how many leapt, how many refusals were
  * not without a trace, and the largest difference of poses otherwise. */
-#include "attack.h"
+#include "follow.h"
 
 static const char usage[] = "usage: branches MODEL --count N --seed S [--recovery WAY]\n";
 
 typedef struct Attack {
     Subject code;
+    Follower follower;
     int coordinates, poses;
     double *design; /* poses there */
-    gic_head *trial, *slow;
     Chance chance;
     long tried, taken, refused, blocked, leapt, traces;
     double largest;
 } Attack;
-
-/* Poses with the coordinates at x; base and all rates at their first values. */
-static int place(const Attack *attack, gic_head *self, const double *x, double *pose)
-{
-    const gic_model *code = attack->code.code;
-    for (int c = 0; c < attack->coordinates; ++c) {
-        int rate;
-        *coordinate_place(code, c, instance_array(self, code->state_offset), instance_array(self, code->input_offset),
-                          &rate) = x[c];
-    }
-    return code->poses(self, pose);
-}
-
-/* Largest difference of two poses: metres, or components of Euler parameters whatever their sign. */
-static double difference(const Attack *attack, const double *a, const double *b)
-{
-    double largest = 0;
-    for (int body = 0; body < attack->poses; body += 7) {
-        double same = 0, opposite = 0;
-        for (int i = 0; i < 3; ++i)
-            largest = fmax(largest, fabs(a[body + i] - b[body + i]));
-        for (int i = 3; i < 7; ++i) {
-            same = fmax(same, fabs(a[body + i] - b[body + i]));
-            opposite = fmax(opposite, fabs(a[body + i] + b[body + i]));
-        }
-        largest = fmax(largest, fmin(same, opposite));
-    }
-    return largest;
-}
-
-/* From x, where `slow` stands, straight to `end` in pieces in which poses change little; false where it is blocked.
- * Little is less than the distance of modes: no two of them are nearer than the margin in which states are refused. */
-static bool go_slowly(Attack *attack, const double *from, const double *end, double *pose)
-{
-    const double little = 0.02;
-    double x[attack->coordinates + 1], next[attack->poses], share = 0, step = 1;
-    if (place(attack, attack->slow, from, pose) != GIC_OK)
-        return false;
-    while (share < 1) {
-        const double to = fmin(share + step, 1);
-        for (int c = 0; c < attack->coordinates; ++c)
-            x[c] = to == 1 ? end[c] : from[c] + to * (end[c] - from[c]);
-        memcpy(attack->trial, attack->slow, attack->code.code->size);
-        const int status = place(attack, attack->trial, x, next);
-        if (status == GIC_OK && difference(attack, pose, next) < little) {
-            memcpy(attack->slow, attack->trial, attack->code.code->size);
-            memcpy(pose, next, sizeof next);
-            share = to;
-            step *= 2;
-        } else if ((step /= 2) < 1e-6) {
-            return false;
-        }
-    }
-    return true;
-}
 
 /* Small steps mostly, and a few that lead anywhere. */
 static void random_step(Attack *attack, const double *x, double *next)
@@ -97,37 +42,37 @@ static void try_step(Attack *attack, double *x, double *pose)
     const double same = 1e-6;
     double next[attack->coordinates + 1], found[attack->poses], slow[attack->poses];
     random_step(attack, x, next);
-    memcpy(attack->slow, self, code->size);
+    memcpy(attack->follower.slow, self, code->size);
     ++attack->tried;
-    if (place(attack, self, next, found) != GIC_OK) {
+    if (place_at(code, self, next, found) != GIC_OK) {
         ++attack->refused;
         /* as if nothing had been tried */
-        attack->traces += place(attack, self, x, found) != GIC_OK || !(difference(attack, pose, found) < 1e-9);
+        attack->traces += place_at(code, self, x, found) != GIC_OK || !(pose_difference(code, pose, found) < 1e-9);
         return;
     }
     ++attack->taken;
-    if (!go_slowly(attack, x, next, slow)) {
-        memcpy(attack->slow, self, code->size);
+    if (!follow_straight(&attack->follower, x, next, slow)) {
+        memcpy(attack->follower.slow, self, code->size);
         double design[attack->coordinates + 1];
         for (int c = 0; c < attack->coordinates; ++c)
             design[c] = code->coordinate_design[c];
-        const bool back = go_slowly(attack, next, design, slow);
+        const bool back = follow_straight(&attack->follower, next, design, slow);
         attack->blocked += !back;
-        attack->leapt += back && !(difference(attack, slow, attack->design) < same);
+        attack->leapt += back && !(pose_difference(code, slow, attack->design) < same);
         memcpy(self, attack->code.fresh, code->size);
         for (int c = 0; c < attack->coordinates; ++c)
             x[c] = design[c];
-        place(attack, self, x, pose);
+        place_at(code, self, x, pose);
         return;
     }
-    const double apart = difference(attack, found, slow);
+    const double apart = pose_difference(code, found, slow);
     if (!(apart < same)) {
         ++attack->leapt;
         fprintf(stderr, "leapt by %g, step %ld:", apart, attack->tried);
         for (int c = 0; c < attack->coordinates; ++c)
             fprintf(stderr, " %.17g > %.17g", x[c], next[c]);
         fputc('\n', stderr);
-        memcpy(self, attack->slow, code->size);
+        memcpy(self, attack->follower.slow, code->size);
         memcpy(found, slow, sizeof found);
     } else {
         attack->largest = fmax(attack->largest, apart);
@@ -168,12 +113,12 @@ int main(int argc, char **argv)
     attack.coordinates = code->coordinate_count;
     attack.poses = 7 * code->body_count;
     attack.design = pool_alloc(pool, sizeof(double) * (size_t)attack.poses);
-    attack.trial = instance_new(pool, attack.code.engine);
-    attack.slow = instance_new(pool, attack.code.engine);
+    /* less than the distance of modes: no two of them are nearer than the margin in which states are refused */
+    attack.follower = follower_new(pool, &attack.code, 0.02);
     double x[attack.coordinates + 1], pose[attack.poses];
     for (int c = 0; c < attack.coordinates; ++c)
         x[c] = code->coordinate_design[c];
-    if (place(&attack, attack.code.fresh, x, attack.design) != GIC_OK) {
+    if (place_at(code, attack.code.fresh, x, attack.design) != GIC_OK) {
         fprintf(stderr, "%s: the design is refused\n", path);
         return 1;
     }

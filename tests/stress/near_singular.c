@@ -3,20 +3,28 @@
  *
  * Random states inside the coordinates' ranges and far beyond, evaluated from the design by generated code and by the
  * interpreted engine gic. From every twentieth that generated code refuses a walk begins that creeps towards limits: to
- * the last state that is taken, by bisection, and on from there in another direction. Prints how many states were
- * tried, taken and refused, how many were taken that gic refuses, the largest relative difference of accelerations, and
- * what is wrong: results that are no numbers, or an instance that a refusal changed. FILE.states and FILE.results, as
- * `gicrun
+ * the last state that is taken, by bisection, and on from there in another direction. After each refusal the instance
+ * is asked for the last state that was taken, and must go on from there. FILE.states and FILE.results, as `gicrun
  * --eval` reads and writes them: the K states with the largest differences, and of those that gic refuses K / 2 at
- * which bodies move most with the coordinates. */
-#include "attack.h"
+ * which bodies move most with the coordinates. Each of them must be the assembly mode that its way leads to: the legs
+ * of that are gone again from the design, by generated code and by gic, in pieces so small that no pose can leap.
+ *
+ * Prints how many states were tried, taken and refused, how many were taken that gic refuses, the largest relative
+ * difference of accelerations; results that are no numbers, refusals after which the last state is not found again;
+ * kept states that small pieces lead away from, as generated code and as gic go, and those that either does not reach.
+ */
+#include "follow.h"
 
 static const char usage[] = "usage: near_singular MODEL --count N --seed S --keep K -o FILE [--recovery WAY]\n";
 
-/* A state with the inputs that go with it, and what became of it. */
+enum { LEGS = 3 };
+
+/* A state with the inputs that go with it, what became of it, and the ways to it. */
 typedef struct Trial {
     double score;
     double *number; /* [states + inputs], then rate [states] and pose [7 bodies] */
+    double *corner; /* [LEGS - 1][coordinates] where the way from the design turns */
+    int corners;
 } Trial;
 
 typedef struct List {
@@ -26,30 +34,41 @@ typedef struct List {
 
 typedef struct Attack {
     Subject code, other;
+    gic_head *left;                     /* the instance that a refusal left */
     gic_head *good[2];                  /* of either engine: the last state of a walk that was taken */
     int states, inputs, numbers, whole; /* numbers: of a state with inputs; whole: with all that became of it */
+    double *corner;                     /* [LEGS - 1][coordinates] of the walk under way */
+    int corners;
+    bool astray; /* gic, that did not follow round a corner of the walk */
     Chance chance;
     List worst, unseen;
-    long tried, taken, refused, doubted, wrong;
+    long tried, taken, refused, doubted, wrong, lost;
+    long leapt[2], blocked[2]; /* kept states, by either engine */
     double largest;
 } Attack;
 
-static List list_new(Pool *pool, int room, int numbers)
+static List list_new(Pool *pool, int room, const Attack *attack)
 {
+    const size_t corners = (LEGS - 1) * (size_t)(attack->code.code->coordinate_count + 1);
     List list = {.room = room, .trial = pool_alloc(pool, sizeof *list.trial * (size_t)(room + 1))};
-    for (int i = 0; i < room; ++i)
-        list.trial[i].number = pool_alloc(pool, sizeof(double) * (size_t)numbers);
+    for (int i = 0; i < room; ++i) {
+        list.trial[i].number = pool_alloc(pool, sizeof(double) * (size_t)attack->whole);
+        list.trial[i].corner = pool_alloc(pool, sizeof(double) * corners);
+    }
     return list;
 }
 
 /* Keep it where it is among the worst: the list is a heap with the best on top. */
-static void keep(List *list, const double *number, int numbers, double score)
+static void keep(List *list, const Attack *attack, const double *number, double score)
 {
     if (!list->room || (list->count == list->room && !(score > list->trial[0].score)))
         return;
     int at = list->count < list->room ? list->count++ : 0;
     Trial *trial = list->trial;
-    memcpy(trial[at].number, number, sizeof *number * (size_t)numbers);
+    memcpy(trial[at].number, number, sizeof *number * (size_t)attack->whole);
+    memcpy(trial[at].corner, attack->corner,
+           sizeof *number * (size_t)(attack->corners * attack->code.code->coordinate_count));
+    trial[at].corners = attack->corners;
     trial[at].score = score;
     for (int up; at > 0 && trial[up = (at - 1) / 2].score > trial[at].score; at = up) {
         const Trial swap = trial[up];
@@ -152,9 +171,9 @@ static void screen(Attack *attack, gic_head *const from[2], const double *number
     ++attack->taken;
     attack->wrong += !gic_finite(rate, attack->whole - attack->numbers);
     memcpy(other, number, sizeof other);
-    if (evaluate(attack, &attack->other, from[1], other) != GIC_OK) {
+    if (attack->astray || evaluate(attack, &attack->other, from[1], other) != GIC_OK) {
         ++attack->doubted;
-        keep(&attack->unseen, number, attack->whole, sensitivity(attack, from[0], number));
+        keep(&attack->unseen, attack, number, sensitivity(attack, from[0], number));
         return;
     }
     for (int i = code->free_base ? half + 1 : half; i < code->slow_count;) {
@@ -167,32 +186,64 @@ static void screen(Attack *attack, gic_head *const from[2], const double *number
         worst = fmax(worst, difference / (1 + size));
     }
     attack->largest = fmax(attack->largest, worst);
-    keep(&attack->worst, number, attack->whole, worst);
+    keep(&attack->worst, attack, number, worst);
+}
+
+/* Is what a refusal left of the instance as good as the one before? The last good state is found again, where it was.
+ * Right at the bound rounding may refuse what it took before, from another start: then what is a little before it is.
+ */
+static bool goes_on(Attack *attack, double *good, double *target, double low, const double *known)
+{
+    static const double back[] = {0, 1e-9, 1e-6, 1e-3};
+    const int poses = attack->numbers + attack->states;
+    double number[attack->whole];
+    gic_head *left = attack->left;
+    memcpy(left, attack->code.self, attack->code.code->size);
+    for (int i = 0; i < 4; ++i) {
+        mix(attack, good, target, low * (1 - back[i]), number);
+        if (evaluate(attack, &attack->code, left, number) != GIC_OK)
+            continue;
+        /* poses move as a root at most: 1e-9 before the bound is 3e-5 of the way there */
+        return pose_difference(attack->code.code, number + poses, known + poses) < 1e-8 + 2 * sqrt(back[i]);
+    }
+    return false;
 }
 
 /* From the good state of the walk towards another: the last that is taken becomes the good one. */
 static void creep(Attack *attack, double *good, double *target)
 {
     const size_t size[] = {attack->code.code->size, attack->other.code->size};
-    double number[attack->whole], low = 0, high = 1;
+    double number[attack->whole], known[attack->whole], low = 0, high = 1;
+    memcpy(known, good, sizeof *known * (size_t)attack->numbers);
+    bool any = evaluate(attack, &attack->code, attack->good[0], known) == GIC_OK;
     for (int i = 0; i < 40 && high - low > 1e-13; ++i) {
         const double share = i ? 0.5 * (low + high) : 1;
         mix(attack, good, target, share, number);
         ++attack->tried;
         if (evaluate(attack, &attack->code, attack->good[0], number) != GIC_OK) {
             ++attack->refused;
+            attack->lost += any && !goes_on(attack, good, target, low, known);
             high = share;
             continue;
         }
         screen(attack, attack->good, number);
         evaluate(attack, &attack->code, attack->good[0], number);
         memcpy(attack->good[0], attack->code.self, size[0]);
+        memcpy(known, number, sizeof known);
+        any = true;
         if (evaluate(attack, &attack->other, attack->good[1], number) == GIC_OK)
             memcpy(attack->good[1], attack->other.self, size[1]);
         low = share;
     }
     mix(attack, good, target, low, number);
     memcpy(good, number, sizeof *good * (size_t)attack->numbers);
+}
+
+/* Coordinates of a state. */
+static void coordinates_of(const Attack *attack, double *number, double *x)
+{
+    for (int c = 0, rate; c < attack->code.code->coordinate_count; ++c)
+        x[c] = *coordinate_place(attack->code.code, c, number, number + attack->states, &rate);
 }
 
 static void walk(Attack *attack, double *target)
@@ -204,10 +255,69 @@ static void walk(Attack *attack, double *target)
            sizeof *good * (size_t)attack->inputs);
     memcpy(attack->good[0], attack->code.fresh, attack->code.code->size);
     memcpy(attack->good[1], attack->other.fresh, attack->other.code->size);
-    for (int leg = 0; leg < 3; ++leg) {
+    for (int leg = 0; leg < LEGS; ++leg) {
         creep(attack, good, target);
         random_state(attack, target);
+        attack->astray = attack->astray || evaluate(attack, &attack->other, attack->good[1], good) != GIC_OK;
+        memcpy(attack->good[1], attack->other.self, attack->other.code->size);
+        if (leg + 1 < LEGS)
+            coordinates_of(attack, good, attack->corner + attack->corners++ * attack->code.code->coordinate_count);
     }
+    attack->corners = 0;
+    attack->astray = false;
+}
+
+/* The way of a kept state again, in small pieces: does it lead to its poses? */
+static void follow(Attack *attack, Trial *trial, int engine, const Follower *follower)
+{
+    const double same = 1e-6;
+    const gic_model *code = follower->code;
+    const int coordinates = code->coordinate_count;
+    const Subject *subject = engine ? &attack->other : &attack->code;
+    double from[coordinates + 1], to[coordinates + 1], pose[7 * code->body_count], number[attack->whole];
+    memcpy(follower->slow, subject->fresh, code->size);
+    memcpy(number, instance_array(subject->fresh, code->state_offset), sizeof *number * (size_t)attack->states);
+    memcpy(number + attack->states, instance_array(subject->fresh, code->input_offset),
+           sizeof *number * (size_t)attack->inputs);
+    coordinates_of(attack, number, from);
+    for (int leg = 0; leg <= trial->corners; ++leg) {
+        if (leg < trial->corners)
+            memcpy(to, trial->corner + leg * coordinates, sizeof to - sizeof *to);
+        else
+            coordinates_of(attack, trial->number, to);
+        if (!follow_straight(follower, from, to, pose)) {
+            ++attack->blocked[engine];
+            return;
+        }
+        memcpy(from, to, sizeof from);
+    }
+    memcpy(number, trial->number, sizeof number);
+    if (evaluate(attack, subject, follower->slow, number) != GIC_OK) {
+        ++attack->blocked[engine];
+        return;
+    }
+    const int poses = attack->numbers + attack->states;
+    const double apart = pose_difference(code, number + poses, trial->number + poses);
+    if (apart < same)
+        return;
+    ++attack->leapt[engine];
+    fprintf(stderr, "%s: off by %g from where small pieces lead, on %d legs to", engine ? "gic" : "code", apart,
+            trial->corners + 1);
+    for (int c = 0; c < coordinates; ++c)
+        fprintf(stderr, " %.17g", to[c]);
+    fputc('\n', stderr);
+}
+
+static void follow_all(Attack *attack, Pool *pool)
+{
+    /* less than the distance of modes by an order: no two of them are nearer than the margin in which states are
+     * refused; gic, thirty times slower, looks at its steps itself */
+    const Follower follower[] = {follower_new(pool, &attack->code, 0.002), follower_new(pool, &attack->other, 0.02)};
+    List *const list[] = {&attack->worst, &attack->unseen};
+    for (int l = 0; l < 2; ++l)
+        for (int i = 0; i < list[l]->count; ++i)
+            for (int engine = 0; engine < 2; ++engine)
+                follow(attack, &list[l]->trial[i], engine, &follower[engine]);
 }
 
 static FILE *open_file(Pool *pool, const char *path, const char *ending)
@@ -319,8 +429,10 @@ int main(int argc, char **argv)
     attack.inputs = attack.code.code->input_count;
     attack.numbers = attack.states + attack.inputs;
     attack.whole = attack.numbers + attack.states + 7 * attack.code.code->body_count;
-    attack.worst = list_new(pool, (int)kept, attack.whole);
-    attack.unseen = list_new(pool, (int)kept / 2, attack.whole);
+    attack.worst = list_new(pool, (int)kept, &attack);
+    attack.unseen = list_new(pool, (int)kept / 2, &attack);
+    attack.corner = pool_alloc(pool, sizeof(double) * (LEGS - 1) * (size_t)(attack.code.code->coordinate_count + 1));
+    attack.left = instance_new(pool, attack.code.engine);
     attack.good[0] = instance_new(pool, attack.code.engine);
     attack.good[1] = instance_new(pool, attack.other.engine);
     double number[attack.whole];
@@ -333,8 +445,10 @@ int main(int argc, char **argv)
             walk(&attack, number);
     }
     write_files(pool, &attack, out);
-    printf("%ld %ld %ld %ld %.2g %ld\n", attack.tried, attack.taken, attack.refused, attack.doubted, attack.largest,
-           attack.wrong);
+    follow_all(&attack, pool);
+    printf("%ld %ld %ld %ld %.2g %ld %ld %ld %ld %ld %ld\n", attack.tried, attack.taken, attack.refused, attack.doubted,
+           attack.largest, attack.wrong, attack.lost, attack.leapt[0], attack.leapt[1], attack.blocked[0],
+           attack.blocked[1]);
     engine_close(attack.code.engine);
     engine_close(attack.other.engine);
     pool_free(pool);

@@ -3,7 +3,9 @@
 # near_singular.sh GICGEN NEAR_SINGULAR REFERENCE AGREE: suspensions driven to their limits and beyond, against gic and quad precision
 #
 # No state is taken whose accelerations or poses are off by more than 1e-8 of the sum of magnitudes of their terms, or of
-# the model's size. COUNT states a model and way of recovery (a million: COUNT=1000000 KEEP=1000, an hour a model), of
+# the model's size: quad precision starts from its poses. None is in another assembly mode than its way leads to: that is
+# gone again in small pieces, by generated code and by gic. COUNT states a model and way of recovery (a million:
+# COUNT=1000000 KEEP=1000, an hour a model), of
 # which KEEP and half as many more are compared with the reference; MODELS instead of ours.
 gicgen=$1
 near_singular=$2
@@ -25,12 +27,12 @@ for pair in ${MODELS:-$names}; do
     model=$models/$name.veh
     if "$gicgen" --dump-model "$model" >"$work/dump" &&
         "$near_singular" "$model" --recovery "$way" --count "$count" --seed 1 --keep "$keep" -o "$work/worst" >"$work/out"; then
-        read -r tried taken refused doubted screened wrong <"$work/out"
+        read -r tried taken refused doubted screened wrong lost leapt elsewhere blocked unfollowed <"$work/out"
     else
         echo "near_singular | $name $way | 0 | 0 | 0 | - | the attack itself failed"
         continue
     fi
-    "$reference" "$work/dump" "$work/worst.states" -o "$work/reference.csv" 2>"$work/log"
+    "$reference" "$work/dump" "$work/worst.states" --near "$work/worst.results" -o "$work/reference.csv" 2>"$work/log"
     "$agree" "$work/dump" "$work/reference.csv" "$work/worst.results" --tolerance 1e-8 --condition 1e300 --refusals \
         >"$work/agree"
     status=$?
@@ -38,8 +40,12 @@ for pair in ${MODELS:-$names}; do
     unreached=$(sed -n 's/.* rows: \([0-9]*\) not reached.*/\1/p' "$work/agree")
     compared=$(sed -n 's/.*, \([0-9]*\) compared.*/\1/p' "$work/agree")
     verdict="ok: $compared in quad precision, gic refuses $doubted, else differs by $screened"
-    [ "$unreached" = 0 ] || verdict="$verdict; $unreached not on a straight way from the design"
+    [ "$blocked$unfollowed" = 00 ] ||
+        verdict="$verdict; small pieces are refused on the way to $blocked, gic's to $unfollowed"
+    [ "$unreached" = 0 ] || verdict="$unreached that quad precision finds nothing near"
     [ "$wrong" = 0 ] || verdict="$wrong results are no numbers"
+    [ "$lost" = 0 ] || verdict="$lost refusals after which the last good state is not found again"
+    [ "$leapt$elsewhere" = 00 ] || verdict="$leapt elsewhere than small pieces lead, $elsewhere than gic goes"
     [ $status -eq 0 ] || verdict="off by more than 1e-8"
     [ "${compared:-0}" -gt 0 ] || verdict="nothing compared"
     echo "near_singular | $name $way | $tried | $taken | $refused | $worst relative | $verdict"
