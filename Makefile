@@ -116,7 +116,7 @@ $(BUILD)/check/states $(BUILD)/check/agree: $(BUILD)/check/%: $(BUILD)/tests/%.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm
 
-$(BUILD)/check/random_vehicle: $(patsubst %.c,$(BUILD)/%.o,tests/random_vehicle.c tests/random/vehicle.c \
+$(BUILD)/check/random_vehicle: $(patsubst %.c,$(BUILD)/%.o,tests/random_vehicle.c $(wildcard tests/random/*.c) \
     tests/reference/support.c)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm

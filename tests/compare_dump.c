@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * compare_dump EXPECTED ACTUAL: compare two dumped models (FORMAT.md section 11), whatever their layout and order of
- * keys; the sequence is another test's. Prints the first difference; exit status 0: equal, 1: different, 2: usage. */
+ * compare_dump EXPECTED ACTUAL [LEAST]: compare two dumped models (FORMAT.md section 11), whatever their layout and
+ * order of keys; the sequence is another test's. A number by itself, which may be a difference of large ones too, is
+ * taken to be LEAST in size (default 0) where it is less. Prints the first difference; exit status 0: equal, 1:
+ * different, 2: usage. */
 #include "gicgen.h"
 
 #include <math.h>
@@ -21,7 +23,7 @@ static bool is_number(const Item *item)
     return item->kind == ITEM_SCALAR && !item->quoted && item->text[0] && strchr("+-.0123456789", item->text[0]);
 }
 
-static void compare(const Item *expected, const Item *actual, double scale)
+static void compare(const Item *expected, const Item *actual, double scale, double least)
 {
     if (expected->kind != actual->kind)
         differ(expected, actual, "another kind of value");
@@ -35,12 +37,12 @@ static void compare(const Item *expected, const Item *actual, double scale)
     } else if (expected->count != actual->count) {
         differ(expected, actual, "another number of elements");
     } else if (expected->kind == ITEM_LIST) {
-        scale = 0;
+        scale = least;
         for (int i = 0; i < expected->count; ++i)
             if (is_number(expected->value[i]))
                 scale = fmax(scale, fabs(doc_number(expected->value[i], "expected")));
         for (int i = 0; i < expected->count; ++i)
-            compare(expected->value[i], actual->value[i], scale);
+            compare(expected->value[i], actual->value[i], scale, least);
     } else {
         for (int i = 0; i < expected->count; ++i) {
             const char *key = expected->key[i]->text;
@@ -48,19 +50,20 @@ static void compare(const Item *expected, const Item *actual, double scale)
             if (!value)
                 differ(expected->key[i], actual, "a key is missing");
             if (strcmp(key, "sequence"))
-                compare(expected->value[i], value, 0);
+                compare(expected->value[i], value, least, least);
         }
     }
 }
 
 int main(int count, char **argument)
 {
-    if (count != 3) {
-        fputs("usage: compare_dump EXPECTED ACTUAL\n", stderr);
+    if (count != 3 && count != 4) {
+        fputs("usage: compare_dump EXPECTED ACTUAL [LEAST]\n", stderr);
         return 2;
     }
     Pool *pool = pool_new();
-    compare(doc_read(pool, argument[1]), doc_read(pool, argument[2]), 0);
+    const double least = count == 4 ? strtod(argument[3], NULL) : 0;
+    compare(doc_read(pool, argument[1]), doc_read(pool, argument[2]), least, least);
     pool_free(pool);
     return 0;
 }

@@ -1,12 +1,16 @@
 /* SPDX-License-Identifier: MIT
- * random_vehicle --seed S [--broken]
+ * random_vehicle --seed S [--broken | --rich FOLDER --tire FILE]
  *
  * Prints a random vehicle in the format of models/FORMAT.md: bodies that hold suspensions, drawn from a grammar of
  * axles and corners, each of which brings as many equations and coordinates as its bodies have freedoms. Equal seeds
  * give equal vehicles.
  *
  * With --broken one mistake is made: the format stays valid, the mechanism does not. The first line of stderr names
- * the culprits, bodies, joints and coordinates of which an error message must name at least one. */
+ * the culprits, bodies, joints and coordinates of which an error message must name at least one.
+ *
+ * With --rich it has tires, a powertrain, formulas and inputs too, left sides of which the reader makes the right ones,
+ * and axles in files that it includes: FOLDER/S.veh and what that includes, a tire like that of the .tir FILE, and
+ * FOLDER/S.plain.veh, in which everything is written out. */
 #include "random/vehicle.h"
 #include "reference/support.h"
 
@@ -14,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char usage[] = "usage: random_vehicle --seed S [--broken]\n";
+static const char usage[] = "usage: random_vehicle --seed S [--broken | --rich FOLDER --tire FILE]\n";
 
 /* What holds up an arm that turns about u through p: the angle, or a spring to `foot` on the arm from `seat`. */
 static void suspend(Vehicle *v, int carrier, int arm, Vec p, Vec u, Vec seat, Vec foot)
@@ -147,7 +151,7 @@ static Vec at(Vehicle *v, const Place *place, double dx, double y, double z)
 
 static int add_knuckle(Vehicle *v, const Place *place)
 {
-    return add_body(v, "knuckle", at(v, place, 0, 0.72, 0.34), 40, 0.2);
+    return add_carrier(v, "knuckle", at(v, place, 0, 0.72, 0.34), 40, 0.2);
 }
 
 /* An arm on a hinge, held up directly or through a rocker that it pushes. */
@@ -228,7 +232,7 @@ static int strut(Vehicle *v, const Place *place)
 
 static int trailing_arm(Vehicle *v, const Place *place)
 {
-    int arm = add_body(v, "trailing", at(v, place, 0.1, 0.6, 0.35), 30, 0.25);
+    int arm = add_carrier(v, "trailing", at(v, place, 0.1, 0.6, 0.35), 30, 0.25);
     Vec p = at(v, place, 0.45, 0.45, 0.35), u = direction(v, 0, 1, 0);
     hinge(v, place->carrier, arm, p, u);
     suspend(v, place->carrier, arm, p, u, at(v, place, 0.15, 0.5, 0.75), at(v, place, 0.15, 0.52, 0.35));
@@ -237,7 +241,7 @@ static int trailing_arm(Vehicle *v, const Place *place)
 
 static int swing_axle(Vehicle *v, const Place *place)
 {
-    int arm = add_body(v, "swing", at(v, place, 0, 0.5, 0.34), 30, 0.25);
+    int arm = add_carrier(v, "swing", at(v, place, 0, 0.5, 0.34), 30, 0.25);
     Vec p = at(v, place, 0, 0.2, 0.35), u = direction(v, 1, 0, 0);
     hinge(v, place->carrier, arm, p, u);
     suspend(v, place->carrier, arm, p, u, at(v, place, 0.05, 0.4, 0.75), at(v, place, 0.05, 0.5, 0.35));
@@ -281,7 +285,7 @@ static void add_wheel(Vehicle *v, const Place *place, int carrier)
     Vec center = at(v, place, 0, 0.78, 0.32);
     double choice = uniform(v, 0, 1);
     if (choice < 0.35) {
-        int hub = add_body(v, "hub", center, 20, 0.25);
+        int hub = add_carrier(v, "hub", center, 20, 0.25);
         Vec u = direction(v, 0, 1, 0);
         if (choice < 0.15) {
             weld(v, carrier, hub, center);
@@ -292,8 +296,12 @@ static void add_wheel(Vehicle *v, const Place *place, int carrier)
         carrier = hub;
     }
     Entry *wheel = add(v, WHEEL, "wheel");
-    SAY(wheel, "body: %s", body_name(v, carrier));
-    say_vector(v, wheel, ", center: ", center);
+    say(wheel, "body: %s", body_name(v, carrier));
+    say_point(v, wheel, ", center: ", center);
+    if (v->tired && chance(v, 0.85)) {
+        say_rolling(v, wheel, carrier);
+        return;
+    }
     say_number(v, wheel, ", radius: ", uniform(v, 0.3, 0.36));
     say_number(v, wheel, ", stiffness: ", uniform(v, 1e5, 3e5));
     say_number(v, wheel, ", damping: ", uniform(v, 0, 800));
@@ -320,7 +328,7 @@ static void add_corner(Vehicle *v, const Place *place)
 static void solid_axle(Vehicle *v, int carrier, double x)
 {
     double ahead = chance(v, 0.5) ? 0.6 : -0.6;
-    int axle = add_body(v, "axle", point(v, x, 0, 0.36), 120, 0.4);
+    int axle = add_carrier(v, "axle", point(v, x, 0, 0.36), 120, 0.4);
     bool track_bar = chance(v, 0.5);
     for (int side = -1; side <= 1; side += 2) {
         Place place = {carrier, carrier, x, side};
@@ -352,22 +360,46 @@ static void four_bar(Vehicle *v, int carrier)
     coordinate(v, "crank", "angle", carrier, crank, &(Geometry){.axis = &u}, 0.3, 50, true);
 }
 
+/* What comes next goes into a file of its own, somewhere else and with a prefix, or neither. */
+static void begin_part(Vehicle *v)
+{
+    Part *part = &v->part[v->part_now = ++v->parts];
+    snprintf(part->name, sizeof part->name, "p%d_", v->parts);
+    part->has_prefix = chance(v, 0.6);
+    if (chance(v, 0.6))
+        part->at = near_to(v, 0, 0, 0, 2);
+}
+
 static void add_axle(Vehicle *v, double x)
 {
     int carrier = BASE;
     bool wants_frame = v->mistake == PARALLEL_TWICE;
+    if (v->rich && v->parts < PARTS && chance(v, 0.5))
+        begin_part(v);
     for (double probability = wants_frame ? 1 : 0.35; chance(v, probability); probability = 0.3)
         carrier = add_frame(v, carrier, x);
     bool wants_corner = v->mistake == TIE_ROD_ON_KINGPIN || v->mistake == SPRING_THROUGH_HINGE;
     if (!wants_corner && v->mistake != PRISMATIC_TWICE && chance(v, 0.2)) {
         solid_axle(v, carrier, x);
+        v->part_now = 0;
         return;
     }
     Steering steering = {{carrier, carrier}};
     if (v->mistake == PRISMATIC_TWICE || chance(v, 0.6))
         steering = add_steering(v, carrier, x);
-    for (int i = 0; i < 2; ++i)
-        add_corner(v, &(Place){carrier, steering.body[i], x, i ? -1 : 1});
+    if (v->rich && steering.body[0] == steering.body[1] && chance(v, 0.6)) {
+        Mirror mirror;
+        const Place left = {carrier, steering.body[0], x, 1};
+        begin_left(v, &mirror);
+        add_corner(v, &left);
+        begin_right(v, &mirror);
+        add_corner(v, &left);
+        end_mirror(v, &mirror);
+    } else {
+        for (int i = 0; i < 2; ++i)
+            add_corner(v, &(Place){carrier, steering.body[i], x, i ? -1 : 1});
+    }
+    v->part_now = 0;
 }
 
 /* ---- the whole vehicle ---- */
@@ -385,10 +417,34 @@ static void add_load(Vehicle *v)
 {
     int body = BASE + 1 + pick(v, v->section[BODY].count - 1), in = pick(v, body + 1);
     Entry *force = add(v, FORCE, "load");
-    SAY(force, "type: load, body: %s, in: %s", body_name(v, body), in == BASE ? "world" : body_name(v, in));
-    say_vector(v, force, ", point: ", point(v, 0, 0, 0.5));
+    say(force, "type: load, body: %s, in: %s", body_name(v, body), in == BASE ? "world" : body_name(v, in));
+    say_point(v, force, ", point: ", point(v, 0, 0, 0.5));
     say_vector(v, force, ", force: ", near_to(v, 0, 0, 0, 200));
     say_vector(v, force, ", torque: ", near_to(v, 0, 0, 0, 50));
+}
+
+/* Forces that are formulas of anything. */
+static void add_formulas(Vehicle *v)
+{
+    for (int i = pick(v, 4); i > 0; --i) {
+        Entry *force = add(v, FORCE, "formula");
+        const Entry *along = &v->section[COORDINATE].entry[pick(v, v->section[COORDINATE].count)];
+        say(force, "type: force, coordinate: %s, value: \"%.4g * (", along->name, uniform(v, 10, 300));
+        say_any_formula(v, force, 3);
+        say(force, ")\"");
+    }
+    if (chance(v, 0.5)) {
+        int body = BASE + 1 + pick(v, v->section[BODY].count - 1), in = pick(v, body + 1);
+        Entry *load = add(v, FORCE, "load");
+        say(load, "type: load, body: %s, in: %s", body_name(v, body), in == BASE ? "world" : body_name(v, in));
+        for (int part = chance(v, 0.5); part < 2; ++part)
+            for (int i = 0; i < 3; ++i) {
+                say(load, i ? "\", \"" : part ? ", torque: [\"" : ", force: [\"");
+                say(load, "%.4g * (", uniform(v, -50, 50));
+                say_any_formula(v, load, 1);
+                say(load, i < 2 ? ")" : ")\"]");
+            }
+    }
 }
 
 static void add_outputs(Vehicle *v)
@@ -397,12 +453,12 @@ static void add_outputs(Vehicle *v)
                                        "orientation", "roll_pitch_yaw", "angular_velocity"};
     for (int i = 0; i < 4; ++i) {
         int body = (v->fixed ? 1 : 0) + pick(v, v->section[BODY].count - (v->fixed ? 1 : 0));
-        SAY(add(v, OUTPUT, "out"), "type: %s, body: %s", type[pick(v, 6)], body_name(v, body));
+        say(add(v, OUTPUT, "out"), "type: %s, body: %s", type[pick(v, 6)], body_name(v, body));
     }
     for (int i = 0; i < v->section[COORDINATE].count; ++i)
         if (!v->section[COORDINATE].entry[i].dropped && chance(v, 0.3))
-            SAY(add(v, OUTPUT, "out"), "type: coordinate, coordinate: %s", v->section[COORDINATE].entry[i].name);
-    SAY(add(v, OUTPUT, "out"), "type: energy");
+            say(add(v, OUTPUT, "out"), "type: coordinate, coordinate: %s", v->section[COORDINATE].entry[i].name);
+    say(add(v, OUTPUT, "out"), "type: energy");
 }
 
 static void build(Vehicle *v)
@@ -410,6 +466,14 @@ static void build(Vehicle *v)
     static const double x[] = {1.4, -1.4, -2.4};
     v->fixed = chance(v, 0.15);
     v->tuned = chance(v, 0.3);
+    if (v->rich) {
+        add_gains(v);
+        v->tired = chance(v, 0.7);
+        v->driven = v->tired && chance(v, 0.5);
+        v->spin = uniform(v, 0.1, 2);
+        if (v->tired)
+            add_tires(v);
+    }
     Vec com = point(v, 0, 0, 0.6);
     int base = add_body(v, "chassis", com, 1500, 0.9), axles = 1 + pick(v, 2) + chance(v, 0.2);
     if (v->fixed) {
@@ -425,6 +489,10 @@ static void build(Vehicle *v)
         add_element(v);
     if (chance(v, 0.3))
         add_load(v);
+    if (v->rich)
+        add_formulas(v);
+    if (v->driven)
+        add_powertrain(v);
 }
 
 static void drop(Vehicle *v, Kind kind)
@@ -461,42 +529,26 @@ static void make_mistake(Vehicle *v, Mistake mistake)
     }
 }
 
-/* The entries of a section in random order. */
-static void print_section(Vehicle *v, Kind kind, const char *title)
-{
-    Section *section = &v->section[kind];
-    int order[MOST];
-    for (int i = 0; i < section->count; ++i) {
-        int j = pick(v, i + 1);
-        order[i] = order[j];
-        order[j] = i;
-    }
-    if (section->count)
-        printf("%s:\n", title);
-    for (int i = 0; i < section->count; ++i) {
-        const Entry *entry = &section->entry[order[i]];
-        if (!entry->dropped)
-            printf("  %s: {%s}\n", entry->name, entry->text);
-    }
-}
-
 int main(int argc, char **argv)
 {
-    static const char *const title[KINDS] = {"parameters",  "tables", "bodies", "joints",
-                                             "coordinates", "forces", "wheels", "outputs"};
     double seed = -1;
     bool broken = false;
+    const char *folder = NULL, *tire = NULL;
     for (int i = 1; i < argc; ++i) {
         if (!strcmp(argv[i], "--seed") && i + 1 < argc) {
             seed = number_of(argv[++i], "--seed");
         } else if (!strcmp(argv[i], "--broken")) {
             broken = true;
+        } else if (!strcmp(argv[i], "--rich") && i + 1 < argc) {
+            folder = argv[++i];
+        } else if (!strcmp(argv[i], "--tire") && i + 1 < argc) {
+            tire = argv[++i];
         } else {
             fputs(usage, stderr);
             return 2;
         }
     }
-    if (!(seed >= 0 && seed < 0x1p53)) {
+    if (!(seed >= 0 && seed < 0x1p53) || !folder != !tire || (folder && broken)) {
         fputs(usage, stderr);
         return 2;
     }
@@ -504,12 +556,14 @@ int main(int argc, char **argv)
     start_random(v, seed);
     Mistake mistake = broken ? (Mistake)(1 + (int)fmod(seed, MISTAKES - 1)) : NO_MISTAKE;
     v->mistake = mistake;
+    v->rich = folder;
     build(v);
     make_mistake(v, mistake);
     add_outputs(v);
-    printf("gicgen: 1\nmodel: random_%.0f\nbase: %s\n", seed, body_name(v, BASE));
-    for (Kind kind = PARAMETER; kind < KINDS; ++kind)
-        print_section(v, kind, title[kind]);
+    if (folder)
+        write_files(v, folder, seed, tire);
+    else
+        write_plain(v, stdout, seed);
     if (broken)
         fprintf(stderr, "%s\n", v->culprits);
     free(v);

@@ -6,8 +6,23 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
-typedef enum Kind { PARAMETER, TABLE, BODY, JOINT, COORDINATE, FORCE, WHEEL, OUTPUT, KINDS } Kind;
+typedef enum Kind {
+    PARAMETER,
+    TABLE,
+    BODY,
+    JOINT,
+    COORDINATE,
+    FORCE,
+    WHEEL,
+    OUTPUT,
+    POINT,
+    INPUT,
+    TIRE,
+    DIFFERENTIAL,
+    KINDS
+} Kind;
 
 typedef enum Mistake {
     NO_MISTAKE,
@@ -23,14 +38,31 @@ typedef enum Mistake {
     MISTAKES
 } Mistake;
 
-enum { MOST = 160, BASE = 0, NOTHING = -1 };
+enum { MOST = 400, BASE = 0, NOTHING = -1, PARTS = 4, GAINS = 3 };
 
 typedef struct Entry {
-    char name[24], text[360];
-    int end[2];     /* bodies that it concerns, or NOTHING */
-    int coordinate; /* of a force, or NOTHING */
+    char name[32];
+    char text[1200];  /* as a file of its part has it */
+    char plain[1200]; /* as one file without inclusion and mirror images has it */
+    int end[2];       /* bodies that it concerns, or NOTHING */
+    int coordinate;   /* of a force, or NOTHING */
+    int part;         /* file that it stands in; 0: the vehicle's own */
+    int image;        /* its mirror image in the same section, or NOTHING */
+    bool is_image;    /* only a plain file has it */
     bool dropped;
 } Entry;
+
+/* A point or direction of the model frame. */
+typedef struct Vec {
+    double x[3];
+} Vec;
+
+/* A file that the vehicle includes. */
+typedef struct Part {
+    Vec at;          /* added to its points */
+    bool has_prefix; /* its names lack `name` in the file */
+    char name[16];   /* that all its names begin with */
+} Part;
 
 typedef struct Section {
     int count;
@@ -44,13 +76,17 @@ typedef struct Vehicle {
     int names;             /* given so far */
     Mistake mistake;       /* still to be made while the vehicle is put together */
     char culprits[300];
+    bool rich;             /* with tires, formulas, inclusion, mirror images */
+    int parts, part_now;   /* files that it includes; that entries go into, or 0 */
+    Part part[PARTS + 1];  /* [0] is the vehicle's own */
+    bool mirrors, image;   /* what is added is the left one of two; or the right one */
+    int left_count[KINDS]; /* of an image: how many entries its left one has */
+    bool tired, driven;    /* its wheels roll; a powertrain drives them */
+    double spin;           /* kg m^2, the most that a wheel's spin inertia may be */
+    const char *gain[GAINS], *input[GAINS];
+    char powertrain[4000];
     Section section[KINDS];
 } Vehicle;
-
-/* A point or direction of the model frame. */
-typedef struct Vec {
-    double x[3];
-} Vec;
 
 /* ---- random numbers; equal seeds give equal ones ---- */
 
@@ -77,13 +113,26 @@ Vec across(Vehicle *v, Vec u);
 
 void append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-#define SAY(entry, ...) append((entry)->text, sizeof(entry)->text, __VA_ARGS__)
+/* In all files alike. */
+void say(Entry *entry, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* A number, or in its place the name of a tunable parameter that has its value. */
 void say_number(Vehicle *v, Entry *entry, const char *lead, double value);
+/* What a mirror does to three numbers: see section 13 of FORMAT.md. */
+void say_point(Vehicle *v, Entry *entry, const char *lead, Vec u);
+void say_direction(Vehicle *v, Entry *entry, const char *lead, Vec u);
+void say_turning(Vehicle *v, Entry *entry, const char *lead, Vec u);
+/* Three numbers that are the same in a mirror. */
 void say_vector(Vehicle *v, Entry *entry, const char *lead, Vec u);
-/* The same where no parameter may stand. */
-void say_fixed_vector(Entry *entry, const char *lead, Vec u);
+/* Begin what stands on the left, and its image on the right, which is the same again: whoever calls adds both by the
+ * same calls. What is added after both has no image. */
+typedef struct Mirror {
+    uint64_t random;
+    int names, first[KINDS];
+} Mirror;
+void begin_left(Vehicle *v, Mirror *mirror);
+void begin_right(Vehicle *v, const Mirror *mirror);
+void end_mirror(Vehicle *v, const Mirror *mirror);
 /* A new entry of a section with a name of its own. */
 Entry *add(Vehicle *v, Kind kind, const char *prefix);
 const char *body_name(const Vehicle *v, int body);
@@ -104,6 +153,8 @@ void say_connection(Vehicle *v, Entry *entry, const char *type, int a, int b, co
 
 /* An ellipsoid of random half axes about `size`, turned against the body frame; its frame stands anywhere near. */
 int add_body(Vehicle *v, const char *prefix, Vec com, double mass, double size);
+/* The same, and heavy enough about all axes for what spins on it. */
+int add_carrier(Vehicle *v, const char *prefix, Vec com, double mass, double size);
 Entry *join(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with);
 /* b turns on a about u: a revolute, or what is equal to it. */
 Entry *hinge(Vehicle *v, int a, int b, Vec p, Vec u);
@@ -119,5 +170,24 @@ Entry *rod(Vehicle *v, int a, int b, Vec p_a, Vec p_b);
 /* A dual coordinate, mostly with a spring. `reach` is half the width of its range; stiffness 0: no spring. */
 Entry *coordinate(Vehicle *v, const char *prefix, const char *type, int a, int b, const Geometry *with, double reach,
                   double stiffness, bool may_drive);
+/* A table over `width` on either side of 0, where it is 0, and `force` at the end. */
+const char *add_table(Vehicle *v, double width, double force);
+
+/* ---- of rich vehicles ---- */
+
+/* A formula of `variable`s of a size of about 1, and of gains and inputs; some numbers in size. */
+void say_formula(Vehicle *v, Entry *entry, int depth, const char *const *variable, int variables);
+/* One of all coordinates and their rates. */
+void say_any_formula(Vehicle *v, Entry *entry, int depth);
+void add_gains(Vehicle *v);
+void add_tires(Vehicle *v);
+/* The rest of a wheel's entry: what rolls. `carrier` is a body. */
+void say_rolling(Vehicle *v, Entry *wheel, int carrier);
+void add_powertrain(Vehicle *v);
+/* Writes SEED.veh, what it includes, its tire, and SEED.plain.veh, which is the same in one file written out. `tire` is
+ * the path of a .tir file to vary. */
+void write_files(Vehicle *v, const char *folder, double seed, const char *tire);
+/* The same in one file. */
+void write_plain(Vehicle *v, FILE *out, double seed);
 
 #endif

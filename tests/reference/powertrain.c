@@ -225,6 +225,9 @@ void line_evaluate(const Model *model, const Configuration *configuration, const
         for (size_t i = 0; i < outs; ++i)
             scale[i] += fabsq(moved[i] - out[i]) / step;
     }
+    /* a half shaft's torque is what is left of moments on the wheel that may cancel, which no change of one shows */
+    for (size_t w = 0; w < W; ++w)
+        scale[LINE_RESULTS + OF_WHEEL_OUT * w + 1] += size[LINE_IN + OF_WHEEL_IN * w + 1];
     memcpy(state->value, out, sizeof state->value);
     memcpy(state->scale, scale, sizeof state->scale);
     for (int w = 0; w < model->wheels; ++w) {

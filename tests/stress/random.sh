@@ -1,17 +1,23 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# random.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE: VEHICLES (short: 2, full: 1000) random vehicles against
-# quad precision, and as many with a mistake, which must be refused with a culprit's name (tests/test_random.sh).
+# random.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE COMPARE_DUMP: VEHICLES (short: 2, full: 1000) random
+# vehicles against quad precision at ROWS (short: 10, full: 4) states, and as many with a mistake, which must be refused
+# with a culprit's name (tests/test_random.sh).
 [ "$STRESS" = short ] && usual=2 || usual=1000
-VEHICLES=${VEHICLES:-$usual} ROWS=${ROWS:-10} sh "$(dirname "$0")/../test_random.sh" "$@" | awk -v all=$((2 * ${VEHICLES:-$usual})) '
+[ "$STRESS" = short ] && states=10 || states=4
+export VEHICLES="${VEHICLES:-$usual}" ROWS="${ROWS:-$states}" COMPILED="${COMPILED:-50}"
+sh "$(dirname "$0")/../test_random.sh" "$@" |
+    awk -v all=$((2 * VEHICLES)) '
     /^FAIL / {
         verdict = verdict ? verdict : $0
         print >"/dev/stderr"
         next
     }
+    /^worst / { worst = $2 }
     /^[0-9]* passed, [0-9]* failed$/ { passed = $1 }
     END {
         # what is broken and refused with a culprit counts as half of what passed
         refused = verdict ? 0 : all / 2
-        printf "random | random vehicles | %d | %d | %d | | %s\n", all, passed - refused, refused, verdict ? verdict : "ok"
+        printf "random | random vehicles | %d | %d | %d | %s of all terms | %s\n", all, passed - refused, refused,
+            worst, verdict ? verdict : "ok"
     }'
