@@ -66,8 +66,8 @@
  *   subset 'lca_f_l' (2 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_r_l' (2 times)                             597       680       6      0         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
- *   forces and equations of motion                           700       654      11      0         4
- *   all together                                            2655      3079      35      6         4
+ *   forces and equations of motion                           719       704       7      0         4
+ *   all together                                            2674      3129      31      6         4
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H

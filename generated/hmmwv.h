@@ -72,8 +72,8 @@
  *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'wheel_r_l' (2 times, closed form)                 87       129       2      1         0
- *   forces and equations of motion                           679       585      10      0         4
- *   all together                                            1752      2130      28     10         4
+ *   forces and equations of motion                           698       635       6      0         4
+ *   all together                                            1771      2180      24     10         4
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #ifndef HMMWV_H

@@ -74,8 +74,8 @@
  *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
  *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        514       648       6      2         0
  *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        427       538       6      2         0
- *   forces and equations of motion                           852       774      15      4         4
- *   all together                                            3025      3615      43     16         4
+ *   forces and equations of motion                           871       824      11      4         4
+ *   all together                                            3044      3665      39     16         4
  *   outputs, when asked for                                  933      1137       4      4        19
  */
 #ifndef HMMWV14_H

@@ -72,8 +72,8 @@
  *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'wheel_r_l' (2 times, closed form)                 87       129       2      1         0
- *   forces and equations of motion                           819       713      14      4        24
- *   all together                                            1892      2258      32     14        24
+ *   forces and equations of motion                           838       763      10      4        24
+ *   all together                                            1911      2308      28     14        24
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H

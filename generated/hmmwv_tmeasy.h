@@ -72,12 +72,12 @@
  *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'wheel_r_l' (2 times, closed form)                 87       129       2      1         0
- *   forces and equations of motion                           549       457       9      0         0
+ *   forces and equations of motion                           568       507       5      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
  *   wheel 'tire_f_l' (4 times)                               160       246      33     14         5
  *   a fast step: all wheels                                  640       986     132     56        20
- *   all together                                            2461      3190     159     66        20
+ *   all together                                            2480      3240     155     66        20
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TMEASY_H

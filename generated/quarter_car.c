@@ -42,8 +42,8 @@
  *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
  *   subset 'arm' (1 times, closed form)                       43        70       2      1         0
  *   subset 'wheel' (1 times, closed form)                    230       323       5      2         0
- *   forces and equations of motion                            39        38       1      0         1
- *   all together                                             313       431       8      3         1
+ *   forces and equations of motion                            39        40       1      0         1
+ *   all together                                             313       433       8      3         1
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #include "quarter_car.h"
@@ -740,10 +740,10 @@ static int quarter_car_dynamics(quarter_car *self, gic_real time, const gic_real
     {
         const gic_real t1 = n[52] + n[86];
         const gic_real t2 = n[53] + n[85];
-        const gic_real t3 = t2 * R(0.0015622314914624045);
-        const gic_real t4 = t1 - t2 * t3;
-        if (!(t4 - t1 * R(1e-06) > R(0.0)))
+        const gic_real t3 = R(640.1100000000001) * t1 - t2 * t2;
+        if (!(t3 - t1 * R(0.00064011) > R(0.0)))
             return quarter_car_about(self, GIC_ERROR_MASS, 1, 1);
+        const gic_real t4 = R(1.0) / t3;
         const gic_real t5 = m[71] * R(0.09182100000000004) + (m[70] * R(0.12319000000000002) + m[69] * R(-0.004825999999999997));
         const gic_real t6 = m[77] * R(0.09182100000000004) + (m[76] * R(0.12319000000000002) + m[75] * R(-0.004825999999999997));
         const gic_real t7 = m[74] * R(0.09182100000000004) + (m[73] * R(0.12319000000000002) + m[72] * R(-0.004825999999999997));
@@ -759,14 +759,15 @@ static int quarter_car_dynamics(quarter_car *self, gic_real time, const gic_real
         const gic_real t15 = t14 - (n[51] + n[76]) - R(6279.479100000001);
         const gic_real t16 = m[101] * t14 + (m[96] * (t7 * t14) - m[97] * (t5 * t14));
         const gic_real t17 = t16 - ((x[1] - R(0.31658)) * R(167070.9) + xd[1] * R(17490.8)) - (n[44] + n[83]);
-        const gic_real t18 = R(1.0) / t4 * (t17 - (n[40] + n[79]) * R(9.81) - t15 * t3);
+        const gic_real t18 = t17 - (n[40] + n[79]) * R(9.81);
         const gic_real t19 = xd[0];
-        const gic_real t20 = t15 * R(0.0015622314914624045) - t3 * t18;
+        const gic_real t20 = t4 * (t1 * t15 - t2 * t18);
         const gic_real t21 = xd[1];
+        const gic_real t22 = t4 * (R(640.1100000000001) * t18 - t2 * t15);
         rate[0] = t19;
         rate[2] = t20;
         rate[1] = t21;
-        rate[3] = t18;
+        rate[3] = t22;
     }
     return GIC_OK;
 }

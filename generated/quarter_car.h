@@ -42,8 +42,8 @@
  *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
  *   subset 'arm' (1 times, closed form)                       43        70       2      1         0
  *   subset 'wheel' (1 times, closed form)                    230       323       5      2         0
- *   forces and equations of motion                            39        38       1      0         1
- *   all together                                             313       431       8      3         1
+ *   forces and equations of motion                            39        40       1      0         1
+ *   all together                                             313       433       8      3         1
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #ifndef QUARTER_CAR_H

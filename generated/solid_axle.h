@@ -61,8 +61,8 @@
  *   subset 'lca_f_l' (2 times, closed form)                   69       111       1      1         0
  *   subset 'axle' (1 times)                                  661       744       6      0         0
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
- *   forces and equations of motion                           697       663       9      0         4
- *   all together                                            2119      2472      27      6         4
+ *   forces and equations of motion                           716       713       5      0         4
+ *   all together                                            2138      2522      23      6         4
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H

@@ -64,8 +64,8 @@
  *   subset 'lca_f_l' (2 times, closed form)                   61       116       2      1         2
  *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
  *   subset 'lca_f_l_2' (2 times, closed form)                 76       121       2      1         2
- *   forces and equations of motion                           741       704      14      4         4
- *   all together                                            1638      2021      32     12        12
+ *   forces and equations of motion                           760       754      10      4         4
+ *   all together                                            1657      2071      28     12        12
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H

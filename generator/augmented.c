@@ -62,7 +62,7 @@ static void inverse_inertia(System *s, int body, Ex out[6])
     Ex J[9], own[6], unit[3];
     for (int i = 0; i < 9; ++i)
         J[i] = whole_number(s->whole, &s->whole->model->body[body].inertia[place[i / 3][i % 3]]);
-    const Factors *factors = linear_factor_symmetric(dag, 3, J, NULL);
+    const Factors *factors = linear_factor_symmetric(dag, 3, J, NULL, 0);
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j)
             unit[j] = ex_literal(dag, i == j);
@@ -408,7 +408,7 @@ Block *augmented_block(Whole *whole)
     block_loads(block, s.loads->own, whole->model->coordinates);
     const Ex *driven = whole_driven_accelerations(whole), *H = reduced_matrix(&s);
     Ex *x = pool_alloc(dag->pool, (size_t)(s.unknowns + 1) * sizeof *x);
-    const Factors *factors = linear_factor_symmetric(dag, s.unknowns, H, topology_order(&s));
+    const Factors *factors = linear_factor_symmetric(dag, s.unknowns, H, topology_order(&s), 0);
     for (int k = 0; k < s.equations; ++k) {
         Ex diagonal = H[s.unknowns * factors->row[k] + factors->row[k]];
         const Ex left = ex_sub(dag, factors->pivot[k], ex_mul(dag, ex_literal(dag, independent), diagonal));

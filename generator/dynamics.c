@@ -227,12 +227,15 @@ void whole_store_rates(Whole *whole, Block *block, const Ex *z)
         }
 }
 
-/* Those coordinates first that are alike in several parts: they are eliminated side by side. NULL: cheapest first. */
-static const int *elimination_order(const Whole *whole)
+/* Those coordinates first that are alike in several parts: they are eliminated side by side. NULL: cheapest first.
+ * *blocked: pivots at the end that come in blocks, for there one division would wait for another. */
+static const int *elimination_order(const Whole *whole, int n, int *blocked)
 {
     const Plan *plan = whole->plan;
     int *order = NULL, count = 0;
+    *blocked = n < 6 ? n : 6;
     for (int alike = 1; plan->pack && alike >= 0; --alike) {
+        *blocked = n - count;
         for (int i = 0; !alike && whole->model->free_base && i < 6; ++i)
             *POOL_PUSH(whole->dag->pool, order, count) = i;
         for (int w = 0; w < whole->model->coordinates; ++w)
@@ -281,17 +284,17 @@ static int first_unknown(const Plan *plan, int number)
     return number;
 }
 
-/* A pivot says how much inertia is left along an unknown once those eliminated before it may move freely, and its
- * diagonal entry how much there was: their ratio is by how much the elimination magnifies roundings. */
-static void check_pivot(Whole *whole, Block *block, int unknown, Ex pivot, Ex diagonal)
+/* What is left of an inertia must be more than lost of what there was, or accelerations along an unknown have lost too
+ * many digits. Both may have a common factor. */
+static void check_left(Whole *whole, Block *block, int unknown, Ex left, Ex whole_of_it)
 {
     Dag *dag = whole->dag;
     const Plan *plan = whole->plan;
     /* what nothing was taken from only has to be there */
-    const Ex lost = pivot == diagonal ? 0 : ex_mul(dag, ex_literal(dag, 1 / most_loss), diagonal);
-    const Ex left = ex_sub(dag, pivot, lost);
+    const Ex least = left == whole_of_it ? 0 : ex_mul(dag, ex_literal(dag, 1 / most_loss), whole_of_it);
+    const Ex more = ex_sub(dag, left, least);
     int subset = -1, state = -1;
-    if (dag->node[left].level < LEVEL_VARIABLE && ex_value(dag, left, 0) > 0)
+    if (dag->node[more].level < LEVEL_VARIABLE && ex_value(dag, more, 0) > 0)
         return;
     /* in the state linear velocity comes first */
     if (whole->model->free_base && unknown < 6)
@@ -304,7 +307,28 @@ static void check_pivot(Whole *whole, Block *block, int unknown, Ex pivot, Ex di
                 state = plan->coordinate_state[w];
             }
         }
-    block_check_about(block, left, "GIC_ERROR_MASS", subset, state);
+    block_check_about(block, more, "GIC_ERROR_MASS", subset, state);
+}
+
+/* The account of digits. A pivot is the inertia that is left along its unknown once those before it may move freely,
+ * its diagonal entry d what there was: their ratio magnifies roundings. With B a block of pivots, 1 over an entry of
+ * the diagonal of B^-1 = adj B / det B is what is left along that unknown once those of the block may move freely too;
+ * and det B is a sum of products as large as that of B's diagonal, whose roundings it has. */
+static void check_pivots(Whole *whole, Block *block, int n, const Ex *M, const Factors *f)
+{
+    Dag *dag = whole->dag;
+    for (int k = 0, end; k < n; k = end) {
+        Ex product = f->pivot[k];
+        for (end = k + 1; end < n && f->block[end] == k; ++end)
+            product = ex_mul(dag, product, f->pivot[end]);
+        for (int own = end - 1; own >= k; --own) { /* of two that lose as much the later one, as without blocks */
+            const Ex entry = M[n * f->row[own] + f->row[own]];
+            check_left(whole, block, first_unknown(whole->plan, f->row[own]), f->determinant[k],
+                       end - k > 1 ? ex_mul(dag, entry, f->entry[n * own + own]) : entry);
+        }
+        if (end - k > 2)
+            check_left(whole, block, first_unknown(whole->plan, f->row[k]), f->determinant[k], product);
+    }
 }
 
 Block *dynamics_block(Whole *whole)
@@ -328,11 +352,10 @@ Block *dynamics_block(Whole *whole)
         reduce(dag, plan->reduction, n, &M, &z);
         n = plan->reduction->unknowns;
     }
-    Factors *factors = linear_factor_symmetric(dag, n, M, elimination_order(whole));
-    for (int k = 0; k < n; ++k) {
-        const int row = factors->row[k];
-        check_pivot(whole, block, first_unknown(plan, row), factors->pivot[k], M[n * row + row]);
-    }
+    int blocked;
+    const int *order = elimination_order(whole, n, &blocked);
+    const Factors *factors = linear_factor_symmetric(dag, n, M, order, blocked);
+    check_pivots(whole, block, n, M, factors);
     linear_solve(dag, factors, z, z);
     whole_store_rates(whole, block, plan->reduction ? expand(dag, plan->reduction, plan->unknowns, z) : z);
     return block;

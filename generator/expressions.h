@@ -179,13 +179,16 @@ typedef struct Derived {
 
 /* P A Q = L U of a small matrix of expressions, n x n. entry[n k + j], in pivot order: left of the diagonal the
  * multipliers of L, on it the reciprocal of the pivot, right of it U. Symmetric: L D L^T, entry right of the diagonal
- * is the transposed multiplier. */
+ * is the transposed multiplier. Pivots of a symmetric matrix may come in blocks B of two or three: then there is adj(B)
+ * on the diagonal, beside it multipliers less the division by det(B), and `pivot` are the diagonal of B. */
 typedef struct Factors {
     int n;
     bool symmetric;
-    int *row, *column; /* [n] row and column of the k-th pivot */
-    Ex *entry;         /* [n][n] */
-    Ex *pivot;         /* [n] */
+    int *row, *column;            /* [n] row and column of the k-th pivot */
+    Ex *entry;                    /* [n][n] */
+    Ex *pivot;                    /* [n] */
+    int *block;                   /* [n] first pivot of its block; itself */
+    Ex *determinant, *reciprocal; /* [n] symmetric: of the block that begins there, and 1 over that */
 } Factors;
 
 /* Pivot order from the samples: cheapest at run time among the entries that are numerically good at every usable sample
@@ -196,8 +199,9 @@ Factors *linear_factor(Dag *dag, int n, const Ex *A, const double *column_scale,
                        bool *row_left);
 /* Symmetric and positive definite, or quasidefinite (a positive and a negative definite block on the diagonal), so that
  * every order of pivots on the diagonal is good: in this one [n], or cheapest first where it is NULL. Uses the upper
- * triangle of A. */
-Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A, const int *order);
+ * triangle of A. The last `blocked` pivots come three at a time: one division instead of three that wait for each
+ * other, for some operations more. */
+Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A, const int *order, int blocked);
 /* x = A^-1 b; x may alias b. */
 void linear_solve(Dag *dag, const Factors *factors, const Ex *b, Ex *x);
 /* x = A^-T b of factors that are not symmetric; x may alias b. */

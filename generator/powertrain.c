@@ -186,7 +186,7 @@ static void turn_wheels(Linking *l, const Shafts *shafts, Block *block, Ex torqu
             A[n * i + j] = ex_add(dag, ex_literal(dag, sum), ex_mul(dag, turbine, ex_literal(dag, root[i] * root[j])));
         }
     }
-    linear_solve(dag, linear_factor_symmetric(dag, n, A, NULL), b, b);
+    linear_solve(dag, linear_factor_symmetric(dag, n, A, NULL, 0), b, b);
     for (int i = 0; i < n; ++i) {
         const int index = shafts->wheel[i], grip = GRIP_NUMBERS * wheel_rolling(shafts->model, index);
         const Wheel *wheel = &shafts->model->wheel[index];

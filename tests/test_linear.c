@@ -474,6 +474,28 @@ static void solve_cholesky(int n, const double *A, const double *b, long double 
     }
 }
 
+/* Pivots alone up to the first blocked one, then three at a time; of a block the determinant, 1 over it, and the
+ * adjugate, whose entry on the diagonal over the determinant is at least 1 over that of the block: the matrix is
+ * positive definite. */
+static void check_blocks(const System *sys, const Factors *f, int first)
+{
+    int n = f->n;
+    for (int k = 0; k < n; ++k) {
+        const int own = k < first ? k : first + (k - first) / 3 * 3;
+        const int end = own < first ? k + 1 : own + 3 < n ? own + 3 : n;
+        assert_int_equal(f->block[k], own);
+        if (own != k)
+            continue;
+        const double determinant = ex_value(sys->dag, f->determinant[k], 0);
+        assert_true(fabs(determinant * ex_value(sys->dag, f->reciprocal[k], 0) - 1) < 1e-15);
+        if (end - k == 1)
+            assert_true(f->pivot[k] == f->determinant[k]);
+        for (int i = k; i < end && end - k > 1; ++i)
+            assert_true(ex_value(sys->dag, f->entry[n * i + i], 0) * ex_value(sys->dag, f->pivot[i], 0) >=
+                        determinant * (1 - 1e-12));
+    }
+}
+
 static void test_symmetric(void **state)
 {
     (void)state;
@@ -500,7 +522,9 @@ static void test_symmetric(void **state)
             for (int j = 0; j < i; ++j)
                 A[n * i + j] = 1e3;
         System sys = system_new(n, 1, A, b);
-        Factors *factors = linear_factor_symmetric(sys.dag, n, sys.A, NULL);
+        const int blocked = (int)(random_bits(&random) % (uint32_t)(n + 1));
+        Factors *factors = linear_factor_symmetric(sys.dag, n, sys.A, NULL, blocked);
+        check_blocks(&sys, factors, n - blocked);
         linear_solve(sys.dag, factors, sys.b, sys.x);
         for (int i = 0; i < n; ++i)
             largest = fmaxl(largest, fabsl(x[i]));
@@ -513,11 +537,11 @@ static void test_symmetric(void **state)
     }
 }
 
-/* In an order of one's own: the same solution, and pivots in that order. */
+/* In an order of one's own: the same solution, pivots in that order, and 1 + 3 + 2 of them: three divisions. */
 static void test_order(void **state)
 {
     (void)state;
-    enum { N = 6 };
+    enum { N = 6, BLOCKED = 5 };
     static const int order[N] = {4, 0, 5, 2, 1, 3};
     Random random = {11};
     double A[N_MAX * N_MAX] = {0}, b[N_MAX], G[N * N];
@@ -528,10 +552,11 @@ static void test_order(void **state)
             for (int k = 0; k < N; ++k)
                 A[N * i + j] += G[N * i + k] * G[N * j + k] + (i == j);
     System sys = system_new(N, 1, A, b);
-    Factors *factors = linear_factor_symmetric(sys.dag, N, sys.A, order);
+    Factors *factors = linear_factor_symmetric(sys.dag, N, sys.A, order, BLOCKED);
     linear_solve(sys.dag, factors, sys.b, sys.x);
     long double x[N_MAX];
     solve_cholesky(N, A, b, x);
+    assert_int_equal(count_of(&sys).divide, 3);
     for (int i = 0; i < N; ++i) {
         assert_int_equal(factors->row[i], order[i]);
         assert_true(fabsl(ex_value(sys.dag, sys.x[i], 0) - x[i]) < 1e-14L);
@@ -555,7 +580,7 @@ static void test_arrow(void **state)
             A[i] = A[n * i] = i ? random_uniform(&random, 0.1, 0.5) : A[0];
         }
         System sys = system_new(n, 1, A, b);
-        Factors *factors = linear_factor_symmetric(sys.dag, n, sys.A, NULL);
+        Factors *factors = linear_factor_symmetric(sys.dag, n, sys.A, NULL, 0);
         linear_solve(sys.dag, factors, sys.b, sys.x);
         assert_count(count_of(&sys), 3 * m, 5 * m + 1, n);
         long double x[N_MAX];
