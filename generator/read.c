@@ -111,9 +111,9 @@ const Model *model_read(Pool *pool, const char *path)
     ports_read(&reader, value[FILE_PORTS].item);
     forces_read(&reader, value[FILE_FORCES].item);
     tires_read(&reader, value[FILE_TIRES].item);
-    reader.powertrain = value[FILE_POWERTRAIN].item;
     wheels_read(&reader, value[FILE_WHEELS].item);
-    powertrain_read(&reader, reader.powertrain);
+    powertrain_read(&reader, value[FILE_POWERTRAIN].item);
+    wheels_driven_check(&reader, value[FILE_WHEELS].item);
     outputs_read(&reader, value[FILE_OUTPUTS].item);
     model->drawn = model->body;
     tuning_close(model);

@@ -103,8 +103,7 @@ typedef struct Reader {
     Model *model;
     Point *point;
     int points;
-    bool fixed;             /* what is being read may follow no tunable parameter */
-    const Item *powertrain; /* of the file, NULL: none */
+    bool fixed; /* what is being read may follow no tunable parameter */
 } Reader;
 
 /* One entry of a map of named things. */
@@ -223,13 +222,13 @@ void tires_read(Reader *reader, const Item *map);
 /* The tire of the `.tir` file that `item` names, all but what the model says of it. what: "tire 'front'". */
 void tir_read(const Reader *reader, const Item *item, const char *what, Tire *tire);
 void wheels_read(Reader *reader, const Item *map);
+/* Refuses a drive_body where nothing drives the wheel; after the powertrain was read, whose mistakes could be why. map:
+ * of the wheels. */
+void wheels_driven_check(const Reader *reader, const Item *map);
 
 /* ---- read_powertrain.c ---- */
 
 void powertrain_read(Reader *reader, const Item *item);
-/* Is a wheel of this name an output of a differential? Of a powertrain that is still to be read; what is wrong with it
- * is not this function's matter. */
-bool powertrain_drives(const Item *powertrain, const char *wheel);
 
 /* The unit vector perpendicular to a unit axis that is as near as can be to the axis of the model frame to which it is
  * least parallel (e_1 of FORMAT.md section 5), fixed in both bodies; all in the model frame but `out`, its places in

@@ -380,19 +380,6 @@ static void differentials_read(Reader *reader, const Item *map, Powertrain *powe
 /* ---- all of it ----------------------------------------------------------------------------------------------------
  */
 
-bool powertrain_drives(const Item *powertrain, const char *wheel)
-{
-    const Item *map = powertrain && powertrain->kind == ITEM_MAP ? doc_find(powertrain, "differentials") : NULL;
-    for (int i = 0; map && map->kind == ITEM_MAP && i < map->count; ++i) {
-        const Item *entry = map->value[i];
-        const Item *outputs = entry->kind == ITEM_MAP ? doc_find(entry, "outputs") : NULL;
-        for (int k = 0; outputs && outputs->kind == ITEM_LIST && k < outputs->count; ++k)
-            if (outputs->value[k]->kind == ITEM_SCALAR && !strcmp(outputs->value[k]->text, wheel))
-                return true;
-    }
-    return false;
-}
-
 /* States of the powertrain may not get the names of others. */
 static void states_check(Reader *reader, Place at)
 {

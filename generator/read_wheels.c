@@ -97,8 +97,6 @@ static void rolling_read(Reader *reader, const Entry *entry, const Value *value,
     if (value[ROLL_FADE].tuned[0])
         diag_fail(value[ROLL_FADE].item->at, "leave out `tunable: true` of that parameter, or use it elsewhere",
                   "fade of %s is fixed when the code is generated, for it has a tire", entry->what);
-    if (!powertrain_drives(reader->powertrain, entry->name))
-        belongs_check(reader, entry, value, ROLL_DRIVE_BODY, ROLL_DRIVE);
     belongs_check(reader, entry, value, ROLL_WINDUP, ROLL_BRAKE);
     wheel->tire = value[ROLL_TIRE].index[0];
     wheel->radius = tire->radius;
@@ -155,5 +153,16 @@ void wheels_read(Reader *reader, const Item *map)
         wheel_read(reader, &entry[i], &model->wheel[i]);
         model->wheel[i].fast = model->fast_states;
         model->fast_states += wheel_fast_states(&model->wheel[i]);
+    }
+}
+
+void wheels_driven_check(const Reader *reader, const Item *map)
+{
+    const Model *model = reader->model;
+    for (int i = 0; i < model->wheels; ++i) {
+        const Item *body = model->wheel[i].tire < 0 ? NULL : doc_find(map->value[i], wheel_key[ROLL_DRIVE_BODY].name);
+        if (body && !wheel_is_driven(model, i))
+            diag_fail(body->at, "add `drive: formula`, or take it away",
+                      "drive_body of wheel '%s' says nothing without drive", model->wheel[i].name);
     }
 }
