@@ -24,8 +24,14 @@ void chart_point(Pool *pool, Chart *chart, const char *series, int group, double
 static const char *chart_script(Pool *pool, const Chart *chart, const char *output)
 {
     Text out = {.pool = pool};
-    text_print(&out, "set terminal svg size 900,560 noenhanced background 'white'\nset output '%s'\n", output);
-    text_print(&out, "set title '%s'\nset xlabel '%s'\nset ylabel '%s'\n", chart->title, chart->x, chart->y);
+    const char *const label[][2] = {{"title", chart->title}, {"xlabel", chart->x}, {"ylabel", chart->y}};
+    text_print(&out, "set terminal svg size 900,560 noenhanced background 'white'\n");
+    plot_output(&out, output);
+    for (int i = 0; i < 3; ++i) {
+        text_print(&out, "set %s ", label[i][0]);
+        plot_text(&out, label[i][1]);
+        text_print(&out, "\n");
+    }
     text_print(&out, "set logscale xy\nset format xy '%%g'\nset grid\nset key outside right\nset pointsize 0.7\n");
     text_print(&out, "set linetype 5 linecolor rgb '#e51e10'\n"); /* is yellow, which white paper swallows */
     for (int i = 0; i < chart->count; ++i) {
@@ -40,8 +46,9 @@ static const char *chart_script(Pool *pool, const Chart *chart, const char *outp
         int member = 1;
         for (int k = 0; k < i; ++k)
             member += chart->series[k].group == s->group;
-        text_print(&out, "%s$data%d with linespoints linecolor %d pointtype %d dashtype %d title '%s'",
-                   i ? ", " : "plot ", i, s->group + 1, 2 * member + 3, member, s->name);
+        text_print(&out, "%s$data%d with linespoints linecolor %d pointtype %d dashtype %d title ", i ? ", " : "plot ",
+                   i, s->group + 1, 2 * member + 3, member);
+        plot_text(&out, s->name);
     }
     text_print(&out, "\nset output\n");
     return out.s;

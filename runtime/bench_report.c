@@ -110,11 +110,10 @@ static void page_text(Text *out, const Report *report)
     }
 }
 
-/* Cells hold neither commas nor quotes. */
 static void table_csv(Text *out, const Sheet *table)
 {
     for (int i = 0; i < table->cells; ++i)
-        text_print(out, "%s%s", table->cell[i], (i + 1) % table->columns ? "," : "\n");
+        text_print(out, "%s%s", csv_quoted(out->pool, table->cell[i]), (i + 1) % table->columns ? "," : "\n");
 }
 
 /* ---- HTML ------------------------------------------------------------------------------------------------- */
@@ -125,6 +124,8 @@ static void escaped(Text *out, const char *s)
         switch (*s) {
         case '&': text_print(out, "&amp;"); break;
         case '<': text_print(out, "&lt;"); break;
+        case '>': text_print(out, "&gt;"); break;
+        case '"': text_print(out, "&quot;"); break;
         case '\n': text_print(out, "<br>\n"); break;
         default: text_print(out, "%c", *s);
         }
@@ -203,12 +204,37 @@ void report_tell(const Report *report, FILE *file)
     fwrite(text.s, 1, text.size, file);
 }
 
+/* What an earlier report left: it would pass for part of this one. Files that our index doesn't show are not ours.
+ * Without an index a folder is not finished. */
+static void remove_earlier(Pool *pool, const char *folder)
+{
+    static const char title[] = "<title>gicbench</title>", *const mark[] = {"<img src=\"", "<a href=\""};
+    const char *index = pool_print(pool, "%s/index.html", folder);
+    FILE *file = fopen(index, "r");
+    if (file) {
+        fclose(file);
+        size_t size;
+        const char *page = file_read(pool, index, SIZE_MAX, &size);
+        for (int i = 0; i < 2 && strstr(page, title); ++i)
+            for (const char *at = page; (at = strstr(at, mark[i]));) {
+                at += strlen(mark[i]);
+                const int length = (int)strspn(at, "abcdefghijklmnopqrstuvwxyz0123456789_.");
+                const char *name = pool_print(pool, "%.*s", length, at);
+                if (at[length] == '"' && (path_ends(name, ".csv") || path_ends(name, ".svg")))
+                    unlink(pool_print(pool, "%s/%s", folder, name));
+            }
+    }
+    unlink(index);
+    unlink(pool_print(pool, "%s/bench.txt", folder));
+}
+
 void report_write(const Report *report, const char *folder)
 {
     Pool *pool = report->pool;
     Text text = {.pool = pool}, html = {.pool = pool};
     page_text(&text, report);
     page_html(&html, report);
+    remove_earlier(pool, folder);
     for (int i = 0; i < report->pieces; ++i) {
         const Piece *piece = &report->piece[i];
         Text csv = {.pool = pool};

@@ -21,7 +21,7 @@ static _Noreturn void write_fail(const Csv *csv, const char *what)
 
 Csv csv_open(Pool *pool, const char *path)
 {
-    Csv csv = {.file = stdout, .path = path};
+    Csv csv = {.pool = pool, .file = stdout, .path = path};
     if (file_is_special(path)) {
         csv.file = fopen(path, "w");
         if (!csv.file)
@@ -36,6 +36,21 @@ Csv csv_open(Pool *pool, const char *path)
     return csv;
 }
 
+const char *csv_quoted(Pool *pool, const char *text)
+{
+    Text out = {.pool = pool};
+    const char *c = text;
+    while ((unsigned char)*c >= ' ' && *c != ',' && *c != '"')
+        ++c;
+    if (!*c)
+        return text;
+    text_print(&out, "\"");
+    for (; *text; ++text)
+        text_print(&out, *text == '"' ? "\"\"" : "%c", (unsigned char)*text < ' ' ? ' ' : *text);
+    text_print(&out, "\"");
+    return out.s;
+}
+
 static void cell(Csv *csv)
 {
     if (csv->inside)
@@ -46,7 +61,7 @@ static void cell(Csv *csv)
 void csv_name(Csv *csv, const char *name, const char *unit)
 {
     cell(csv);
-    fprintf(csv->file, unit ? "%s [%s]" : "%s", name, unit);
+    fputs(csv_quoted(csv->pool, unit ? pool_print(csv->pool, "%s [%s]", name, unit) : name), csv->file);
 }
 
 void csv_time(Csv *csv, double value)
@@ -122,8 +137,8 @@ static bool next_cell(const char **s, const char *end, Cell *c)
     if (*s > end)
         return false;
     const char *stop = *s;
-    while (stop < end && *stop != ',')
-        ++stop;
+    for (bool inside = false; stop < end && (inside || *stop != ','); ++stop)
+        inside ^= *stop == '"';
     *c = (Cell){*s, stop};
     while (c->from < c->to && is_blank(*c->from))
         ++c->from;

@@ -163,12 +163,15 @@ double *scene_numbers(Pool *pool, const Item *item, const char *what, int least)
 
 /* A results file in the making: written beside `path` and renamed when it is closed. */
 typedef struct Csv {
+    Pool *pool; /* for names */
     FILE *file;
     const char *path, *temporary; /* temporary: NULL for standard output, devices and pipes */
     bool inside;                  /* a row */
 } Csv;
 
 Csv csv_open(Pool *pool, const char *path);
+/* `text` as a cell: in quotes where it has commas, quotes or ends of lines, which become blanks. */
+const char *csv_quoted(Pool *pool, const char *text);
 void csv_name(Csv *csv, const char *name, const char *unit); /* a cell `name [unit]`; unit may be NULL */
 void csv_time(Csv *csv, double value);                       /* to 15 digits: 0.28, as a person would write it */
 void csv_number(Csv *csv, double value);                     /* reads back bit-exactly */
@@ -204,8 +207,13 @@ typedef struct Plot {
 
 /* Picture by gnuplot, SVG or PNG by the ending of `path`; curves of the same unit share a panel. */
 void plot_write(Pool *pool, const Plot *plot, const char *path);
+/* For scripts of gnuplot: a text in quotes, with a blank in front of a `>` behind `]]`; `set output` of a path, which
+ * is one even where it begins with `|` or `~`.
+ */
+void plot_text(Text *text, const char *s);
+void plot_output(Text *text, const char *path);
 /* Let gnuplot run a script that writes the file `temporary`, which then becomes `path`. Returns what process_run does,
- * 1 when the file could not be renamed; *said: why. */
+ * 1 when the file is not whole or could not be renamed; *said: why. */
 int gnuplot_run(Pool *pool, const char *script, const char *temporary, const char *path, const char **said);
 bool plot_known(const char *path); /* does `path` end in .svg or .png? */
 

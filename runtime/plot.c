@@ -14,13 +14,44 @@ bool plot_known(const char *path)
     return path_ends(path, ".svg") || path_ends(path, ".png");
 }
 
-/* In single quotes of gnuplot, where only the quote itself is special. */
-static void quoted(Text *text, const char *s)
+/* A character of a text in double quotes, where all but letters are octal: there are escapes in them, backquotes are
+ * commands, and a digit behind an octal number would belong to it. */
+static void plot_character(Text *text, char c)
 {
-    text_print(text, "'");
-    for (; *s; ++s)
-        text_print(text, *s == '\'' ? "''" : "%c", *s);
-    text_print(text, "'");
+    const bool letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    text_print(text, letter ? "%c" : "\\%03o", (unsigned char)c);
+}
+
+/* In single quotes all is as it stands, but two of them at the beginning are a text of their own, and the end of a line
+ * ends it. shown: gnuplot writes a `>` into an SVG as it is, which behind `]]` is no XML. */
+static void plot_quoted(Text *text, const char *s, bool shown)
+{
+    const char *c = s;
+    while ((unsigned char)*c >= ' ' && *c != '\'' && *c != '>')
+        ++c;
+    if (!*c) {
+        text_print(text, "'%s'", s);
+        return;
+    }
+    text_print(text, "\"");
+    for (c = s; *c; ++c) {
+        if (shown && *c == '>' && c - s >= 2 && c[-1] == ']' && c[-2] == ']')
+            plot_character(text, ' ');
+        plot_character(text, *c);
+    }
+    text_print(text, "\"");
+}
+
+void plot_text(Text *text, const char *s)
+{
+    plot_quoted(text, s, true);
+}
+
+void plot_output(Text *text, const char *path)
+{
+    text_print(text, "set output ");
+    plot_quoted(text, path[0] == '/' ? path : pool_print(text->pool, "./%s", path), false);
+    text_print(text, "\n");
 }
 
 /* Is curve i the first of its unit? */
@@ -45,13 +76,13 @@ static void data_block(Text *script, const Plot *plot)
 static void panel(Text *script, const Plot *plot, int first, bool last)
 {
     text_print(script, "set xlabel %s\nset ylabel ", last ? "'time [s]'" : "''");
-    quoted(script, plot->signal[first].unit);
+    plot_text(script, plot->signal[first].unit);
     text_print(script, "\nplot ");
     for (int i = first, drawn = 0; i < plot->curves; ++i) {
         if (strcmp(plot->signal[i].unit, plot->signal[first].unit))
             continue;
         text_print(script, "%s$data using 1:%d with lines linewidth 1.5 title ", drawn++ ? ", " : "", i + 2);
-        quoted(script, plot->signal[i].name);
+        plot_text(script, plot->signal[i].name);
     }
     text_print(script, "\n");
 }
@@ -59,7 +90,7 @@ static void panel(Text *script, const Plot *plot, int first, bool last)
 static void axis_label(Text *script, char axis, const gic_signal *signal)
 {
     text_print(script, "set %clabel ", axis);
-    quoted(script, pool_print(script->pool, "%s [%s]", signal->name, signal->unit));
+    plot_text(script, pool_print(script->pool, "%s [%s]", signal->name, signal->unit));
     text_print(script, "\n");
 }
 
@@ -101,14 +132,14 @@ static const char *plot_script(Pool *pool, const Plot *plot, const char *path, c
         over_time += opens_panel(plot, i);
     const int panels = over_time + plot->panels;
     data_block(&script, plot);
-    text_print(&script, "set terminal %s size %d,%d noenhanced\nset output ",
+    text_print(&script, "set terminal %s size %d,%d noenhanced\n",
                path_ends(path, ".svg") ? "svg background 'white'" : "pngcairo", WIDTH, PANEL_HEIGHT * panels + 40);
-    quoted(&script, temporary);
+    plot_output(&script, temporary);
     text_print(&script,
-               "\nset grid\nset key outside center top horizontal\nset lmargin 10\nset tmargin 4\n"
+               "set grid\nset key outside center top horizontal\nset lmargin 10\nset tmargin 4\n"
                "set multiplot layout %d,1 title ",
                panels);
-    quoted(&script, plot->title);
+    plot_text(&script, plot->title);
     text_print(&script, "\n");
     for (int i = 0; i < plot->curves; ++i)
         if (opens_panel(plot, i))
@@ -119,11 +150,27 @@ static const char *plot_script(Pool *pool, const Plot *plot, const char *path, c
     return script.s;
 }
 
+/* gnuplot notices no full disk. Does the file end as a picture does: in </svg>, or in the chunk IEND of a PNG? */
+static bool is_whole(const char *path)
+{
+    enum { END = 12 }; /* bytes of an IEND: length, name, sum */
+    char end[END + 1] = "";
+    FILE *file = fopen(path, "rb");
+    const bool read = file && !fseek(file, -END, SEEK_END) && fread(end, 1, END, file) == END;
+    if (file)
+        fclose(file);
+    return read && (strstr(end, "</svg>") || !memcmp(end + 4, "IEND", 4));
+}
+
 int gnuplot_run(Pool *pool, const char *script, const char *temporary, const char *path, const char **said)
 {
     char *const argv[] = {"gnuplot", "-", NULL};
     interrupt_hold();
     int status = process_run(pool, argv, script, said);
+    if (!status && !is_whole(temporary)) {
+        *said = pool_print(pool, "%sgnuplot left half a picture\n", *said);
+        status = 1;
+    }
     if (!status && rename(temporary, path)) {
         *said = pool_print(pool, "%s\n", strerror(errno));
         status = 1;
