@@ -40,7 +40,7 @@ static const char *const shape[] = {
     "atan(%)",
     "atan2(%, 1 + abs(%))",
     "exp(tanh(%))",
-    "log(1 + abs(%))",
+    "log(1.5 + abs(%))",
     "sqrt(0.1 + abs(%))",
     "asin(0.9 * tanh(%))",
     "acos(0.9 * tanh(%))",

@@ -60,7 +60,7 @@ void say_rolling(Vehicle *v, Entry *wheel, int carrier)
         append(wheel->plain, sizeof wheel->plain, ", side: %s", side[v->image ? 1 - which : which]);
     }
     if (chance(v, 0.3))
-        say_number(v, wheel, ", fade: ", uniform(v, 0.005, 0.02));
+        say(wheel, ", fade: %.3g", uniform(v, 0.005, 0.02));
     bool drive = chance(v, 0.4);
     if (drive) {
         say(wheel, ", drive: \"%.4g * (", uniform(v, -500, 500));

@@ -229,23 +229,49 @@ static quad drive_force(const Solver *solver, int coordinate)
     return solver->model->coordinate[coordinate].driven ? *unknown_row(solver, row) * solver->row[row].w_slope : 0;
 }
 
-/* The same of drive forces and reactions. */
+/* Magnitudes of the moments about its centre of mass that all joints of a body exert on it. */
+static quad joint_moments(const Solver *solver, const Reaction *reaction, int body)
+{
+    const Model *model = solver->model;
+    quad sum = 0, s[3];
+    for (int j = 0; j < model->joints; ++j)
+        for (int side = 0; side < 2; ++side)
+            if (model->joint[j].body[side] == body) {
+                from_com(model, body, model->joint[j].point[side], s);
+                sum += norm(reaction[j].torque) + norm(reaction[j].force) * norm(s);
+            }
+    return sum;
+}
+
+/* The same of drive forces and reactions. A torque is what is left of the moments that the joints of a body exert,
+ * where a force on a long arm may turn a light strut, say, hardly at all: they are terms too, those of the body where
+ * they are smaller. */
 static void contribution_forces(Solver *solver, Sum *sum)
 {
-    for (int c = 0; c < solver->model->coordinates; ++c) {
+    const Model *model = solver->model;
+    for (int c = 0; c < model->coordinates; ++c) {
         quad drive = drive_force(solver, c);
         sum->drive[c] += drive;
         solver->drive_scale[c] += fabsq(drive);
     }
-    for (int j = 0; j < solver->model->joints; ++j) {
-        Reaction own = joint_reaction(solver, j), *total = &sum->reaction[j];
+    Reaction *reaction = grab((size_t)model->joints + 1, sizeof *reaction);
+    for (int j = 0; j < model->joints; ++j)
+        reaction[j] = joint_reaction(solver, j);
+    for (int j = 0; j < model->joints; ++j) {
+        const Reaction *own = &reaction[j];
+        Reaction *total = &sum->reaction[j];
+        const int *body = model->joint[j].body;
+        quad moments = joint_moments(solver, reaction, body[1]);
+        if (body[0] >= solver->first)
+            moments = fminq(moments, joint_moments(solver, reaction, body[0]));
         for (int i = 0; i < 3; ++i) {
-            total->force[i] += own.force[i];
-            total->torque[i] += own.torque[i];
+            total->force[i] += own->force[i];
+            total->torque[i] += own->torque[i];
         }
-        total->force_scale += own.force_scale;
-        total->torque_scale += own.torque_scale;
+        total->force_scale += own->force_scale;
+        total->torque_scale += own->torque_scale + moments;
     }
+    free(reaction);
 }
 
 /* Solve for what solver->force alone does, and add magnitudes to the scales. */
