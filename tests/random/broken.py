@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Kinds of mistakes in the files of a random vehicle, which stand as random/write.c writes them: an entry a line. A kind
-changes the files and returns where the mistake is and what a message must name, or None where the vehicle has nothing
-that could be broken so."""
+"""Kinds of mistakes in the files of a random vehicle, which stand as random/write.c writes them: an entry a line. A
+kind changes the files and returns where the mistake is and what a message must name, or None where the vehicle has
+nothing that could be broken so."""
 import copy
 import os
 import re
@@ -10,8 +10,8 @@ KINDS = {}
 
 
 class Mistake:
-    """`line` None: a place can't be foreseen; `says` all have to be in the message, its remedy or note, and of a list in
-    it one."""
+    """`line` None: a place can't be foreseen; `says` all have to be in the message, its remedy or note, and of a list
+    in it one."""
 
     def __init__(self, file, line, *says):
         self.file, self.line, self.says = file, line, says
@@ -53,7 +53,8 @@ class Entry:
         return self.row + 1
 
     def save(self):
-        text = "{" + ", ".join(f"{key}: {value}" for key, value in self.map.items()) + "}" if self.is_map else self.map[""]
+        inner = ", ".join(f"{key}: {value}" for key, value in self.map.items())
+        text = "{" + inner + "}" if self.is_map else self.map[""]
         self.vehicle.files[self.file][self.row] = self.lead + (self.name + ": " if self.name else "") + text
 
     def put(self, text):
@@ -359,7 +360,8 @@ value("three outputs", "differentials", "outputs", "[a, b, c]", always, "outputs
 value("output that there isn't", "differentials", "outputs", "[nothing]", lambda entry: "split" not in entry.map and
       "lock" not in entry.map, "nothing")
 value("one output twice", "differentials", "outputs", "[same, same]")
-added("split of one output", "differentials", "split: 0.5", lambda entry: len(split(entry.map["outputs"][1:-1])) == 1, "split")
+added("split of one output", "differentials", "split: 0.5",
+      lambda entry: len(split(entry.map["outputs"][1:-1])) == 1, "split")
 value("inertia of zero", "powertrain", "inertia", "0", lambda entry: entry.name == "engine", "inertia")
 value("idle above the limit", "powertrain", "idle", "1e4", has("limit"))
 value("capacity that there isn't", "powertrain", "capacity", "nothing", always, "nothing")
@@ -573,12 +575,13 @@ for name, line, *says in (("gravity of two numbers", "gravity: [0, 0]", "gravity
         if line.startswith("joints"):
             rows = {entry.row for entry in vehicle.entries("joints") if entry.file == vehicle.main}
             lines = vehicle.files[vehicle.main]
-            vehicle.files[vehicle.main] = [lines[i] for i in range(len(lines)) if i not in rows and lines[i] != "joints:"]
+            vehicle.files[vehicle.main] = [text for i, text in enumerate(lines) if i not in rows and text != "joints:"]
         vehicle.files[vehicle.main].insert(1, line)
         return Mistake(vehicle.main, 2 if says else None, *says)
 
 for section, name in (("bodies", "ground"), ("bodies", "world"), ("joints", "a-b"), ("coordinates", "3rd"),
-                      ("forces", "_law"), ("outputs", "n" * 41), ("inputs", "é"), ("tables", "a.b"), ("parameters", '""')):
+                      ("forces", "_law"), ("outputs", "n" * 41), ("inputs", "é"), ("tables", "a.b"),
+                      ("parameters", '""')):
     @kind(f"{section}: name {name}")
     def _(vehicle, rng, section=section, name=name):
         # a prefix would mend it
@@ -603,7 +606,9 @@ def _(vehicle, rng):
 @kind("inputs: the name of a driven coordinate")
 def _(vehicle, rng):
     entry = some(vehicle, rng, "coordinates", lambda entry: "driven" in entry.map and entry.file == vehicle.main)
-    return Mistake(vehicle.main, vehicle.append("inputs", f"  {entry.name}: {{default: 1}}"), entry.name) if entry else None
+    if not entry:
+        return None
+    return Mistake(vehicle.main, vehicle.append("inputs", f"  {entry.name}: {{default: 1}}"), entry.name)
 
 
 def removed(section, used):
@@ -762,7 +767,8 @@ def _(vehicle, rng):
     entry = some(vehicle, rng, "coordinates", lambda entry: entry.file == vehicle.main)
     if not entry:
         return None
-    vehicle.files[entry.file].insert(entry.row + 1, vehicle.files[entry.file][entry.row].replace(entry.name, "again", 1))
+    text = vehicle.files[entry.file][entry.row].replace(entry.name, "again", 1)
+    vehicle.files[entry.file].insert(entry.row + 1, text)
     return Mistake(None, None, ["again", *sides([entry.name, *bodies_of(entry)])])
 
 
