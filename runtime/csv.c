@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Tables as comma-separated text: results out, states and roads in. */
+#define _DEFAULT_SOURCE /* on_exit */
 #include "gicrun.h"
 
 #include <errno.h>
@@ -9,6 +10,35 @@
 #include <unistd.h>
 
 /* ---- writing -------------------------------------------------------------------------------------------- */
+
+/* A temporary file of this process. */
+typedef struct Unfinished {
+    Pool *pool; /* its own: it is needed when all others are gone */
+    pid_t process;
+    const char *path;
+} Unfinished;
+
+/* Whoever ends the program in the middle of a table, out of memory or a library that does, leaves none behind; and it
+ * may not say that all is well (what MUMPS is written in does, where it gives up). */
+static void remove_unfinished(int status, void *what)
+{
+    Unfinished *unfinished = what;
+    const bool ours = unfinished->process == getpid();
+    if (ours && !unlink(unfinished->path) && status == 0) {
+        fputs("gicrun: error: a library ended the program\n  remedy: is there memory enough?\n", stderr);
+        _exit(1);
+    }
+    pool_free(unfinished->pool);
+}
+
+static void watch(const char *temporary)
+{
+    Pool *pool = pool_new();
+    Unfinished *unfinished = pool_alloc(pool, sizeof *unfinished);
+    *unfinished = (Unfinished){pool, getpid(), pool_print(pool, "%s", temporary)};
+    if (on_exit(remove_unfinished, unfinished))
+        pool_free(pool);
+}
 
 static _Noreturn void write_fail(const Csv *csv, const char *what)
 {
@@ -32,6 +62,7 @@ Csv csv_open(Pool *pool, const char *path)
         if (!csv.file)
             write_fail(&(Csv){.path = path, .temporary = temporary}, "create");
         csv.temporary = temporary;
+        watch(temporary);
     }
     return csv;
 }

@@ -196,6 +196,8 @@ static bool analyse(Partition *partition)
     factors->symbolic = klu_analyze(partition->rows, start, row, &factors->common);
     if (factors->symbolic)
         factors->numeric = klu_factor(start, row, factors->value, factors->symbolic, &factors->common);
+    if (factors->common.status == KLU_OUT_OF_MEMORY)
+        out_of_memory();
     if (!factors->numeric) {
         partition_forget(partition); /* or the choice would look as if there were factors */
         return false;
