@@ -308,7 +308,7 @@ static void write_statement(Emitter *m, Ex e)
             text_print(&line, ", GIC_ERROR_ROAD);");
         else
             text_print(&line,
-                       m->block->across ? ")\n%*sreturn gic_finite(road%d, 3) ? GIC_ERROR_ASSUMPTION : GIC_ERROR_ROAD;"
+                       m->block->across ? ")\n%*sreturn GIC_FINITE(road%d, 3) ? GIC_ERROR_ASSUMPTION : GIC_ERROR_ROAD;"
                                         : ")\n%*sreturn GIC_ERROR_ROAD;",
                        m->indent + 4, "", number);
     } else {

@@ -226,7 +226,8 @@ static size_t sum_read(Measure *m)
 
 static bool is_qualifier(const char *t)
 {
-    static const char *const word[] = {"static", "const", "extern", "unsigned", "GIC_RESTRICT", "GIC_COLD"};
+    static const char *const word[] = {"static",   "const",        "extern",   "inline",
+                                       "unsigned", "GIC_RESTRICT", "GIC_COLD", "GIC_APART"};
     for (size_t i = 0; i < sizeof word / sizeof *word; ++i)
         if (!strcmp(t, word[i]))
             return true;

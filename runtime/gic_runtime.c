@@ -23,42 +23,14 @@ const char *gic_status_text(int status)
     }
 }
 
-#ifdef GIC_FLOAT
-typedef uint32_t bits_type;
-#define SIGN UINT32_C(0x80000000)
-#define EXPONENT UINT32_C(0x7f800000)
-#define EXPONENT_OF_BOUND UINT32_C(0x49800000) /* 2^20 */
-#else
-typedef uint64_t bits_type;
-#define SIGN UINT64_C(0x8000000000000000)
-#define EXPONENT UINT64_C(0x7ff0000000000000)
-#define EXPONENT_OF_BOUND UINT64_C(0x41d0000000000000) /* 2^30 */
-#endif
-
-/* Are all numbers below a power of two? By their bits: a comparison with itself or with infinity would be optimized
- * away under -ffast-math. Exponents from the bound's on carry into the place of the sign: no branch for each number. */
-static int below(const gic_real *x, int32_t count, bits_type bound)
-{
-    bits_type above = 0;
-    for (int32_t i = 0; i < count; ++i) {
-        bits_type bits = 0;
-        const unsigned char *from = (const unsigned char *)&x[i];
-        unsigned char *to = (unsigned char *)&bits;
-        for (size_t k = 0; k < sizeof bits; ++k)
-            to[k] = from[k];
-        above |= (bits & EXPONENT) + (SIGN - bound);
-    }
-    return !(above & SIGN);
-}
-
 int gic_finite(const gic_real *x, int32_t count)
 {
-    return below(x, count, EXPONENT);
+    return gic_below(x, count, GIC_BITS_OF_EXPONENT);
 }
 
 int gic_bounded(const gic_real *x, int32_t count)
 {
-    return below(x, count, EXPONENT_OF_BOUND);
+    return gic_below(x, count, GIC_BITS_OF_BOUND);
 }
 
 gic_real gic_unwound(gic_real change)
@@ -567,30 +539,29 @@ int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switch
     const gic_real tolerance = GIC_R(0.01);
     const gic_real excess =
         given[0] * given[0] + given[1] * given[1] + given[2] * given[2] + given[3] * given[3] - GIC_R(1.0);
-    if (!gic_finite(given, 4) || excess > tolerance || excess < -tolerance)
+    if (!GIC_FINITE(given, 4) || excess > tolerance || excess < -tolerance)
         return GIC_ERROR_ORIENTATION;
 
     int32_t largest = 0;
     for (int32_t i = 1; i < 4; ++i)
         if (given[i] * given[i] > given[largest] * given[largest])
             largest = i;
-    const int32_t now = *dependent;
+    int32_t now = *dependent;
     if (now < 0 || now > 3) {
-        *dependent = largest;
+        *dependent = now = largest;
     } else if (given[largest] * given[largest] > GIC_R(1.21) * given[now] * given[now]) {
-        *dependent = largest;
+        *dependent = now = largest;
         ++*switches;
     }
 
     /* the dependent one is at least 1/2.2 in magnitude, so the root is far from zero and keeps its sign */
     gic_real rest = GIC_R(1.0);
-    for (int32_t i = 0; i < 4; ++i) {
-        e[i] = given[i];
-        if (i != *dependent)
-            rest -= given[i] * given[i];
-    }
-    const gic_real root = MATH(sqrt)(rest);
-    e[*dependent] = given[*dependent] < GIC_R(0.0) ? -root : root;
+    for (int32_t i = 0; i < 4; ++i)
+        rest -= i == now ? GIC_R(0.0) : given[i] * given[i];
+    const gic_real root = MATH(sqrt)(rest), signed_root = given[now] < GIC_R(0.0) ? -root : root;
+    /* not by a place that is known late: readers would wait for it */
+    for (int32_t i = 0; i < 4; ++i)
+        e[i] = i == now ? signed_root : given[i];
     return GIC_OK;
 }
 

@@ -242,6 +242,59 @@ int gic_finite(const gic_real *x, int32_t count);
 #define gic_bounded GIC_NAME(gic_bounded)
 int gic_bounded(const gic_real *x, int32_t count);
 
+/* The same where a compiler can make it part of what surrounds it: counts are few and known mostly. Not for one that
+ * makes functions of all of it. */
+#ifdef GIC_FLOAT
+typedef uint32_t gic_word;
+#define GIC_BITS_OF_SIGN UINT32_C(0x80000000)
+#define GIC_BITS_OF_EXPONENT UINT32_C(0x7f800000)
+#define GIC_BITS_OF_BOUND UINT32_C(0x49800000) /* 2^20 */
+#else
+typedef uint64_t gic_word;
+#define GIC_BITS_OF_SIGN UINT64_C(0x8000000000000000)
+#define GIC_BITS_OF_EXPONENT UINT64_C(0x7ff0000000000000)
+#define GIC_BITS_OF_BOUND UINT64_C(0x41d0000000000000) /* 2^30 */
+#endif
+
+static inline gic_word gic_bits(gic_real x)
+{
+    union {
+        gic_real number;
+        gic_word bits;
+    } look;
+    look.number = x;
+    return look.bits;
+}
+
+/* Are all numbers below a power of two, given by its bits? A comparison with itself or with infinity would be optimized
+ * away under -ffast-math. Exponents from the bound's on carry into the place of the sign: no branch for each number. */
+static inline int gic_below(const gic_real *x, int32_t count, gic_word bound)
+{
+    gic_word above = 0;
+    int32_t i;
+    for (i = 0; i < count; ++i)
+        above |= (gic_bits(x[i]) & GIC_BITS_OF_EXPONENT) + (GIC_BITS_OF_SIGN - bound);
+    return !(above & GIC_BITS_OF_SIGN);
+}
+
+/* Are all numbers the same, bit for bit? */
+static inline int gic_alike(const gic_real *x, const gic_real *y, int32_t count)
+{
+    gic_word other = 0;
+    int32_t i;
+    for (i = 0; i < count; ++i)
+        other |= gic_bits(x[i]) ^ gic_bits(y[i]);
+    return !other;
+}
+
+#ifdef __TINYC__
+#define GIC_FINITE(x, count) gic_finite(x, count)
+#define GIC_BOUNDED(x, count) gic_bounded(x, count)
+#else
+#define GIC_FINITE(x, count) gic_below(x, count, GIC_BITS_OF_EXPONENT)
+#define GIC_BOUNDED(x, count) gic_below(x, count, GIC_BITS_OF_BOUND)
+#endif
+
 /* Why a step of `step` seconds fails with `status`: GIC_ERROR_UNSTABLE where at rate[] (states, the newest known) a
  * coordinate moves by more than a quarter of its range, or 0.5 rad, or the base turns by more than 1 rad, within it;
  * *grown is then its index in state[]. Else `status`. Step functions call it. */

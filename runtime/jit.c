@@ -78,7 +78,6 @@ static void add_host_functions(TCCState *state)
         HOST_FUNCTION(memset),
         HOST_FUNCTION(memcpy),
         HOST_FUNCTION(memmove),
-        HOST_FUNCTION(memcmp),
         HOST_FUNCTION(sqrt),
         HOST_FUNCTION(fabs),
         HOST_FUNCTION(sin),

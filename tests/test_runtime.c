@@ -313,14 +313,15 @@ static void test_finite(void **unused)
     gic_real x[8];
     memcpy(x, good, sizeof good);
     const int32_t count = (int32_t)(sizeof good / sizeof *good);
-    assert_true(gic_finite(x, count));
-    assert_true(gic_finite(x, 0));
+    assert_true(gic_finite(x, count) && GIC_FINITE(x, count));
+    assert_true(gic_finite(x, 0) && GIC_FINITE(x, 0));
     for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i)
         for (int32_t place = 0; place < count; ++place) {
             memcpy(x, good, sizeof good);
             memcpy(&x[place], &bad[i], sizeof *x);
-            assert_false(gic_finite(x, count));
-            assert_true(gic_finite(x, place));
+            assert_false(gic_finite(x, count) || GIC_FINITE(x, count));
+            assert_true(gic_finite(x, place) && GIC_FINITE(x, place));
+            assert_true(gic_alike(x, x, count)); /* NaN, too: bit for bit */
         }
 }
 
@@ -332,9 +333,30 @@ static void test_bounded(void **unused)
     const gic_real below = bound * (1 - (gic_real)EPSILON);
     const gic_real good[] = {0, 1, below, -below, (gic_real)1e-30};
     const gic_real bad[] = {bound, -bound, 2 * bound, bound * bound};
-    assert_true(gic_bounded(good, 5));
+    assert_true(gic_bounded(good, 5) && GIC_BOUNDED(good, 5));
     for (int i = 0; i < 4; ++i)
-        assert_false(gic_bounded(&bad[i], 1));
+        assert_false(gic_bounded(&bad[i], 1) || GIC_BOUNDED(&bad[i], 1));
+}
+
+/* One bit anywhere makes numbers different: the sign of zero, the last one of the mantissa. */
+static void test_alike(void **unused)
+{
+    (void)unused;
+    enum { COUNT = 5 };
+    const gic_real x[COUNT] = {0, 1, -1, (gic_real)1e-30, (gic_real)1e30};
+    assert_true(gic_alike(x, x, 0));
+    for (int place = 0; place < COUNT; ++place)
+        for (size_t bit = 0; bit < 8 * sizeof(gic_real); ++bit) {
+            gic_real y[COUNT];
+            unsigned char byte;
+            memcpy(y, x, sizeof y);
+            assert_true(gic_alike(x, y, COUNT));
+            memcpy(&byte, (char *)&y[place] + bit / 8, 1);
+            byte = (unsigned char)(byte ^ 1u << bit % 8);
+            memcpy((char *)&y[place] + bit / 8, &byte, 1);
+            assert_false(gic_alike(x, y, COUNT));
+            assert_true(gic_alike(x, y, place));
+        }
 }
 
 /* An angle's change is the same but for whole turns, and no more than half of one. */
@@ -505,8 +527,9 @@ int main(void)
         cmocka_unit_test(test_snapshot),       cmocka_unit_test(test_time),
         cmocka_unit_test(test_arguments),      cmocka_unit_test(test_finite),
         cmocka_unit_test(test_bounded),        cmocka_unit_test(test_unwound),
-        cmocka_unit_test(test_blame),          cmocka_unit_test(test_status_text),
-        cmocka_unit_test(test_orientation),    cmocka_unit_test(test_quintic),
+        cmocka_unit_test(test_alike),          cmocka_unit_test(test_blame),
+        cmocka_unit_test(test_status_text),    cmocka_unit_test(test_orientation),
+        cmocka_unit_test(test_quintic),
     };
     return cmocka_run_group_tests_name("runtime", tests, NULL, NULL);
 }
