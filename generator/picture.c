@@ -47,6 +47,9 @@ bool picture_make(const char *path, const Text *dot, Text *svg)
         text_add(svg, buffer, n);
     fclose(input);
     fclose(output);
+    /* `dot` doesn't notice a full disk */
+    if (!status && (!svg->size || !strstr(svg->s, "</svg>")))
+        picture_fail(path, "Graphviz's program `dot` left half a picture", "free some space in the temporary folder");
     return !status;
 }
 

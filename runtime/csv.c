@@ -143,6 +143,14 @@ void csv_close(Csv *csv)
         write_fail(csv, "write");
 }
 
+void csv_abandon(Csv *csv)
+{
+    if (!csv->temporary)
+        return;
+    fclose(csv->file);
+    remove(csv->temporary);
+}
+
 /* ---- reading -------------------------------------------------------------------------------------------- */
 
 enum { COLUMNS_MOST = 10000 };

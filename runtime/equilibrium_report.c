@@ -173,6 +173,7 @@ static void write_state(Pool *pool, const Equilibrium *found, const char *path)
     } part[] = {{code->state, code->slow_count + code->fast_count, code->state_offset},
                 {code->input, code->input_count, code->input_offset},
                 {code->parameter, code->parameter_count, code->parameter_offset}};
+    interrupt_hold();
     Csv csv = csv_open(pool, path);
     for (size_t p = 0; p < sizeof part / sizeof *part; ++p)
         for (int i = 0; i < part[p].count; ++i)
@@ -187,6 +188,7 @@ static void write_state(Pool *pool, const Equilibrium *found, const char *path)
         csv_number(&csv, discrete_states(self, code)[i]);
     csv_end_row(&csv);
     csv_close(&csv);
+    interrupt_release();
 }
 
 static void warn_ranges(const Equilibrium *found, Place at)

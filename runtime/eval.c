@@ -178,10 +178,16 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
     model->setup(self);
     memcpy(standard, instance_array(self, model->parameter_offset), sizeof *standard * (size_t)model->parameter_count);
 
+    interrupt_hold();
     Csv csv = csv_open(pool, request->results);
     write_header(engine, &csv);
     for (int row = 0; row < table->rows; ++row) {
         const double *value = table->value + row * table->columns;
+        if (interrupt_arrived()) {
+            csv_abandon(&csv);
+            interrupt_release(); /* which ends the program */
+            return;
+        }
         gic_self_test test = {.constraint = 0};
         /* set up afresh: poses come by continuation from the design, whatever row came before */
         for (int i = 0; i < columns.parameters; ++i) {
@@ -210,6 +216,7 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
         write_row(pool, engine, &csv, self, status, rate, pose, output, test.constraint);
     }
     csv_close(&csv);
+    interrupt_release();
     if (failures)
         diag_warn((Place){table->source, 0, 0}, "their status and message tell why", "%d of %d rows have no result",
                   failures, table->rows);

@@ -177,7 +177,8 @@ void csv_time(Csv *csv, double value);                       /* to 15 digits: 0.
 void csv_number(Csv *csv, double value);                     /* reads back bit-exactly */
 void csv_text(Csv *csv, const char *text);                   /* in quotes; NULL: an empty cell */
 void csv_end_row(Csv *csv);
-void csv_close(Csv *csv); /* exits with a message where not all could be written */
+void csv_close(Csv *csv);   /* exits with a message where not all could be written */
+void csv_abandon(Csv *csv); /* instead of csv_close: no results are left */
 
 /* A table of numbers with named columns; units in brackets behind the names are dropped. */
 typedef struct CsvTable {

@@ -297,6 +297,7 @@ static void cell(Csv *csv, bool known, double value)
 static void write_csv(Pool *pool, const Linear *linear, const Modes *modes, const char *path)
 {
     const int shares = linear->count - linear->places;
+    interrupt_hold();
     Csv csv = csv_open(pool, path);
     csv_name(&csv, "real", "1/s");
     csv_name(&csv, "imaginary", "1/s");
@@ -319,6 +320,7 @@ static void write_csv(Pool *pool, const Linear *linear, const Modes *modes, cons
         csv_end_row(&csv);
     }
     csv_close(&csv);
+    interrupt_release();
 }
 
 /* The equilibrium with the velocities of a scene; f, A: there. */

@@ -184,6 +184,7 @@ int gnuplot_run(Pool *pool, const char *script, const char *temporary, const cha
 void plot_write(Pool *pool, const Plot *plot, const char *path)
 {
     const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid()), *said = "";
+    interrupt_hold();                   /* gnuplot_run does, but the file is there before */
     FILE *file = fopen(temporary, "w"); /* where gnuplot can't write it goes on with standard output */
     if (!file)
         diag_fail(gicrun_place, "choose another place with --plot", "can't create %s: %s", path, strerror(errno));

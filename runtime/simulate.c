@@ -409,12 +409,12 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *a
         diag_fail(at, "is the initial state one that the mechanism can reach from its design?",
                   "the run can't start: %s", instance_status(pool, model, run.copy, status));
     prepare_plot(&run);
+    interrupt_hold(); /* or the temporary file of the results would stay */
     if (request->results) {
         run.csv = csv_open(pool, request->results);
         write_header(&run);
     }
 
-    interrupt_hold();
     const double before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     run.looked = clock_seconds(CLOCK_MONOTONIC);
     const gic_head *failed = run.self;

@@ -1,11 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# disk.sh GICGEN GICRUN GICSWEEP: full disks, files that may not grow, read-only folders, and ends by a signal while
-# writing. What stood at the place of the results stays as it was or is replaced as a whole; there is one message; no
-# temporary files are left but those of a program that was killed outright.
+# disk.sh GICGEN GICRUN GICSWEEP GICBENCH: full disks, files that may not grow, read-only folders, ends while writing
+#
+# What stood at the place of the results stays as it was or is replaced as a whole; there is one message; no temporary
+# files are left but those of a program that was killed outright, and the journal of a sweep.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 gicsweep=$(realpath "$3")
+gicbench=$(realpath "$4")
 models=$(realpath "$(dirname "$0")/../../models")
 work=$(mktemp -d) || exit 1
 trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
@@ -30,11 +32,18 @@ judge() {
     esac
     [ "$status" -ne 1 ] || [ "$(grep -c 'error: ' err)" -eq 1 ] || reason="$(grep -c 'error: ' err) messages"
     [ -z "$(ls tmp)" ] || reason="leaves $(ls tmp)"
-    for file in place/*; do
+    for file in place/* place/report/*; do
         case $file in
         *.tmp) reason="leaves $file" ;;
+        *.svg) [ "$(cat "$file")" = old ] || tail -c 20 "$file" | grep -q '</svg>' || reason="half of $file" ;;
+        *.html) [ "$(cat "$file")" = old ] || tail -c 20 "$file" | grep -q '</html>' || reason="half of $file" ;;
+        *.csv) [ "$(tail -c 1 "$file" | wc -l)" -eq 1 ] || reason="half of $file" ;;
+        esac
+        case $file in
+        *.tmp | *.journal) ;; # with it a sweep goes on
         place/old.*) [ "$(cat "$file")" = old ] || [ "$status" -eq 0 ] || reason="$file is spoilt" ;;
-        'place/*') ;;
+        'place/*' | 'place/report/*' | place/report) ;;
+        place/report/*.csv | place/report/bench.txt) ;; # a report is one with its index
         *) [ "$status" -eq 0 ] || reason="$file in spite of an error" ;;
         esac
     done
@@ -73,14 +82,15 @@ writes() {
     5) run "$gicrun" -q --engine tape "$model" short.scene --plot "$1.svg" ;;
     6) run "$gicrun" -q --engine tape "$model" short.scene --animate "$1.html" ;;
     7) run "$gicrun" -q --engine tape --equilibrium "$model" -o "$1.csv" ;;
-    8) run "$gicsweep" -q --engine tape "$model" short.scene --vary arm_angle=0:1:3 -o "$1.csv" ;;
+    8) run "$gicsweep" -q --engine tape "$model" short.scene --vary state/angle=0:1:3 -o "$1.csv" ;;
+    9) run "$gicbench" --quick --drive --engines tape "$model" short.scene -o "${1%/*}/report" ;;
     esac
 }
-WAYS="1 2 3 4 5 6 7 8"
+WAYS="1 2 3 4 5 6 7 8 9"
 
 begin
 for way in $WAYS; do
-    for size in 0 1 4; do # blocks of 512 bytes
+    for size in 0 1 4 40; do # blocks of 512 bytes
         old
         status=$(
             trap '' XFSZ
