@@ -12,23 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PASTE(a, b) a##b
-#define DESCRIPTOR(name) PASTE(name, _model)
-
-static uint64_t seed = 7;
-
-/* Evenly in [-1, 1), by integers up to the last step: the same number whatever the compiler does, in either precision.
- */
-static gic_real even(void)
-{
-    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (gic_real)((int32_t)(seed >> 44) - (1 << 19)) / (gic_real)(1 << 19);
-}
-
-static gic_real *array(void *self, size_t offset)
-{
-    return (gic_real *)(void *)((char *)self + offset);
-}
+#include "draw.h"
 
 /* Bits, so that no arithmetic of ours comes between. */
 static gic_real from_bits(uint64_t bits64, uint32_t bits32)
@@ -44,30 +28,6 @@ static void print(const gic_real *x, int32_t count)
         printf("%.17g\n", (double)x[i]);
 }
 
-/* Coordinates in the middle half of their ranges, speeds of driving. */
-static void draw(const gic_model *model, void *self)
-{
-    gic_real *state = array(self, model->state_offset), *input = array(self, model->input_offset);
-    const int32_t base = model->free_base ? 7 : 0, half = (model->slow_count - (model->free_base ? 13 : 0)) / 2;
-    for (int32_t i = base + half; i < model->slow_count; ++i)
-        state[i] = even();
-    if (model->free_base) {
-        /* Euler parameters of rational numbers: (1 - t^2, 2 t) / (1 + t^2) about the vertical */
-        const gic_real t = even(), s = GIC_R(1.0) + t * t;
-        state[3] = (GIC_R(1.0) - t * t) / s;
-        state[4] = state[5] = 0;
-        state[6] = GIC_R(2.0) * t / s;
-    }
-    for (int32_t c = 0; c < model->coordinate_count; ++c) {
-        const gic_real low = model->coordinate_low[c], high = model->coordinate_high[c];
-        const gic_real value = GIC_R(0.5) * (low + high) + GIC_R(0.25) * (high - low) * even();
-        if (model->coordinate_state[c] >= 0)
-            state[model->coordinate_state[c]] = value;
-        else
-            input[model->coordinate_input[c]] = value;
-    }
-}
-
 static int refuses(const gic_model *model, void *self, void *spoiled, size_t offset, gic_real number, int status)
 {
     memcpy(spoiled, self, model->size);
@@ -80,6 +40,7 @@ int main(void)
     const gic_model *model = &DESCRIPTOR(MODEL);
     void *self = malloc(model->size), *spoiled = malloc(model->size);
     const int32_t states = model->slow_count + model->fast_count;
+    uint64_t seed = 7;
     int bad = 0;
     if (!self || !spoiled || model->setup(self) != GIC_OK)
         return 2;
@@ -87,7 +48,7 @@ int main(void)
     feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
 #endif
     for (int row = 0; row < 20; ++row) {
-        draw(model, self);
+        draw(model, self, &seed);
         const int status = model->outputs(self);
         if (status != GIC_OK) {
             fprintf(stderr, "row %d: %s\n", row, gic_status_text(status));
