@@ -1,14 +1,16 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# fuzz.sh GICGEN: readers of models, formulas, tires, scenes and roads under clang's libFuzzer with sanitizers
-# (tests/fuzz/fuzz.c, which `make fuzz` builds), for SECONDS_EACH (short: 6, full: 60) each, from seeds: tests/fuzz/seeds
-# and the project's own files, sound and broken. What it made of them is gone afterwards but for findings, which stay in
+# fuzz.sh GICGEN RANDOM_VEHICLE: readers of models, formulas, tires, scenes and roads under clang's libFuzzer with
+# sanitizers (tests/fuzz/fuzz.c, which `make fuzz` builds), for SECONDS_EACH (short: 6, full: 60) each, from seeds:
+# tests/fuzz/seeds, the project's own files, sound and broken, and random vehicles, of which 40 reach as many branches
+# as some ten minutes of fuzzing without them. What it made of them is gone afterwards but for findings, which stay in
 # $BUILD/stress/fuzz.
 gicgen=$1
 build=$(dirname "$gicgen")
 fuzz=$build/fuzz/check/fuzz
+random_vehicle=$(realpath "$2")
 cd "$(dirname "$0")/../.." || exit 1
-[ "$STRESS" = short ] && usual=6 || usual=60
+[ "$STRESS" = short ] && usual=6 vehicles=2 || usual=60 vehicles=40
 seconds=${SECONDS_EACH:-$usual}
 found=$build/stress/fuzz
 mkdir -p "$found" || exit 1
@@ -21,20 +23,31 @@ trap 'rm -rf "$work"' EXIT
 # seeds READER: files to begin with
 seeds() {
     case $1 in
-    veh) ls models/*.veh models/parts/*.veh tests/bad/*.veh tests/laws/*.veh tests/elements/*.veh ;;
+    veh)
+        ls models/*.veh models/parts/*.veh tests/bad/*.veh tests/laws/*.veh tests/elements/*.veh
+        ls "$work"/random/*.veh
+        ;;
     tir) ls models/tires/*.tir tests/tires/*.tir ;;
     scene) ls models/scenes/*.scene ;;
     esac
     ls -d tests/fuzz/seeds/"$1"/*
 }
 
+# random vehicles in one file; they have no other to read a tire from
+mkdir "$work/random"
+for seed in $(seq "$vehicles"); do
+    "$random_vehicle" --seed "$seed" --rich "$work" --tire models/tires/hmmwv_pac2002.tir || exit 1
+    other=$(sed -n 's/^  \(tmeasy_[0-9]*\): .*/\1/p' "$work/$seed.plain.veh")
+    sed "/^  pacejka_/d; s/tire: pacejka_[0-9]*/tire: $other/" "$work/$seed.plain.veh" >"$work/random/$seed.veh"
+done
+
 for reader in veh formula tir scene road; do
     mkdir "$work/$reader"
     for file in $(seeds $reader); do
-        cp "$file" "$work/$reader/$(echo "$file" | tr / _)"
+        cp "$file" "$work/$reader/$(echo "${file#"$work/"}" | tr / _)"
     done
     rm -f "$found/$reader"-*
-    # they end by a signal or a status that is not 0 at the first finding; leaks are blocks that libyaml keeps until exit
+    # it ends by a signal or a status that is not 0 at the first finding; leaks are blocks that libyaml keeps until exit
     READER=$reader ASAN_OPTIONS=detect_leaks=0 "$fuzz" -detect_leaks=0 -dict="$work/words" -timeout=10 \
         -rss_limit_mb=3000 -max_total_time="$seconds" -print_final_stats=1 -close_fd_mask=2 \
         -artifact_prefix="$found/$reader-" "$work/$reader" >"$work/log" 2>&1
