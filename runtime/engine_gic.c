@@ -13,8 +13,11 @@
 /* Bounds of one recovery, as generated code has them: corrections with old factors, with new ones, the relative size of
  * a correction that may lead astray, and pieces in which a change of the coordinates is followed. */
 enum { CHORDS = 6, PASSES = 10, PIECES = 1000 };
+/* Near a singular configuration bodies move more than coordinates let expect: a way that fails is gone again in pieces
+ * that are a quarter as long, and once more. */
+enum { TRIES = 3, FINER = 4 };
 
-static const double leap = 0.2;
+static const double leap = 0.1;
 /* A determinant this small relative to that at the design, or of the other sign: coordinates cease to be independent
  * (Serban and Haug 2000, equation 6). No rigid motion changes it. */
 static const double singular = 8e-3;
@@ -267,6 +270,30 @@ static double *start_of(const Interpreted *context, const Instance *self, int fl
     return instance_own(self) + flip * ((const Gic *)context->engine)->start_size;
 }
 
+/* All bodies by `way` [coordinates] from the last good configuration to `last`. */
+static int recover_pieces(const Interpreted *context, Instance *self, const double *way, const double *last, int pieces,
+                          bool cold)
+{
+    World *world = context->world;
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const double *const from = start_of(context, self, first);
+    int32_t now = first;
+    for (int piece = 1; piece <= pieces; ++piece) {
+        int32_t next = 0;
+        while (next == first || next == now || next == hold)
+            ++next;
+        for (int c = 0; c < world->model->coordinates; ++c)
+            world->x[c] = piece == pieces ? last[c] : from[c] + way[c] * piece / pieces;
+        const int status =
+            recover_piece(context, self, start_of(context, self, now), start_of(context, self, next), cold);
+        if (status != GIC_OK)
+            return status;
+        now = next;
+    }
+    self->head.flip = now;
+    return GIC_OK;
+}
+
 /* All bodies at world->x, followed from the last good configuration, which stays that where a piece fails. */
 static int recover(const Interpreted *context, Instance *self, bool cold)
 {
@@ -274,11 +301,9 @@ static int recover(const Interpreted *context, Instance *self, bool cold)
     World *world = context->world;
     const int count = world->model->coordinates;
     const double begun = profile_clock(context->profile);
-    const int32_t first = self->head.flip, hold = self->head.hold;
-    const double *const from = start_of(context, self, first);
+    const double *const from = start_of(context, self, self->head.flip);
     double last[count + 1], way[count + 1];
-    int32_t now = first;
-    int pieces = 1;
+    int pieces = 1, status = GIC_ERROR_NEWTON;
     for (int c = 0; c < count; ++c) {
         last[c] = world->x[c];
         way[c] = last[c] - from[c];
@@ -290,21 +315,10 @@ static int recover(const Interpreted *context, Instance *self, bool cold)
             return GIC_ERROR_REACH;
         pieces = (int)parts + 1 > pieces ? (int)parts + 1 : pieces;
     }
-    for (int piece = 1; piece <= pieces; ++piece) {
-        int32_t next = 0;
-        while (next == first || next == now || next == hold)
-            ++next;
-        for (int c = 0; c < count; ++c)
-            world->x[c] = piece == pieces ? last[c] : from[c] + way[c] * piece / pieces;
-        const int status =
-            recover_piece(context, self, start_of(context, self, now), start_of(context, self, next), cold);
-        if (status != GIC_OK)
-            return status;
-        now = next;
-    }
-    self->head.flip = now;
+    for (int i = 0; i < TRIES && status == GIC_ERROR_NEWTON && pieces <= PIECES; ++i, pieces *= FINER)
+        status = recover_pieces(context, self, way, last, pieces, cold);
     context->profile->recovery += profile_clock(context->profile) - begun;
-    return GIC_OK;
+    return status;
 }
 
 static int place(const Interpreted *context, Instance *self, const double *state)
