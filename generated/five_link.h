@@ -62,12 +62,12 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   69       111       1      1         0
+ *   subset 'rack' (1 times, closed form)                      13        25       0      0         0
+ *   subset 'lca_f_l' (2 times, closed form)                   68       111       1      1         0
  *   subset 'wheel_r_l' (2 times)                             597       680       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
+ *   subset 'wheel_f_l' (2 times, closed form)                301       409       5      2         0
  *   forces and equations of motion                           719       704       7      0         4
- *   all together                                            2674      3129      31      6         4
+ *   all together                                            2664      3129      31      6         4
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H

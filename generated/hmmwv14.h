@@ -70,12 +70,12 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
- *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        514       648       6      2         0
- *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        427       538       6      2         0
+ *   subset 'rack' (1 times, closed form)                      13        25       0      0         0
+ *   subset 'lca_f_l' (4 times, closed form)                   68       111       1      1         0
+ *   subset 'uca_f_l_wheel_f_l' (2 times, closed form)        513       648       6      2         0
+ *   subset 'uca_r_l_wheel_r_l' (2 times, closed form)        426       538       6      2         0
  *   forces and equations of motion                           871       824      11      4         4
- *   all together                                            3044      3665      39     16         4
+ *   all together                                            3034      3665      39     16         4
  *   outputs, when asked for                                  933      1137       4      4        19
  */
 #ifndef HMMWV14_H

@@ -68,12 +68,12 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                 87       129       2      1         0
+ *   subset 'rack' (1 times, closed form)                      13        25       0      0         0
+ *   subset 'lca_f_l' (4 times, closed form)                   68       111       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                301       409       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 85       129       2      1         0
  *   forces and equations of motion                           838       763      10      4        24
- *   all together                                            1911      2308      28     14        24
+ *   all together                                            1895      2308      28     14        24
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H

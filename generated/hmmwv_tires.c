@@ -68,16 +68,16 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                 87       129       2      1         0
+ *   subset 'rack' (1 times, closed form)                      13        25       0      0         0
+ *   subset 'lca_f_l' (4 times, closed form)                   68       111       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                301       409       5      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 85       129       2      1         0
  *   forces and equations of motion                           568       507       5      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
  *   wheel 'tire_f_l' (4 times)                               195       313      23     12        37
  *   a fast step: all wheels                                  780      1254      92     48       148
- *   all together                                            2620      3508     115     58       148
+ *   all together                                            2604      3508     115     58       148
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #include "hmmwv_tires.h"
@@ -197,39 +197,39 @@ static int hmmwv_tires_solve_rack(hmmwv_tires *self, const gic_real *GIC_RESTRIC
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = x[0];
-        const gic_real t2 = t1 * turn[0] - R(1.438648) * turn[1];
-        const gic_real t3 = R(0.054228999999999916) * turn[1] - t1 * turn[2];
-        const gic_real t4 = rate[0];
-        const gic_real t5 = t4 + (t4 + (R(1.438648) * turn[2] - R(0.054228999999999916) * turn[0]));
+        const gic_real t2 = rate[0];
+        const gic_real t3 = R(1.438648) * turn[2] + (t2 + t2) - R(0.054228999999999916) * turn[0];
+        const gic_real t4 = t1 * turn[0] - R(1.438648) * turn[1];
+        const gic_real t5 = R(0.054228999999999916) * turn[1] - t1 * turn[2];
         const gic_real t6 = t1 * R(9.072);
         const gic_real t7 = -(t1 * R(13.051414655999999));
         const gic_real t8 = -(t1 * R(0.4919654879999992));
-        const gic_real t9 = turn[2] * t3 - turn[0] * t2;
-        const gic_real t10 = t1 * t6;
-        const gic_real t11 = R(1.0) + (t10 + R(0.026678796448751915));
-        const gic_real t12 = R(1.0) + (R(18.776391592025085) + t10);
-        const gic_real t13 = R(9.072) * t9;
-        const gic_real t14 = turn[1] * t2 - turn[2] * t5;
-        const gic_real t15 = turn[0] * t5 - turn[1] * t3;
-        const gic_real t16 = R(9.072) * t14;
-        const gic_real t17 = R(9.072) * t15;
-        const gic_real t18 = R(0.4919654879999992) * t14 - R(13.051414655999999) * t15;
-        const gic_real t19 = R(13.051414655999999) * t9 - t1 * t16;
-        const gic_real t20 = t1 * t17 - R(0.4919654879999992) * t9;
+        const gic_real t9 = t1 * t6;
+        const gic_real t10 = turn[1] * t4 - turn[2] * t3;
+        const gic_real t11 = turn[0] * t3 - turn[1] * t5;
+        const gic_real t12 = turn[2] * t5 - turn[0] * t4;
+        const gic_real t13 = t9 + R(1.0266787964487518);
+        const gic_real t14 = t9 + R(19.776391592025085);
+        const gic_real t15 = R(9.072) * t10;
+        const gic_real t16 = R(9.072) * t11;
+        const gic_real t17 = R(0.4919654879999992) * t10 - R(13.051414655999999) * t11;
+        const gic_real t18 = R(9.072) * t12;
+        const gic_real t19 = R(13.051414655999999) * t12 - t1 * t15;
+        const gic_real t20 = t1 * t16 - R(0.4919654879999992) * t12;
         motion[1] = t1;
-        motion[16] = t4;
+        motion[16] = t2;
         inertia[1] = t6;
-        inertia[3] = t11;
-        inertia[5] = t12;
+        inertia[3] = t13;
+        inertia[5] = t14;
         inertia[6] = t7;
         inertia[8] = t8;
-        inertia[9] = t16;
-        inertia[10] = t13;
-        inertia[11] = t17;
+        inertia[9] = t15;
+        inertia[10] = t18;
+        inertia[11] = t16;
         inertia[12] = t20;
-        inertia[13] = t18;
+        inertia[13] = t17;
         inertia[14] = t19;
-        inertia[21] = t13;
+        inertia[21] = t18;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -249,15 +249,16 @@ static GIC_COLD gic_real hmmwv_tires_residual_rack(const gic_real *GIC_RESTRICT 
     return worst;
 }
 
-static const gic_real hmmwv_tires_k_lca_f_l[4][28] = {
+static const gic_real hmmwv_tires_k_lca_f_l[4][29] = {
     { /* lca_f_l */
         R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(-0.9999999999999999),
         R(-0.038649583990999964), R(0.056072097532999944), R(0.038649583990999964), R(-0.056072097532999944),
         R(51.57660077184115), R(209.3566321652692), R(-209.35663216526913), R(51.57660077184116),
         R(-51.57660077184115), R(209.35663216526913), R(50.90547521989429), R(10.049655409199135),
         R(-10.049655409199135), R(3.0379110359107786e-06), R(0.24689200985615367), R(8.917091066652826),
-        R(0.307086), R(0.19748499999999997), R(0.509778), R(1.688965),
-        R(40.476046225), R(0.01121887479261392), R(0.2403881036540444), R(7.8923759275231005),
+        R(0.307086), R(0.19748499999999997), R(-0.20269199999999993), R(1.688965),
+        R(40.476046225), R(0.01121887479261392), R(0.2403881036540444), R(0.509778),
+        R(7.8923759275231005),
     },
     { /* lca_f_r */
         R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.9999999999999999),
@@ -265,8 +266,9 @@ static const gic_real hmmwv_tires_k_lca_f_l[4][28] = {
         R(-51.57660077184115), R(209.3566321652692), R(-209.35663216526913), R(-51.57660077184116),
         R(51.57660077184115), R(209.35663216526913), R(-50.90547521989429), R(10.049655409199135),
         R(-10.049655409199135), R(3.0379110359107786e-06), R(-0.24689200985615367), R(8.917091066652826),
-        R(-0.307086), R(0.19748499999999997), R(-0.509778), R(1.688965),
-        R(40.476046225), R(0.01121887479261392), R(-0.2403881036540444), R(7.8923759275231005),
+        R(-0.307086), R(0.19748499999999997), R(0.20269199999999993), R(1.688965),
+        R(40.476046225), R(0.01121887479261392), R(-0.2403881036540444), R(-0.509778),
+        R(7.8923759275231005),
     },
     { /* lca_r_l */
         R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(-1.0000000000000002),
@@ -274,8 +276,9 @@ static const gic_real hmmwv_tires_k_lca_f_l[4][28] = {
         R(39.864795135905354), R(161.81677595488466), R(-161.8167759548846), R(39.86479513590536),
         R(-39.864795135905354), R(161.8167759548846), R(39.34606605646902), R(7.767620356494953),
         R(-7.767620356494953), R(-3.0379110358344508e-06), R(0.246867347245056), R(7.181825051954386),
-        R(0.307086), R(0.2564891999999999), R(0.5015738), R(-1.688965),
-        R(-40.476046225), R(0.011218874792613923), R(0.24038810365404442), R(6.355965194292886),
+        R(0.307086), R(0.2564891999999999), R(-0.19448779999999993), R(-1.688965),
+        R(-40.476046225), R(0.011218874792613923), R(0.24038810365404442), R(0.5015738),
+        R(6.355965194292886),
     },
     { /* lca_r_r */
         R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(1.0000000000000002),
@@ -283,8 +286,9 @@ static const gic_real hmmwv_tires_k_lca_f_l[4][28] = {
         R(-39.864795135905354), R(161.81677595488466), R(-161.8167759548846), R(-39.86479513590536),
         R(39.864795135905354), R(161.8167759548846), R(-39.34606605646902), R(7.767620356494953),
         R(-7.767620356494953), R(-3.0379110358344508e-06), R(-0.246867347245056), R(7.181825051954386),
-        R(-0.307086), R(0.2564891999999999), R(-0.5015738), R(-1.688965),
-        R(-40.476046225), R(0.011218874792613923), R(-0.24038810365404442), R(6.355965194292886),
+        R(-0.307086), R(0.2564891999999999), R(0.19448779999999993), R(-1.688965),
+        R(-40.476046225), R(0.011218874792613923), R(-0.24038810365404442), R(-0.5015738),
+        R(6.355965194292886),
     },
 };
 
@@ -333,76 +337,76 @@ static int hmmwv_tires_solve_lca_f_l(hmmwv_tires *self, const gic_real *GIC_REST
         const gic_real t25 = t16 * t18;
         const gic_real t26 = t10 * t15;
         const gic_real t27 = t16 + turn[0];
-        const gic_real t28 = (t13 - k[21]) * (t16 * t21) + (k[20] + t11 - k[22]) * (t16 * t20);
-        const gic_real t29 = t23 + (t23 + (turn[0] * t22 - k[23] * turn[1]));
-        const gic_real t30 = k[23] * turn[2] - turn[0] * t18 - t25 - t25;
+        const gic_real t28 = (t13 - k[21]) * (t16 * t21) + t16 * t20 * (t11 + k[22]);
+        const gic_real t29 = turn[0] * t22 + (t23 + (t23 - k[23] * turn[1]));
+        const gic_real t30 = k[23] * turn[2] - turn[0] * t18 - (t25 + t25);
         const gic_real t31 = turn[1] * t18 - turn[2] * t22;
         const gic_real t32 = turn[2] * t19 + turn[1] * t26;
         const gic_real t33 = turn[2] * t26 + turn[1] * t24;
-        const gic_real t34 = t16 * turn[2];
-        const gic_real t35 = t16 * turn[1];
+        const gic_real t34 = rate[0] * rate[0] - t20 * t20 - t21 * t21 + t28;
+        const gic_real t35 = t16 * turn[2];
         const gic_real t36 = R(0.4469) * t27;
-        const gic_real t37 = t12 * t18;
-        const gic_real t38 = t12 * t14;
-        const gic_real t39 = rate[0] * rate[0] - (t20 * t20 + t21 * t21 - t28);
+        const gic_real t37 = t16 * turn[1];
+        const gic_real t38 = t12 * t18;
+        const gic_real t39 = t12 * t14;
         const gic_real t40 = R(23.965) * t22;
         const gic_real t41 = R(23.965) * t18;
-        const gic_real t42 = t24 * t34 - t26 * t35 + (turn[2] * t36 - t27 * t32);
-        const gic_real t43 = R(23.965) * (turn[1] * t29 - turn[2] * t30);
-        const gic_real t44 = t26 * t34 - t19 * t35 + (t27 * t33 - turn[1] * t36);
-        const gic_real t45 = R(23.965) * t37;
-        const gic_real t46 = R(23.965) * t38;
-        const gic_real t47 = t22 * t40;
-        const gic_real t48 = t18 * t41;
-        const gic_real t49 = t26 - t18 * t40;
-        const gic_real t50 = t4 * t39;
+        const gic_real t42 = R(23.965) * (turn[1] * t29 - turn[2] * t30);
+        const gic_real t43 = t24 * t35 + (turn[2] * t36 - t26 * t37) - t27 * t32;
+        const gic_real t44 = t27 * t33 + (t26 * t35 - turn[1] * t36 - t19 * t37);
+        const gic_real t45 = R(23.965) * t38;
+        const gic_real t46 = t4 * t34;
+        const gic_real t47 = R(23.965) * t39;
+        const gic_real t48 = t22 * t40;
+        const gic_real t49 = t18 * t41;
+        const gic_real t50 = t26 - t18 * t40;
         const gic_real t51 = -(t22 * k[24]);
-        const gic_real t52 = t17 + (t18 * t45 + t22 * t46);
-        const gic_real t53 = t12 * t17 + (t38 * t46 + t37 * t45);
-        const gic_real t54 = turn[2] * t31 - turn[0] * t29 - t16 * t23 - t50 * t18;
-        const gic_real t55 = turn[0] * t30 - turn[1] * t31 - t16 * t25 + t50 * t14;
-        const gic_real t56 = t50 * R(0.4469) + (turn[1] * t32 - turn[2] * t33);
-        const gic_real t57 = R(0.4469) + (t47 + t48);
-        const gic_real t58 = t24 + (R(68.36262541240713) + t48);
-        const gic_real t59 = t19 + (R(68.36262541240713) + t47);
-        const gic_real t60 = -(t18 * k[24]);
-        const gic_real t61 = -(k[24] * t38);
-        const gic_real t62 = -(k[24] * t37);
-        const gic_real t63 = -t45;
-        const gic_real t64 = R(23.965) * t54;
-        const gic_real t65 = t44 + (k[24] * t54 - t22 * t43);
-        const gic_real t66 = R(23.965) * t55;
-        const gic_real t67 = t42 + (t18 * t43 - k[24] * t55);
-        const gic_real t68 = t56 + (t22 * t66 - t18 * t64);
-        const gic_real t69 = t12 * t56 + (t66 * t38 - t64 * t37);
+        const gic_real t52 = turn[2] * t31 - t16 * t23 - turn[0] * t29 - t18 * t46;
+        const gic_real t53 = t14 * t46 + (turn[0] * t30 - t16 * t25 - turn[1] * t31);
+        const gic_real t54 = turn[1] * t32 - turn[2] * t33 + R(0.4469) * t46;
+        const gic_real t55 = t22 * t47 + (t17 + t18 * t45);
+        const gic_real t56 = t38 * t45 + (t12 * t17 + t39 * t47);
+        const gic_real t57 = t48 + (R(0.4469) + t49);
+        const gic_real t58 = t49 + (t24 + R(68.36262541240713));
+        const gic_real t59 = R(23.965) * t52;
+        const gic_real t60 = k[24] * t52 + t44 - t22 * t42;
+        const gic_real t61 = t48 + (t19 + R(68.36262541240713));
+        const gic_real t62 = R(23.965) * t53;
+        const gic_real t63 = t18 * t42 + t43 - k[24] * t53;
+        const gic_real t64 = -(t18 * k[24]);
+        const gic_real t65 = -(k[24] * t39);
+        const gic_real t66 = t54 + t22 * t62 - t18 * t59;
+        const gic_real t67 = t12 * t54 + t39 * t62 - t38 * t59;
+        const gic_real t68 = -(k[24] * t38);
+        const gic_real t69 = -t45;
         motion[7] = t7;
         motion[8] = t8;
         motion[10] = t9;
         motion[11] = t10;
         motion[12] = t16;
-        motion[18] = t50;
+        motion[18] = t46;
         motion[24] = t12;
         inertia[1] = t40;
         inertia[2] = t41;
         inertia[3] = t57;
         inertia[4] = t58;
-        inertia[5] = t59;
+        inertia[5] = t61;
         inertia[6] = t51;
-        inertia[7] = t60;
-        inertia[8] = t49;
-        inertia[9] = t43;
-        inertia[10] = t64;
-        inertia[11] = t66;
-        inertia[12] = t68;
-        inertia[13] = t67;
-        inertia[14] = t65;
-        inertia[16] = t63;
-        inertia[17] = t46;
-        inertia[18] = t52;
-        inertia[19] = t61;
-        inertia[20] = t62;
-        inertia[21] = t69;
-        inertia[22] = t53;
+        inertia[7] = t64;
+        inertia[8] = t50;
+        inertia[9] = t42;
+        inertia[10] = t59;
+        inertia[11] = t62;
+        inertia[12] = t66;
+        inertia[13] = t63;
+        inertia[14] = t60;
+        inertia[16] = t69;
+        inertia[17] = t47;
+        inertia[18] = t55;
+        inertia[19] = t65;
+        inertia[20] = t68;
+        inertia[21] = t67;
+        inertia[22] = t56;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -417,9 +421,9 @@ static GIC_COLD gic_real hmmwv_tires_residual_lca_f_l(const gic_real *GIC_RESTRI
     (void)k;
     {
         const gic_real t1 = k[25] * motion[11] + k[26] * motion[10] - k[21];
-        const gic_real t2 = k[20] + (k[25] * motion[8] + k[26] * motion[7]) - k[22];
+        const gic_real t2 = k[20] + (k[25] * motion[8] + k[26] * motion[7]) - k[27];
         const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[27]));
+        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[28]));
         worst = t4;
     }
     return worst;
@@ -429,13 +433,13 @@ static const gic_real hmmwv_tires_k_wheel_f_l[2][15] = {
     { /* wheel_f_l */
         R(0.49375935710120966), R(0.448437), R(0.307086), R(0.4527638),
         R(-0.1394133303209898), R(0.008298160247365965), R(-1.0), R(-2.9280756565520325),
-        R(-7.53722278326882), R(2.5885748225120313), R(-0.6086675051956221), R(-4.242021150632486),
+        R(2.5885748225120313), R(-0.6086675051956221), R(-4.242021150632486), R(-7.53722278326882),
         R(0.08910630000000008), R(0.03459480000000004), R(-0.07099299999999997),
     },
     { /* wheel_f_r */
         R(-0.49375935710120966), R(-0.448437), R(-0.307086), R(-0.4527638),
         R(0.1394133303209898), R(-0.008298160247365965), R(1.0), R(2.9280756565520325),
-        R(7.53722278326882), R(-2.5885748225120313), R(0.6086675051956221), R(4.242021150632486),
+        R(-2.5885748225120313), R(0.6086675051956221), R(4.242021150632486), R(7.53722278326882),
         R(-0.08910630000000008), R(-0.03459480000000004), R(0.07099299999999997),
     },
 };
@@ -468,276 +472,286 @@ static int hmmwv_tires_solve_wheel_f_l(hmmwv_tires *self, const gic_real *GIC_RE
         const gic_real t13 = rate[1] * t7;
         const gic_real t14 = rate[1] * t8;
         const gic_real t15 = m1[18] * t1 - m1[12] * (m1[12] * t2);
-        const gic_real t16 = t5 * t5 + (t10 * t10 + R(0.0035428684840000087));
-        const gic_real t17 = R(0.21526024724178433) * t5 + (k[4] * t10 + R(-0.05753123686771919));
+        const gic_real t16 = t10 * t10 + (t5 * t5 + R(0.0035428684840000087));
+        const gic_real t17 = k[4] * t10 + (R(0.21526024724178433) * t5 + R(-0.05753123686771919));
         const gic_real t18 = k[4] * t5 - R(0.21526024724178433) * t10;
         const gic_real t19 = R(0.9665541626242249) * t10 - k[5];
-        const gic_real t20 = R(0.5) * (t6 * t6 + (t12 * t12 + R(0.04612056904900004)) + R(-0.11818284750480001));
-        const gic_real t21 = -t13;
-        const gic_real t22 = -t9;
-        const gic_real t23 = -t7;
-        const gic_real t24 = R(0.5) * (t16 + R(0.04548219048831001));
-        const gic_real t25 = t19 * t19 + (t11 * t11 + t18 * t18);
-        const gic_real t26 = R(4.3116545195287515e-08) + t17;
-        const gic_real t27 = t26 * t16 - t17 * t24;
-        const gic_real t28 = t24 - t17 * t26;
-        const gic_real t29 = R(0.116636750597) * t25 - t26 * t27 - t24 * t28;
-        if (!(t29 > R(0.0)))
+        const gic_real t20 = -t13;
+        const gic_real t21 = -t9;
+        const gic_real t22 = -t7;
+        const gic_real t23 = R(0.5) * (R(0.04548219048831001) + t16);
+        const gic_real t24 = t18 * t18 + (t19 * t19 + t11 * t11);
+        const gic_real t25 = R(4.3116545195287515e-08) + t17;
+        const gic_real t26 = t23 - t17 * t25;
+        const gic_real t27 = t25 * t16 - t17 * t23;
+        const gic_real t28 = R(0.116636750597) * t24 - t23 * t26 - t25 * t27;
+        if (!(t28 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t29 - t25 * R(1.16636750597e-05) > R(0.0)))
+        if (!(t28 - R(1.16636750597e-05) * t24 > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t30 = GIC_SQRT(t29);
-        const gic_real t31 = R(1.0) / t25;
-        const gic_real t32 = t27 * t31;
-        const gic_real t33 = t28 * t31;
-        const gic_real t34 = t31 * (t30 * k[6]);
-        const gic_real t35 = k[4] * t32 + t10 * t33 + t11 * t34;
-        const gic_real t36 = R(0.9665541626242249) * t32 + R(-0.059522000000000075) * t33 + t18 * t34;
-        const gic_real t37 = R(0.21526024724178433) * t32 + t5 * t33 + t19 * t34;
-        const gic_real t38 = t4 + t35 - k[3];
-        const gic_real t39 = R(1.653405) + t36 - R(1.593883);
-        const gic_real t40 = t6 * t37 + (t12 * t35 + R(-0.2147570000000001) * t36);
-        const gic_real t41 = t2 + t37 - R(0.23411769999999993);
-        const gic_real t42 = R(8.573627050492616) * t40;
-        const gic_real t43 = t20 - R(0.2910617987184667) * t40;
+        const gic_real t29 = GIC_SQRT(t28);
+        const gic_real t30 = R(1.0) / t24;
+        const gic_real t31 = t27 * t30;
+        const gic_real t32 = t26 * t30;
+        const gic_real t33 = t30 * (k[6] * t29);
+        const gic_real t34 = t19 * t33 + (R(0.21526024724178433) * t31 + t5 * t32);
+        const gic_real t35 = t11 * t33 + (k[4] * t31 + t10 * t32);
+        const gic_real t36 = t18 * t33 + (R(0.9665541626242249) * t31 + R(-0.059522000000000075) * t32);
+        const gic_real t37 = t34 + (t2 - R(0.23411769999999993));
+        const gic_real t38 = t35 + (t4 - k[3]);
+        const gic_real t39 = R(-0.2147570000000001) * t36 + (t6 * t34 + t12 * t35);
+        const gic_real t40 = t36 + R(0.059522000000000075);
+        const gic_real t41 = R(0.5) * (t12 * t12 + (t6 * t6 + R(-0.07206227845579997))) - R(0.2910617987184667) * t39;
+        const gic_real t42 = R(8.573627050492616) * t39;
+        const gic_real t43 = t6 - t34 * t42;
         const gic_real t44 = t12 - t35 * t42;
         const gic_real t45 = R(-0.2147570000000001) - t36 * t42;
-        const gic_real t46 = t6 - t37 * t42;
-        const gic_real t47 = t46 * t46 + (t44 * t44 + t45 * t45);
-        const gic_real t48 = R(0.021346939557573212) * t47 - t43 * t43;
-        if (!(t48 > R(0.0)))
+        const gic_real t46 = t45 * t45 + (t43 * t43 + t44 * t44);
+        const gic_real t47 = R(0.021346939557573212) * t46 - t41 * t41;
+        if (!(t47 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t48 - t47 * R(2.1346939557573214e-06) > R(0.0)))
+        if (!(t47 - R(2.1346939557573214e-06) * t46 > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t49 = GIC_SQRT(t48);
-        const gic_real t50 = R(1.0) / t47;
-        const gic_real t51 = t50 * t43;
-        const gic_real t52 = t50 * (t49 * k[7]);
-        const gic_real t53 = t30 * t49;
-        const gic_real t54 = t44 * t51 + (t37 * t45 - t36 * t46) * t52;
-        const gic_real t55 = t46 * t51 + (t36 * t44 - t35 * t45) * t52;
-        const gic_real t56 = t45 * t51 + (t35 * t46 - t37 * t44) * t52;
-        const gic_real t57 = t54 + t35 * R(0.2910617987184667);
-        const gic_real t58 = t55 + t37 * R(0.2910617987184667);
-        const gic_real t59 = t35 * t55 - t37 * t54;
-        const gic_real t60 = t56 + t36 * R(0.2910617987184667);
-        const gic_real t61 = t37 * t56 - t36 * t55;
-        const gic_real t62 = t4 + t57 - t3;
-        const gic_real t63 = t36 * t54 - t35 * t56;
-        const gic_real t64 = t2 + t58 - R(0.054228999999999916);
-        const gic_real t65 = t59 * k[8] + (t56 * R(-6.332169372123424) + t36 * R(-0.14982584743276878));
-        const gic_real t66 = R(1.653405) + t60 - R(1.438648);
-        const gic_real t67 = t59 * R(-18.07838873614245) + (t56 * k[9] + t36 * k[10]);
-        const gic_real t68 = t61 * k[8] + (t54 * R(-6.332169372123424) + t35 * R(-0.14982584743276878));
-        const gic_real t69 = t57 * t64 - t58 * t62;
-        const gic_real t70 = t62 * t7 - t64 * t8;
-        const gic_real t71 = t60 * t62 - t57 * t66;
-        const gic_real t72 = t58 * t66 - t60 * t64;
-        const gic_real t73 = t61 * R(-18.07838873614245) + (t54 * k[9] + t35 * k[10]);
-        if (!(GIC_FABS(t69) > R(4.788591362393209e-06)))
+        const gic_real t48 = GIC_SQRT(t47);
+        const gic_real t49 = R(1.0) / t46;
+        const gic_real t50 = t49 * t41;
+        const gic_real t51 = t49 * (k[7] * t48);
+        const gic_real t52 = t29 * t48;
+        const gic_real t53 = t44 * t50 + (t34 * t45 - t36 * t43) * t51;
+        const gic_real t54 = t43 * t50 + (t36 * t44 - t35 * t45) * t51;
+        const gic_real t55 = t45 * t50 + (t35 * t43 - t34 * t44) * t51;
+        const gic_real t56 = t53 + R(0.2910617987184667) * t35;
+        const gic_real t57 = t54 + R(0.2910617987184667) * t34;
+        const gic_real t58 = t35 * t54 - t34 * t53;
+        const gic_real t59 = t55 + R(0.2910617987184667) * t36;
+        const gic_real t60 = t34 * t55 - t36 * t54;
+        const gic_real t61 = t56 + (t4 - t3);
+        const gic_real t62 = t36 * t53 - t35 * t55;
+        const gic_real t63 = t57 + (t2 - R(0.054228999999999916));
+        const gic_real t64 = R(-18.07838873614245) * t58 + (k[8] * t55 + k[9] * t36);
+        const gic_real t65 = t59 + R(0.2147570000000001);
+        const gic_real t66 = k[10] * t58 + (R(0.21916659821076587) * t55 + R(2.860192849101719) * t36);
+        const gic_real t67 = R(-18.07838873614245) * t60 + (k[8] * t53 + k[9] * t35);
+        const gic_real t68 = t56 * t63 - t57 * t61;
+        const gic_real t69 = t59 * t61 - t56 * t65;
+        const gic_real t70 = t7 * t61 - t8 * t63;
+        const gic_real t71 = t57 * t65 - t59 * t63;
+        const gic_real t72 = k[10] * t60 + (R(0.21916659821076587) * t53 + R(2.860192849101719) * t35);
+        if (!(GIC_FABS(t68) > R(4.788591362393209e-06)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t74 = R(1.0) / t69;
-        const gic_real t75 = t63 * k[8] + (t55 * R(-6.332169372123424) + t37 * R(-0.14982584743276878));
-        const gic_real t76 = t63 * R(-18.07838873614245) + (t55 * k[9] + t37 * k[10]);
-        const gic_real t77 = t59 * k[11] + (t56 * R(0.21916659821076587) + t36 * R(2.860192849101719));
-        const gic_real t78 = t61 * k[11] + (t54 * R(0.21916659821076587) + t35 * R(2.860192849101719));
-        const gic_real t79 = (t35 * t41 - t37 * t38) * t74;
-        const gic_real t80 = (R(0.21526024724178433) * t35 - k[4] * t37) * t74;
-        const gic_real t81 = t63 * k[11] + (t55 * R(0.21916659821076587) + t37 * R(2.860192849101719));
-        const gic_real t82 = t67 * R(-4.5794204999999994);
-        const gic_real t83 = t77 * R(0.09182100000000004) + (t67 * k[12] + t65 * R(-0.004825999999999997));
-        const gic_real t84 = t78 * R(0.09182100000000004) + (t73 * k[12] + t68 * R(-0.004825999999999997));
-        const gic_real t85 = t36 * t38 - t35 * t39 - t71 * t79;
-        const gic_real t86 = t38 * t7 - t41 * t8 - t79 * t70;
-        const gic_real t87 = t62 * t79;
-        const gic_real t88 = t37 * t39 - t36 * t41 - t72 * t79;
-        const gic_real t89 = t81 * R(0.09182100000000004) + (t76 * k[12] + t75 * R(-0.004825999999999997));
-        const gic_real t90 = R(1.653405) + t83;
-        const gic_real t91 = t4 + t84;
-        const gic_real t92 = t65 * R(0.12192999999999987);
-        if (!(GIC_FABS(t85) > R(1.57021858834731e-05)))
+        const gic_real t73 = R(1.0) / t68;
+        const gic_real t74 = R(-18.07838873614245) * t62 + (k[8] * t54 + k[9] * t34);
+        const gic_real t75 = k[10] * t62 + (R(0.21916659821076587) * t54 + R(2.860192849101719) * t34);
+        const gic_real t76 = k[11] * t58 + (R(-6.332169372123424) * t55 + R(-0.14982584743276878) * t36);
+        const gic_real t77 = k[11] * t60 + (R(-6.332169372123424) * t53 + R(-0.14982584743276878) * t35);
+        const gic_real t78 = (t35 * t37 - t34 * t38) * t73;
+        const gic_real t79 = (R(0.21526024724178433) * t35 - k[4] * t34) * t73;
+        const gic_real t80 = k[11] * t62 + (R(-6.332169372123424) * t54 + R(-0.14982584743276878) * t34);
+        const gic_real t81 = R(-4.5794204999999994) * t67;
+        const gic_real t82 = R(-0.004825999999999997) * t76 + (R(0.09182100000000004) * t66 + k[12] * t64);
+        const gic_real t83 = R(-0.004825999999999997) * t77 + (R(0.09182100000000004) * t72 + k[12] * t67);
+        const gic_real t84 = t36 * t38 - t35 * t40 - t69 * t78;
+        const gic_real t85 = t7 * t38 - t8 * t37 - t78 * t70;
+        const gic_real t86 = t61 * t78;
+        const gic_real t87 = t34 * t40 - t36 * t37 - t71 * t78;
+        const gic_real t88 = R(-0.004825999999999997) * t80 + (R(0.09182100000000004) * t75 + k[12] * t74);
+        const gic_real t89 = t80 * (R(0.12192999999999987) * t80) + (R(4.7728205) + t74 * (R(-4.5794204999999994) * t74));
+        if (!(GIC_FABS(t84) > R(1.57021858834731e-05)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t93 = t69 * t85 * (t53 * (R(1.0) / (t48 * (t29 * R(-0.3415212300824061)))));
-        const gic_real t94 = R(1.0) / t85;
-        const gic_real t95 = t2 + t89;
-        const gic_real t96 = t73 * R(-4.5794204999999994);
-        const gic_real t97 = t68 * R(0.12192999999999987);
-        const gic_real t98 = R(4.7728205) + (t67 * t82 + t65 * t92);
-        const gic_real t99 = R(4.7728205) + (t76 * (t76 * R(-4.5794204999999994)) + t75 * (t75 * R(0.12192999999999987)));
-        const gic_real t100 = R(4.7728205) + (t73 * t96 + t68 * t97);
-        const gic_real t101 = t73 * t82 + t68 * t92;
-        const gic_real t102 = (k[4] * t36 - R(0.9665541626242249) * t35 - t71 * t80) * t94;
-        const gic_real t103 = t76 * t82 + t75 * t92;
-        const gic_real t104 = t76 * t96 + t75 * t97;
-        const gic_real t105 = R(90.555) * t90;
-        const gic_real t106 = R(90.555) * t91;
-        const gic_real t107 = R(90.555) * t95;
-        const gic_real t108 = t90 * t105;
-        const gic_real t109 = t91 * t106;
-        const gic_real t110 = t95 * t107;
-        const gic_real t111 = t101 - t91 * t105;
-        const gic_real t112 = t103 - t95 * t105;
-        const gic_real t113 = t104 - t95 * t106;
-        const gic_real t114 = t99 + (t108 + t109);
-        const gic_real t115 = t98 + (t109 + t110);
-        const gic_real t116 = k[4] * t7 - R(0.21526024724178433) * t8 - t80 * t70 - t102 * t86;
-        const gic_real t117 = t93 * (t102 * t87 - t62 * t80);
-        const gic_real t118 = t100 + (t108 + t110);
-        const gic_real t119 = t94 * (t87 + t88 * t117);
-        const gic_real t120 = t93 * t116;
-        const gic_real t121 = t94 * (t86 - t88 * t120);
-        const gic_real t122 = rate[0] * t117 + rate[1] * t120;
-        const gic_real t123 = t74 * (t62 + t71 * t119 - t72 * t117);
-        const gic_real t124 = t119 * t84 + t117 * t89;
-        const gic_real t125 = t122 + turn[1];
-        const gic_real t126 = -t119;
-        const gic_real t127 = t74 * (t70 - t71 * t121 - t72 * t120);
-        const gic_real t128 = rate[1] * t121 - rate[0] * t119;
-        const gic_real t129 = t120 * t89 - t121 * t84;
-        const gic_real t130 = R(90.555) * t124;
-        const gic_real t131 = t58 * t122 - t57 * t128;
-        const gic_real t132 = t37 * t122 - t35 * t128;
-        const gic_real t133 = t122 * t89 - t128 * t84;
-        const gic_real t134 = t128 + turn[2];
-        const gic_real t135 = t123 * t89 + t119 * t83;
-        const gic_real t136 = rate[0] * t123 + rate[1] * t127;
-        const gic_real t137 = t121 * t83 - t127 * t89 - t7;
-        const gic_real t138 = t117 * t101 + t123 * t98 - t119 * t103;
-        const gic_real t139 = t133 + (t133 + (turn[1] * t95 - turn[2] * t91));
-        const gic_real t140 = t57 * t136 - t60 * t122;
-        const gic_real t141 = t60 * t128 - t58 * t136;
-        const gic_real t142 = t35 * t136 - t36 * t122;
-        const gic_real t143 = t36 * t128 - t37 * t136;
-        const gic_real t144 = t136 * t84 - t122 * t83;
-        const gic_real t145 = t128 * t83 - t136 * t89;
-        const gic_real t146 = t14 + t140;
-        const gic_real t147 = t141 - t13 - m0[16];
-        const gic_real t148 = t62 * (t128 * t131 - t136 * t140) + t66 * (t122 * t140 - t128 * t141);
-        const gic_real t149 = t128 * t132 - t136 * t142;
-        const gic_real t150 = t122 * t142 - t128 * t143;
-        const gic_real t151 = t143 - t13;
-        const gic_real t152 = t136 * t143 - t122 * t132;
-        const gic_real t153 = t14 + t142;
-        const gic_real t154 = t14 + t144;
-        const gic_real t155 = t145 - t13;
-        const gic_real t156 = t136 + turn[0];
-        const gic_real t157 = t117 * t100 + t123 * t101 - t119 * t104;
-        const gic_real t158 = t154 + (t154 + (turn[0] * t91 - turn[1] * t90));
-        const gic_real t159 = t146 * t146 + (t147 * t147 + t131 * t131) + (t64 * (t136 * t141 - t122 * t131) + t148);
-        const gic_real t160 = t153 * t153 + (t151 * t151 + t132 * t132) + (t41 * t152 + (t38 * t149 + t39 * t150));
-        const gic_real t161 = k[4] * t9 - (R(0.21526024724178433) * t152 + (k[4] * t149 + R(0.9665541626242249) * t150));
-        const gic_real t162 = t155 + (t155 + (turn[2] * t90 - turn[0] * t95));
-        const gic_real t163 = turn[2] * t139 - turn[0] * t158 + (t128 * t133 - t136 * t144);
-        const gic_real t164 = t9 * t62 - t159 - t15 * t64;
-        const gic_real t165 = t99 * t134 + (t104 * t125 + t103 * t156);
-        const gic_real t166 = t104 * t134 + (t100 * t125 + t101 * t156);
-        const gic_real t167 = t103 * t134 + (t101 * t125 + t98 * t156);
-        const gic_real t168 = t8 + (t127 * t84 - t120 * t83);
-        const gic_real t169 = turn[1] * t158 - turn[2] * t162 + (t122 * t144 - t128 * t145);
-        const gic_real t170 = t9 * t38 - t160 - t15 * t41 - t79 * t164;
-        const gic_real t171 = turn[0] * t162 - turn[1] * t139 + (t136 * t145 - t122 * t133);
-        const gic_real t172 = t121 * t103 + (t120 * t101 + t127 * t98);
-        const gic_real t173 = t121 * t104 + (t120 * t100 + t127 * t101);
-        const gic_real t174 = t123 * t84 - t117 * t83;
-        const gic_real t175 = t117 * t104 + t123 * t103 - t119 * t99;
-        const gic_real t176 = t121 * t99 + (t120 * t104 + t127 * t103);
-        const gic_real t177 = t161 - R(0.21526024724178433) * t15 - t80 * t164 - t102 * t170;
-        const gic_real t178 = R(90.555) * t135;
-        const gic_real t179 = R(90.555) * t129;
-        const gic_real t180 = R(90.555) * t137;
-        const gic_real t181 = (GIC_FABS(t136) + GIC_FABS(t122) + GIC_FABS(t128)) * ahead[0];
-        const gic_real t182 = R(90.555) * t174;
-        const gic_real t183 = R(90.555) * t168;
-        const gic_real t184 = t175 - (t91 * t130 + t90 * t178);
-        const gic_real t185 = t176 + (t90 * t180 - t91 * t179);
-        const gic_real t186 = t117 * t157 + t123 * t138 - t119 * t175 + (t174 * t182 + (t135 * t178 + t124 * t130));
-        if (!(t53 * R(114.33048504553747) - t181 > R(0.004)))
+        const gic_real t90 = t68 * t84 * (t52 * (R(1.0) / (t47 * (R(-0.3415212300824061) * t28))));
+        const gic_real t91 = R(1.0) / t84;
+        const gic_real t92 = R(1.653405) + t82;
+        const gic_real t93 = t4 + t83;
+        const gic_real t94 = t2 + t88;
+        const gic_real t95 = R(0.12192999999999987) * t76;
+        const gic_real t96 = R(-4.5794204999999994) * t64;
+        const gic_real t97 = R(0.12192999999999987) * t77;
+        const gic_real t98 = R(90.555) * t92;
+        const gic_real t99 = R(90.555) * t93;
+        const gic_real t100 = R(90.555) * t94;
+        const gic_real t101 = t76 * t95 + (R(4.7728205) + t64 * t96);
+        const gic_real t102 = t77 * t97 + (R(4.7728205) + t67 * t81);
+        const gic_real t103 = (k[4] * t36 - R(0.9665541626242249) * t35 - t69 * t79) * t91;
+        const gic_real t104 = t67 * t96 + t77 * t95;
+        const gic_real t105 = t74 * t96 + t80 * t95;
+        const gic_real t106 = t74 * t81 + t80 * t97;
+        const gic_real t107 = t93 * t99;
+        const gic_real t108 = t92 * t98;
+        const gic_real t109 = t94 * t100;
+        const gic_real t110 = t104 - t93 * t98;
+        const gic_real t111 = t107 + (t89 + t108);
+        const gic_real t112 = t109 + (t101 + t107);
+        const gic_real t113 = t109 + (t102 + t108);
+        const gic_real t114 = t105 - t94 * t98;
+        const gic_real t115 = k[4] * t7 - R(0.21526024724178433) * t8 - t79 * t70 - t103 * t85;
+        const gic_real t116 = t90 * (t103 * t86 - t61 * t79);
+        const gic_real t117 = t106 - t94 * t99;
+        const gic_real t118 = t91 * (t86 + t87 * t116);
+        const gic_real t119 = t90 * t115;
+        const gic_real t120 = t91 * (t85 - t87 * t119);
+        const gic_real t121 = rate[0] * t116 + rate[1] * t119;
+        const gic_real t122 = t73 * (t69 * t118 + (t61 - t71 * t116));
+        const gic_real t123 = t118 * t83 + t116 * t88;
+        const gic_real t124 = turn[1] + t121;
+        const gic_real t125 = -t118;
+        const gic_real t126 = t73 * (t70 - t71 * t119 - t69 * t120);
+        const gic_real t127 = rate[1] * t120 - rate[0] * t118;
+        const gic_real t128 = t119 * t88 - t120 * t83;
+        const gic_real t129 = R(90.555) * t123;
+        const gic_real t130 = t57 * t121 - t56 * t127;
+        const gic_real t131 = t34 * t121 - t35 * t127;
+        const gic_real t132 = t121 * t88 - t127 * t83;
+        const gic_real t133 = turn[2] + t127;
+        const gic_real t134 = t122 * t101 + (t116 * t104 - t118 * t105);
+        const gic_real t135 = rate[0] * t122 + rate[1] * t126;
+        const gic_real t136 = t122 * t104 + (t116 * t102 - t118 * t106);
+        const gic_real t137 = t132 + (t132 + (turn[1] * t94 - turn[2] * t93));
+        const gic_real t138 = t122 * t105 + (t116 * t106 - t118 * t89);
+        const gic_real t139 = t56 * t135 - t59 * t121;
+        const gic_real t140 = t59 * t127 - t57 * t135;
+        const gic_real t141 = t35 * t135 - t36 * t121;
+        const gic_real t142 = t36 * t127 - t34 * t135;
+        const gic_real t143 = t135 * t83 - t121 * t82;
+        const gic_real t144 = t127 * t82 - t135 * t88;
+        const gic_real t145 = t14 + t139;
+        const gic_real t146 = t140 - (m0[16] + t13);
+        const gic_real t147 = t63 * (t135 * t140 - t121 * t130) + t61 * (t127 * t130 - t135 * t139);
+        const gic_real t148 = t9 * t61 - t15 * t63 - t130 * t130 - t145 * t145;
+        const gic_real t149 = t14 + t141;
+        const gic_real t150 = t135 * t142 - t121 * t131;
+        const gic_real t151 = t127 * t131 - t135 * t141;
+        const gic_real t152 = t121 * t141 - t127 * t142;
+        const gic_real t153 = t9 * t38 - t15 * t37 - t131 * t131 - t149 * t149;
+        const gic_real t154 = t142 - t13;
+        const gic_real t155 = t14 + t143;
+        const gic_real t156 = t144 - t13;
+        const gic_real t157 = turn[0] + t135;
+        const gic_real t158 = turn[2] * t137 + (t127 * t132 - t9) - t135 * t143;
+        const gic_real t159 = t148 - t146 * t146 - t65 * (t121 * t139 - t127 * t140);
+        const gic_real t160 = k[4] * t9 - R(0.21526024724178433) * t15 - R(0.21526024724178433) * t150 - (k[4] * t151 + R(0.9665541626242249) * t152);
+        const gic_real t161 = t153 - t154 * t154 - t40 * t152 - (t37 * t150 + t38 * t151);
+        const gic_real t162 = t155 + (t155 + (turn[0] * t93 - turn[1] * t92));
+        const gic_real t163 = t156 + (t156 + (turn[2] * t92 - turn[0] * t94));
+        const gic_real t164 = t159 - t147;
+        const gic_real t165 = t105 * t157 + (t89 * t133 + t106 * t124);
+        const gic_real t166 = t104 * t157 + (t106 * t133 + t102 * t124);
+        const gic_real t167 = t101 * t157 + (t105 * t133 + t104 * t124);
+        const gic_real t168 = t161 - t78 * t164;
+        const gic_real t169 = t135 * t144 + (t15 - t121 * t132 - turn[1] * t137);
+        const gic_real t170 = t120 * t82 - t7 - t126 * t88;
+        const gic_real t171 = turn[1] * t162 + (t121 * t143 - t127 * t144) - turn[2] * t163;
+        const gic_real t172 = t90 * (t160 - t79 * t164 - t103 * t168);
+        const gic_real t173 = t126 * t83 + (t8 - t119 * t82);
+        const gic_real t174 = t126 * t101 + (t120 * t105 + t119 * t104);
+        const gic_real t175 = t126 * t104 + (t120 * t106 + t119 * t102);
+        const gic_real t176 = t126 * t105 + (t120 * t89 + t119 * t106);
+        const gic_real t177 = t122 * t88 + t118 * t82;
+        const gic_real t178 = t122 * t83 - t116 * t82;
+        const gic_real t179 = R(90.555) * t128;
+        const gic_real t180 = ahead[0] * (GIC_FABS(t135) + (GIC_FABS(t121) + GIC_FABS(t127)));
+        const gic_real t181 = t91 * (t168 - t87 * t172);
+        const gic_real t182 = t172 + (turn[2] * t135 - turn[0] * t127);
+        const gic_real t183 = R(90.555) * t177;
+        const gic_real t184 = R(90.555) * t178;
+        const gic_real t185 = R(90.555) * t170;
+        const gic_real t186 = R(90.555) * t173;
+        const gic_real t187 = t116 * t136 + t123 * t129 + (t122 * t134 - t118 * t138);
+        const gic_real t188 = t116 * t175 + t123 * t179 + (t122 * t174 - t118 * t176);
+        if (!(R(114.33048504553747) * t52 - t180 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t187 = t93 * t177;
-        const gic_real t188 = t117 * t173 + t123 * t172 - t119 * t176 + (t174 * t183 + (t124 * t179 - t135 * t180));
-        const gic_real t189 = t94 * (t170 - t88 * t187);
-        const gic_real t190 = t187 + (t136 * turn[2] - t128 * turn[0]);
-        const gic_real t191 = t121 * t176 + (t120 * t173 + t127 * t172) + (t168 * t183 + (t137 * t180 + t129 * t179));
-        const gic_real t192 = t138 + (t95 * t178 + t91 * t182);
-        const gic_real t193 = t157 + (t95 * t130 - t90 * t182);
-        const gic_real t194 = t74 * (t164 - t71 * t189 - t72 * t187);
-        const gic_real t195 = t189 + (t122 * turn[0] - t136 * turn[1]);
-        const gic_real t196 = R(90.555) * (t169 + (t187 * t89 - t189 * t84));
-        const gic_real t197 = t172 + (t91 * t183 - t95 * t180);
-        const gic_real t198 = t173 + (t95 * t179 - t90 * t183);
-        const gic_real t199 = -t178;
-        const gic_real t200 = t194 + (t128 * turn[1] - t122 * turn[2]);
-        const gic_real t201 = R(90.555) * (t163 + (t189 * t83 - t194 * t89) - t9);
-        const gic_real t202 = R(90.555) * (t15 + (t171 + (t194 * t84 - t187 * t83)));
-        const gic_real t203 = t103 * t195 + (t101 * t190 + t98 * t200) + (t125 * t165 - t134 * t166);
-        const gic_real t204 = t104 * t195 + (t100 * t190 + t101 * t200) + (t134 * t167 - t156 * t165);
-        const gic_real t205 = t99 * t195 + (t104 * t190 + t103 * t200) + (t156 * t166 - t125 * t167);
-        const gic_real t206 = t203 + (t91 * t202 - t95 * t201);
-        const gic_real t207 = t204 + (t95 * t196 - t90 * t202);
-        const gic_real t208 = t117 * t204 + t123 * t203 - t119 * t205 + (t202 * t174 + (t196 * t124 - t201 * t135));
-        const gic_real t209 = t121 * t205 + (t120 * t204 + t127 * t203) + (t202 * t168 + (t201 * t137 + t196 * t129));
-        const gic_real t210 = t205 + (t90 * t201 - t91 * t196);
+        const gic_real t189 = t73 * (t164 - t71 * t172 - t69 * t181);
+        const gic_real t190 = t181 + (turn[0] * t121 - turn[1] * t135);
+        const gic_real t191 = R(90.555) * (t172 * t88 + t171 - t181 * t83);
+        const gic_real t192 = t120 * t176 + t128 * t179 + (t119 * t175 + t126 * t174);
+        const gic_real t193 = t93 * t184 + (t134 + t94 * t183);
+        const gic_real t194 = t136 + t94 * t129 - t92 * t184;
+        const gic_real t195 = t105 * t190 + (t104 * t182 + (t124 * t165 - t133 * t166));
+        const gic_real t196 = t189 + (turn[1] * t127 - turn[2] * t121);
+        const gic_real t197 = t106 * t190 + (t102 * t182 + (t133 * t167 - t157 * t165));
+        const gic_real t198 = t89 * t190 + (t106 * t182 + (t157 * t166 - t124 * t167));
+        const gic_real t199 = t181 * t82 + (t158 - turn[0] * t162) - t189 * t88;
+        const gic_real t200 = t189 * t83 + (turn[0] * t163 + t169 - t172 * t82);
+        const gic_real t201 = t101 * t196 + t195;
+        const gic_real t202 = t138 - t93 * t129 - t92 * t183;
+        const gic_real t203 = t104 * t196 + t197;
+        const gic_real t204 = t174 + t93 * t186 - t94 * t185;
+        const gic_real t205 = t175 + t94 * t179 - t92 * t186;
+        const gic_real t206 = t105 * t196 + t198;
+        const gic_real t207 = t92 * t185 + (t176 - t93 * t179);
+        const gic_real t208 = R(90.555) * t199;
+        const gic_real t209 = t187 + (t178 * t184 + t177 * t183);
+        const gic_real t210 = R(90.555) * t200;
+        const gic_real t211 = t188 + (t178 * t186 - t177 * t185);
+        const gic_real t212 = t116 * t203 + t191 * t123 + (t122 * t201 - t118 * t206);
+        const gic_real t213 = t120 * t206 + t191 * t128 + (t119 * t203 + t126 * t201);
+        const gic_real t214 = t201 + t93 * t210 - t94 * t208;
+        const gic_real t215 = t203 + t94 * t191 - t92 * t210;
+        const gic_real t216 = t92 * t208 + (t206 - t93 * t191);
+        const gic_real t217 = t210 * t178 - t208 * t177 + t212;
+        const gic_real t218 = t192 + (t173 * t186 + t170 * t185);
+        const gic_real t219 = t210 * t173 + t208 * t170 + t213;
+        const gic_real t220 = -t183;
         motion[1] = t4;
         motion[2] = t2;
-        motion[3] = t65;
-        motion[4] = t67;
-        motion[5] = t77;
-        motion[6] = t68;
-        motion[7] = t73;
-        motion[8] = t78;
-        motion[9] = t75;
-        motion[10] = t76;
-        motion[11] = t81;
-        motion[12] = t136;
-        motion[13] = t122;
-        motion[14] = t128;
-        motion[16] = t21;
+        motion[3] = t76;
+        motion[4] = t64;
+        motion[5] = t66;
+        motion[6] = t77;
+        motion[7] = t67;
+        motion[8] = t72;
+        motion[9] = t80;
+        motion[10] = t74;
+        motion[11] = t75;
+        motion[12] = t135;
+        motion[13] = t121;
+        motion[14] = t127;
+        motion[16] = t20;
         motion[17] = t14;
-        motion[18] = t194;
-        motion[19] = t187;
-        motion[20] = t189;
-        motion[22] = t22;
+        motion[18] = t189;
+        motion[19] = t172;
+        motion[20] = t181;
+        motion[22] = t21;
         motion[23] = t15;
-        motion[24] = t123;
-        motion[25] = t117;
-        motion[26] = t126;
-        motion[30] = t127;
-        motion[31] = t120;
-        motion[32] = t121;
-        motion[34] = t23;
+        motion[24] = t122;
+        motion[25] = t116;
+        motion[26] = t125;
+        motion[30] = t126;
+        motion[31] = t119;
+        motion[32] = t120;
+        motion[34] = t22;
         motion[35] = t8;
-        inertia[0] = t105;
-        inertia[1] = t106;
-        inertia[2] = t107;
-        inertia[3] = t115;
-        inertia[4] = t118;
-        inertia[5] = t114;
-        inertia[6] = t111;
-        inertia[7] = t112;
-        inertia[8] = t113;
-        inertia[9] = t196;
-        inertia[10] = t201;
-        inertia[11] = t202;
-        inertia[12] = t206;
-        inertia[13] = t207;
-        inertia[14] = t210;
-        inertia[15] = t130;
-        inertia[16] = t199;
-        inertia[17] = t182;
-        inertia[18] = t192;
-        inertia[19] = t193;
-        inertia[20] = t184;
-        inertia[21] = t208;
+        inertia[0] = t98;
+        inertia[1] = t99;
+        inertia[2] = t100;
+        inertia[3] = t112;
+        inertia[4] = t113;
+        inertia[5] = t111;
+        inertia[6] = t110;
+        inertia[7] = t114;
+        inertia[8] = t117;
+        inertia[9] = t191;
+        inertia[10] = t208;
+        inertia[11] = t210;
+        inertia[12] = t214;
+        inertia[13] = t215;
+        inertia[14] = t216;
+        inertia[15] = t129;
+        inertia[16] = t220;
+        inertia[17] = t184;
+        inertia[18] = t193;
+        inertia[19] = t194;
+        inertia[20] = t202;
+        inertia[21] = t217;
         inertia[22] = t179;
-        inertia[23] = t180;
-        inertia[24] = t183;
-        inertia[25] = t197;
-        inertia[26] = t198;
-        inertia[27] = t185;
-        inertia[28] = t209;
-        inertia[29] = t186;
-        inertia[30] = t188;
-        inertia[31] = t191;
+        inertia[23] = t185;
+        inertia[24] = t186;
+        inertia[25] = t204;
+        inertia[26] = t205;
+        inertia[27] = t207;
+        inertia[28] = t219;
+        inertia[29] = t209;
+        inertia[30] = t211;
+        inertia[31] = t218;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -810,7 +824,7 @@ static int hmmwv_tires_solve_wheel_r_l(hmmwv_tires *self, const gic_real *GIC_RE
         const gic_real t10 = rate[0] * t5;
         const gic_real t11 = rate[0] * t6;
         const gic_real t12 = m0[18] * t1 - m0[12] * (m0[12] * t2);
-        const gic_real t13 = R(0.5) * (t4 * t4 + (t8 * t8 + R(0.031522582115999995)) + R(0.020790651966999946));
+        const gic_real t13 = R(0.5) * (t8 * t8 + (t4 * t4 + R(0.05231323408299994)));
         const gic_real t14 = k[3] * t9 - R(0.3340099999999999) * t4;
         const gic_real t15 = R(0.3340099999999999) * t9 + k[3] * t4;
         const gic_real t16 = -t10;
@@ -824,81 +838,82 @@ static int hmmwv_tires_solve_wheel_r_l(hmmwv_tires *self, const gic_real *GIC_RE
             return GIC_ERROR_SINGULAR;
         const gic_real t21 = GIC_SQRT(t20);
         const gic_real t22 = R(1.0) / t19;
-        const gic_real t23 = t21 * k[4];
-        const gic_real t24 = t21 * (R(1.0) / (t20 * k[4]));
-        const gic_real t25 = t22 * (t13 * t15 - t14 * t23);
-        const gic_real t26 = t22 * (t15 * t23 + t13 * t14);
-        const gic_real t27 = R(4.7728205) + t25 * (t25 * R(-4.5794204999999994));
+        const gic_real t23 = k[4] * t21;
+        const gic_real t24 = t21 * (R(1.0) / (k[4] * t20));
+        const gic_real t25 = t22 * (t15 * t13 - t14 * t23);
+        const gic_real t26 = t22 * (t15 * t23 + t14 * t13);
+        const gic_real t27 = R(4.7728205) + t25 * (R(-4.5794204999999994) * t25);
         const gic_real t28 = -t25;
         const gic_real t29 = R(-0.3340099999999999) * t25 + k[5] * t26;
         const gic_real t30 = k[3] * t25 + R(-0.3340099999999999) * t26;
-        const gic_real t31 = t25 * R(0.09182100000000004) + t26 * k[6];
-        const gic_real t32 = t25 * k[6] - t26 * R(0.09182100000000004);
-        const gic_real t33 = t26 * R(-4.5794204999999994);
+        const gic_real t31 = R(0.09182100000000004) * t25 + k[6] * t26;
+        const gic_real t32 = k[6] * t25 - R(0.09182100000000004) * t26;
+        const gic_real t33 = R(-4.5794204999999994) * t26;
         const gic_real t34 = -t26;
-        const gic_real t35 = t3 + t29 - k[2];
-        const gic_real t36 = t2 + t30 - R(0.22567900000000002);
+        const gic_real t35 = t9 + t29;
+        const gic_real t36 = t2 - R(0.22567900000000002) + t30;
         const gic_real t37 = R(4.7728205) + t26 * t33;
         const gic_real t38 = t3 - t31;
         const gic_real t39 = t25 * t33;
         const gic_real t40 = t2 + t32;
         const gic_real t41 = R(90.555) * t38;
         const gic_real t42 = turn[2] * t27 - turn[1] * t39;
-        const gic_real t43 = t24 * (t35 * t5 - t36 * t6);
+        const gic_real t43 = t24 * (t5 * t35 - t6 * t36);
         const gic_real t44 = turn[1] * t40 - turn[2] * t38;
         const gic_real t45 = turn[1] * t37 - turn[2] * t39;
         const gic_real t46 = R(90.555) * t40;
         const gic_real t47 = t38 * t41;
         const gic_real t48 = -(t39 + t40 * t41);
-        const gic_real t49 = -(t38 * R(-149.724089775));
-        const gic_real t50 = -(t40 * R(-149.724089775));
+        const gic_real t49 = -(R(-149.724089775) * t38);
+        const gic_real t50 = -(R(-149.724089775) * t40);
         const gic_real t51 = t40 * t46;
-        const gic_real t52 = t27 + (R(247.5545586544339) + t47);
+        const gic_real t52 = t47 + (R(247.5545586544339) + t27);
         const gic_real t53 = rate[0] * t43;
         const gic_real t54 = t5 + t43 * t32;
         const gic_real t55 = t6 - t43 * t31;
-        const gic_real t56 = t43 * R(4.8947505);
-        const gic_real t57 = R(4.8947505) + (t47 + t51);
-        if (!(t21 * R(5.957189034897722) - GIC_FABS(t53) * ahead[0] > R(0.004)))
+        const gic_real t56 = R(4.8947505) * t43;
+        const gic_real t57 = t51 + (R(4.8947505) + t47);
+        if (!(R(5.957189034897722) * t21 - ahead[0] * GIC_FABS(t53) > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t58 = t30 * t53;
         const gic_real t59 = t29 * t53;
-        const gic_real t60 = t53 * t31;
-        const gic_real t61 = t53 * t32;
-        const gic_real t62 = t53 + turn[0];
-        const gic_real t63 = t53 * turn[1];
-        const gic_real t64 = t53 * turn[2];
+        const gic_real t60 = t53 * t32;
+        const gic_real t61 = t53 * t31;
+        const gic_real t62 = turn[0] + t53;
+        const gic_real t63 = turn[1] * t53;
+        const gic_real t64 = turn[2] * t53;
         const gic_real t65 = R(90.555) * t54;
-        const gic_real t66 = t10 + t58;
+        const gic_real t66 = t36 * (t53 * t58) + (t7 * t35 - t12 * t36);
         const gic_real t67 = t11 + t59;
-        const gic_real t68 = t11 - t60;
-        const gic_real t69 = t10 + t61;
-        const gic_real t70 = R(4.8947505) * t62;
-        const gic_real t71 = R(90.555) * t55;
-        const gic_real t72 = t37 + (R(247.5545586544339) + t51);
-        const gic_real t73 = -(R(-149.724089775) * t55);
-        const gic_real t74 = t36 * (t53 * t58) + t35 * (t53 * t59) - (t67 * t67 + t66 * t66);
-        const gic_real t75 = t68 + (t68 + (turn[0] * t38 - R(-1.653405) * turn[1]));
-        const gic_real t76 = R(-1.653405) * turn[2] - turn[0] * t40 - t69 - t69;
-        const gic_real t77 = t39 * t63 + t37 * t64 + (turn[2] * t70 - t62 * t42);
-        const gic_real t78 = t62 * t45 - turn[1] * t70 - (t27 * t63 + t39 * t64);
-        const gic_real t79 = t24 * (t74 + t7 * t35 - t12 * t36);
-        const gic_real t80 = t56 + (t40 * t65 + t38 * t71);
-        const gic_real t81 = t43 * t56 + (t55 * t71 + t54 * t65);
-        const gic_real t82 = R(90.555) * (turn[1] * t75 - turn[2] * t76);
-        const gic_real t83 = -(R(-149.724089775) * t54);
-        const gic_real t84 = -t65;
-        const gic_real t85 = turn[2] * t44 - turn[0] * t75 + t53 * t60 - t79 * t32;
-        const gic_real t86 = turn[0] * t76 - turn[1] * t44 - t53 * t61 - t79 * t31;
-        const gic_real t87 = t79 * R(4.8947505) + (turn[1] * t42 - turn[2] * t45);
-        const gic_real t88 = t85 - t7;
-        const gic_real t89 = t12 + t86;
-        const gic_real t90 = R(90.555) * t88;
-        const gic_real t91 = t78 + (R(-149.724089775) * t88 - t38 * t82);
-        const gic_real t92 = R(90.555) * t89;
-        const gic_real t93 = t77 + (t40 * t82 - R(-149.724089775) * t89);
-        const gic_real t94 = t87 + (t38 * t92 - t40 * t90);
-        const gic_real t95 = t43 * t87 + (t92 * t55 - t90 * t54);
+        const gic_real t68 = t10 + t58;
+        const gic_real t69 = t10 + t60;
+        const gic_real t70 = t11 - t61;
+        const gic_real t71 = R(4.8947505) * t62;
+        const gic_real t72 = R(90.555) * t55;
+        const gic_real t73 = t51 + (R(247.5545586544339) + t37);
+        const gic_real t74 = -(R(-149.724089775) * t55);
+        const gic_real t75 = R(-1.653405) * turn[2] - turn[0] * t40 - t69 - t69;
+        const gic_real t76 = t70 + (t70 + (turn[0] * t38 - R(-1.653405) * turn[1]));
+        const gic_real t77 = t35 * (t53 * t59) - t67 * t67 + (t66 - t68 * t68);
+        const gic_real t78 = turn[2] * t71 + (t39 * t63 + t37 * t64 - t62 * t42);
+        const gic_real t79 = t62 * t45 - t27 * t63 - t39 * t64 - turn[1] * t71;
+        const gic_real t80 = t38 * t72 + (t56 + t40 * t65);
+        const gic_real t81 = turn[0] * t75 + (t12 - turn[1] * t44 - t53 * t60);
+        const gic_real t82 = t53 * t61 + (turn[2] * t44 - t7) - turn[0] * t76;
+        const gic_real t83 = t24 * t77;
+        const gic_real t84 = R(90.555) * (turn[1] * t76 - turn[2] * t75);
+        const gic_real t85 = t54 * t65 + (t43 * t56 + t55 * t72);
+        const gic_real t86 = R(4.8947505) * t83 + (turn[1] * t42 - turn[2] * t45);
+        const gic_real t87 = -(R(-149.724089775) * t54);
+        const gic_real t88 = -t65;
+        const gic_real t89 = t81 - t83 * t31;
+        const gic_real t90 = t82 - t83 * t32;
+        const gic_real t91 = R(90.555) * t89;
+        const gic_real t92 = t40 * t84 + t78 - R(-149.724089775) * t89;
+        const gic_real t93 = R(90.555) * t90;
+        const gic_real t94 = R(-149.724089775) * t90 + (t79 - t38 * t84);
+        const gic_real t95 = t86 + t38 * t91 - t40 * t93;
+        const gic_real t96 = t43 * t86 + t91 * t55 - t93 * t54;
         motion[1] = t3;
         motion[2] = t2;
         motion[7] = t34;
@@ -908,7 +923,7 @@ static int hmmwv_tires_solve_wheel_r_l(hmmwv_tires *self, const gic_real *GIC_RE
         motion[12] = t53;
         motion[16] = t16;
         motion[17] = t11;
-        motion[18] = t79;
+        motion[18] = t83;
         motion[22] = t17;
         motion[23] = t12;
         motion[24] = t43;
@@ -917,24 +932,24 @@ static int hmmwv_tires_solve_wheel_r_l(hmmwv_tires *self, const gic_real *GIC_RE
         inertia[1] = t41;
         inertia[2] = t46;
         inertia[3] = t57;
-        inertia[4] = t72;
+        inertia[4] = t73;
         inertia[5] = t52;
         inertia[6] = t49;
         inertia[7] = t50;
         inertia[8] = t48;
-        inertia[9] = t82;
-        inertia[10] = t90;
-        inertia[11] = t92;
-        inertia[12] = t94;
-        inertia[13] = t93;
-        inertia[14] = t91;
-        inertia[16] = t84;
-        inertia[17] = t71;
+        inertia[9] = t84;
+        inertia[10] = t93;
+        inertia[11] = t91;
+        inertia[12] = t95;
+        inertia[13] = t92;
+        inertia[14] = t94;
+        inertia[16] = t88;
+        inertia[17] = t72;
         inertia[18] = t80;
-        inertia[19] = t73;
-        inertia[20] = t83;
-        inertia[21] = t95;
-        inertia[22] = t81;
+        inertia[19] = t74;
+        inertia[20] = t87;
+        inertia[21] = t96;
+        inertia[22] = t85;
     }
     ++self->head.newton_count;
     return GIC_OK;

@@ -57,12 +57,12 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'rack' (1 times, closed form)                      15        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   69       111       1      1         0
+ *   subset 'rack' (1 times, closed form)                      13        25       0      0         0
+ *   subset 'lca_f_l' (2 times, closed form)                   68       111       1      1         0
  *   subset 'axle' (1 times)                                  661       744       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                304       409       5      2         0
+ *   subset 'wheel_f_l' (2 times, closed form)                301       409       5      2         0
  *   forces and equations of motion                           716       713       5      0         4
- *   all together                                            2138      2522      23      6         4
+ *   all together                                            2128      2522      23      6         4
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H

@@ -132,6 +132,10 @@ Count dag_count_above(const Dag *dag, const Ex *root, int roots, const Ex *given
 /* [nodes] which nodes are needed for some roots. */
 const bool *dag_needed(const Dag *dag, const Ex *root, int roots);
 
+/* balance.c: what stands for each node [nodes] that the roots need where sums are added in the order in which their
+ * terms become ready; the same values but for rounding. Without lanes. */
+const Ex *balance_sums(Pool *pool, Dag *dag, const Ex *root, int roots);
+
 /* ---- tune.c: numbers that follow tunable parameters --------------------------------------------------------- */
 
 /* Something that must be greater than 0 (`zero`: or 0), whatever the parameters are. */

@@ -606,6 +606,33 @@ static Formula *formulate_newton(Work *w, Solve solve)
     return formula;
 }
 
+static void replace_all(const Ex *image, Ex *e, int count)
+{
+    for (int i = 0; i < count; ++i)
+        e[i] = image[e[i]];
+}
+
+/* What `solve` finds with its sums balanced. */
+static void balance(Work *w, Formula *formula)
+{
+    Block *solve = &formula->solve;
+    const Layout *layout = &formula->layout;
+    Ex *root = pool_alloc(w->pool, (size_t)(solve->stores + solve->checks + 1) * sizeof *root);
+    for (int i = 0; i < solve->stores; ++i)
+        root[i] = solve->store[i].value;
+    for (int i = 0; i < solve->checks; ++i)
+        root[solve->stores + i] = solve->check[i].value;
+    const Ex *image = balance_sums(w->pool, w->dag, root, solve->stores + solve->checks);
+    for (int i = 0; i < solve->stores; ++i)
+        solve->store[i].value = image[solve->store[i].value];
+    for (int i = 0; i < solve->checks; ++i)
+        solve->check[i].value = image[solve->check[i].value];
+    for (int b = 0; b < layout->bodies; ++b)
+        for (int i = 0; i < MOTION_S + 6 * layout->deps; ++i)
+            replace_all(image, motion_number(&formula->motion[b], i), 1);
+    replace_all(image, formula->inertia, layout->inertia_size);
+}
+
 /* NULL where the geometry has no closed form. */
 static Formula *formulate_closed(Work *w, Solve solve)
 {
@@ -624,6 +651,7 @@ static Formula *formulate_closed(Work *w, Solve solve)
     make_motion(&found, factors, motion);
     determinant_check_ahead(&found, formula, determinant, motion);
     finish(&found, formula, solve, factors, motion);
+    balance(w, formula);
     w->derived = found.derived;
     w->derived_of = found.derived_of;
     return formula;
