@@ -253,6 +253,14 @@ static void write_text(Emitter *m, Text *line, Ex e, int strength)
         text_print(line, ")");
         return;
     }
+    if (node->op == OP_FOLD) {
+        text_print(line, "%s_FOLD(", function_name(node->wide));
+        write_whole(m, line, node->arg[0], true, node->wide);
+        text_print(line, ", ");
+        write_whole(m, line, node->arg[1], true, node->wide);
+        text_print(line, ", %d)", (int)node->arg[2]);
+        return;
+    }
     if (node->op == OP_ROAD_PART) {
         text_print(line, "road%d[%d]", m->temporary[node->arg[0]], (int)node->arg[1]);
         return;
@@ -378,7 +386,8 @@ static void write_failures(const Emitter *m, const Check *check, const char *vec
     }
     for (int l = 0; l < m->dag->lanes; ++l) {
         if (l < m->dag->lanes - 1)
-            text_print(m->out, "%*sif (!((%s)[%d] > %s))\n", m->indent + 4, "", vector, l, literal_text(m, check->least));
+            text_print(m->out, "%*sif (!((%s)[%d] > %s))\n", m->indent + 4, "", vector, l,
+                       literal_text(m, check->least));
         write_failure(m, check->lane[l], m->indent + (l < m->dag->lanes - 1 ? 8 : 4));
     }
 }

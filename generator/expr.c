@@ -262,6 +262,14 @@ Ex ex_lane_sum(Dag *dag, Ex vector)
     return ex_mul(dag, ex_literal(dag, dag->lanes), vector);
 }
 
+Ex ex_fold(Dag *dag, Ex a, Ex b, int step)
+{
+    double zero[dag->samples];
+    memset(zero, 0, sizeof zero);
+    const Node node = {.op = OP_FOLD, .level = LEVEL_VARIABLE, .wide = (uint8_t)dag->lanes, .arg = {a, b, (Ex)step}};
+    return intern(dag, &node, zero);
+}
+
 void ex_set_sample(Dag *dag, Ex input, int sample, double value)
 {
     dag->value[(size_t)input * (size_t)dag->samples + (size_t)sample] = value;

@@ -42,7 +42,8 @@ typedef uint32_t Ex;
     X(OP_ROAD_PART, 1, "", "") \
     X(OP_FRICTION, 2, "road_friction(self, time, %0, %1)", "function") \
     X(OP_LANE, 1, "", "") \
-    X(OP_LANE_SUM, 1, "LANE_SUM(%0)", "")
+    X(OP_LANE_SUM, 1, "LANE_SUM(%0)", "") \
+    X(OP_FOLD, 2, "FOLD(%0, %1)", "add")
 
 typedef enum Op {
 #define OP_ENUM(name, arity, text, counted) name,
@@ -58,7 +59,7 @@ typedef struct Node {
     uint8_t op, level;
     uint8_t wide;     /* lanes of a vector; 0: one number */
     Ex arg[3];        /* OP_ROAD_PART: arg[1] is 0, 1 or 2 for h, dh/dx, dh/dy; OP_TABLE: arg[1] is the table's index;
-                         OP_LANE: arg[1] is the lane */
+                         OP_LANE: arg[1] is the lane; OP_FOLD: arg[2] is the step */
     const char *name; /* OP_INPUT: the C expression that reads it */
 } Node;
 
@@ -109,6 +110,9 @@ void dag_evaluate(Dag *dag, int first, int count);
 Ex ex_vector(Dag *dag, const char *text);
 Ex ex_lane(Dag *dag, Ex vector, int lane);
 Ex ex_lane_sum(Dag *dag, Ex vector);
+/* A step of adding while transposing: lane l becomes the sum of lanes l and l ^ 2^step of `a` where that bit of l is 0,
+ * of `b` where it is 1. What is no vector becomes one. */
+Ex ex_fold(Dag *dag, Ex a, Ex b, int step);
 /* What an operation does to numbers. */
 double op_value(Op op, double a, double b, double c);
 /* sin and cos without libm: the same digits on every machine. */

@@ -7,6 +7,36 @@
 
 /* ---- types ---------------------------------------------------------------------------------------------------- */
 
+/* The shuffle of two vectors x and y that puts at lane l what lane l or, with `other`, l ^ 2^step has: of x where that
+ * bit of l is `other`, of y where not. */
+static void write_shuffle(Text *out, int lanes, int step, bool other)
+{
+    for (int l = 0; l < lanes; ++l) {
+        const int bit = 1 << step, from = (l & bit ? lanes : 0) + (other ? l | bit : l & ~bit);
+        text_print(out, ", %d", from);
+    }
+}
+
+/* Of each step of adding while transposing a function. */
+static void write_folds(Text *out, int lanes)
+{
+    for (int step = 0; 1 << step < lanes; ++step) {
+        text_print(out, "LANE_FUNCTION gic_lane_%d lane_%d_fold_%d(gic_lane_%d x, gic_lane_%d y)\n{\n", lanes, lanes,
+                   step, lanes, lanes);
+        text_print(out, "#if defined(__clang__) || __GNUC__ >= 12\n    return __builtin_shufflevector(x, y");
+        write_shuffle(out, lanes, step, false);
+        text_print(out, ") +\n        __builtin_shufflevector(x, y");
+        write_shuffle(out, lanes, step, true);
+        text_print(out, ");\n#else\n    const gic_lane_%d sum = {", lanes);
+        for (int l = 0; l < lanes; ++l) {
+            const int bit = 1 << step;
+            text_print(out, "%s%c[%d] + %c[%d]", l ? ", " : "", l & bit ? 'y' : 'x', l & ~bit, l & bit ? 'y' : 'x',
+                       l | bit);
+        }
+        text_print(out, "};\n    return sum;\n#endif\n}\n\n");
+    }
+}
+
 /* The functions whose text depends on the number of lanes. */
 static void insert_width(void *context, const char *name, Text *out, int indent)
 {
@@ -42,6 +72,8 @@ static void insert_width(void *context, const char *name, Text *out, int indent)
         for (int l = 0; l < lanes; ++l)
             text_print(out, "%s%s[%d]", l ? ", " : "", l < lanes / 2 ? "x" : "y", l % (lanes / 2));
         text_print(out, ");\n#endif\n}\n\n");
+    } else if (!strcmp(name, "fold")) {
+        write_folds(out, lanes);
     } else if (!strcmp(name, "found")) {
         text_print(out, "%*s", indent, "");
         for (int l = 0; l < lanes; ++l)

@@ -79,6 +79,8 @@ typedef struct Packing {
     int groups, sums;
     Group **group_of;
     LaneSum *sum;
+    int wholes, *whole;  /* sums of all lanes of a vector, in the order in which they were made */
+    int *fold;           /* [sums] those made together, -1: alone; NULL: not known yet */
     Ex *number, *vector; /* [dag->nodes], [groups] in out; 0: not yet (literal 0 is made anew each time) */
     bool *number_made, *vector_made;
 } Packing;
@@ -624,14 +626,40 @@ static int whole_group(const Packing *p, const Ex *part)
     return whole ? group : -1;
 }
 
+/* All sums of a group, a lane each, once their vectors are there. */
+static void make_fold(Packing *p, Stack *stack, int group)
+{
+    Ex vector[p->lanes];
+    int member[p->lanes], count = 0;
+    bool all = true;
+    for (int s = 0; s < p->sums; ++s)
+        if (p->fold[s] == group) {
+            const int whole = whole_group(p, p->sum[s].part);
+            all = have(p, stack, true, (uint32_t)whole) && all;
+            member[count] = s;
+            vector[count++] = p->vector[whole];
+        }
+    if (!all)
+        return;
+    const Ex sums = fold(p->out, vector, count);
+    for (int i = 0; i < count; ++i)
+        set_number(p, p->sum[member[i]].node, ex_lane(p->out, sums, i));
+}
+
 static void make_lane_sum(Packing *p, Stack *stack, const LaneSum *over)
 {
-    const int group = whole_group(p, over->part);
+    const int group = whole_group(p, over->part), own = (int)(over - p->sum);
     bool all = true;
     Ex sum = 0;
+    if (group >= 0 && p->fold && p->fold[own] >= 0) {
+        make_fold(p, stack, p->fold[own]);
+        return;
+    }
     if (group >= 0) {
-        if (have(p, stack, true, (uint32_t)group))
+        if (have(p, stack, true, (uint32_t)group)) {
             set_number(p, over->node, ex_lane_sum(p->out, p->vector[group]));
+            *POOL_PUSH(p->pool, p->whole, p->wholes) = own;
+        }
         return;
     }
     for (int l = 0; l < p->lanes; ++l)
@@ -706,6 +734,46 @@ static const Check *const *checks_of_group(const Packing *p, const Group *group)
     return check;
 }
 
+/* A graph for the result, in which nothing is yet. */
+static void begin_result(Packing *p)
+{
+    p->out = dag_new(p->pool, p->lanes, p->lanes);
+    p->out->lanes = p->lanes;
+    p->number = pool_alloc(p->pool, ((size_t)p->dag->nodes + 1) * sizeof *p->number);
+    p->number_made = pool_alloc(p->pool, ((size_t)p->dag->nodes + 1) * sizeof *p->number_made);
+    p->vector = pool_alloc(p->pool, ((size_t)p->groups + 1) * sizeof *p->vector);
+    p->vector_made = pool_alloc(p->pool, ((size_t)p->groups + 1) * sizeof *p->vector_made);
+}
+
+/* [sums] how many sums over lanes a sum comes after, one behind the other. */
+static int *sum_depths(const Packing *p)
+{
+    int *depth = pool_alloc(p->pool, ((size_t)p->dag->nodes + 1) * sizeof *depth);
+    int *of = pool_alloc(p->pool, ((size_t)p->sums + 1) * sizeof *of);
+    for (int e = 0; e < p->dag->nodes; ++e) {
+        const Node *node = &p->dag->node[e];
+        const LaneSum *over = node->op == OP_INPUT ? find_sum(p, (Ex)e) : NULL;
+        for (int i = 0; i < op_arity[node->op]; ++i)
+            depth[e] = depth[node->arg[i]] > depth[e] ? depth[node->arg[i]] : depth[e];
+        for (int l = 0; over && l < p->lanes; ++l)
+            of[over - p->sum] = depth[over->part[l]] > of[over - p->sum] ? depth[over->part[l]] : of[over - p->sum];
+        if (over)
+            depth[e] = of[over - p->sum] + 1;
+    }
+    return of;
+}
+
+/* Sums are made together in the order in which they are needed, which is known once all is made without that. */
+static void find_folds(Packing *p)
+{
+    begin_result(p);
+    for (int i = 0; i < p->block->checks; ++i)
+        number_of(p, p->block->check[i].value);
+    for (int i = 0; i < p->block->stores; ++i)
+        number_of(p, p->block->store[i].value);
+    p->fold = fold_groups(p->pool, p->sums, p->wholes, p->whole, sum_depths(p), p->lanes);
+}
+
 Block *block_pack(Pool *pool, const Block *block, const LaneInput *input, int inputs, int lanes)
 {
     const size_t nodes = (size_t)block->dag->nodes + 1;
@@ -720,7 +788,6 @@ Block *block_pack(Pool *pool, const Block *block, const LaneInput *input, int in
                  .block = block,
                  .from = block->dag,
                  .dag = dag_new(pool, 1, 1),
-                 .out = dag_new(pool, lanes, lanes),
                  .input = sorted,
                  .inputs = inputs,
                  .lanes = lanes,
@@ -731,16 +798,13 @@ Block *block_pack(Pool *pool, const Block *block, const LaneInput *input, int in
                  .summed = pool_alloc(pool, nodes * sizeof(bool)),
                  .same = pool_alloc(pool, nodes * sizeof(Ex)),
                  .terms = pool_alloc(pool, nodes * sizeof(Terms))};
-    p.out->lanes = lanes;
     for (int i = 0; i < roots; ++i)
         ++p.uses[root[i]], ++p.uses[root[i]]; /* what is asked for is there by itself */
     find_tracks(&p);
     make_dag(&p);
     find_usable(&p);
-    p.number = pool_alloc(pool, ((size_t)p.dag->nodes + 1) * sizeof *p.number);
-    p.number_made = pool_alloc(pool, ((size_t)p.dag->nodes + 1) * sizeof *p.number_made);
-    p.vector = pool_alloc(pool, ((size_t)p.groups + 1) * sizeof *p.vector);
-    p.vector_made = pool_alloc(pool, ((size_t)p.groups + 1) * sizeof *p.vector_made);
+    find_folds(&p);
+    begin_result(&p);
     Block *packed = pool_alloc(pool, sizeof *packed);
     packed->dag = p.out;
     packed->model = block->model;
