@@ -22,6 +22,15 @@ static int lanes_for(int members, int most)
     return members > 1 ? lanes : 0;
 }
 
+/* Members are solved together where the first of them is: what each of them needs must be known by then. */
+static bool in_one_stage(const Sequence *sequence, const Class *class)
+{
+    for (int i = 1; i < class->members; ++i)
+        if (sequence->subset[class->member[i]].stage != sequence->subset[class->member[0]].stage)
+            return false;
+    return true;
+}
+
 int class_rows(const Plan *plan, int class)
 {
     int members = plan->sequence->class[class].members, lanes = plan->class_lanes[class];
@@ -64,7 +73,8 @@ static Plan *plan_lanes(Pool *pool, const Plan *plan, int most)
     rows->inertia_size = rows->motion_size = 0;
     for (int c = 0; c < sequence->classes; ++c) {
         const Class *class = &sequence->class[c];
-        int lanes = rows->class_lanes[c] = lanes_for(class->members, most);
+        const int lanes = in_one_stage(sequence, class) ? lanes_for(class->members, most) : 0;
+        rows->class_lanes[c] = lanes;
         for (int first = 0; first < class->members; first += lanes ? lanes : 1)
             place_row(rows, class, first, lanes);
     }

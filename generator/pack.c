@@ -723,14 +723,17 @@ static Ex number_of(Packing *p, Ex from)
 /* ---- the block
  * ------------------------------------------------------------------------------------------------------------ */
 
-/* A pack is checked in all lanes at once: the checks of its members. */
+/* A pack is checked in all lanes at once: the checks of its members. NULL where one of them has none. */
 static const Check *const *checks_of_group(const Packing *p, const Group *group)
 {
     const Check **check = pool_alloc(p->pool, (size_t)p->lanes * sizeof *check);
-    for (int l = 0; l < p->lanes; ++l)
+    for (int l = 0; l < p->lanes; ++l) {
         for (int i = 0; i < p->block->checks; ++i)
             if (p->same[p->block->check[i].value] == group->member[l])
                 check[l] = &p->block->check[i];
+        if (!check[l])
+            return NULL;
+    }
     return check;
 }
 
@@ -812,10 +815,10 @@ Block *block_pack(Pool *pool, const Block *block, const LaneInput *input, int in
         Check check = block->check[i];
         const Ex e = p.same[check.value];
         Ex value = number_of(&p, check.value);
-        if (p.out->node[value].op == OP_LANE && p.group_of[p.group[e]]->members == lanes) {
-            value = p.out->node[value].arg[0];
+        if (p.out->node[value].op == OP_LANE && p.group_of[p.group[e]]->members == lanes)
             check.lane = checks_of_group(&p, p.group_of[p.group[e]]);
-        }
+        if (check.lane)
+            value = p.out->node[value].arg[0];
         block_check_like(packed, value, &check);
     }
     for (int i = 0; i < block->stores; ++i)

@@ -70,6 +70,10 @@ for model in "$root"/models/*.veh "$root/tests/tuning/car.veh"; do
     agrees "$model" 4 '' "$tolerance" gcc -std=c11 -O0
 done
 
+# alike parts that are not found at the same time, and numbers of which only some lanes are checked
+agrees "$root/tests/lanes/stages.veh" 2 '' 1e-11 gcc -std=c11 -O0
+agrees "$root/tests/lanes/stages.veh" 4 '--recovery newton' 1e-11 gcc -std=c11 -O0
+
 hmmwv=$root/models/hmmwv.veh
 agrees "$hmmwv" 2 '' 1e-11 gcc -std=c11 -O2
 agrees "$hmmwv" 8 '--recovery newton' 1e-11 gcc -std=c11 -O1
