@@ -5,6 +5,7 @@
  * plane) stay as they are. Far from it: the motion itself in steps of implicit Euler, with all velocities set to zero
  * before each, (1/h^2 - K) dx = a, which goes downhill like the real thing and turns into Newton's step as h grows. No
  * step is taken against the forces, for that would lead to where the mechanism balances on its tip. */
+#include "gsl_errors.h"
 #include "linearize.h"
 
 #include <math.h>
@@ -421,7 +422,7 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
         diag_fail(at, "is the initial state one that the mechanism can reach from its design?",
                   "the search for equilibrium can't start: %s",
                   instance_status(pool, found->engine->code, &found->self->head, status));
-    gsl_set_error_handler_off();
+    gsl_errors_return();
     for (;;) {
         found->residual = fabs(found->f[largest(&s, found->f)]);
         if (newton(&s))

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Eigenvalues of small motions, and what moves in each. */
+#include "gsl_errors.h"
 #include "linearize.h"
 
 #include <math.h>
@@ -8,7 +9,6 @@
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
-#include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
 static const double pi = 3.141592653589793;
@@ -211,8 +211,8 @@ const Modes *modes_find(Pool *pool, const Linear *linear, const double *A)
 {
     const size_t count = (size_t)linear->count;
     Modes *modes = pool_alloc(pool, sizeof *modes);
+    gsl_errors_return();
     gsl_matrix *scaled = gsl_matrix_alloc(count, count);
-    gsl_set_error_handler_off();
     for (size_t i = 0; i < count; ++i)
         for (size_t j = 0; j < count; ++j)
             gsl_matrix_set(scaled, i, j, A[i * count + j] * linear->reach[j] / linear->reach[i]);

@@ -6,6 +6,8 @@
  * steps, leaves the history of all four as smooth as it was. What the instance shows is the settled state. */
 #include "variable.h"
 
+#include "gsl_errors.h"
+
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 #include <math.h>
@@ -74,7 +76,7 @@ Variable *variable_open(const gic_model *model, int32_t method, double tolerance
     Variable *variable = calloc(1, sizeof *variable);
     if (!variable)
         return NULL;
-    gsl_set_error_handler_off();
+    gsl_errors_return();
     variable->model = model;
     /* the first step is of first order: its error is half its square times the second derivative, about 1e3 here */
     variable->tolerance = tolerance;

@@ -16,7 +16,7 @@ enum {
 typedef struct Variable Variable;
 
 /* `tolerance` bounds the estimated local error of each number of the state: tolerance (1 + its magnitude). NULL: no
- * memory. Switches GSL's error handler off, which would end the program. */
+ * memory; where GSL gets none, the program ends with a message (gsl_errors.h). */
 Variable *variable_open(const gic_model *model, int32_t method, double tolerance);
 void variable_close(Variable *variable);
 

@@ -142,6 +142,7 @@ attack() {
 }
 
 sed 's/^duration: .*/duration: 0.1/; s/^output_step: .*/output_step: 0.05/' "$models/scenes/tires_coast.scene" >short.scene
+sed 's/^duration: .*/duration: 0.1/; s/^output_step: .*/output_step: 0.05/' "$models/scenes/quarter_car.scene" >car.scene
 attack gicgen "$gicgen" "$models/hmmwv_vehicle.veh" -o results.c
 attack "gicgen --graph" "$gicgen" --graph results.dot "$models/hmmwv_tires.veh"
 engines="tape gic tcc"
@@ -150,6 +151,8 @@ for engine in $engines; do
     attack "gicrun $engine" "$gicrun" -q --engine $engine "$models/hmmwv_tires.veh" short.scene -o results.csv
 done
 attack "gicrun --equilibrium" "$gicrun" -q --engine tape --equilibrium "$models/hmmwv_tires.veh" -o results.csv
+attack "gicrun --modes" "$gicrun" -q --engine tape --modes "$models/quarter_car.veh" -o results.csv
+attack "gicrun adams" "$gicrun" -q --engine tape --integrator adams "$models/quarter_car.veh" car.scene -o results.csv
 attack "gicrun --animate" "$gicrun" -q --engine tape "$models/hmmwv_tires.veh" short.scene --animate results.html
 # the picture is gnuplot's, which gets its memory elsewhere: gicrun's own ends
 attack "gicrun --plot" "$gicrun" -q --engine tape "$models/hmmwv_tires.veh" short.scene --plot results.svg
