@@ -114,16 +114,19 @@ awk -v most="${FIRST_STEP:-0.1}" 'NR == 2 { # user and system time of children, 
     END { exit !(mean > 0 && mean < most) }' times >said
 check $? "the first step within 0.1 s"
 
-# the CPU time of steps is that of right-hand sides but for some per cent: at most 2.5 times that of cc -O2
+# the CPU time of steps is that of right-hand sides but for some per cent: at most 2.5 times that of cc -O2. By turns, the
+# shortest of 10 each: a processor that others use as well is at times twice as slow
 sed 's/^duration.*/duration: 4/; s/^step:.*/step: 0.0002/; s/^output_step:.*/output_step: 1/' \
     "$root/models/scenes/paper_run.scene" >many.scene
-cpu() {
-    for _ in 1 2 3; do
-        "$gicrun" "$@" "$root/models/hmmwv.veh" many.scene -o many.csv 2>said
-        sed -n 's/^  CPU time *\([0-9.e-]*\) s in steps.*/\1/p' said
-    done | sort -g | head -n 1
-}
-echo "$(cpu --engine tcc) $(cpu --engine cc)" >times
+for _ in 1 2 3 4 5 6 7 8 9 10; do
+    for engine in tcc cc; do
+        "$gicrun" --engine $engine "$root/models/hmmwv.veh" many.scene -o many.csv 2>said
+        sed -n "s/^  CPU time *\([0-9.e-]*\) s in steps.*/$engine \1/p" said
+    done
+done >turns
+for engine in tcc cc; do
+    sed -n "s/^$engine //p" turns | sort -g | head -n 1
+done | tr '\n' ' ' >times
 awk '{ print "tcc", $1, "s, cc", $2, "s"; exit !($1 < 2.5 * $2) }' times >said
 check $? "steps take at most 2.5 times as long as with cc -O2"
 

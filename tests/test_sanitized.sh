@@ -123,7 +123,7 @@ check $? "one object, $again"
 same cc hmmwv paper_run.scene --cflags "-O1 $sanitize"
 same tcc hmmwv paper_run.scene --plot picture.svg
 # compiled code takes over: sanitized, too
-sed 's/^duration: .*/duration: 400/; s/^step: .*/step: 0.0005/; s/^output_step: .*/output_step: 10/' \
+sed 's/^duration: .*/duration: 4000/; s/^step: .*/step: 0.0005/; s/^output_step: .*/output_step: 10/' \
     "$models/scenes/pendulum.scene" >long.scene
 same auto pendulum long.scene --cflags "-O1 $sanitize"
 "$debug/gicrun" "$models/pendulum.veh" long.scene -o sanitized.csv --cflags "-O1 $sanitize" 2>said &&
