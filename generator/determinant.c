@@ -33,7 +33,8 @@ static bool is_steady(const Work *w, Ex e)
 }
 
 /* The product of the roots as a determinant, and its reciprocal, for which no division waits for a root. False: it is
- * not as the determinant of J everywhere, `determinant`, but for a factor [members]. */
+ * not as the determinant of J everywhere, `determinant`, but for a factor [members], which samples tell; where geometry
+ * can be tuned, it is another one for other values, which no sample has. */
 static bool from_roots(Work *w, const Branches *branches, Ex determinant, Ex *product, Ex *reciprocal)
 {
     Dag *dag = w->dag;
@@ -41,7 +42,7 @@ static bool from_roots(Work *w, const Branches *branches, Ex determinant, Ex *pr
     double scale[w->class->members];
     for (int i = 0; i < branches->count; ++i)
         root = ex_mul(dag, root, ex_sqrt(dag, branches->square[i]));
-    if (!is_steady(w, ex_div(dag, determinant, root)))
+    if (w->model->tuning || !is_steady(w, ex_div(dag, determinant, root)))
         return false;
     for (int i = 0; i < w->class->members; ++i)
         scale[i] = ex_value(dag, determinant, i * w->configurations) / ex_value(dag, root, i * w->configurations);
