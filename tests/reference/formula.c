@@ -125,6 +125,20 @@ quad formula_value(const Formula *formula, const Surroundings *around)
     fail("unknown operator '%s' in a formula", op);
 }
 
+quad formula_size(const Formula *formula, const Surroundings *around)
+{
+    const char *op = formula->op ? formula->op : "";
+    quad size[2] = {0};
+    const bool sum = !strcmp(op, "+") || !strcmp(op, "-"), product = !strcmp(op, "*"), quotient = !strcmp(op, "/");
+    if (!sum && !product && !quotient)
+        return fabsq(formula_value(formula, around));
+    for (int i = 0; i < formula->arguments; ++i)
+        size[i] = formula_size(formula->argument[i], around);
+    if (product)
+        return size[0] * size[1];
+    return quotient ? size[0] / fabsq(formula_value(formula->argument[1], around)) : size[0] + size[1];
+}
+
 /* ---- tables ------------------------------------------------------------------------------------------- */
 
 void lookup_read(Lookup *table, const Json *json)

@@ -38,6 +38,8 @@ typedef struct Surroundings {
 Formula *formula_read(const Json *json);
 void formula_free(Formula *formula);
 quad formula_value(const Formula *formula, const Surroundings *around);
+/* The sum of magnitudes of its terms, of which the value may be next to nothing. */
+quad formula_size(const Formula *formula, const Surroundings *around);
 
 void lookup_read(Lookup *table, const Json *json);
 void lookup_free(Lookup *table);

@@ -353,8 +353,9 @@ static void point_motion(const Model *model, const Configuration *configuration,
     memcpy(v, arrow.rate, sizeof arrow.rate);
 }
 
-/* The first inputs are those of driven coordinates (FORMAT.md section 5). */
-quad law_value(const Model *model, const Configuration *configuration, const Formula *law, Locals local)
+/* `find` of a law. The first inputs are those of driven coordinates (FORMAT.md section 5). */
+static quad of_law(const Model *model, const Configuration *configuration, const Formula *law, Locals local,
+                   quad (*find)(const Formula *formula, const Surroundings *around))
 {
     if (!law)
         return 0;
@@ -370,7 +371,17 @@ quad law_value(const Model *model, const Configuration *configuration, const For
         }
     Surroundings around = {
         .w = configuration->w, .w_rate = configuration->w_rate, .input = input, .table = model->table, .local = local};
-    return formula_value(law, &around);
+    return find(law, &around);
+}
+
+quad law_value(const Model *model, const Configuration *configuration, const Formula *law, Locals local)
+{
+    return of_law(model, configuration, law, local, formula_value);
+}
+
+quad law_size(const Model *model, const Configuration *configuration, const Formula *law, Locals local)
+{
+    return of_law(model, configuration, law, local, formula_size);
 }
 
 /* Contact at one end of a stop, `depth` beyond it. */

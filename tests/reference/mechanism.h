@@ -52,6 +52,8 @@ void add_force(const Configuration *configuration, int body, const quad point[3]
 void add_torque(const Configuration *configuration, int body, const quad torque[3], quad (*Q)[BODY_COORDINATES]);
 /* A formula at a configuration; NULL: 0. */
 quad law_value(const Model *model, const Configuration *configuration, const Formula *law, Locals local);
+/* The sum of magnitudes of its terms. */
+quad law_size(const Model *model, const Configuration *configuration, const Formula *law, Locals local);
 /* Length, angle or coordinate along which a force element acts, and its rate. Not for loads. */
 void element_extension(const Model *model, const Configuration *configuration, int force, quad *value, quad *rate);
 /* Add the generalized force of one force element. `rows` are those of the same configuration. */

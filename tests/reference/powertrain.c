@@ -225,6 +225,11 @@ void line_evaluate(const Model *model, const Configuration *configuration, const
         for (size_t i = 0; i < outs; ++i)
             scale[i] += fabsq(moved[i] - out[i]) / step;
     }
+    /* neither does it show terms of the engine's torque that cancel */
+    const quad terms =
+        law_size(model, configuration, model->powertrain->torque, (Locals){.speed = in[0], .throttle = out[THROTTLE]});
+    scale[ENGINE_TORQUE] += terms;
+    scale[SPEED_RATE] += terms / model->powertrain->inertia;
     /* a half shaft's torque is what is left of moments on the wheel that may cancel, which no change of one shows */
     for (size_t w = 0; w < W; ++w)
         scale[LINE_RESULTS + OF_WHEEL_OUT * w + 1] += size[LINE_IN + OF_WHEEL_IN * w + 1];
