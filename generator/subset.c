@@ -120,10 +120,15 @@ static void make_connections(Work *w)
     }
 }
 
-/* Largest distance of a fixture's points from the reference points they are counted from, over all members. */
+/* Largest distance of a fixture's points from the reference points they are counted from, over all members; 1 m where
+ * all of them are there, but for the rounding of differences of places in the drawing. */
 static double subset_size(const Work *w)
 {
-    double size = 0;
+    const double rounding = 1e-12;
+    double size = 0, place = 0;
+    for (int m = 0; m < w->class->members; ++m)
+        for (int b = 0; b < w->first->bodies; ++b)
+            place = fmax(place, vec_norm(w->origin[subset_member(w, m)->body[b]]));
     for (int i = 0; i < w->connections; ++i)
         for (int end = 0; end < 2; ++end) {
             if (w->connection[i].end[end].unknown < 0)
@@ -135,7 +140,7 @@ static double subset_size(const Work *w)
                 size = fmax(size, vec_norm(s3));
             }
         }
-    return size > 0 ? size : 1;
+    return size > rounding * place ? size : 1;
 }
 
 /* Largest distance of the bodies' reference points from the base's origin at the design. */
