@@ -8,12 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const int op_arity[OP_COUNT] = {
-#define OP_ARITY(name, arity, text, counted) arity,
-    OP_LIST(OP_ARITY)
-#undef OP_ARITY
-};
-
 /* What an operand is, the same in all tracks of a pack: a pack; a number; any literal or parameter; a node's index. */
 typedef enum Kind { KIND_NONE, KIND_PACK, KIND_NUMBER, KIND_ANY, KIND_INDEX } Kind;
 
@@ -130,7 +124,7 @@ static void find_tracks(Packing *p)
         }
         int track = -1;
         bool over = false;
-        for (int i = 0; i < op_arity[node->op]; ++i) {
+        for (int i = 0; i < ex_arity((Op)node->op); ++i) {
             over = over || (is_sum(node) && p->over[node->arg[i]]);
             track = track == -2 ? track : joined(track, p->from_track[node->arg[i]]);
             ++p->uses[node->arg[i]];
@@ -237,11 +231,11 @@ static void classify(Packing *p, Ex e)
     bool swapped = false, fixed = is_arithmetic(node);
     if (node->op == OP_INPUT)
         fixed = ex_is_number(p->dag, e) || (input && input->fixed && track < 0);
-    for (int i = 0; i < op_arity[node->op]; ++i)
+    for (int i = 0; i < ex_arity((Op)node->op); ++i)
         fixed = fixed && (node->level < LEVEL_VARIABLE || is_fixed(p, node->arg[i]));
     *POOL_PUSH(p->pool, p->fixed, p->infos) = fixed;
     --p->infos;
-    for (int i = 0; node->level == LEVEL_VARIABLE && i < op_arity[node->op]; ++i) {
+    for (int i = 0; node->level == LEVEL_VARIABLE && i < ex_arity((Op)node->op); ++i) {
         track = track == -2 ? track : joined(track, p->track[node->arg[i]]);
         shape.operand[i] = operand_of(p, node->arg[i]);
     }
@@ -460,7 +454,7 @@ static void make_dag(Packing *p)
             p->same[e] = copy_input(p, (Ex)e);
         } else {
             Ex arg[3] = {0};
-            for (int i = 0; i < op_arity[node->op]; ++i)
+            for (int i = 0; i < ex_arity((Op)node->op); ++i)
                 arg[i] = p->same[node->arg[i]];
             p->same[e] = apply(p->dag, node, arg[0], arg[1], arg[2]);
         }
@@ -689,9 +683,9 @@ static void make_number(Packing *p, Stack *stack, Ex e)
             set_number(p, e, ex_lane(p->out, p->vector[p->group[e]], track % p->lanes));
     } else {
         Ex arg[3] = {0};
-        for (int i = 0; i < op_arity[node->op]; ++i)
+        for (int i = 0; i < ex_arity((Op)node->op); ++i)
             all = have(p, stack, false, node->arg[i]) && all;
-        for (int i = 0; all && i < op_arity[node->op]; ++i)
+        for (int i = 0; all && i < ex_arity((Op)node->op); ++i)
             arg[i] = p->number[node->arg[i]];
         if (all)
             set_number(p, e, apply(p->out, node, arg[0], arg[1], arg[2]));
@@ -756,7 +750,7 @@ static int *sum_depths(const Packing *p)
     for (int e = 0; e < p->dag->nodes; ++e) {
         const Node *node = &p->dag->node[e];
         const LaneSum *over = node->op == OP_INPUT ? find_sum(p, (Ex)e) : NULL;
-        for (int i = 0; i < op_arity[node->op]; ++i)
+        for (int i = 0; i < ex_arity((Op)node->op); ++i)
             depth[e] = depth[node->arg[i]] > depth[e] ? depth[node->arg[i]] : depth[e];
         for (int l = 0; over && l < p->lanes; ++l)
             of[over - p->sum] = depth[over->part[l]] > of[over - p->sum] ? depth[over->part[l]] : of[over - p->sum];

@@ -75,12 +75,6 @@ const Given *givens_find(const Givens *givens, const char *name)
 /* ---- nodes ----------------------------------------------------------------------------------------------------------
  */
 
-static const int op_arity[OP_COUNT] = {
-#define OP_ARITY(name, arity, text, counted) arity,
-    OP_LIST(OP_ARITY)
-#undef OP_ARITY
-};
-
 Partial partial_new(Pool *pool, const Dag *from, const Givens *givens, const Plane *plane, bool across,
                     const Model *model)
 {
@@ -194,7 +188,7 @@ static Ex make_node(Partial *p, Ex e)
         return make_constant(p, e);
     if (node->op == OP_ROAD_PART)
         return make_road_part(p, node->arg[0], node->arg[1]);
-    for (int i = 0; i < op_arity[node->op]; ++i)
+    for (int i = 0; i < ex_arity((Op)node->op); ++i)
         arg[i] = of(p, node->arg[i]);
     switch (node->op) {
     case OP_NEG: return ex_neg(to, arg[0]);

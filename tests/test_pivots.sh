@@ -6,20 +6,8 @@
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
-
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
 # builds COMPILER... of sledges.c [sledges_batch.c]
 runs() {
@@ -31,22 +19,22 @@ for lanes in '' '--lanes 2'; do
     for recovery in auto newton; do
         # shellcheck disable=SC2086  # a list of words
         "$gicgen" $lanes --recovery $recovery "$root/tests/pivots/sledges.veh" -o sledges.c && runs gcc sledges.c
-        check $? "gcc $lanes --recovery $recovery: $(cat err out)"
+        verdict $? "gcc $lanes --recovery $recovery: $(cat err out)"
     done
 done
 "$gicgen" "$root/tests/pivots/sledges.veh" -o sledges.c &&
     "$gicgen" --batch 8 "$root/tests/pivots/sledges.veh" -o sledges_batch.c &&
     runs gcc -DBATCH sledges.c sledges_batch.c
-check $? "gcc --batch 8: $(cat err out)"
+verdict $? "gcc --batch 8: $(cat err out)"
 
 # a free base whose arms weigh 1e9 times as much as they do: heave of the base is named, by every engine
 python3 "$root/tests/stress/scale.py" "$root/models/trailing_arm.veh" 'body=arm*:1e9' >light.veh
-check $? "scaling a model"
+verdict $? "scaling a model"
 printf 'gicscene: 1\nduration: 0.01\nstep: 0.001\n' >light.scene
 for engine in tcc cc tape; do
     "$gicrun" --general --engine $engine light.veh light.scene -o light.csv 2>err
     [ $? -eq 1 ] && grep -q "too few digits would be left: 'v.z' of body 'chassis'" err
-    check $? "engine $engine: $(cat err)"
+    verdict $? "engine $engine: $(cat err)"
 done
 
 echo "$passed passed, $failed failed"
