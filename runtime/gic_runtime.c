@@ -98,7 +98,19 @@ static void adams_bashforth(int32_t count, gic_real step, const gic_real *from, 
                             const gic_real *past, const gic_real *older, gic_real *next)
 {
     const gic_real weight = step / GIC_R(12.0);
-    for (int32_t i = 0; i < count; ++i)
+    int32_t i = 0;
+    for (; i + 4 <= count; i += 4) { /* by four, as above */
+        const gic_real *r = rate + i, *p = past + i, *o = older + i, *f = from + i;
+        const gic_real a = f[0] + weight * (GIC_R(23.0) * r[0] - GIC_R(16.0) * p[0] + GIC_R(5.0) * o[0]);
+        const gic_real b = f[1] + weight * (GIC_R(23.0) * r[1] - GIC_R(16.0) * p[1] + GIC_R(5.0) * o[1]);
+        const gic_real c = f[2] + weight * (GIC_R(23.0) * r[2] - GIC_R(16.0) * p[2] + GIC_R(5.0) * o[2]);
+        const gic_real d = f[3] + weight * (GIC_R(23.0) * r[3] - GIC_R(16.0) * p[3] + GIC_R(5.0) * o[3]);
+        next[i] = a;
+        next[i + 1] = b;
+        next[i + 2] = c;
+        next[i + 3] = d;
+    }
+    for (; i < count; ++i)
         next[i] = from[i] + weight * (GIC_R(23.0) * rate[i] - GIC_R(16.0) * past[i] + GIC_R(5.0) * older[i]);
 }
 
@@ -542,16 +554,19 @@ int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switch
     if (!GIC_FINITE(given, 4) || excess > tolerance || excess < -tolerance)
         return GIC_ERROR_ORIENTATION;
 
-    int32_t largest = 0;
-    for (int32_t i = 1; i < 4; ++i)
-        if (given[i] * given[i] > given[largest] * given[largest])
-            largest = i;
+    /* above 1.01 / 2.21 no other can be a tenth larger, and nearly always that is so */
     int32_t now = *dependent;
-    if (now < 0 || now > 3) {
-        *dependent = now = largest;
-    } else if (given[largest] * given[largest] > GIC_R(1.21) * given[now] * given[now]) {
-        *dependent = now = largest;
-        ++*switches;
+    if (now < 0 || now > 3 || !(given[now] * given[now] > GIC_R(0.46))) {
+        int32_t largest = 0;
+        for (int32_t i = 1; i < 4; ++i)
+            if (given[i] * given[i] > given[largest] * given[largest])
+                largest = i;
+        if (now < 0 || now > 3) {
+            *dependent = now = largest;
+        } else if (given[largest] * given[largest] > GIC_R(1.21) * given[now] * given[now]) {
+            *dependent = now = largest;
+            ++*switches;
+        }
     }
 
     /* the dependent one is at least 1/2.2 in magnitude, so the root is far from zero and keeps its sign */
