@@ -72,7 +72,7 @@ static void twist_row(const Solver *solver, const Subset *subset, const Row *row
         out[j] /= size;
 }
 
-static double subset_condition(const Solver *solver, const Subset *subset)
+double subset_condition(const Solver *solver, const Subset *subset)
 {
     const Model *model = solver->model;
     int n = 6 * subset->bodies, rows = subset->coordinates, at = 0;
@@ -94,13 +94,16 @@ static double subset_condition(const Solver *solver, const Subset *subset)
     return condition;
 }
 
-double worst_condition(Solver *solver)
+bool is_base(const Subset *subset)
+{
+    return subset->bodies == 1 && subset->body[0] == 0;
+}
+
+double worst_condition(const Solver *solver)
 {
     double worst = 1;
-    for (int i = 0; i < solver->model->subsets; ++i) {
-        const Subset *subset = &solver->model->subset[i];
-        if (!(subset->bodies == 1 && subset->body[0] == 0))
-            worst = fmax(worst, subset_condition(solver, subset));
-    }
+    for (int i = 0; i < solver->model->subsets; ++i)
+        if (!is_base(&solver->model->subset[i]))
+            worst = fmax(worst, subset_condition(solver, &solver->model->subset[i]));
     return worst;
 }

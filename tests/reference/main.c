@@ -2,12 +2,13 @@
  * reference DUMP STATES [-o ACCEL] [--near POSES] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]
  *     [--friction X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE]
  *
- * Accelerations, poses, drive forces, reactions of joints, what wheels and powertrain do, energies, subset condition
- * and scales of a dumped model (`gicgen --dump-model`) at the states of a CSV file with the columns of `gicrun --eval`;
- * columns of fast states and of inputs that are no coordinates may be missing. The road's friction is 1 but on one
- * patch. A row's status is 0, or 1 where the state can't be reached from design or is singular; its other cells are
- * empty then. With --near bodies are looked for near the poses in the columns of POSES, as `gicrun --eval` writes them,
- * instead: then the answer is about those, however they were reached. */
+ * Accelerations, poses, drive forces, reactions of joints, what wheels and powertrain do, energies, scales and the
+ * condition of each subset, by its first body's name, of a dumped model (`gicgen --dump-model`) at the states of a CSV
+ * file with the columns of `gicrun --eval`; columns of fast states and of inputs that are no coordinates may be
+ * missing. The road's friction is 1 but on one patch. A row's status is 0, or 1 where the state can't be reached from
+ * design or is singular; its other cells are empty then. With --near bodies are looked for near the poses in the
+ * columns of POSES, as `gicrun --eval` writes them, instead: then the answer is about those, however they were reached.
+ */
 #include "row.h"
 
 #include "support.h"
@@ -53,6 +54,9 @@ static void write_head(FILE *out, const Model *model)
         fprintf(out, "%s,scale.%s,", line_column[i], line_column[i]);
     for (int i = 0; i < 3; ++i)
         fprintf(out, "energies.%s,scale.energies.%s,", energy_name[i], energy_name[i]);
+    for (int i = 0; i < model->subsets; ++i)
+        if (!is_base(&model->subset[i]))
+            fprintf(out, "condition.%s,", model->body[model->subset[i].body[0]].name);
     fputs("condition,status\n", out);
 }
 
@@ -111,6 +115,9 @@ static void write_row(FILE *out, Solver *solver)
         write_numbers(out, &solver->energy[i], 1);
         write_numbers(out, &solver->energy_scale[i], 1);
     }
+    for (int i = 0; i < model->subsets; ++i)
+        if (!is_base(&model->subset[i]))
+            fprintf(out, "%.6g,", subset_condition(solver, &model->subset[i]));
     fprintf(out, "%.6g,0\n", worst_condition(solver));
 }
 
@@ -121,6 +128,8 @@ static void write_unreached(FILE *out, const Model *model)
     for (int w = 0; w < model->wheels; ++w)
         for (int i = 0; i < WHEEL_COLUMNS; ++i)
             cells += 2 * wheel_shows(&model->wheel[w], i);
+    for (int i = 0; i < model->subsets; ++i)
+        cells += !is_base(&model->subset[i]);
     while (cells--)
         fputc(',', out);
     fputs("1\n", out);

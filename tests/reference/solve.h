@@ -78,9 +78,12 @@ extern const char *const energy_name[3];
 
 /* World position of a body's frame origin. */
 void body_origin(const Model *model, const Configuration *configuration, int body, quad out[3]);
-/* Worst condition number (2-norm) over the subsets of the dump's sequence: Jacobian of the subset's joints and
- * coordinates with respect to (L omega, velocity of the centre of mass) of its bodies, L = subset_length, rows
- * normalized. After solve_positions. condition.c. */
-double worst_condition(Solver *solver);
+/* Is it the free base alone, or the ground, which nothing is recovered for? */
+bool is_base(const Subset *subset);
+/* Condition number (2-norm) of a subset other than that: Jacobian of its joints and coordinates with respect to
+ * (L omega, velocity of the centre of mass) of its bodies, L = subset_length, rows normalized. The worst of all subsets
+ * of the dump's sequence, 1 without any. After solve_positions. condition.c. */
+double subset_condition(const Solver *solver, const Subset *subset);
+double worst_condition(const Solver *solver);
 
 #endif

@@ -6,10 +6,14 @@
 # the model's size: quad precision starts from its poses. None is in another assembly mode than its way leads to: that is
 # gone again in small pieces, by generated code and by gic. COUNT states a model and way of recovery (a million:
 # COUNT=1000000 KEEP=1000), of which KEEP and half as many more are compared with the reference; MODELS instead of ours.
+# Of those the largest condition number of each subset's Jacobian is left in $BUILD/stress/conditions.MODEL-WAY, the
+# largest of all in the table.
 gicgen=$1
 near_singular=$2
 reference=$3
 agree=$4
+conditions=$(dirname "$gicgen")/stress
+mkdir -p "$conditions" || exit 1
 models=$(cd "$(dirname "$0")/../../models" && pwd)
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -39,7 +43,13 @@ for pair in ${MODELS:-$names}; do
     worst=$(sed -n 's/.* worst \([^ ]*\) in row .*/\1/p' "$work/agree" | sort -g | tail -n 1)
     unreached=$(sed -n 's/.* rows: \([0-9]*\) not reached.*/\1/p' "$work/agree")
     compared=$(sed -n 's/.*, \([0-9]*\) compared.*/\1/p' "$work/agree")
-    verdict="ok: $compared in quad precision, gic refuses $doubted, else differs by $screened"
+    # columns condition.SUBSET of rows that were reached
+    awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if (sub(/^condition[.]/, "", $i)) name[i] = $i }
+        NR > 1 && $NF == 0 { for (i in name) if ($i + 0 > most[i] + 0) most[i] = $i }
+        END { for (i in name) print name[i], most[i] + 0 }' "$work/reference.csv" |
+        sort -k2,2gr -k1,1 >"$conditions/conditions.$name-$way"
+    verdict="ok: $compared in quad precision, gic refuses $doubted, else differs by $screened; condition"
+    verdict="$verdict up to $(awk 'NR == 1 { print $2 " (" $1 ")" }' "$conditions/conditions.$name-$way")"
     [ "$blocked$unfollowed" = 00 ] ||
         verdict="$verdict; small pieces are refused on the way to $blocked, gic's to $unfollowed"
     [ "$unreached" = 0 ] || verdict="$unreached that quad precision finds nothing near"
