@@ -51,6 +51,10 @@
  */
 #include "andrews.h"
 
+#if ANDREWS_H != 0xab34d0cb
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

@@ -50,7 +50,7 @@
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #ifndef ANDREWS_H
-#define ANDREWS_H
+#define ANDREWS_H 0xab34d0cb
 
 #include "gic_runtime.h"
 

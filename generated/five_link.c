@@ -72,6 +72,10 @@
  */
 #include "five_link.h"
 
+#if FIVE_LINK_H != 0x88b44cfb
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

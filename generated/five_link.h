@@ -71,7 +71,7 @@
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
-#define FIVE_LINK_H
+#define FIVE_LINK_H 0x88b44cfb
 
 #include "gic_runtime.h"
 

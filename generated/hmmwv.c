@@ -78,6 +78,10 @@
  */
 #include "hmmwv.h"
 
+#if HMMWV_H != 0x814b1189
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

@@ -77,7 +77,7 @@
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #ifndef HMMWV_H
-#define HMMWV_H
+#define HMMWV_H 0x814b1189
 
 #include "gic_runtime.h"
 

@@ -80,6 +80,10 @@
  */
 #include "hmmwv14.h"
 
+#if HMMWV14_H != 0x48c53d19
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

@@ -79,7 +79,7 @@
  *   outputs, when asked for                                  933      1137       4      4        19
  */
 #ifndef HMMWV14_H
-#define HMMWV14_H
+#define HMMWV14_H 0x48c53d19
 
 #include "gic_runtime.h"
 

@@ -78,6 +78,10 @@
  */
 #include "hmmwv_full.h"
 
+#if HMMWV_FULL_H != 0x09e9e353
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

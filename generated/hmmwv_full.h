@@ -77,7 +77,7 @@
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H
-#define HMMWV_FULL_H
+#define HMMWV_FULL_H 0x09e9e353
 
 #include "gic_runtime.h"
 

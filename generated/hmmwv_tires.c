@@ -82,6 +82,10 @@
  */
 #include "hmmwv_tires.h"
 
+#if HMMWV_TIRES_H != 0xf3c545bb
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

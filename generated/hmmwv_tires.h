@@ -81,7 +81,7 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H
+#define HMMWV_TIRES_H 0xf3c545bb
 
 #include "gic_runtime.h"
 

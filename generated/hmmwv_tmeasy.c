@@ -82,6 +82,10 @@
  */
 #include "hmmwv_tmeasy.h"
 
+#if HMMWV_TMEASY_H != 0xe234b5e5
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

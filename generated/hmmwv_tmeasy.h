@@ -81,7 +81,7 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TMEASY_H
-#define HMMWV_TMEASY_H
+#define HMMWV_TMEASY_H 0xe234b5e5
 
 #include "gic_runtime.h"
 

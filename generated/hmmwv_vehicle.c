@@ -83,6 +83,10 @@
  */
 #include "hmmwv_vehicle.h"
 
+#if HMMWV_VEHICLE_H != 0x339d76a1
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

@@ -82,7 +82,7 @@
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H
+#define HMMWV_VEHICLE_H 0x339d76a1
 
 #include "gic_runtime.h"
 

@@ -29,6 +29,10 @@
  */
 #include "pendulum.h"
 
+#if PENDULUM_H != 0xbae6a71b
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

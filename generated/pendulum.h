@@ -28,7 +28,7 @@
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #ifndef PENDULUM_H
-#define PENDULUM_H
+#define PENDULUM_H 0xbae6a71b
 
 #include "gic_runtime.h"
 

@@ -48,6 +48,10 @@
  */
 #include "quarter_car.h"
 
+#if QUARTER_CAR_H != 0x250d930d
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

@@ -47,7 +47,7 @@
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #ifndef QUARTER_CAR_H
-#define QUARTER_CAR_H
+#define QUARTER_CAR_H 0x250d930d
 
 #include "gic_runtime.h"
 

@@ -67,6 +67,10 @@
  */
 #include "solid_axle.h"
 
+#if SOLID_AXLE_H != 0x091092cf
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

@@ -66,7 +66,7 @@
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H
+#define SOLID_AXLE_H 0x091092cf
 
 #include "gic_runtime.h"
 

@@ -70,6 +70,10 @@
  */
 #include "trailing_arm.h"
 
+#if TRAILING_ARM_H != 0x8a3b06f3
+#error "this file and its header are not of the same run of gicgen: generate both again"
+#endif
+
 #include <math.h>
 #include <string.h>
 

@@ -69,7 +69,7 @@
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H
-#define TRAILING_ARM_H
+#define TRAILING_ARM_H 0x8a3b06f3
 
 #include "gic_runtime.h"
 

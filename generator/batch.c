@@ -200,7 +200,9 @@ static void insert_batch_header(void *context, const char *name, Text *out, int 
 {
     BatchGeneration *b = context;
     const Generation *g = &b->g;
-    if (!strcmp(name, "include")) {
+    if (!strcmp(name, "guard")) {
+        write_guard(g, out);
+    } else if (!strcmp(name, "include")) {
         line(out, indent, "#include %s", quoted(g->pool, b->model_header));
     } else if (!strcmp(name, "sizes")) {
         line(out, indent, "%s_VEHICLES = %d,", g->upper, b->batch->vehicles);
@@ -234,9 +236,11 @@ void generate_batch(Pool *pool, const Formulation *formulation, const Batch *bat
               .templates = templates,
               .header = header,
               .upper = capital(pool, name),
+              .guard = pool_print(pool, "%s_BATCH_H", capital(pool, name)),
               .constants = pool_alloc(pool, (size_t)(formulation->sequence->classes + 1) * sizeof(Constants))},
         .batch = batch,
         .model_header = model_header};
+    b.g.pair = header_number(&b.g, "batch.h.in", insert_batch_header, &b);
     template_expand(pool, c, templates, "batch.c.in", name, NULL, insert_batch, &b);
     template_expand(pool, h, templates, "batch.h.in", name, NULL, insert_batch_header, &b);
 }

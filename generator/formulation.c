@@ -8,10 +8,7 @@ static const char *model_hash(Pool *pool, const Model *model, const Sequence *se
 {
     Text dump = {.pool = pool};
     model_dump(&dump, model, sequence);
-    uint64_t hash = 0xcbf29ce484222325u; /* FNV-1a */
-    for (size_t i = 0; i < dump.size; ++i)
-        hash = (hash ^ (unsigned char)dump.s[i]) * 0x100000001b3u;
-    return pool_print(pool, "%016llx", (unsigned long long)hash);
+    return pool_print(pool, "%016llx", (unsigned long long)text_hash(dump.s, dump.size));
 }
 
 const char *const solve_name[SOLVES] = {[SOLVE_REDUCED] = "reduced", [SOLVE_AUGMENTED] = "augmented"};

@@ -204,6 +204,27 @@ static void write_abi(Generation *g, Text *out)
     text_print(out, "#endif\n");
 }
 
+void write_guard(const Generation *g, Text *out)
+{
+    text_print(out, "#define %s 0x%08x\n", g->guard, (unsigned)g->pair);
+}
+
+/* Two files are not replaced at once: where a kill comes between, code would read places of another header. */
+static void write_include(const Generation *g, Text *out)
+{
+    text_print(out, "#include %s\n\n", quoted(g->pool, g->header));
+    text_print(out, "#if %s != 0x%08x\n", g->guard, (unsigned)g->pair);
+    text_print(out, "#error \"this file and its header are not of the same run of gicgen: generate both again\"\n");
+    text_print(out, "#endif\n\n");
+}
+
+uint32_t header_number(const Generation *g, const char *name, Insert *insert, void *context)
+{
+    Text text = {.pool = g->pool};
+    template_expand(g->pool, &text, g->templates, name, g->model->name, NULL, insert, context);
+    return (uint32_t)text_hash(text.s, text.size) | 1; /* not 0, as which an undefined macro counts */
+}
+
 /* ---- classes
  * ------------------------------------------------------------------------------------------------------------ */
 
@@ -422,6 +443,8 @@ static void insert_header(void *context, const char *name, Text *out, int indent
     Generation *g = context;
     if (!strcmp(name, "banner"))
         write_banner(g, out);
+    else if (!strcmp(name, "guard"))
+        write_guard(g, out);
     else if (!strcmp(name, "abi"))
         write_abi(g, out);
     else if (!strcmp(name, "sizes"))
@@ -474,7 +497,7 @@ void insert_code(void *context, const char *name, Text *out, int indent)
         write_banner(g, out);
     } else if (!strcmp(name, "include")) {
         if (g->header)
-            line(out, 0, "#include %s\n", quoted(g->pool, g->header));
+            write_include(g, out);
     } else if (!strcmp(name, "bounds")) {
         insert_template(g, out, "bounds.c.in");
         if (g->plan->lanes)
@@ -616,7 +639,9 @@ void generate(Pool *pool, const Formulation *formulation, const Style *style, co
                     .templates = templates,
                     .header = header,
                     .upper = capital(pool, name),
+                    .guard = pool_print(pool, "%s_H", capital(pool, name)),
                     .constants = pool_alloc(pool, (size_t)(formulation->sequence->classes + 1) * sizeof(Constants))};
+    g.pair = header_number(&g, "model.h.in", insert_header, &g);
     template_expand(pool, c, templates, "model.c.in", name, NULL, insert_code, &g);
     template_expand(pool, h, templates, "model.h.in", name, NULL, insert_header, &g);
 }

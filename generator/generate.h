@@ -14,12 +14,17 @@ typedef struct Generation {
     const Plan *plan;
     const Style *style;
     const char *templates, *header, *upper;
+    const char *guard;    /* macro of the header */
+    uint32_t pair;        /* its value, which the C asks for: no half of another pair passes; 0: not known yet */
     int class;            /* the one whose template is being expanded */
     Constants *constants; /* [classes] */
     Constants packed;     /* of the equations of motion in lanes */
 } Generation;
 
-/* generate.c: one line of text. */
+/* generate.c: what g->pair becomes: a number that all of the header gives, by its template and what that needs. */
+uint32_t header_number(const Generation *g, const char *name, Insert *insert, void *context);
+void write_guard(const Generation *g, Text *out);
+/* One line of text. */
 void line(Text *out, int indent, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* Elements of an array that would be empty: one. */
 int room(int count);
@@ -48,8 +53,8 @@ int followed_bodies(const Plan *plan);
  * coordinates and rates from state and inputs; changes followed in one piece; design poses of followed bodies; the
  * initial state. */
 void write_recovery_calls(Generation *g, Text *out, int indent);
-/* The change of a coordinate in one piece; where an angle may have whole turns in it, in the text `unwinding` with %s for
- * it. Takes whole turns out of way[], the change since the start, where that is out of reach with them. */
+/* The change of a coordinate in one piece; where an angle may have whole turns in it, in the text `unwinding` with %s
+ * for it. Takes whole turns out of way[], the change since the start, where that is out of reach with them. */
 const char *change_text(const Generation *g, const char *unwinding, int coordinate);
 void write_unwinding(const Generation *g, Text *out, int indent, bool lanes);
 void write_residuals(Generation *g, Text *out, int indent);

@@ -11,10 +11,7 @@
 
 static Given *slot_of(const Givens *givens, const char *name)
 {
-    uint64_t hash = 0xcbf29ce484222325u; /* FNV-1a */
-    for (const char *s = name; *s; ++s)
-        hash = (hash ^ (unsigned char)*s) * 0x100000001b3u;
-    uint64_t i = hash;
+    uint64_t i = text_hash(name, strlen(name));
     while (givens->given[i & (uint64_t)(givens->room - 1)].name &&
            strcmp(givens->given[i & (uint64_t)(givens->room - 1)].name, name))
         ++i;

@@ -41,6 +41,8 @@ typedef struct Text {
 
 void text_print(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_add(Text *text, const char *s, size_t size);
+/* FNV-1a of so many bytes: the same on every machine. */
+uint64_t text_hash(const char *s, size_t size);
 
 /* splitmix64: the same sequence on every machine. */
 typedef struct Random {

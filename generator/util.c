@@ -118,6 +118,14 @@ void text_add(Text *text, const char *s, size_t size)
     text->s[text->size] = 0;
 }
 
+uint64_t text_hash(const char *s, size_t size)
+{
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < size; ++i)
+        hash = (hash ^ (unsigned char)s[i]) * 0x100000001b3u;
+    return hash;
+}
+
 void text_print(Text *text, const char *format, ...)
 {
     text_reserve(text, 120); /* most prints fit at once */

@@ -191,5 +191,31 @@ for name in $names; do
     verdict $? "$name compiles with another version of the runtime"
 done
 
+# halves of two runs, as a kill between the two files leaves them: another parameter, state or output would be read
+mkdir run1 run2
+sed 's/mass: 1\([^0-9.]\)/mass: 2\1/' "$root/models/pendulum.veh" >run2/pendulum.veh
+cp "$root/models/pendulum.veh" run1
+for run in run1 run2; do
+    "$gicgen" $run/pendulum.veh -o $run/pendulum.c && "$gicgen" --batch 4 $run/pendulum.veh -o $run/pendulum_batch.c
+    verdict $? "$run of gicgen"
+done
+cp "$root/runtime/gic_batch.h" .
+for c in run1 run2; do
+    for h in run1 run2; do
+        for name in pendulum pendulum_batch; do
+            mkdir -p "$c$h"
+            cp $h/*.h $c/$name.c "$c$h"
+            cc -I. -fsyntax-only "$c$h/$name.c" 2>messages
+            status=$?
+            if [ $c = $h ]; then
+                [ $status -eq 0 ]
+            else
+                [ $status -ne 0 ] && [ "$(grep -c 'error: #error.*not of the same run of gicgen' messages)" -eq 1 ]
+            fi
+            verdict $? "$name.c of $c with $name.h of $h: $(cat messages)"
+        done
+    done
+done
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
