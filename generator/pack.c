@@ -412,13 +412,19 @@ static void find_usable(Packing *p)
 /* ---- the block
  * ------------------------------------------------------------------------------------------------------------ */
 
-/* A pack is checked in all lanes at once: the checks of its members. NULL where one of them has none. */
-static const Check *const *checks_of_group(const Packing *p, const Group *group)
+static bool is_alike(const Check *a, const Check *b)
+{
+    return a->magnitude == b->magnitude && a->least == b->least && !strcmp(a->status, b->status);
+}
+
+/* A pack is checked in all lanes at once: the checks of its members that are alike to one of them. NULL where one of
+ * them has none. */
+static const Check *const *checks_of_group(const Packing *p, const Group *group, const Check *wanted)
 {
     const Check **check = pool_alloc(p->pool, (size_t)p->lanes * sizeof *check);
     for (int l = 0; l < p->lanes; ++l) {
         for (int i = 0; i < p->block->checks; ++i)
-            if (p->same[p->block->check[i].value] == group->member[l])
+            if (p->same[p->block->check[i].value] == group->member[l] && is_alike(&p->block->check[i], wanted))
                 check[l] = &p->block->check[i];
         if (!check[l])
             return NULL;
@@ -465,7 +471,7 @@ Block *block_pack(Pool *pool, const Block *block, const LaneInput *input, int in
         const Ex e = p.same[check.value];
         Ex value = pack_number(&p, check.value);
         if (p.out->node[value].op == OP_LANE && p.group_of[p.group[e]]->members == lanes)
-            check.lane = checks_of_group(&p, p.group_of[p.group[e]]);
+            check.lane = checks_of_group(&p, p.group_of[p.group[e]], &block->check[i]);
         if (check.lane)
             value = p.out->node[value].arg[0];
         block_check_like(packed, value, &check);

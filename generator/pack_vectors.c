@@ -28,7 +28,7 @@ static Ex vector_of(Packing *p, const Ex *e)
     double value[p->lanes];
     Ex any = 0;
     int index[p->lanes];
-    char array[64] = "", other[64];
+    char array[64] = "", other[64] = "";
     for (int l = 0; l < p->lanes; ++l)
         any = any ? any : e[l];
     for (int l = 0; l < p->lanes; ++l) {
