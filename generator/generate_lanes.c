@@ -7,34 +7,35 @@
 
 /* ---- types ---------------------------------------------------------------------------------------------------- */
 
+/* A step of adding so many lanes while transposing them. */
+typedef struct FoldStep {
+    int lanes, step;
+} FoldStep;
+
 /* The shuffle of two vectors x and y that puts at lane l what lane l or, with `other`, l ^ 2^step has: of x where that
  * bit of l is `other`, of y where not. */
-static void write_shuffle(Text *out, int lanes, int step, bool other)
+static void write_shuffle(const FoldStep *fold, Text *out, bool other)
 {
-    for (int l = 0; l < lanes; ++l) {
-        const int bit = 1 << step, from = (l & bit ? lanes : 0) + (other ? l | bit : l & ~bit);
-        text_print(out, ", %d", from);
-    }
+    const int bit = 1 << fold->step;
+    text_print(out, "__builtin_shufflevector(x, y");
+    for (int l = 0; l < fold->lanes; ++l)
+        text_print(out, ", %d", (l & bit ? fold->lanes : 0) + (other ? l | bit : l & ~bit));
+    text_print(out, ")");
 }
 
-/* Of each step of adding while transposing a function. */
-static void write_folds(Text *out, int lanes)
+static void insert_fold(void *context, const char *name, Text *out, int indent)
 {
-    for (int step = 0; 1 << step < lanes; ++step) {
-        text_print(out, "LANE_FUNCTION gic_lane_%d lane_%d_fold_%d(gic_lane_%d x, gic_lane_%d y)\n{\n", lanes, lanes,
-                   step, lanes, lanes);
-        text_print(out, "#if defined(__clang__) || __GNUC__ >= 12\n    return __builtin_shufflevector(x, y");
-        write_shuffle(out, lanes, step, false);
-        text_print(out, ") +\n        __builtin_shufflevector(x, y");
-        write_shuffle(out, lanes, step, true);
-        text_print(out, ");\n#else\n    const gic_lane_%d sum = {", lanes);
-        for (int l = 0; l < lanes; ++l) {
-            const int bit = 1 << step;
-            text_print(out, "%s%c[%d] + %c[%d]", l ? ", " : "", l & bit ? 'y' : 'x', l & ~bit, l & bit ? 'y' : 'x',
-                       l | bit);
-        }
-        text_print(out, "};\n    return sum;\n#endif\n}\n\n");
+    const FoldStep *fold = context;
+    const int bit = 1 << fold->step;
+    if (!strcmp(name, "shuffles")) {
+        text_print(out, "%*sreturn ", indent, "");
+        write_shuffle(fold, out, false);
+        text_print(out, " +\n%*s", indent + 4, "");
+        write_shuffle(fold, out, true);
+        text_print(out, ";\n");
     }
+    for (int l = 0; l < fold->lanes && !strcmp(name, "sums"); ++l)
+        line(out, indent, "%c[%d] + %c[%d],", l & bit ? 'y' : 'x', l & ~bit, l & bit ? 'y' : 'x', l | bit);
 }
 
 /* The functions whose text depends on the number of lanes. */
@@ -72,8 +73,6 @@ static void insert_width(void *context, const char *name, Text *out, int indent)
         for (int l = 0; l < lanes; ++l)
             text_print(out, "%s%s[%d]", l ? ", " : "", l < lanes / 2 ? "x" : "y", l % (lanes / 2));
         text_print(out, ");\n#endif\n}\n\n");
-    } else if (!strcmp(name, "fold")) {
-        write_folds(out, lanes);
     } else if (!strcmp(name, "found")) {
         text_print(out, "%*s", indent, "");
         for (int l = 0; l < lanes; ++l)
@@ -98,10 +97,15 @@ static bool has_width(const Plan *plan, int lanes)
 void write_lane_types(Generation *g, Text *out)
 {
     template_expand(g->pool, out, g->templates, "lanes.c.in", g->model->name, NULL, insert_width, NULL);
-    for (int lanes = 2; lanes <= g->plan->lanes; lanes *= 2)
-        if (has_width(g->plan, lanes))
-            template_expand(g->pool, out, g->templates, "lanes_width.c.in", g->model->name,
-                            pool_print(g->pool, "%d", lanes), insert_width, &lanes);
+    for (int lanes = 2; lanes <= g->plan->lanes; lanes *= 2) {
+        const char *const width = pool_print(g->pool, "%d", lanes);
+        if (!has_width(g->plan, lanes))
+            continue;
+        template_expand(g->pool, out, g->templates, "lanes_width.c.in", g->model->name, width, insert_width, &lanes);
+        for (FoldStep fold = {lanes, 0}; 1 << fold.step < lanes; ++fold.step)
+            template_expand(g->pool, out, g->templates, "lanes_fold.c.in", pool_print(g->pool, "%d", fold.step), width,
+                            insert_fold, &fold);
+    }
 }
 
 void write_lane_road(Generation *g, Text *out)
