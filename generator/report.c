@@ -19,18 +19,6 @@ enum { STAGES_OF_RK4 = 4 };
 
 /* ---- HTML -------------------------------------------------------------------------------------------------------- */
 
-static void html(Text *out, const char *s)
-{
-    for (; *s; ++s)
-        switch (*s) {
-        case '&': text_print(out, "&amp;"); break;
-        case '<': text_print(out, "&lt;"); break;
-        case '>': text_print(out, "&gt;"); break;
-        case '"': text_print(out, "&quot;"); break;
-        default: text_add(out, s, 1);
-        }
-}
-
 /* `columns`: titles between bars; one that begins with a number sign is of numbers. */
 static void table_open(Text *out, const char *id, const char *caption, const char *columns)
 {
@@ -62,7 +50,7 @@ static void row_close(Text *out)
 static void cell(Text *out, const char *s)
 {
     text_print(out, "<td>");
-    html(out, s);
+    text_html(out, s);
     text_print(out, "</td>");
 }
 
@@ -94,7 +82,7 @@ static void identity(const Report *r, Text *out)
     const Model *model = r->model;
     const Sequence *sequence = r->sequence;
     text_print(out, "<p>");
-    html(out, model->description);
+    text_html(out, model->description);
     text_print(out,
                "</p>\n<p>%d bodies on a %s base, <code>%s</code>; %d joints, %d dual coordinates, %d force elements, "
                "%d wheels. %d coordinates, %d equations, %d degrees of freedom.</p>\n",
@@ -115,7 +103,7 @@ static void scene(const Report *r, Text *out)
     if (!narrowing)
         return;
     text_print(out, "<h2>Scene</h2>\n<p>This code is for the scene <code>");
-    html(out, narrowing->facts->scene);
+    text_html(out, narrowing->facts->scene);
     text_print(out, "</code> alone. What it takes for granted it checks in each call, which ends with "
                     "<code>GIC_ERROR_ASSUMPTION</code> and the text of what is broken.</p>\n");
     table_open(out, "assumptions", "Assumptions", "what is taken for granted");

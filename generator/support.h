@@ -41,6 +41,8 @@ typedef struct Text {
 
 void text_print(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_add(Text *text, const char *s, size_t size);
+/* A text for HTML: what means something there as an entity. */
+void text_html(Text *text, const char *s);
 /* FNV-1a of so many bytes: the same on every machine. */
 uint64_t text_hash(const char *s, size_t size);
 

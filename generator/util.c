@@ -118,6 +118,18 @@ void text_add(Text *text, const char *s, size_t size)
     text->s[text->size] = 0;
 }
 
+void text_html(Text *text, const char *s)
+{
+    for (; *s; ++s)
+        switch (*s) {
+        case '&': text_print(text, "&amp;"); break;
+        case '<': text_print(text, "&lt;"); break;
+        case '>': text_print(text, "&gt;"); break;
+        case '"': text_print(text, "&quot;"); break;
+        default: text_add(text, s, 1);
+        }
+}
+
 uint64_t text_hash(const char *s, size_t size)
 {
     uint64_t hash = 0xcbf29ce484222325u;

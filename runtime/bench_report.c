@@ -118,17 +118,14 @@ static void table_csv(Text *out, const Sheet *table)
 
 /* ---- HTML ------------------------------------------------------------------------------------------------- */
 
+/* Lines stay lines. */
 static void escaped(Text *out, const char *s)
 {
-    for (; *s; ++s)
-        switch (*s) {
-        case '&': text_print(out, "&amp;"); break;
-        case '<': text_print(out, "&lt;"); break;
-        case '>': text_print(out, "&gt;"); break;
-        case '"': text_print(out, "&quot;"); break;
-        case '\n': text_print(out, "<br>\n"); break;
-        default: text_print(out, "%c", *s);
-        }
+    for (const char *end; (end = strchr(s, '\n')); s = end + 1) {
+        text_html(out, pool_print(out->pool, "%.*s", (int)(end - s), s));
+        text_print(out, "<br>\n");
+    }
+    text_html(out, s);
 }
 
 static void element(Text *out, const char *name, const char *content)
