@@ -53,9 +53,11 @@ int followed_bodies(const Plan *plan);
  * coordinates and rates from state and inputs; changes followed in one piece; design poses of followed bodies; the
  * initial state. */
 void write_recovery_calls(Generation *g, Text *out, int indent);
-/* The change of a coordinate in one piece; where an angle may have whole turns in it, in the text `unwinding` with %s
- * for it. Takes whole turns out of way[], the change since the start, where that is out of reach with them. */
+/* C for the change of a coordinate in one piece, m or rad: the difference, or where an angle may have whole turns in it
+ * the text `unwinding` with the difference for its %s. */
 const char *change_text(const Generation *g, const char *unwinding, int coordinate);
+/* Lines that take whole turns out of way[], the changes since the start, where one is out of reach with them; lanes: of
+ * many vehicles. */
 void write_unwinding(const Generation *g, Text *out, int indent, bool lanes);
 void write_residuals(Generation *g, Text *out, int indent);
 void write_react_calls(Generation *g, Text *out, int indent);

@@ -427,6 +427,7 @@ const char *style_real(const Style *style);
 void block_emit(Text *out, const Block *block, const Style *style, Constants *constants, int indent);
 /* What its checks are about, as far as they are, in order: {status, subset, number of the state}, */
 void emit_abouts(Text *out, const Block *block, int indent);
+
 /* schedule.c: a statement that computes a node, or a check of one. */
 typedef struct Step {
     Ex value;

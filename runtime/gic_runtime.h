@@ -48,7 +48,8 @@ typedef double gic_real;
     X(GIC_ERROR_REACH, -4, "a coordinate is too far from the last good one to be followed") \
     X(GIC_ERROR_NEWTON, -5, "the dependent coordinates of a subset were not found (out of reach, or no solution)") \
     X(GIC_ERROR_SINGULAR, -6, "a subset is near a singular configuration: its coordinates stop being independent") \
-    X(GIC_ERROR_MASS, -7, "the mass matrix is not positive definite, or so near to singular that too few digits would be left") \
+    X(GIC_ERROR_MASS, -7, \
+      "the mass matrix is not positive definite, or so near to singular that too few digits would be left") \
     X(GIC_ERROR_RESULT, -8, "a result is not a finite number") \
     X(GIC_ERROR_ROAD, -9, "the road has no finite height under a wheel") \
     X(GIC_ERROR_ABI, -10, "generated code and runtime have different versions or number types") \
@@ -242,8 +243,8 @@ int gic_finite(const gic_real *x, int32_t count);
 #define gic_bounded GIC_NAME(gic_bounded)
 int gic_bounded(const gic_real *x, int32_t count);
 
-/* The same where a compiler can make it part of what surrounds it: counts are few and known mostly. Not for one that
- * makes functions of all of it. */
+/* GIC_FINITE and GIC_BOUNDED are the same as part of the code around them: counts are small and mostly known. tcc, which
+ * inlines nothing, calls the functions. */
 #ifdef GIC_FLOAT
 typedef uint32_t gic_word;
 #define GIC_BITS_OF_SIGN UINT32_C(0x80000000)

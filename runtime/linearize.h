@@ -20,7 +20,8 @@ typedef struct Linear {
     int clocks;              /* fast states behind them that run on by themselves: the time since a gear was shifted */
     const char **name;       /* [count] */
     double *reach;           /* [count] change of a place in which little happens: 0.1 m, 0.1 rad, the piece of a
-                                coordinate in which no body turns by more than that; of what spins 1 rad/s, of slips 0.1 */
+                                coordinate in which no body turns by more than that; of what spins 1 rad/s, of slips
+                                0.1 */
     Instance *value, *slope; /* work: an instance, and its derivatives in an instance's places */
     TapeLinks value_links, slope_links;
     double *frame, *q, *dy, *evaluated, *rate, *drate; /* work */

@@ -98,6 +98,7 @@ static void test_random_graphs(void **state)
             const long double off = fabsl(plain[balanced[i]].value - plain[root[i]].value);
             assert_true(off <= 1e-15L * plain[root[i]].size);
             const int way = way_to(dag, root[i]), balanced_way = way_to(dag, balanced[i]);
+            assert_true(balanced_way <= way);
             shorter += balanced_way < way;
         }
         pool_free(pool);

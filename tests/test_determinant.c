@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 /* What `solve` looks at last: the determinant relative to that at the design, less what a step ahead takes from it,
- * here nothing. -1: it is the same everywhere. */
+ * here nothing. NULL: it is the same everywhere. */
 static const Check *determinant_of(const Formula *formula)
 {
     const Block *solve = &formula->solve;

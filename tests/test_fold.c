@@ -60,6 +60,7 @@ static void test_groups(void **state)
     for (int lanes = 2; lanes <= LANES_MOST; lanes *= 2)
         for (int depths = 1; depths <= 4; ++depths) {
             int order[SUMS], depth[SUMS + OTHERS], members[SUMS] = {0}, of[SUMS], last = -1, alone[4] = {0};
+            int newest[4] = {-1, -1, -1, -1}; /* group of each depth */
             for (int i = 0; i < SUMS; ++i) {
                 order[i] = OTHERS + (7 * i + 3) % SUMS;
                 depth[OTHERS + i] = i * i % depths;
@@ -77,6 +78,8 @@ static void test_groups(void **state)
                 if (members[own]++)
                     assert_int_equal(of[own], depth[order[i]]);
                 of[own] = depth[order[i]];
+                assert_true(own >= newest[of[own]]);
+                newest[of[own]] = own;
                 last = own > last ? own : last;
             }
             for (int g = 0; g <= last; ++g)
