@@ -144,7 +144,7 @@ static int open_joint(System *s, int index, const double (*origin)[3], int multi
     const Motion *const end[2] = {&s->motion[joint->body[0]], &s->motion[joint->body[1]]};
     Fixture fixture = whole_joint_fixture(s->whole, joint, origin);
     Row row[ROWS_MAX];
-    int rows = joint_rows(s->dag, joint->type, &fixture, end, row);
+    int rows = joint_rows(s->dag, joint->type, &fixture, end, sequence_known_end(s->whole->plan->sequence, joint), row);
     const Tie *tie = open_tie(s, joint->body, rows);
     for (int r = 0; r < rows; ++r)
         open_equation(s, &s->equation[tie->first + r], &row[r], joint->body, -1, multiplier + r,

@@ -295,7 +295,10 @@ void fixture_tuned_joint(const Model *model, const Joint *joint, const double (*
                          Ex formula[FIXTURE_NUMBERS]);
 void fixture_tuned_coordinate(const Model *model, const Coordinate *coordinate, const double (*origin)[3],
                               Ex formula[FIXTURE_NUMBERS]);
-int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2], Row row[ROWS_MAX]);
+/* Where axes are parallel, that of the other end is perpendicular to two directions of end `across`. That had better be
+ * the one that is known before: directions of a wheel that spins turn away from where pivots were chosen. */
+int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2], int across,
+               Row row[ROWS_MAX]);
 /* x, rate: value and rate of the coordinate. */
 Row coordinate_row(Dag *dag, CoordinateType type, const Fixture *fixture, const Motion *const end[2], Ex x, Ex rate);
 

@@ -132,7 +132,8 @@ void whole_reaction(Whole *whole, int index, Ex force[3], Ex torque[3])
     if (plan->solve == SOLVE_REDUCED)
         add_across(whole, index, &fixture, &first);
     Row row[ROWS_MAX];
-    int rows = joint_rows(dag, joint->type, &fixture, end, row), place = multiplier_place(plan, false, index);
+    int rows = joint_rows(dag, joint->type, &fixture, end, sequence_known_end(plan->sequence, joint), row),
+        place = multiplier_place(plan, false, index);
     ex_zero3(dag, force);
     ex_zero3(dag, torque);
     for (int r = 0; r < rows; ++r) {

@@ -231,9 +231,34 @@ static Row row_length(Dag *dag, const Link *link, Ex square)
     return row;
 }
 
-int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2], Row row[ROWS_MAX])
+/* The same joint with first and second body exchanged. */
+static int exchanged_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2],
+                          Row row[ROWS_MAX])
+{
+    const Motion *const other[2] = {end[1], end[0]};
+    Fixture exchanged = *fixture;
+    for (int i = 0; i < 2; ++i) {
+        memcpy(exchanged.point[i], fixture->point[1 - i], sizeof exchanged.point[i]);
+        memcpy(exchanged.axis[i], fixture->axis[1 - i], sizeof exchanged.axis[i]);
+        for (int j = 0; j < 2; ++j)
+            memcpy(exchanged.side[j][i], fixture->side[j][1 - i], sizeof exchanged.side[j][i]);
+    }
+    const int rows = joint_rows(dag, type, &exchanged, other, 0, row);
+    for (int r = 0; r < rows; ++r)
+        for (int i = 0; i < 6; ++i) {
+            const Ex first = row[r].J[0][i];
+            row[r].J[0][i] = row[r].J[1][i];
+            row[r].J[1][i] = first;
+        }
+    return rows;
+}
+
+int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2], int across,
+               Row row[ROWS_MAX])
 {
     int rows = 0, parts = joint_parts[type];
+    if (across == 1 && parts & PART_PARALLEL)
+        return exchanged_rows(dag, type, fixture, end, row);
     Link link = link_between(dag, fixture, end);
     Vector axis[2], side[2], other;
     for (int i = 0; i < 2; ++i) {

@@ -464,6 +464,11 @@ int subset_place(const Subset *subset, int body)
     return index_of(subset->body, body);
 }
 
+int sequence_known_end(const Sequence *sequence, const Joint *joint)
+{
+    return sequence->body_subset[joint->body[0]] > sequence->body_subset[joint->body[1]];
+}
+
 const Sequence *sequence_find(Pool *pool, const Model *model)
 {
     Graph *graph = graph_new(pool, model);

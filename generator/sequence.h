@@ -43,6 +43,8 @@ void sequence_print(Text *out, const Model *model, const Sequence *sequence);
 /* Which member of a class a subset is, which body of a subset a body. */
 int class_place(const Class *class, int subset);
 int subset_place(const Subset *subset, int body);
+/* The end (0 or 1) of a joint whose body is known where the other's is found; 0 where they are found together. */
+int sequence_known_end(const Sequence *sequence, const Joint *joint);
 /* Graphviz source of the weighted graph with its stages (the paper's Figs. 2 and 3). */
 void graph_draw(Text *out, const Model *model, const Sequence *sequence);
 

@@ -223,7 +223,8 @@ static void make_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
             row[rows] = coordinate_row(w->dag, w->model->coordinate[tie->index].type, &tie->fixture, end,
                                        w->x[tie->dep], w->rate[tie->dep]);
         else
-            made = joint_rows(w->dag, w->model->joint[tie->index].type, &tie->fixture, end, row + rows);
+            made = joint_rows(w->dag, w->model->joint[tie->index].type, &tie->fixture, end,
+                              tie->end[0].unknown >= 0 && tie->end[1].unknown < 0, row + rows);
         for (int r = 0; r < made; ++r)
             row_of[rows++] = i;
     }
