@@ -1435,12 +1435,14 @@ static void andrews_gather(andrews *self, const gic_real *y)
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
 /* The base is fixed: nothing to recover. */
-static int andrews_orient(const andrews *self, const gic_real *y, gic_real e[4], gic_real turn[3])
+static int andrews_orient(const andrews *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
+    static const gic_real none[3] = {R(0.0), R(0.0), R(0.0)};
     (void)self;
     (void)y;
     e[0] = R(1.0);
-    e[1] = e[2] = e[3] = turn[0] = turn[1] = turn[2] = R(0.0);
+    e[1] = e[2] = e[3] = R(0.0);
+    *turn = none;
     return GIC_OK;
 }
 
@@ -1906,13 +1908,13 @@ static void andrews_place(const andrews *self, const gic_real *y, const gic_real
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int andrews_locate(andrews *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real turn[3];
+    const gic_real *turn;
     int status;
     self->head.subset = -1;
     if (!GIC_BOUNDED(y, ANDREWS_SLOW) || !GIC_FINITE(&time, 1) || !GIC_FINITE(self->input, ANDREWS_INPUTS) ||
         !GIC_FINITE(self->parameter, ANDREWS_PARAMETERS) || !GIC_FINITE(self->port, ANDREWS_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    status = andrews_orient(self, y, e, turn);
+    status = andrews_orient(self, y, e, &turn);
     if (status == GIC_OK) {
         andrews_gather(self, y);
         status = andrews_recover(self, turn, 0);
@@ -1928,7 +1930,8 @@ static int andrews_evaluate(andrews *self, gic_real time, const gic_real *y, gic
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = andrews_dynamics(self, time, y, e, result);
-    if (status == GIC_OK && !GIC_FINITE(result, ANDREWS_STATES))
+    /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
+    if (status == GIC_OK && !GIC_FINITE(result + ANDREWS_TWIST, ANDREWS_STATES - ANDREWS_TWIST))
         status = GIC_ERROR_RESULT;
     for (i = 0; status == GIC_OK && i < ANDREWS_STATES; ++i)
         rate[i] = result[i];
@@ -2127,7 +2130,8 @@ static const gic_real andrews_parameter_default[ANDREWS_PARAMETER_ROOM] = {
 
 int andrews_setup_with(andrews *self, const gic_real *parameter)
 {
-    gic_real wanted[ANDREWS_PARAMETER_ROOM], e[4], turn[3];
+    gic_real wanted[ANDREWS_PARAMETER_ROOM], e[4];
+    const gic_real *turn;
     int i, body, status;
     for (i = 0; i < ANDREWS_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
@@ -2149,7 +2153,7 @@ int andrews_setup_with(andrews *self, const gic_real *parameter)
     for (body = 0; body < ANDREWS_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][andrews_design[body].place + i] = andrews_design[body].q[i];
-    status = andrews_orient(self, self->state, e, turn);
+    status = andrews_orient(self, self->state, e, &turn);
     if (status == GIC_OK)
         status = andrews_recover(self, turn, 1);
     andrews_gather(self, self->state);

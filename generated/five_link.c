@@ -1605,29 +1605,20 @@ static void five_link_gather(five_link *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    x[0] = y[7]; /* spring_f_l */
-    xd[0] = y[18];
-    x[1] = y[8]; /* spring_f_r */
-    xd[1] = y[19];
-    x[2] = y[9]; /* spring_r_l */
-    xd[2] = y[20];
-    x[3] = y[10]; /* spring_r_r */
-    xd[3] = y[21];
-    x[4] = y[11]; /* rack */
-    xd[4] = y[22];
+    memcpy(x + 0, y + 7, 5 * sizeof *x); /* spring_f_l to rack */
+    memcpy(xd + 0, y + 18, 5 * sizeof *xd);
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and the angular velocity of the base. Which one is
- * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
-static int five_link_orient(const five_link *self, const gic_real *y, gic_real e[4], gic_real turn[3])
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
+ * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
+ * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+static int five_link_orient(const five_link *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
     int64_t switches = 0;
-    int i;
-    for (i = 0; i < 3; ++i)
-        turn[i] = y[FIVE_LINK_TWIST + 3 + i];
+    *turn = y + FIVE_LINK_TWIST + 3;
     return gic_orientation(y + 3, &dependent, &switches, e);
 }
 
@@ -2926,13 +2917,13 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int five_link_locate(five_link *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real turn[3];
+    const gic_real *turn;
     int status;
     self->head.subset = -1;
     if (!GIC_BOUNDED(y, FIVE_LINK_SLOW) || !GIC_FINITE(&time, 1) || !GIC_FINITE(self->input, FIVE_LINK_INPUTS) ||
         !GIC_FINITE(self->parameter, FIVE_LINK_PARAMETERS) || !GIC_FINITE(self->port, FIVE_LINK_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    status = five_link_orient(self, y, e, turn);
+    status = five_link_orient(self, y, e, &turn);
     if (status == GIC_OK) {
         five_link_gather(self, y);
         status = five_link_recover(self, turn, 0);
@@ -2948,7 +2939,8 @@ static int five_link_evaluate(five_link *self, gic_real time, const gic_real *y,
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = five_link_dynamics(self, time, y, e, result);
-    if (status == GIC_OK && !GIC_FINITE(result, FIVE_LINK_STATES))
+    /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
+    if (status == GIC_OK && !GIC_FINITE(result + FIVE_LINK_TWIST, FIVE_LINK_STATES - FIVE_LINK_TWIST))
         status = GIC_ERROR_RESULT;
     for (i = 0; status == GIC_OK && i < FIVE_LINK_STATES; ++i)
         rate[i] = result[i];
@@ -3243,7 +3235,8 @@ static const gic_real five_link_parameter_default[FIVE_LINK_PARAMETER_ROOM] = {
 
 int five_link_setup_with(five_link *self, const gic_real *parameter)
 {
-    gic_real wanted[FIVE_LINK_PARAMETER_ROOM], e[4], turn[3];
+    gic_real wanted[FIVE_LINK_PARAMETER_ROOM], e[4];
+    const gic_real *turn;
     int i, body, status;
     for (i = 0; i < FIVE_LINK_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
@@ -3265,7 +3258,7 @@ int five_link_setup_with(five_link *self, const gic_real *parameter)
     for (body = 0; body < FIVE_LINK_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][five_link_design[body].place + i] = five_link_design[body].q[i];
-    status = five_link_orient(self, self->state, e, turn);
+    status = five_link_orient(self, self->state, e, &turn);
     if (status == GIC_OK)
         status = five_link_recover(self, turn, 1);
     five_link_gather(self, self->state);

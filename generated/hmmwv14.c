@@ -1613,29 +1613,20 @@ static void hmmwv14_gather(hmmwv14 *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    x[0] = y[7]; /* spring_f_l */
-    xd[0] = y[18];
-    x[1] = y[8]; /* spring_f_r */
-    xd[1] = y[19];
-    x[2] = y[9]; /* spring_r_l */
-    xd[2] = y[20];
-    x[3] = y[10]; /* spring_r_r */
-    xd[3] = y[21];
-    x[4] = y[11]; /* rack */
-    xd[4] = y[22];
+    memcpy(x + 0, y + 7, 5 * sizeof *x); /* spring_f_l to rack */
+    memcpy(xd + 0, y + 18, 5 * sizeof *xd);
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and the angular velocity of the base. Which one is
- * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
-static int hmmwv14_orient(const hmmwv14 *self, const gic_real *y, gic_real e[4], gic_real turn[3])
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
+ * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
+ * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+static int hmmwv14_orient(const hmmwv14 *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
     int64_t switches = 0;
-    int i;
-    for (i = 0; i < 3; ++i)
-        turn[i] = y[HMMWV14_TWIST + 3 + i];
+    *turn = y + HMMWV14_TWIST + 3;
     return gic_orientation(y + 3, &dependent, &switches, e);
 }
 
@@ -3487,13 +3478,13 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int hmmwv14_locate(hmmwv14 *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real turn[3];
+    const gic_real *turn;
     int status;
     self->head.subset = -1;
     if (!GIC_BOUNDED(y, HMMWV14_SLOW) || !GIC_FINITE(&time, 1) || !GIC_FINITE(self->input, HMMWV14_INPUTS) ||
         !GIC_FINITE(self->parameter, HMMWV14_PARAMETERS) || !GIC_FINITE(self->port, HMMWV14_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    status = hmmwv14_orient(self, y, e, turn);
+    status = hmmwv14_orient(self, y, e, &turn);
     if (status == GIC_OK) {
         hmmwv14_gather(self, y);
         status = hmmwv14_recover(self, turn, 0);
@@ -3509,7 +3500,8 @@ static int hmmwv14_evaluate(hmmwv14 *self, gic_real time, const gic_real *y, gic
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = hmmwv14_dynamics(self, time, y, e, result);
-    if (status == GIC_OK && !GIC_FINITE(result, HMMWV14_STATES))
+    /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
+    if (status == GIC_OK && !GIC_FINITE(result + HMMWV14_TWIST, HMMWV14_STATES - HMMWV14_TWIST))
         status = GIC_ERROR_RESULT;
     for (i = 0; status == GIC_OK && i < HMMWV14_STATES; ++i)
         rate[i] = result[i];
@@ -3820,7 +3812,8 @@ static const gic_real hmmwv14_parameter_default[HMMWV14_PARAMETER_ROOM] = {
 
 int hmmwv14_setup_with(hmmwv14 *self, const gic_real *parameter)
 {
-    gic_real wanted[HMMWV14_PARAMETER_ROOM], e[4], turn[3];
+    gic_real wanted[HMMWV14_PARAMETER_ROOM], e[4];
+    const gic_real *turn;
     int i, body, status;
     for (i = 0; i < HMMWV14_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
@@ -3842,7 +3835,7 @@ int hmmwv14_setup_with(hmmwv14 *self, const gic_real *parameter)
     for (body = 0; body < HMMWV14_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][hmmwv14_design[body].place + i] = hmmwv14_design[body].q[i];
-    status = hmmwv14_orient(self, self->state, e, turn);
+    status = hmmwv14_orient(self, self->state, e, &turn);
     if (status == GIC_OK)
         status = hmmwv14_recover(self, turn, 1);
     hmmwv14_gather(self, self->state);

@@ -1177,16 +1177,8 @@ static void hmmwv_full_gather(hmmwv_full *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    x[0] = y[7]; /* spring_f_l */
-    xd[0] = y[18];
-    x[1] = y[8]; /* spring_f_r */
-    xd[1] = y[19];
-    x[2] = y[9]; /* spring_r_l */
-    xd[2] = y[20];
-    x[3] = y[10]; /* spring_r_r */
-    xd[3] = y[21];
-    x[4] = y[11]; /* rack */
-    xd[4] = y[22];
+    memcpy(x + 0, y + 7, 5 * sizeof *x); /* spring_f_l to rack */
+    memcpy(xd + 0, y + 18, 5 * sizeof *xd);
 }
 
 /* ---- tables -------------------------------------------------------------------------------------------------- */
@@ -1275,15 +1267,14 @@ static const gic_table table[7] = {
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and the angular velocity of the base. Which one is
- * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
-static int hmmwv_full_orient(const hmmwv_full *self, const gic_real *y, gic_real e[4], gic_real turn[3])
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
+ * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
+ * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+static int hmmwv_full_orient(const hmmwv_full *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
     int64_t switches = 0;
-    int i;
-    for (i = 0; i < 3; ++i)
-        turn[i] = y[HMMWV_FULL_TWIST + 3 + i];
+    *turn = y + HMMWV_FULL_TWIST + 3;
     return gic_orientation(y + 3, &dependent, &switches, e);
 }
 
@@ -2776,13 +2767,13 @@ static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gi
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int hmmwv_full_locate(hmmwv_full *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real turn[3];
+    const gic_real *turn;
     int status;
     self->head.subset = -1;
     if (!GIC_BOUNDED(y, HMMWV_FULL_SLOW) || !GIC_FINITE(&time, 1) || !GIC_FINITE(self->input, HMMWV_FULL_INPUTS) ||
         !GIC_FINITE(self->parameter, HMMWV_FULL_PARAMETERS) || !GIC_FINITE(self->port, HMMWV_FULL_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    status = hmmwv_full_orient(self, y, e, turn);
+    status = hmmwv_full_orient(self, y, e, &turn);
     if (status == GIC_OK) {
         hmmwv_full_gather(self, y);
         status = hmmwv_full_recover(self, turn, 0);
@@ -2798,7 +2789,8 @@ static int hmmwv_full_evaluate(hmmwv_full *self, gic_real time, const gic_real *
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = hmmwv_full_dynamics(self, time, y, e, result);
-    if (status == GIC_OK && !GIC_FINITE(result, HMMWV_FULL_STATES))
+    /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
+    if (status == GIC_OK && !GIC_FINITE(result + HMMWV_FULL_TWIST, HMMWV_FULL_STATES - HMMWV_FULL_TWIST))
         status = GIC_ERROR_RESULT;
     for (i = 0; status == GIC_OK && i < HMMWV_FULL_STATES; ++i)
         rate[i] = result[i];
@@ -3098,7 +3090,8 @@ static const gic_real hmmwv_full_parameter_default[HMMWV_FULL_PARAMETER_ROOM] = 
 
 int hmmwv_full_setup_with(hmmwv_full *self, const gic_real *parameter)
 {
-    gic_real wanted[HMMWV_FULL_PARAMETER_ROOM], e[4], turn[3];
+    gic_real wanted[HMMWV_FULL_PARAMETER_ROOM], e[4];
+    const gic_real *turn;
     int i, body, status;
     for (i = 0; i < HMMWV_FULL_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
@@ -3120,7 +3113,7 @@ int hmmwv_full_setup_with(hmmwv_full *self, const gic_real *parameter)
     for (body = 0; body < HMMWV_FULL_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][hmmwv_full_design[body].place + i] = hmmwv_full_design[body].q[i];
-    status = hmmwv_full_orient(self, self->state, e, turn);
+    status = hmmwv_full_orient(self, self->state, e, &turn);
     if (status == GIC_OK)
         status = hmmwv_full_recover(self, turn, 1);
     hmmwv_full_gather(self, self->state);

@@ -1181,29 +1181,22 @@ static void hmmwv_tires_gather(hmmwv_tires *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    x[0] = y[7]; /* spring_f_l */
-    xd[0] = y[17];
-    x[1] = y[8]; /* spring_f_r */
-    xd[1] = y[18];
-    x[2] = y[9]; /* spring_r_l */
-    xd[2] = y[19];
-    x[3] = y[10]; /* spring_r_r */
-    xd[3] = y[20];
+    memcpy(x + 0, y + 7, 4 * sizeof *x); /* spring_f_l to spring_r_r */
+    memcpy(xd + 0, y + 17, 4 * sizeof *xd);
     x[4] = u[0]; /* rack */
     xd[4] = u[1];
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and the angular velocity of the base. Which one is
- * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
-static int hmmwv_tires_orient(const hmmwv_tires *self, const gic_real *y, gic_real e[4], gic_real turn[3])
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
+ * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
+ * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+static int hmmwv_tires_orient(const hmmwv_tires *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
     int64_t switches = 0;
-    int i;
-    for (i = 0; i < 3; ++i)
-        turn[i] = y[HMMWV_TIRES_TWIST + 3 + i];
+    *turn = y + HMMWV_TIRES_TWIST + 3;
     return gic_orientation(y + 3, &dependent, &switches, e);
 }
 
@@ -3196,13 +3189,13 @@ static void hmmwv_tires_place(const hmmwv_tires *self, const gic_real *y, const 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int hmmwv_tires_locate(hmmwv_tires *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real turn[3];
+    const gic_real *turn;
     int status;
     self->head.subset = -1;
     if (!GIC_BOUNDED(y, HMMWV_TIRES_SLOW) || !GIC_FINITE(&time, 1) || !GIC_FINITE(self->input, HMMWV_TIRES_INPUTS) ||
         !GIC_FINITE(self->parameter, HMMWV_TIRES_PARAMETERS) || !GIC_FINITE(self->port, HMMWV_TIRES_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    status = hmmwv_tires_orient(self, y, e, turn);
+    status = hmmwv_tires_orient(self, y, e, &turn);
     if (status == GIC_OK) {
         hmmwv_tires_gather(self, y);
         status = hmmwv_tires_recover_once(self, turn);
@@ -3220,7 +3213,8 @@ static int hmmwv_tires_evaluate(hmmwv_tires *self, gic_real time, const gic_real
         status = hmmwv_tires_turn_wheels(self, time, y, e, result + HMMWV_TIRES_SLOW);
     if (status == GIC_OK)
         status = hmmwv_tires_dynamics(self, time, y, e, result);
-    if (status == GIC_OK && !GIC_FINITE(result, HMMWV_TIRES_STATES))
+    /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
+    if (status == GIC_OK && !GIC_FINITE(result + HMMWV_TIRES_TWIST, HMMWV_TIRES_STATES - HMMWV_TIRES_TWIST))
         status = GIC_ERROR_RESULT;
     for (i = 0; status == GIC_OK && i < HMMWV_TIRES_STATES; ++i)
         rate[i] = result[i];
@@ -3608,7 +3602,8 @@ static const gic_real hmmwv_tires_parameter_default[HMMWV_TIRES_PARAMETER_ROOM] 
 
 int hmmwv_tires_setup_with(hmmwv_tires *self, const gic_real *parameter)
 {
-    gic_real wanted[HMMWV_TIRES_PARAMETER_ROOM], e[4], turn[3];
+    gic_real wanted[HMMWV_TIRES_PARAMETER_ROOM], e[4];
+    const gic_real *turn;
     int i, body, status;
     for (i = 0; i < HMMWV_TIRES_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
@@ -3630,7 +3625,7 @@ int hmmwv_tires_setup_with(hmmwv_tires *self, const gic_real *parameter)
     for (body = 0; body < HMMWV_TIRES_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][hmmwv_tires_design[body].place + i] = hmmwv_tires_design[body].q[i];
-    status = hmmwv_tires_orient(self, self->state, e, turn);
+    status = hmmwv_tires_orient(self, self->state, e, &turn);
     if (status == GIC_OK)
         status = hmmwv_tires_recover(self, turn, 1);
     hmmwv_tires_gather(self, self->state);

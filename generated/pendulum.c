@@ -313,12 +313,14 @@ static void pendulum_gather(pendulum *self, const gic_real *y)
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
 /* The base is fixed: nothing to recover. */
-static int pendulum_orient(const pendulum *self, const gic_real *y, gic_real e[4], gic_real turn[3])
+static int pendulum_orient(const pendulum *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
+    static const gic_real none[3] = {R(0.0), R(0.0), R(0.0)};
     (void)self;
     (void)y;
     e[0] = R(1.0);
-    e[1] = e[2] = e[3] = turn[0] = turn[1] = turn[2] = R(0.0);
+    e[1] = e[2] = e[3] = R(0.0);
+    *turn = none;
     return GIC_OK;
 }
 
@@ -447,13 +449,13 @@ static void pendulum_place(const pendulum *self, const gic_real *y, const gic_re
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int pendulum_locate(pendulum *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real turn[3];
+    const gic_real *turn;
     int status;
     self->head.subset = -1;
     if (!GIC_BOUNDED(y, PENDULUM_SLOW) || !GIC_FINITE(&time, 1) || !GIC_FINITE(self->input, PENDULUM_INPUTS) ||
         !GIC_FINITE(self->parameter, PENDULUM_PARAMETERS) || !GIC_FINITE(self->port, PENDULUM_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    status = pendulum_orient(self, y, e, turn);
+    status = pendulum_orient(self, y, e, &turn);
     if (status == GIC_OK) {
         pendulum_gather(self, y);
         status = pendulum_recover(self, turn, 0);
@@ -469,7 +471,8 @@ static int pendulum_evaluate(pendulum *self, gic_real time, const gic_real *y, g
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = pendulum_dynamics(self, time, y, e, result);
-    if (status == GIC_OK && !GIC_FINITE(result, PENDULUM_STATES))
+    /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
+    if (status == GIC_OK && !GIC_FINITE(result + PENDULUM_TWIST, PENDULUM_STATES - PENDULUM_TWIST))
         status = GIC_ERROR_RESULT;
     for (i = 0; status == GIC_OK && i < PENDULUM_STATES; ++i)
         rate[i] = result[i];
@@ -620,7 +623,8 @@ static const gic_real pendulum_parameter_default[PENDULUM_PARAMETER_ROOM] = {
 
 int pendulum_setup_with(pendulum *self, const gic_real *parameter)
 {
-    gic_real wanted[PENDULUM_PARAMETER_ROOM], e[4], turn[3];
+    gic_real wanted[PENDULUM_PARAMETER_ROOM], e[4];
+    const gic_real *turn;
     int i, body, status;
     for (i = 0; i < PENDULUM_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
@@ -642,7 +646,7 @@ int pendulum_setup_with(pendulum *self, const gic_real *parameter)
     for (body = 0; body < PENDULUM_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][pendulum_design[body].place + i] = pendulum_design[body].q[i];
-    status = pendulum_orient(self, self->state, e, turn);
+    status = pendulum_orient(self, self->state, e, &turn);
     if (status == GIC_OK)
         status = pendulum_recover(self, turn, 1);
     pendulum_gather(self, self->state);

@@ -699,21 +699,21 @@ static void quarter_car_gather(quarter_car *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    x[0] = y[0]; /* bounce */
-    xd[0] = y[2];
-    x[1] = y[1]; /* spring */
-    xd[1] = y[3];
+    memcpy(x + 0, y + 0, 2 * sizeof *x); /* bounce to spring */
+    memcpy(xd + 0, y + 2, 2 * sizeof *xd);
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
 /* The base is fixed: nothing to recover. */
-static int quarter_car_orient(const quarter_car *self, const gic_real *y, gic_real e[4], gic_real turn[3])
+static int quarter_car_orient(const quarter_car *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
+    static const gic_real none[3] = {R(0.0), R(0.0), R(0.0)};
     (void)self;
     (void)y;
     e[0] = R(1.0);
-    e[1] = e[2] = e[3] = turn[0] = turn[1] = turn[2] = R(0.0);
+    e[1] = e[2] = e[3] = R(0.0);
+    *turn = none;
     return GIC_OK;
 }
 
@@ -988,13 +988,13 @@ static void quarter_car_place(const quarter_car *self, const gic_real *y, const 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int quarter_car_locate(quarter_car *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real turn[3];
+    const gic_real *turn;
     int status;
     self->head.subset = -1;
     if (!GIC_BOUNDED(y, QUARTER_CAR_SLOW) || !GIC_FINITE(&time, 1) || !GIC_FINITE(self->input, QUARTER_CAR_INPUTS) ||
         !GIC_FINITE(self->parameter, QUARTER_CAR_PARAMETERS) || !GIC_FINITE(self->port, QUARTER_CAR_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    status = quarter_car_orient(self, y, e, turn);
+    status = quarter_car_orient(self, y, e, &turn);
     if (status == GIC_OK) {
         quarter_car_gather(self, y);
         status = quarter_car_recover(self, turn, 0);
@@ -1010,7 +1010,8 @@ static int quarter_car_evaluate(quarter_car *self, gic_real time, const gic_real
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = quarter_car_dynamics(self, time, y, e, result);
-    if (status == GIC_OK && !GIC_FINITE(result, QUARTER_CAR_STATES))
+    /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
+    if (status == GIC_OK && !GIC_FINITE(result + QUARTER_CAR_TWIST, QUARTER_CAR_STATES - QUARTER_CAR_TWIST))
         status = GIC_ERROR_RESULT;
     for (i = 0; status == GIC_OK && i < QUARTER_CAR_STATES; ++i)
         rate[i] = result[i];
@@ -1186,7 +1187,8 @@ static const gic_real quarter_car_parameter_default[QUARTER_CAR_PARAMETER_ROOM] 
 
 int quarter_car_setup_with(quarter_car *self, const gic_real *parameter)
 {
-    gic_real wanted[QUARTER_CAR_PARAMETER_ROOM], e[4], turn[3];
+    gic_real wanted[QUARTER_CAR_PARAMETER_ROOM], e[4];
+    const gic_real *turn;
     int i, body, status;
     for (i = 0; i < QUARTER_CAR_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
@@ -1208,7 +1210,7 @@ int quarter_car_setup_with(quarter_car *self, const gic_real *parameter)
     for (body = 0; body < QUARTER_CAR_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][quarter_car_design[body].place + i] = quarter_car_design[body].q[i];
-    status = quarter_car_orient(self, self->state, e, turn);
+    status = quarter_car_orient(self, self->state, e, &turn);
     if (status == GIC_OK)
         status = quarter_car_recover(self, turn, 1);
     quarter_car_gather(self, self->state);

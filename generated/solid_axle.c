@@ -1651,29 +1651,20 @@ static void solid_axle_gather(solid_axle *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    x[0] = y[7]; /* spring_f_l */
-    xd[0] = y[18];
-    x[1] = y[8]; /* spring_f_r */
-    xd[1] = y[19];
-    x[2] = y[9]; /* spring_r_l */
-    xd[2] = y[20];
-    x[3] = y[10]; /* spring_r_r */
-    xd[3] = y[21];
-    x[4] = y[11]; /* rack */
-    xd[4] = y[22];
+    memcpy(x + 0, y + 7, 5 * sizeof *x); /* spring_f_l to rack */
+    memcpy(xd + 0, y + 18, 5 * sizeof *xd);
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and the angular velocity of the base. Which one is
- * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
-static int solid_axle_orient(const solid_axle *self, const gic_real *y, gic_real e[4], gic_real turn[3])
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
+ * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
+ * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+static int solid_axle_orient(const solid_axle *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
     int64_t switches = 0;
-    int i;
-    for (i = 0; i < 3; ++i)
-        turn[i] = y[SOLID_AXLE_TWIST + 3 + i];
+    *turn = y + SOLID_AXLE_TWIST + 3;
     return gic_orientation(y + 3, &dependent, &switches, e);
 }
 
@@ -2877,13 +2868,13 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int solid_axle_locate(solid_axle *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real turn[3];
+    const gic_real *turn;
     int status;
     self->head.subset = -1;
     if (!GIC_BOUNDED(y, SOLID_AXLE_SLOW) || !GIC_FINITE(&time, 1) || !GIC_FINITE(self->input, SOLID_AXLE_INPUTS) ||
         !GIC_FINITE(self->parameter, SOLID_AXLE_PARAMETERS) || !GIC_FINITE(self->port, SOLID_AXLE_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    status = solid_axle_orient(self, y, e, turn);
+    status = solid_axle_orient(self, y, e, &turn);
     if (status == GIC_OK) {
         solid_axle_gather(self, y);
         status = solid_axle_recover(self, turn, 0);
@@ -2899,7 +2890,8 @@ static int solid_axle_evaluate(solid_axle *self, gic_real time, const gic_real *
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = solid_axle_dynamics(self, time, y, e, result);
-    if (status == GIC_OK && !GIC_FINITE(result, SOLID_AXLE_STATES))
+    /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
+    if (status == GIC_OK && !GIC_FINITE(result + SOLID_AXLE_TWIST, SOLID_AXLE_STATES - SOLID_AXLE_TWIST))
         status = GIC_ERROR_RESULT;
     for (i = 0; status == GIC_OK && i < SOLID_AXLE_STATES; ++i)
         rate[i] = result[i];
@@ -3188,7 +3180,8 @@ static const gic_real solid_axle_parameter_default[SOLID_AXLE_PARAMETER_ROOM] = 
 
 int solid_axle_setup_with(solid_axle *self, const gic_real *parameter)
 {
-    gic_real wanted[SOLID_AXLE_PARAMETER_ROOM], e[4], turn[3];
+    gic_real wanted[SOLID_AXLE_PARAMETER_ROOM], e[4];
+    const gic_real *turn;
     int i, body, status;
     for (i = 0; i < SOLID_AXLE_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
@@ -3210,7 +3203,7 @@ int solid_axle_setup_with(solid_axle *self, const gic_real *parameter)
     for (body = 0; body < SOLID_AXLE_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][solid_axle_design[body].place + i] = solid_axle_design[body].q[i];
-    status = solid_axle_orient(self, self->state, e, turn);
+    status = solid_axle_orient(self, self->state, e, &turn);
     if (status == GIC_OK)
         status = solid_axle_recover(self, turn, 1);
     solid_axle_gather(self, self->state);

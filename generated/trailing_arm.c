@@ -1098,29 +1098,20 @@ static void trailing_arm_gather(trailing_arm *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    x[0] = y[7]; /* bar_f_l */
-    xd[0] = y[18];
-    x[1] = y[8]; /* bar_f_r */
-    xd[1] = y[19];
-    x[2] = y[9]; /* bar_r_l */
-    xd[2] = y[20];
-    x[3] = y[10]; /* bar_r_r */
-    xd[3] = y[21];
-    x[4] = y[11]; /* rack */
-    xd[4] = y[22];
+    memcpy(x + 0, y + 7, 5 * sizeof *x); /* bar_f_l to rack */
+    memcpy(xd + 0, y + 18, 5 * sizeof *xd);
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and the angular velocity of the base. Which one is
- * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
-static int trailing_arm_orient(const trailing_arm *self, const gic_real *y, gic_real e[4], gic_real turn[3])
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
+ * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
+ * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+static int trailing_arm_orient(const trailing_arm *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
     int64_t switches = 0;
-    int i;
-    for (i = 0; i < 3; ++i)
-        turn[i] = y[TRAILING_ARM_TWIST + 3 + i];
+    *turn = y + TRAILING_ARM_TWIST + 3;
     return gic_orientation(y + 3, &dependent, &switches, e);
 }
 
@@ -2441,13 +2432,13 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int trailing_arm_locate(trailing_arm *self, gic_real time, const gic_real *y, gic_real e[4])
 {
-    gic_real turn[3];
+    const gic_real *turn;
     int status;
     self->head.subset = -1;
     if (!GIC_BOUNDED(y, TRAILING_ARM_SLOW) || !GIC_FINITE(&time, 1) || !GIC_FINITE(self->input, TRAILING_ARM_INPUTS) ||
         !GIC_FINITE(self->parameter, TRAILING_ARM_PARAMETERS) || !GIC_FINITE(self->port, TRAILING_ARM_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
-    status = trailing_arm_orient(self, y, e, turn);
+    status = trailing_arm_orient(self, y, e, &turn);
     if (status == GIC_OK) {
         trailing_arm_gather(self, y);
         status = trailing_arm_recover(self, turn, 0);
@@ -2463,7 +2454,8 @@ static int trailing_arm_evaluate(trailing_arm *self, gic_real time, const gic_re
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = trailing_arm_dynamics(self, time, y, e, result);
-    if (status == GIC_OK && !GIC_FINITE(result, TRAILING_ARM_STATES))
+    /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
+    if (status == GIC_OK && !GIC_FINITE(result + TRAILING_ARM_TWIST, TRAILING_ARM_STATES - TRAILING_ARM_TWIST))
         status = GIC_ERROR_RESULT;
     for (i = 0; status == GIC_OK && i < TRAILING_ARM_STATES; ++i)
         rate[i] = result[i];
@@ -2761,7 +2753,8 @@ static const gic_real trailing_arm_parameter_default[TRAILING_ARM_PARAMETER_ROOM
 
 int trailing_arm_setup_with(trailing_arm *self, const gic_real *parameter)
 {
-    gic_real wanted[TRAILING_ARM_PARAMETER_ROOM], e[4], turn[3];
+    gic_real wanted[TRAILING_ARM_PARAMETER_ROOM], e[4];
+    const gic_real *turn;
     int i, body, status;
     for (i = 0; i < TRAILING_ARM_PARAMETERS; ++i)
         wanted[i] = parameter[i]; /* they may be the instance's own */
@@ -2783,7 +2776,7 @@ int trailing_arm_setup_with(trailing_arm *self, const gic_real *parameter)
     for (body = 0; body < TRAILING_ARM_FOLLOWED; ++body)
         for (i = 0; i < 7; ++i)
             self->start[0][trailing_arm_design[body].place + i] = trailing_arm_design[body].q[i];
-    status = trailing_arm_orient(self, self->state, e, turn);
+    status = trailing_arm_orient(self, self->state, e, &turn);
     if (status == GIC_OK)
         status = trailing_arm_recover(self, turn, 1);
     trailing_arm_gather(self, self->state);

@@ -195,14 +195,36 @@ void write_react_calls(Generation *g, Text *out, int indent)
     }
 }
 
+/* How many coordinates from this one on stand one behind the other in the state too, with their rates. */
+static int gathered_together(const Generation *g, int first)
+{
+    const Plan *plan = g->plan;
+    int count = 1;
+    if (g->model->coordinate[first].driven)
+        return count;
+    for (int w = first + 1; w < g->model->coordinates && !g->model->coordinate[w].driven; ++w, ++count)
+        if (plan->coordinate_state[w] != plan->coordinate_state[first] + count ||
+            plan->coordinate_rate[w] != plan->coordinate_rate[first] + count)
+            break;
+    return count;
+}
+
+/* Several at a time where they stand together: what reads them as a vector would wait for numbers written singly. */
 void write_gathered(Generation *g, Text *out, int indent)
 {
-    for (int w = 0; w < g->model->coordinates; ++w) {
+    for (int w = 0; w < g->model->coordinates;) {
         const Coordinate *c = &g->model->coordinate[w];
-        line(out, indent, "x[%d] = %s[%d]; /* %s */", w, c->driven ? "u" : "y",
-             c->driven ? c->input : g->plan->coordinate_state[w], c->name);
-        line(out, indent, "xd[%d] = %s[%d];", w, c->driven ? "u" : "y",
-             c->driven ? c->input + 1 : g->plan->coordinate_rate[w]);
+        const int count = gathered_together(g, w), value = c->driven ? c->input : g->plan->coordinate_state[w],
+                  rate = c->driven ? c->input + 1 : g->plan->coordinate_rate[w];
+        if (count > 1) {
+            line(out, indent, "memcpy(x + %d, y + %d, %d * sizeof *x); /* %s to %s */", w, value, count, c->name,
+                 g->model->coordinate[w + count - 1].name);
+            line(out, indent, "memcpy(xd + %d, y + %d, %d * sizeof *xd);", w, rate, count);
+        } else {
+            line(out, indent, "x[%d] = %s[%d]; /* %s */", w, c->driven ? "u" : "y", value, c->name);
+            line(out, indent, "xd[%d] = %s[%d];", w, c->driven ? "u" : "y", rate);
+        }
+        w += count;
     }
 }
 

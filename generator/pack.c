@@ -466,6 +466,7 @@ Block *block_pack(Pool *pool, const Block *block, const LaneInput *input, int in
     Block *packed = pool_alloc(pool, sizeof *packed);
     packed->dag = p.out;
     packed->model = block->model;
+    packed->scheduled = true;
     for (int i = 0; i < block->checks; ++i) {
         Check check = block->check[i];
         const Ex e = p.same[check.value];
