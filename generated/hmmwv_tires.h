@@ -81,7 +81,7 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H 0xf3c545bb
+#define HMMWV_TIRES_H 0x830fe6e7
 
 #include "gic_runtime.h"
 
@@ -312,9 +312,14 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * above `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work space. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
+ * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct hmmwv_tires {
     gic_head head;
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real motion[HMMWV_TIRES_MOTION_ROOM];            /* work space: bodies relative to the base */
+    gic_real inertia[HMMWV_TIRES_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
+    gic_real start[GIC_STARTS][HMMWV_TIRES_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
     gic_real state[HMMWV_TIRES_STATE_ROOM];
     gic_real input[HMMWV_TIRES_INPUT_ROOM];
     gic_real output[HMMWV_TIRES_OUTPUT_ROOM];
@@ -326,11 +331,8 @@ typedef struct hmmwv_tires {
     gic_real history[GIC_HISTORY(HMMWV_TIRES_STATE_ROOM, HMMWV_TIRES_STATES - HMMWV_TIRES_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_TIRES_STATE_ROOM, HMMWV_TIRES_INPUT_ROOM)];
     gic_real x[HMMWV_TIRES_COORDINATE_ROOM], xd[HMMWV_TIRES_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[GIC_STARTS][HMMWV_TIRES_START_ROOM];  /* where Newton begins: the last good one, and the next */
-    gic_real motion[HMMWV_TIRES_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * HMMWV_TIRES_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
-    gic_real inertia[HMMWV_TIRES_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[HMMWV_TIRES_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_TIRES_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_TIRES_GRIP * HMMWV_TIRES_ROLLING]; /* what the wheels do, HMMWV_TIRES_GRIP numbers each */

@@ -29,7 +29,7 @@
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0xbae6a71b
+#if PENDULUM_H != 0x5e92121d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -156,41 +156,41 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t4 = GIC_SQRT(t3);
         const gic_real t5 = R(1.0) / t3;
         const gic_real t6 = t5 * (t2 * t4);
+        motion[9] = t6;
         const gic_real t7 = t5 * (t1 * t4);
+        motion[3] = t7;
+        motion[11] = t7;
         const gic_real t8 = t6 * R(-0.5);
         const gic_real t9 = -t6;
+        motion[5] = t9;
         const gic_real t10 = t2 * t6 + t1 * t7;
         const gic_real t11 = t7 * R(-0.5);
         if (!(GIC_FABS(t10) > R(0.0001)))
             return GIC_ERROR_SINGULAR;
         const gic_real t12 = R(1.0) / -t10;
         const gic_real t13 = t10 * t12;
+        motion[25] = t13;
         const gic_real t14 = rate[0] * t13;
+        motion[13] = t14;
         const gic_real t15 = t13 * t8;
+        inertia[15] = t15;
         const gic_real t16 = t13 * t11;
         const gic_real t17 = t13 * R(0.25);
         const gic_real t18 = t6 * t14;
         const gic_real t19 = t7 * t14;
         const gic_real t20 = -t16;
+        inertia[17] = t20;
         const gic_real t21 = t8 * t15 + (t17 + t11 * t16);
+        inertia[19] = t21;
         const gic_real t22 = t15 * t15 + (t13 * t17 + t16 * t16);
+        inertia[22] = t22;
         const gic_real t23 = rate[0] * (t1 * t18 - t2 * t19);
         const gic_real t24 = t23 + t23 + (t1 * (t14 * t18) - t2 * (t14 * t19));
         const gic_real t25 = t12 * t24;
+        motion[19] = t25;
         const gic_real t26 = t13 * (R(0.25) * t25) + t16 * (t14 * (t14 * t8) + t11 * t25);
         const gic_real t27 = t15 * (t8 * t25 - t14 * (t14 * t11)) + t26;
-        motion[3] = t7;
-        motion[5] = t9;
-        motion[9] = t6;
-        motion[11] = t7;
-        motion[13] = t14;
-        motion[19] = t25;
-        motion[25] = t13;
-        inertia[15] = t15;
-        inertia[17] = t20;
-        inertia[19] = t21;
         inertia[21] = t27;
-        inertia[22] = t22;
     }
     ++self->head.newton_count;
     return GIC_OK;

@@ -48,7 +48,7 @@
  */
 #include "quarter_car.h"
 
-#if QUARTER_CAR_H != 0x250d930d
+#if QUARTER_CAR_H != 0xb23488e5
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -166,8 +166,8 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = R(0.687) + x[0];
-        const gic_real t2 = rate[0];
         motion[2] = t1;
+        const gic_real t2 = rate[0];
         motion[17] = t2;
     }
     ++self->head.newton_count;
@@ -207,8 +207,10 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
     (void)k, (void)start, (void)inertia;
     {
         const gic_real t1 = R(-0.21300000000000008) + m0[2];
+        motion[2] = t1;
         const gic_real t2 = R(-0.015515000000000057) + m0[2];
         const gic_real t3 = rate[1];
+        motion[17] = t3;
         const gic_real t4 = t2 - t1;
         const gic_real t5 = R(0.5) * (t4 * t4 + (R(0.11926402211663992) - x[0] * x[0])) - R(0.010110666875399996);
         const gic_real t6 = R(-0.04785416235599995) - t4 * R(-0.04660899999999993);
@@ -222,7 +224,9 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         const gic_real t10 = GIC_SQRT(t9);
         const gic_real t11 = t10 * (R(1.0) / (R(-0.9999999999999996) * t9));
         const gic_real t12 = x[0] * t11;
+        motion[24] = t12;
         const gic_real t13 = rate[0] * t12;
+        motion[12] = t13;
         const gic_real t14 = R(0.4469) * t12;
         if (!(R(8.917091066652828) * t10 - ahead[0] * GIC_FABS(t13) > R(0.004)))
             return GIC_ERROR_SINGULAR;
@@ -232,9 +236,13 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         const gic_real t18 = R(0.23609299999999983) * t17 + R(0.04660899999999993) * t16;
         const gic_real t19 = R(0.04660899999999993) * t17 + R(-0.23609299999999983) * t16;
         const gic_real t20 = R(0.23920559337529682) * t16 + R(0.9709689408513393) * t17;
+        motion[10] = t20;
         const gic_real t21 = R(-0.9709689408513391) * t16 + R(0.23920559337529687) * t17;
+        motion[11] = t21;
         const gic_real t22 = R(-0.9709689408513393) * t16 + R(0.23920559337529682) * t17;
+        motion[7] = t22;
         const gic_real t23 = R(-0.23920559337529687) * t16 + R(-0.9709689408513391) * t17;
+        motion[8] = t23;
         const gic_real t24 = t18 * t13;
         const gic_real t25 = t19 * t13;
         const gic_real t26 = R(3.0379110359107786e-06) * t21 + R(0.24689200985615367) * t20;
@@ -246,32 +254,24 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         const gic_real t32 = t12 * t29;
         const gic_real t33 = R(0.307086) + t29;
         const gic_real t34 = -t31;
+        inertia[16] = t34;
         const gic_real t35 = rate[0] * rate[0] - t24 * t24 - t27 * t27 + t28;
         const gic_real t36 = R(23.965) * t32;
+        inertia[17] = t36;
+        inertia[30] = t36;
         const gic_real t37 = R(23.965) * t33;
+        inertia[25] = t37;
         const gic_real t38 = t33 * t36 + (t14 + (t1 + t26) * t31);
+        inertia[18] = t38;
         const gic_real t39 = t30 * t31 + (t12 * t14 + t32 * t36);
+        inertia[29] = t39;
         const gic_real t40 = t11 * t35;
+        motion[18] = t40;
         const gic_real t41 = R(23.965) * (t40 * t29 - t13 * (t13 * t26));
+        inertia[28] = t41;
         const gic_real t42 = R(23.965) * (t13 * (t13 * t29) + t40 * t26) * t30;
         const gic_real t43 = t42 + (t12 * (R(0.4469) * t40) + t41 * t32);
-        motion[2] = t1;
-        motion[7] = t22;
-        motion[8] = t23;
-        motion[10] = t20;
-        motion[11] = t21;
-        motion[12] = t13;
-        motion[17] = t3;
-        motion[18] = t40;
-        motion[24] = t12;
-        inertia[16] = t34;
-        inertia[17] = t36;
-        inertia[18] = t38;
         inertia[21] = t43;
-        inertia[25] = t37;
-        inertia[28] = t41;
-        inertia[29] = t39;
-        inertia[30] = t36;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -319,17 +319,22 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t3 = R(0.021117699999999906) + m0[2];
         const gic_real t4 = R(-0.1587710000000001) + m0[2];
         const gic_real t5 = t1 + R(0.307086);
+        motion[1] = t5;
         const gic_real t6 = m1[2] + t2;
+        motion[2] = t6;
         const gic_real t7 = m1[24] * t2;
         const gic_real t8 = m1[24] * t1;
+        motion[35] = t8;
         const gic_real t9 = m1[12] * (m1[12] * t1) + m1[18] * t2;
         const gic_real t10 = R(0.4527638) - t5;
         const gic_real t11 = t3 - t6;
         const gic_real t12 = R(0.448437) - t5;
         const gic_real t13 = t4 - t6;
         const gic_real t14 = rate[0] + rate[1] * t8;
+        motion[17] = t14;
         const gic_real t15 = rate[1] * t7;
         const gic_real t16 = m1[18] * t1 - m1[12] * (m1[12] * t2);
+        motion[23] = t16;
         const gic_real t17 = t10 * t10 + (t11 * t11 + R(0.0035428684840000005));
         const gic_real t18 = R(-0.1394133303209898) * t10 + (R(0.21526024724178433) * t11 + R(-0.05753123686771912));
         const gic_real t19 = R(-0.1394133303209898) * t11 - R(0.21526024724178433) * t10;
@@ -337,8 +342,11 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t21 = R(0.9665541626242249) * t10 - R(0.008298160247365955);
         const gic_real t22 = t14 - m0[17];
         const gic_real t23 = -t15;
+        motion[16] = t23;
         const gic_real t24 = -t9;
+        motion[22] = t24;
         const gic_real t25 = -t7;
+        motion[34] = t25;
         const gic_real t26 = R(0.5) * (R(0.04548219048831004) + t17);
         const gic_real t27 = R(4.311654514671526e-08) + t18;
         const gic_real t28 = t19 * t19 + (t21 * t21 + t20 * t20);
@@ -389,24 +397,33 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t65 = t39 * t56 - t38 * t58;
         const gic_real t66 = t60 + (t6 - t4);
         const gic_real t67 = R(-7.5372227832688194) * t61 + (R(-6.332169372123424) * t58 + R(-0.1498258474327685) * t39);
+        motion[3] = t67;
         const gic_real t68 = t62 + R(0.21475700000000003);
         const gic_real t69 = R(-18.07838873614245) * t63 + (R(2.588574822512031) * t56 + R(-0.608667505195622) * t38);
+        motion[7] = t69;
         const gic_real t70 = R(-18.07838873614245) * t65 + (R(2.588574822512031) * t57 + R(-0.608667505195622) * t37);
+        motion[10] = t70;
         const gic_real t71 = t59 * t66 - t60 * t64;
         const gic_real t72 = t62 * t64 - t59 * t68;
         const gic_real t73 = t7 * t64 - t8 * t66;
         const gic_real t74 = t60 * t68 - t62 * t66;
         const gic_real t75 = R(-18.07838873614245) * t61 + (R(2.588574822512031) * t58 + R(-0.608667505195622) * t39);
+        motion[4] = t75;
         if (!(GIC_FABS(t71) > R(4.304353877485568e-06)))
             return GIC_ERROR_SINGULAR;
         const gic_real t76 = R(1.0) / t71;
         const gic_real t77 = R(-7.5372227832688194) * t63 + (R(-6.332169372123424) * t56 + R(-0.1498258474327685) * t38);
+        motion[6] = t77;
         const gic_real t78 = R(-7.5372227832688194) * t65 + (R(-6.332169372123424) * t57 + R(-0.1498258474327685) * t37);
+        motion[9] = t78;
         const gic_real t79 = R(-4.242021150632485) * t61 + (R(0.21916659821076587) * t58 + R(2.8601928491017183) * t39);
+        motion[5] = t79;
         const gic_real t80 = R(-4.242021150632485) * t63 + (R(0.21916659821076587) * t56 + R(2.8601928491017183) * t38);
+        motion[8] = t80;
         const gic_real t81 = (t38 * t40 - t37 * t41) * t76;
         const gic_real t82 = (R(0.21526024724178433) * t38 - R(-0.1394133303209898) * t37) * t76;
         const gic_real t83 = R(-4.242021150632485) * t65 + (R(0.21916659821076587) * t57 + R(2.8601928491017183) * t37);
+        motion[11] = t83;
         const gic_real t84 = R(2.8083995) * t69;
         const gic_real t85 = t78 * (R(0.12192999999999987) * t78) + (R(4.7728205) + t70 * (R(2.8083995) * t70));
         const gic_real t86 = R(0.12192999999999987) * t67;
@@ -432,19 +449,28 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t104 = (R(-0.1394133303209898) * t39 - R(0.9665541626242249) * t38 - t72 * t82) * t96;
         const gic_real t105 = t6 + t97;
         const gic_real t106 = -(R(90.555) * t103);
+        inertia[19] = t106;
         const gic_real t107 = R(90.555) * t102;
+        inertia[18] = t107;
         const gic_real t108 = R(-0.1394133303209898) * t7 - R(0.21526024724178433) * t8 - t82 * t73 - t104 * t91;
         const gic_real t109 = t95 * t108;
+        motion[31] = t109;
         const gic_real t110 = t96 * (t91 - t92 * t109);
+        motion[32] = t110;
         const gic_real t111 = rate[1] * t109;
+        motion[13] = t111;
         const gic_real t112 = t76 * (t73 - t74 * t109 - t72 * t110);
+        motion[30] = t112;
         const gic_real t113 = rate[1] * t110;
+        motion[14] = t113;
         const gic_real t114 = t109 * t97 - t110 * t89;
         const gic_real t115 = t60 * t111 - t59 * t113;
         const gic_real t116 = t37 * t111 - t38 * t113;
         const gic_real t117 = t111 * t97 - t113 * t89;
         const gic_real t118 = R(90.555) * t114;
+        inertia[22] = t118;
         const gic_real t119 = rate[1] * t112;
+        motion[12] = t119;
         const gic_real t120 = t110 * t94 - t7 - t112 * t97;
         const gic_real t121 = t112 * t89 + (t8 - t109 * t94);
         const gic_real t122 = t59 * t119 - t62 * t111;
@@ -475,67 +501,41 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t147 = t140 - t130;
         const gic_real t148 = ahead[0] * (GIC_FABS(t119) + (GIC_FABS(t111) + GIC_FABS(t113)));
         const gic_real t149 = R(90.555) * t120;
+        inertia[23] = t149;
         const gic_real t150 = t142 - t81 * t147;
         const gic_real t151 = R(90.555) * t121;
+        inertia[24] = t151;
+        inertia[30] = t151;
         const gic_real t152 = t144 + t102 * t151 - t105 * t149;
+        inertia[25] = t152;
         const gic_real t153 = t110 * t146 + t114 * t118 + (t109 * t145 + t112 * t144);
         if (!(R(114.33048504553751) * t55 - t148 > R(0.004)))
             return GIC_ERROR_SINGULAR;
         const gic_real t154 = t95 * (t139 - t82 * t147 - t104 * t150);
+        motion[19] = t154;
         const gic_real t155 = t145 + t105 * t118 - t103 * t151;
+        inertia[26] = t155;
         const gic_real t156 = t103 * t149 + (t146 - t102 * t118);
+        inertia[27] = t156;
         const gic_real t157 = t153 + (t121 * t151 + t120 * t149);
+        inertia[31] = t157;
         const gic_real t158 = t96 * (t150 - t92 * t154);
+        motion[20] = t158;
         const gic_real t159 = t119 * t141 + (t16 - t111 * t117) - t154 * t94;
         const gic_real t160 = t76 * (t147 - t74 * t154 - t72 * t158);
+        motion[18] = t160;
         const gic_real t161 = t158 * t85 + (t154 * t101 + (t119 * t126 - t111 * t128));
         const gic_real t162 = t154 * t97 + (t111 * t143 - t113 * t141) - t158 * t89;
         const gic_real t163 = t158 * t101 + (t154 * t93 + (t113 * t128 - t119 * t138));
         const gic_real t164 = t158 * t99 + (t154 * t100 + (t111 * t138 - t113 * t126));
         const gic_real t165 = t158 * t94 + (t113 * t117 - t9 - t119 * t143);
         const gic_real t166 = R(90.555) * (t160 * t89 + t159);
+        inertia[21] = t166;
         const gic_real t167 = t110 * (t160 * t99 + t161) + R(90.555) * t162 * t114;
         const gic_real t168 = t109 * (t160 * t100 + t163) + t112 * (t160 * t98 + t164);
         const gic_real t169 = t166 * t121 + R(90.555) * (t165 - t160 * t97) * t120;
         const gic_real t170 = t167 + t168 + t169;
-        motion[1] = t5;
-        motion[2] = t6;
-        motion[3] = t67;
-        motion[4] = t75;
-        motion[5] = t79;
-        motion[6] = t77;
-        motion[7] = t69;
-        motion[8] = t80;
-        motion[9] = t78;
-        motion[10] = t70;
-        motion[11] = t83;
-        motion[12] = t119;
-        motion[13] = t111;
-        motion[14] = t113;
-        motion[16] = t23;
-        motion[17] = t14;
-        motion[18] = t160;
-        motion[19] = t154;
-        motion[20] = t158;
-        motion[22] = t24;
-        motion[23] = t16;
-        motion[30] = t112;
-        motion[31] = t109;
-        motion[32] = t110;
-        motion[34] = t25;
-        motion[35] = t8;
-        inertia[18] = t107;
-        inertia[19] = t106;
-        inertia[21] = t166;
-        inertia[22] = t118;
-        inertia[23] = t149;
-        inertia[24] = t151;
-        inertia[25] = t152;
-        inertia[26] = t155;
-        inertia[27] = t156;
         inertia[28] = t170;
-        inertia[30] = t151;
-        inertia[31] = t157;
     }
     ++self->head.newton_count;
     return GIC_OK;

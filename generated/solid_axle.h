@@ -66,7 +66,7 @@
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H 0x091092cf
+#define SOLID_AXLE_H 0x12bf6ea1
 
 #include "gic_runtime.h"
 
@@ -218,9 +218,14 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * above `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work space. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
+ * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct solid_axle {
     gic_head head;
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real motion[SOLID_AXLE_MOTION_ROOM];            /* work space: bodies relative to the base */
+    gic_real inertia[SOLID_AXLE_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
+    gic_real start[GIC_STARTS][SOLID_AXLE_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
     gic_real state[SOLID_AXLE_STATE_ROOM];
     gic_real input[SOLID_AXLE_INPUT_ROOM];
     gic_real output[SOLID_AXLE_OUTPUT_ROOM];
@@ -232,11 +237,8 @@ typedef struct solid_axle {
     gic_real history[GIC_HISTORY(SOLID_AXLE_STATE_ROOM, SOLID_AXLE_STATES - SOLID_AXLE_SLOW)];
     gic_real scratch[GIC_SCRATCH(SOLID_AXLE_STATE_ROOM, SOLID_AXLE_INPUT_ROOM)];
     gic_real x[SOLID_AXLE_COORDINATE_ROOM], xd[SOLID_AXLE_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[GIC_STARTS][SOLID_AXLE_START_ROOM];  /* where Newton begins: the last good one, and the next */
-    gic_real motion[SOLID_AXLE_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * SOLID_AXLE_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
-    gic_real inertia[SOLID_AXLE_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[SOLID_AXLE_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } solid_axle;
 

@@ -69,7 +69,7 @@
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H
-#define TRAILING_ARM_H 0x8a3b06f3
+#define TRAILING_ARM_H 0xee14b1e7
 
 #include "gic_runtime.h"
 
@@ -228,9 +228,14 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * above `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work space. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
+ * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct trailing_arm {
     gic_head head;
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real motion[TRAILING_ARM_MOTION_ROOM];            /* work space: bodies relative to the base */
+    gic_real inertia[TRAILING_ARM_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
+    gic_real start[GIC_STARTS][TRAILING_ARM_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
     gic_real state[TRAILING_ARM_STATE_ROOM];
     gic_real input[TRAILING_ARM_INPUT_ROOM];
     gic_real output[TRAILING_ARM_OUTPUT_ROOM];
@@ -242,11 +247,8 @@ typedef struct trailing_arm {
     gic_real history[GIC_HISTORY(TRAILING_ARM_STATE_ROOM, TRAILING_ARM_STATES - TRAILING_ARM_SLOW)];
     gic_real scratch[GIC_SCRATCH(TRAILING_ARM_STATE_ROOM, TRAILING_ARM_INPUT_ROOM)];
     gic_real x[TRAILING_ARM_COORDINATE_ROOM], xd[TRAILING_ARM_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real start[GIC_STARTS][TRAILING_ARM_START_ROOM];  /* where Newton begins: the last good one, and the next */
-    gic_real motion[TRAILING_ARM_MOTION_ROOM];            /* bodies relative to the base */
     gic_real recovered_at[2 * TRAILING_ARM_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
     int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
-    gic_real inertia[TRAILING_ARM_INERTIA_ROOM];          /* what the subsets add to the equations of motion */
     gic_real multiplier[TRAILING_ARM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } trailing_arm;
 

@@ -431,6 +431,27 @@ static void write_check(Emitter *m, const Check *check)
     write_failure(m, check, m->indent + 4);
 }
 
+static void write_store(Emitter *m, const Store *store)
+{
+    text_print(m->out, "%*s%s = ", m->indent, "", store->target);
+    write_whole(m, m->out, store->value, m->style->lanes, m->style->width);
+    text_print(m->out, ";\n");
+}
+
+/* Which stores may stand where their values are found, so that these need no register until the end: those of a
+ * scheduled block to what it does not read. Others stand behind all values. */
+static bool *find_early(Emitter *m)
+{
+    const Block *block = m->block;
+    bool *early = pool_alloc(m->dag->pool, (size_t)block->stores + 1);
+    for (int i = 0; i < block->stores; ++i)
+        early[i] = block->scheduled && m->planned[block->store[i].value];
+    for (int e = 0; e < m->dag->nodes; ++e)
+        for (int i = 0; m->uses[e] && m->dag->node[e].op == OP_INPUT && i < block->stores; ++i)
+            early[i] = early[i] && strcmp(m->dag->node[e].name, block->store[i].target);
+    return early;
+}
+
 void block_emit(Text *out, const Block *block, const Style *style, Constants *constants, int indent)
 {
     Pool *pool = block->dag->pool;
@@ -467,17 +488,17 @@ void block_emit(Text *out, const Block *block, const Style *style, Constants *co
     }
     if (block->scheduled)
         schedule_steps(pool, block->dag, m.step, m.steps);
+    const bool *early = find_early(&m);
     for (int i = 0; i < m.steps; ++i)
-        if (m.step[i].check >= 0)
+        if (m.step[i].check >= 0) {
             write_check(&m, &block->check[m.step[i].check]);
-        else
+        } else {
             write_statement(&m, m.step[i].value);
-    Text stores = {.pool = pool};
-    for (int i = 0; i < block->stores; ++i) {
-        text_print(&stores, "%*s%s = ", indent, "", block->store[i].target);
-        write_whole(&m, &stores, block->store[i].value, style->lanes, style->width);
-        text_print(&stores, ";\n");
-    }
-    if (stores.s)
-        text_add(out, stores.s, stores.size);
+            for (int j = 0; j < block->stores; ++j)
+                if (early[j] && block->store[j].value == m.step[i].value)
+                    write_store(&m, &block->store[j]);
+        }
+    for (int i = 0; i < block->stores; ++i)
+        if (!early[i])
+            write_store(&m, &block->store[i]);
 }

@@ -83,6 +83,9 @@ typedef struct gic_road {
 /* Newton starts of an instance: the last good one, one held, and two for the steps of a way from one to another. */
 #define GIC_STARTS 4
 
+/* Numbers, at least one, that fill what stands before them, in bytes, up to a multiple of 64. */
+#define GIC_FILL(bytes) ((64 - (bytes) % 64) / sizeof(gic_real))
+
 /* ---- the instance ------------------------------------------------------------------------------- */
 
 typedef enum gic_method { GIC_AB3 = 0, GIC_RK4 = 1 } gic_method;
