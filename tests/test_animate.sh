@@ -4,31 +4,10 @@
 # engine; in a real browser the picture, what moves in it, and every control; names with what HTML means something by.
 gicrun=$1
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
-# check NAME CONDITION...: the command must succeed
-check() {
-    name=$1
-    shift
-    if "$@" >"$work/said" 2>&1; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        sed 's/^/    /' "$work/said" "$work/err"
-    fi
-}
-
-run() {
-    "$gicrun" "$@" >"$work/out" 2>"$work/err"
-    status=$?
-}
-exits() { [ "$status" -eq "$1" ]; }
-says() { grep -q -- "$1" "$work/err"; }
-page() { /usr/bin/python3 -B "$root/tests/animate/page.py" "$@"; }
+page() { /usr/bin/python3 -B "$root/tests/animate/page.py" "$@" >"$work/said" 2>&1; }
 
 model=$root/models/hmmwv.veh
 scene=$root/models/scenes/paper_run.scene

@@ -18,22 +18,9 @@ agree=$(realpath "$5")
 random_vehicle=$(realpath "$6")
 root=$(cd "$(dirname "$0")/.." && pwd)
 engines=${ENGINES:-gic gcp1 gcp2}
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
-passed=0
-failed=0
-
-# check STATUS LABEL: counts, and shows $work/said where it failed
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-        cat said
-    fi
-}
 
 # what is on trial is not the compiler
 echo "exec ${CC:-cc} \"\$@\" -O0" >cc
@@ -52,11 +39,11 @@ closed() {
 at_states() {
     "$gicgen" --dump-model "$1" >dump && "$states" dump --count "${ROWS:-5}" --seed "$2" -o states.csv &&
         sh "$root/tests/reactions.sh" dump "$(realpath "$1")" >variant.veh &&
-        "$reference" dump states.csv -o accelerations.csv 2>said || { check 1 "reference at states of $1"; return; }
+        "$reference" dump states.csv -o accelerations.csv 2>said || { verdict 1 "reference at states of $1"; return; }
     for engine in $engines; do
         "$gicrun" --engine "$engine" --cc false --eval states.csv variant.veh -o results.csv >said 2>&1 &&
             "$agree" dump accelerations.csv results.csv --reactions --tolerance 1e-10 >said && closed >said
-        check $? "$engine at states of $1"
+        verdict $? "$engine at states of $1"
     done
 }
 
@@ -93,12 +80,12 @@ tuned() {
     sed "s|file: \.\./\.\.|file: $root|; s|^include: \.\./\.\.|include: $root|; s/^  $2: {value: [^,]*/  $2: {value: $3/" \
         "$model" >baked.veh
     "$gicgen" --dump-model baked.veh >dump && "$states" dump --count "${ROWS:-5}" --seed 1 -o states.csv &&
-        "$reference" dump states.csv -o accelerations.csv 2>said || { check 1 "reference at states of $1"; return; }
+        "$reference" dump states.csv -o accelerations.csv 2>said || { verdict 1 "reference at states of $1"; return; }
     awk -v name="$2" -v value="$3" '{ print $0 "," (NR == 1 ? name : value) }' states.csv >tuned.csv
     for engine in $engines; do
         "$gicrun" --engine "$engine" --eval tuned.csv "$model" -o results.csv >said 2>&1 &&
             "$agree" dump accelerations.csv results.csv --tolerance 1e-10 >said && closed >said
-        check $? "$engine, $1 set up with $2 = $3"
+        verdict $? "$engine, $1 set up with $2 = $3"
     done
 }
 tuned car length 1.605
@@ -136,11 +123,11 @@ along() {
     scene=$2
     shift 2
     "$gicrun" --quiet --engine cc --cc "$cc" "$@" "$model" "$scene" -o generated.csv >said 2>&1
-    check $? "$scene with generated code"
+    verdict $? "$scene with generated code"
     precise="--integrator rkck --tolerance 1e-10"
     # shellcheck disable=SC2086  # options
     "$gicrun" --quiet --engine cc --cc "$cc" "$@" $precise "$model" "$scene" -o precise.csv >said 2>&1
-    check $? "$scene with generated code, precisely"
+    verdict $? "$scene with generated code, precisely"
     for engine in $engines; do
         case $engine in
         gcp*)
@@ -153,7 +140,7 @@ along() {
                 near generated.csv interpreted.csv 1e-9 >said
             ;;
         esac
-        check $? "$engine along $scene"
+        verdict $? "$engine along $scene"
     done
 }
 
@@ -210,7 +197,7 @@ for engine in $engines; do
     "$gicrun" --quiet --engine "$engine" "$root/models/hmmwv.veh" paper_run.scene -o often.csv >said 2>&1 &&
         "$gicrun" --quiet --engine "$engine" "$root/models/hmmwv.veh" seldom.scene -o seldom.csv >said 2>&1 &&
         [ "$(tail -n 1 often.csv)" = "$(tail -n 1 seldom.csv)" ]
-    check $? "$engine: outputs leave no trace"
+    verdict $? "$engine: outputs leave no trace"
 done
 
 # ---- wheels with tires ------------------------------------------------------------------------------------------
@@ -225,12 +212,12 @@ END
 rolling() {
     "$gicgen" --dump-model "$1" >dump && "$states" dump --count "${ROWS:-5}" --seed "$2" -o rolling.csv &&
         "$gicrun" --engine cc --cc "$cc" --eval rolling.csv "$1" wavy.scene -o generated.csv >said 2>&1
-    check $? "states of $1 with generated code"
+    verdict $? "states of $1 with generated code"
     for engine in $engines; do
         "$gicrun" --engine "$engine" --cc false --eval rolling.csv "$1" wavy.scene -o results.csv >said 2>&1 &&
             cut -d, -f"$(columns generated.csv)" generated.csv >wanted &&
             cut -d, -f"$(columns results.csv)" results.csv >found && near wanted found 1e-10 >said && closed >said
-        check $? "$engine at rolling states of $1"
+        verdict $? "$engine at rolling states of $1"
     done
 }
 
@@ -297,32 +284,32 @@ inputs: {brake: 0.02, drive_torque: 1000, rack: {knots: {times: [0, 0.5], values
 END
 for model in "$tires" formulas.veh; do
     "$gicrun" --quiet --engine cc --cc "$cc" "$model" dual.scene -o generated.csv >said 2>&1
-    check $? "dual rate of $model with generated code"
+    verdict $? "dual rate of $model with generated code"
     for engine in gic:1e-9 gcp1:1e-3; do
         "$gicrun" --quiet --engine "${engine%:*}" "$model" dual.scene -o interpreted.csv >said 2>&1 &&
             near generated.csv interpreted.csv "${engine#*:}" >said
-        check $? "${engine%:*} with dual rate of $model"
+        verdict $? "${engine%:*} with dual rate of $model"
     done
 done
 
 # a vehicle that turns about makes partitioning change its mind; the two solvers differ in the last digits
 for engine in gcp1 gcp2; do
     "$gicrun" --engine "$engine" "$root/models/hmmwv.veh" "$root/models/scenes/spin.scene" -o "$engine.csv" 2>said
-    check $? "$engine along the spin"
+    verdict $? "$engine along the spin"
     [ "$(sed -n 's/^  parameter switches *//p' said)" -ge 8 ]
-    check $? "$engine picks coordinates anew"
+    verdict $? "$engine picks coordinates anew"
 done
 near gcp1.csv gcp2.csv 1e-6 >said && ! cmp -s gcp1.csv gcp2.csv
-check $? "gcp1 and gcp2 use different solvers"
+verdict $? "gcp1 and gcp2 use different solvers"
 # the same with variable steps, which start afresh where it changes its mind: some thousand steps with errors of 1e-9
 # each, which nothing damps
 spin="$root/models/scenes/spin.scene"
 "$gicrun" --quiet --cc "$cc" --integrator rkck --tolerance 1e-11 "$root/models/hmmwv.veh" "$spin" -o precise.csv >said 2>&1
-check $? "the spin with generated code, precisely"
+verdict $? "the spin with generated code, precisely"
 for integrator in adams rkck; do
     "$gicrun" --engine gcp1 --integrator $integrator --tolerance 1e-9 "$root/models/hmmwv.veh" "$spin" -o gcp1.csv 2>said &&
         [ "$(sed -n 's/^  parameter switches *//p' said)" -ge 8 ] && near precise.csv gcp1.csv 1e-5 >said
-    check $? "gcp1 along the spin with $integrator"
+    verdict $? "gcp1 along the spin with $integrator"
 done
 
 # ---- failures ---------------------------------------------------------------------------------------------------
@@ -354,14 +341,14 @@ for engine in $engines; do
     gcp*) [ $status -eq 0 ] ;; # w is no coordinate of theirs
     *) [ $status -eq 1 ] && grep -q "error: the run ends at t = .*: .*: subset 'arm'" said ;;
     esac && [ "$(wc -l <crank.out)" -gt 100 ] && ! grep -qi nan crank.out
-    check $? "$engine: a run ends where coordinates cease to be independent"
+    verdict $? "$engine: a run ends where coordinates cease to be independent"
     "$gicrun" --engine "$engine" --eval crank.csv crank.veh -o crank.eval 2>said
     [ "$(grep -c ',0,"ok"$' crank.eval)" -eq 2 ] && grep -q ',-5,.*arm' crank.eval && grep -q ',-4,' crank.eval
-    check $? "$engine: states out of reach"
+    verdict $? "$engine: states out of reach"
 done
 "$gicrun" --engine nothing crank.veh crank.scene >said 2>&1
 [ $? -eq 2 ] && grep -q "no engine 'nothing'" said && grep -q 'remedy: one of auto, tcc, ' said
-check $? "an engine that is not there"
+verdict $? "an engine that is not there"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

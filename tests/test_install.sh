@@ -3,24 +3,9 @@
 # test_install.sh GICGEN GICRUN GICBENCH: what `make install` installs works from any folder and without the sources,
 # pkg-config finds it, manuals name every option that -h names and no other, and `make uninstall` leaves nothing.
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 build=$(cd "$(dirname "$1")" && pwd)
-
-# check NAME CONDITION...: the command must succeed
-check() {
-    name=$1
-    shift
-    if "$@" >"$work/log" 2>&1; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        sed 's/^/    /' "$work/log"
-    fi
-}
 
 # a blank-free prefix that is not the default, collected elsewhere as packagers do
 prefix=/opt/gic

@@ -9,26 +9,14 @@ gicrun=$(realpath "$2")
 states=$(realpath "$3")
 deny_exec=$(realpath "$4")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
-passed=0
-failed=0
 mkdir tmp
 TMPDIR=$work/tmp
 GICGEN_CACHE=$work/cache
 export TMPDIR GICGEN_CACHE
 
-# check STATUS LABEL: counts, and shows what was said where it failed
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-        sed 's/^/    /' said
-    fi
-}
 clean() { [ -z "$(ls -A tmp)" ]; }
 # gicrun with nothing to start and nowhere to write but where it is told to
 alone() { env -i PATH=/nonexistent TMPDIR=/nonexistent "$gicrun" "$@"; }
@@ -47,13 +35,13 @@ same_as() {
     engines=$4
     shift 4
     "$gicrun" "$@" --engine cc --cc "$compiler" "$model" "$scene" -o run.csv 2>said
-    check $? "$scene: cc $*"
+    verdict $? "$scene: cc $*"
     mv run.csv compiled.csv
     grep -v 'CPU time' said >compiled.said
     for engine in $engines; do
         alone "$@" --engine "$engine" "$model" "$scene" -o run.csv 2>said && cmp compiled.csv run.csv >>said &&
             grep -v 'CPU time' said | diff - compiled.said >>said && [ "$(wc -l <run.csv)" -gt 2 ]
-        check $? "$scene: $engine $*"
+        verdict $? "$scene: $engine $*"
     done
 }
 # same_run MODEL SCENE COMPILER: all engines; the tape has formulas for any scene
@@ -83,7 +71,7 @@ same_states() {
         alone "$@" --engine tape --eval states.csv "$model" -o tape.csv 2>said &&
         alone "$@" --engine tcc --eval states.csv "$model" -o tcc.csv 2>said && cmp tape.csv tcc.csv >>said &&
         grep -q ',0,"ok"' tcc.csv && grep -q ',-[0-9]*,"' tcc.csv
-    check $? "states of $model $*"
+    verdict $? "states of $model $*"
 }
 sed "s|parts/|$root/models/parts/|g; s/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/" \
     "$root/models/hmmwv.veh" >steered.veh
@@ -112,7 +100,7 @@ awk -v most="${FIRST_STEP:-0.1}" 'NR == 2 { # user and system time of children, 
         print "the first step takes", mean, "s"
     }
     END { exit !(mean > 0 && mean < most) }' times >said
-check $? "the first step within 0.1 s"
+verdict $? "the first step within 0.1 s"
 
 # the CPU time of steps is that of right-hand sides but for some per cent: at most 2.5 times that of cc -O2. By turns, the
 # shortest of 10 each: a processor that others use as well is at times twice as slow
@@ -128,7 +116,7 @@ for engine in tcc cc; do
     sed -n "s/^$engine //p" turns | sort -g | head -n 1
 done | tr '\n' ' ' >times
 awk '{ print "tcc", $1, "s, cc", $2, "s"; exit !($1 < 2.5 * $2) }' times >said
-check $? "steps take at most 2.5 times as long as with cc -O2"
+verdict $? "steps take at most 2.5 times as long as with cc -O2"
 
 # ---- auto: compiled code takes over -------------------------------------------------------------------------------
 
@@ -137,7 +125,7 @@ sed 's/^duration: .*/duration: 600/; s/^step: .*/step: 0.0002/; s/^integrator: .
     s/^output_step: .*/output_step: 1/' "$root/models/scenes/pendulum.scene" >long.scene
 pendulum=$root/models/pendulum.veh
 alone -q --engine tcc "$pendulum" long.scene -o long.csv 2>said
-check $? "a long run"
+verdict $? "a long run"
 # long LABEL REMARK OPTION...: auto gives the same, and tells how it went
 long() {
     label=$1
@@ -145,7 +133,7 @@ long() {
     shift 2
     "$gicrun" "$@" "$pendulum" long.scene -o auto.csv 2>said && cmp long.csv auto.csv >>said &&
         grep -q "^  compiled code  *$remark" said && [ "$(grep -c . said)" -eq 8 ] && clean
-    check $? "auto: $label"
+    verdict $? "auto: $label"
 }
 long "changes to compiled code" 'from t = [1-9]' --cc "$quick"
 # every number of the code is another one in the last digit
@@ -169,14 +157,14 @@ sed 's/^integrator: .*/integrator: rkck/; s/^step: .*/tolerance: 1e-13/; s/^dura
 alone -q --engine tcc "$pendulum" variable.scene -o variable.csv 2>said &&
     "$gicrun" --cc "$quick" "$pendulum" variable.scene -o auto.csv 2>said && cmp variable.csv auto.csv >>said &&
     grep -q 'compiled code  *from' said
-check $? "auto: changes between variable steps"
+verdict $? "auto: changes between variable steps"
 
 # a compiler that takes its time is ended with the run, or with a signal
 printf 'echo $$ >%s/pid\nsleep 30\n' "$work" >slow
 before=$(date +%s)
 "$gicrun" -q --cc "sh $work/slow" "$pendulum" long.scene -o auto.csv 2>said && cmp long.csv auto.csv >>said &&
     [ $(($(date +%s) - before)) -lt 25 ] && [ -s pid ] && ! kill -0 "$(cat pid)" 2>/dev/null && clean
-check $? "auto: a run that ends before the compiler"
+verdict $? "auto: a run that ends before the compiler"
 rm -f pid
 sed 's/^duration: .*/duration: 100000/' long.scene >longer.scene
 "$gicrun" -q --cc "sh $work/slow" "$pendulum" longer.scene -o auto.csv 2>said &
@@ -189,7 +177,7 @@ done
 kill -TERM $child
 wait $child 2>/dev/null
 [ $? -eq 143 ] && [ -s pid ] && ! kill -0 "$(cat pid)" 2>/dev/null && clean
-check $? "auto: SIGTERM ends run and compiler"
+verdict $? "auto: SIGTERM ends run and compiler"
 
 # ---- no support files ---------------------------------------------------------------------------------------------
 
@@ -200,7 +188,7 @@ if [ -f "$support/libtcc1.a" ] && unshare -m mount -t tmpfs none "$support" 2>sa
         unshare -m sh -c 'mount -t tmpfs none "$0" && [ ! -e "$0/libtcc1.a" ] && exec "$@"' "$support" \
             "$gicrun" -q --general --engine tcc "$pendulum" "$root/models/scenes/pendulum.scene" -o bare.csv 2>said &&
         cmp tape.csv bare.csv >>said
-    check $? "tcc without its support files"
+    verdict $? "tcc without its support files"
 else
     echo "not tried without the support files of tcc, for this user can't hide them"
 fi
@@ -211,7 +199,7 @@ fi
 for engine in tcc auto; do
     "$deny_exec" "$gicrun" --engine $engine "$root/models/hmmwv.veh" hmmwv.scene -o denied.csv 2>said &&
         [ "$(grep -c '^gicrun: note: .*executable memory' said)" -eq 1 ] && cmp tape.csv denied.csv >>said
-    check $? "$engine: interpreted where executable memory is refused"
+    verdict $? "$engine: interpreted where executable memory is refused"
 done
 
 echo "$passed passed, $failed failed"

@@ -4,19 +4,8 @@
 # for one vehicle: states, outputs, status; with lanes of any width, either number type, gcc and clang, threads, as C++.
 gicgen=$(realpath "$1")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
 cp "$root"/runtime/gic_runtime.[ch] "$root/runtime/gic_batch.h" "$root/tests/embed/lanes.c" "$work/"
 # reactions are refused; what else tuned geometry moves is not
@@ -34,7 +23,7 @@ agrees() {
     "$gicgen" $options "$file" -o "$name.c" && "$gicgen" --batch 8 --lanes "$lanes" $options "$file" &&
         "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -ffp-contract=off -DBATCH="${name}_batch_model" -I. \
             lanes.c "$name.c" "${name}_batch.c" gic_runtime.c -lm -o lanes && [ "$(./lanes)" = '8 8 8 of 8' ]
-    check $? "$file $options, $lanes lanes: $* $(./lanes)"
+    verdict $? "$file $options, $lanes lanes: $* $(./lanes)"
 }
 
 for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" car.veh; do
@@ -42,7 +31,7 @@ for model in "$root"/models/*.veh "$root/tests/laws/cart.veh" car.veh; do
         agrees "$model" '' 4 gcc -std=c11 -O0
     else
         grep -q "error: code for many vehicles at once can't have wheels with tires yet" err
-        check $? "$model: $(cat err)"
+        verdict $? "$model: $(cat err)"
     fi
 done
 
@@ -54,10 +43,10 @@ agrees "$hmmwv" '--solve augmented' 4 clang -std=c11 -O1 -DGIC_FLOAT
 agrees "$hmmwv" '' 4 gcc -std=c11 -O1 -fopenmp
 for how in 'g++ -std=c++11' 'clang++ -std=c++11 -DGIC_FLOAT'; do
     $how -x c++ -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -O1 -I. -c hmmwv_batch.c -o x.o
-    check $? "$how hmmwv_batch.c"
+    verdict $? "$how hmmwv_batch.c"
 done
 "$gicgen" --batch 8 "$hmmwv" -o again.c && sed 's/again.h/hmmwv_batch.h/' again.c | cmp - hmmwv_batch.c
-check $? "the same input gives other bytes"
+verdict $? "the same input gives other bytes"
 
 # code of another model is noticed
 "$gicgen" "$root/models/quarter_car.veh" -o quarter_car.c
@@ -66,7 +55,7 @@ sed 's/^gravity:.*/gravity: [0, 0, -1.62]/' "$root/models/quarter_car.veh" >moon
     gcc -std=c11 -DBATCH=quarter_car_batch_model -I. lanes.c quarter_car.c quarter_car_batch.c gic_runtime.c -lm -o lanes
 ./lanes
 [ $? -eq 1 ]
-check $? "lanes of one model and vehicles of another"
+verdict $? "lanes of one model and vehicles of another"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -10,18 +10,13 @@ states=$3
 reference=$4
 agree=$5
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
-check() {
-    if [ "$2" = "$3" ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $1: expected '$2', found '$3'"
-    fi
+# same LABEL EXPECTED FOUND
+same() {
+    [ "$2" = "$3" ]
+    verdict $? "$1: expected '$2', found '$3'"
 }
 
 # classes MODEL WAY: those whose poses have a closed form
@@ -31,14 +26,14 @@ classes() {
 }
 
 models=$root/models
-check hmmwv "rack lca_f_l wheel_f_l wheel_r_l " "$(classes "$models/hmmwv.veh" auto)"
-check hmmwv14 "rack lca_f_l uca_f_l_wheel_f_l uca_r_l_wheel_r_l " "$(classes "$models/hmmwv14.veh" auto)"
-check "five links" "rack lca_f_l wheel_f_l " "$(classes "$models/five_link.veh" closed)"
-check "quarter car" "carriage arm wheel " "$(classes "$models/quarter_car.veh" auto)"
-check "Newton's iteration alone" "" "$(classes "$models/hmmwv.veh" newton)"
+same hmmwv "rack lca_f_l wheel_f_l wheel_r_l " "$(classes "$models/hmmwv.veh" auto)"
+same hmmwv14 "rack lca_f_l uca_f_l_wheel_f_l uca_r_l_wheel_r_l " "$(classes "$models/hmmwv14.veh" auto)"
+same "five links" "rack lca_f_l wheel_f_l " "$(classes "$models/five_link.veh" closed)"
+same "quarter car" "carriage arm wheel " "$(classes "$models/quarter_car.veh" auto)"
+same "Newton's iteration alone" "" "$(classes "$models/hmmwv.veh" newton)"
 # names mean nothing: the same with others
 sed 's/\<arm\>/pen/g; s/\<carriage\>/lca/g' "$models/quarter_car.veh" >"$work/renamed.veh"
-check "other names" "lca pen wheel " "$(classes "$work/renamed.veh" auto)"
+same "other names" "lca pen wheel " "$(classes "$work/renamed.veh" auto)"
 
 for name in hmmwv14 five_link trailing_arm; do
     "$gicgen" --dump-model "$models/$name.veh" >"$work/dump" &&
@@ -47,11 +42,11 @@ for name in hmmwv14 five_link trailing_arm; do
     for way in newton closed; do
         "$gicrun" --recovery $way --engine tape --eval "$work/states" "$models/$name.veh" -o "$work/$way" &&
             "$agree" "$work/dump" "$work/accelerations" "$work/$way" --tolerance 5e-13 >"$work/log"
-        check "$name $way" 0 $?
+        same "$name $way" 0 $?
     done
     # two ways, or the option would do nothing
     cmp -s "$work/newton" "$work/closed"
-    check "$name: two ways" 1 $?
+    same "$name: two ways" 1 $?
 done
 
 # The same poses thousands of turns away: 1e-12 m, or of an Euler parameter. 4907 turns are to 7e-14 the number that is
@@ -71,7 +66,7 @@ for angles in pendulum:angle trailing_arm:bar_f_l,bar_f_r,bar_r_l,bar_r_r andrew
                 "$gicrun" -q --recovery $way --engine $engine --eval "$work/states$turned" "$models/$name.veh" \
                     -o "$work/poses$turned"
             done
-            check "$name $engine $way: poses thousands of turns away" "20 rows" "$(awk -F, '
+            same "$name $engine $way: poses thousands of turns away" "20 rows" "$(awk -F, '
                 FNR == 1 { ++file; for (i = 1; i <= NF; ++i) { place[i] = $i ~ /^[A-Za-z_0-9]*[.](x|y|z|e[0-3])( |$)/ && $i !~ /^a/
                     status = $i == "status" ? i : status }; next }
                 file == 1 { for (i = 1; i <= NF; ++i) known[FNR, i] = $i; good[FNR] = $status == 0; next }
@@ -165,9 +160,9 @@ done
 nearest=$(residual 0.0)
 for error in 1e-14 1e-9 1e-6 1e-3; do
     worst=$(residual $error)
-    check "poses within $error" yes "$(awk -v x="$worst" -v e=$error 'BEGIN { print (x <= e ? "yes" : x) }')"
+    same "poses within $error" yes "$(awk -v x="$worst" -v e=$error 'BEGIN { print (x <= e ? "yes" : x) }')"
 done
-check "poses off by more than rounding" yes \
+same "poses off by more than rounding" yes \
     "$(awk -v x="$worst" -v y="$nearest" 'BEGIN { print (x > 1000 * y ? "yes" : x " " y) }')"
 
 echo "$passed passed, $failed failed"

@@ -5,20 +5,9 @@
 # step), and --sequence.
 gicgen=$(realpath "$1")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
 
 # compile FILE REAL HOW OPTION: object and call graph with stack usage
 compile() {
@@ -31,7 +20,7 @@ for real in double float; do
     define=$([ $real = float ] && echo -DGIC_FLOAT)
     for how in O0 O2; do
         compile "$root/runtime/gic_runtime.c" $real $how "$define"
-        check $? "gic_runtime.c, $real, $how"
+        verdict $? "gic_runtime.c, $real, $how"
     done
 done
 
@@ -42,20 +31,20 @@ compare() {
     shift 2
     "$gicgen" "$@" "$model" -o "$name.c" && "$gicgen" "$@" --report "$name.html" "$model" &&
         "$gicgen" --sequence "$model" >"$name.sequence"
-    check $? "$name: no code, report or sequence"
+    verdict $? "$name: no code, report or sequence"
     compile "$name.c" double O0 && compile "$name.c" float O0 -DGIC_FLOAT && compile "$name.c" double O2
-    check $? "$name: not compiled"
+    verdict $? "$name: not compiled"
     for real in double float; do
         define=$([ $real = float ] && echo -DGIC_FLOAT)
         nm -S "$name.$real.O0.o" >"$name.$real.symbols"
         # shellcheck disable=SC2086  # none or one word
         cc -std=c99 $define -DMODEL="$name" -DHEADER="\"$name.h\"" -I"$root/runtime" -I. "$root/tests/report/facts.c" \
             "$name.$real.O0.o" "gic_runtime.$real.O0.o" -lm -o facts && ./facts >"$name.$real.facts"
-        check $? "$name, $real: no facts"
+        verdict $? "$name, $real: no facts"
     done
     /usr/bin/python3 "$root/tests/report/page.py" "$name.html" "$work/$name" "$name.sequence" "$name.double.facts" \
         "$name.float.facts" >said 2>&1
-    check $? "$name: $(tail -n 1 said)"
+    verdict $? "$name: $(tail -n 1 said)"
     passed=$((passed + $(grep -c '^good' said)))
     failed=$((failed + $(grep -c '^bad' said)))
     sed -n "s/^bad/FAIL $name:/p" said
@@ -64,7 +53,7 @@ compare() {
 for model in "$root"/models/*.veh "$root/tests/laws/cart.veh"; do
     compare "$(basename "$model" .veh)" "$model"
     grep -q 'in the reduced form' "$name.html"
-    check $? "$name does not name the form"
+    verdict $? "$name does not name the form"
 done
 
 # with reactions of all joints, and in the other form
@@ -73,33 +62,33 @@ sh "$root/tests/reactions.sh" hmmwv.json "$root/models/hmmwv.veh" | sed 's/^mode
 sed 's/^model: .*/model: augmented/' reacting.veh >augmented.veh
 compare reacting reacting.veh
 grep -q '<td>wrenches</td>' reacting.html && [ "$(grep -c '<td>react</td>' reacting.html)" -eq 4 ]
-check $? "no operations of reactions"
+verdict $? "no operations of reactions"
 compare augmented augmented.veh --solve augmented
 grep -q 'in the augmented form' augmented.html
-check $? "the augmented form is not named"
+verdict $? "the augmented form is not named"
 
 # where parameters are used
 grep -q '<td>k</td><td>N/m</td><td class="n">4000</td><td>force strut_l, force strut_r, force jet, force bumper_l, force bumper_r, force twist</td>' cart.html
-check $? "users of parameter k: $(grep '<td>k</td>' cart.html)"
+verdict $? "users of parameter k: $(grep '<td>k</td>' cart.html)"
 
 # names and texts are escaped
 sed 's|^model: .*|&\ndescription: "a <b> \& \\"c\\" </p>"|; s|unit: N/m,|unit: "<N/m>",|' \
     "$root/tests/laws/cart.veh" >odd.veh
 "$gicgen" --report - odd.veh >odd.html
-check $? "no report on standard output"
+verdict $? "no report on standard output"
 grep -q '<p>a &lt;b&gt; &amp; &quot;c&quot; &lt;/p&gt;</p>' odd.html && grep -q '<td>&lt;N/m&gt;</td>' odd.html
-check $? "texts are not escaped: $(grep -n 'description\|N/m' odd.html)"
+verdict $? "texts are not escaped: $(grep -n 'description\|N/m' odd.html)"
 
 # the same page again, byte for byte
 "$gicgen" --report again.html "$root/models/hmmwv.veh" && cmp -s again.html hmmwv.html
-check $? "the page is not the same again"
+verdict $? "the page is not the same again"
 
 # without Graphviz the page says so
 mkdir bin
 PATH=$work/bin "$gicgen" --report plain.html "$root/models/pendulum.veh"
-check $? "no page without Graphviz"
+verdict $? "no page without Graphviz"
 grep -q 'Graphviz' plain.html && ! grep -q '<svg' plain.html
-check $? "no word of Graphviz"
+verdict $? "no word of Graphviz"
 
 # templates of one's own that declare what can't be measured
 mkdir templates
@@ -107,21 +96,21 @@ cp "$root"/templates/* templates
 sed -i 's/^    gic_head head;/    wonder it;\n&/' templates/model.h.in
 "$gicgen" --templates templates --report strange.html "$root/models/pendulum.veh" 2>err
 [ $? -eq 1 ] && [ ! -e strange.html ] && grep -q 'unknown type in the emitted code' err
-check $? "an unknown type was measured: $(cat err)"
+verdict $? "an unknown type was measured: $(cat err)"
 
 # mistakes
 "$gicgen" --report nowhere/page.html "$root/models/pendulum.veh" 2>err
 [ $? -eq 1 ] && grep -q "nowhere/page.html: error: can't create" err
-check $? "an unwritable page: $(cat err)"
+verdict $? "an unwritable page: $(cat err)"
 "$gicgen" --report page.html missing.veh 2>err
 [ $? -eq 1 ] && grep -q "missing.veh: error: can't open" err && [ ! -e page.html ]
-check $? "a missing model: $(cat err)"
+verdict $? "a missing model: $(cat err)"
 "$gicgen" --report page.txt "$root/models/pendulum.veh" 2>err
 [ $? -eq 2 ] && grep -q 'must end in .html' err
-check $? "a page of another kind: $(cat err)"
+verdict $? "a page of another kind: $(cat err)"
 "$gicgen" --report page.html --sequence "$root/models/pendulum.veh" 2>err
 [ $? -eq 2 ] && grep -q 'only one of' err
-check $? "two tasks: $(cat err)"
+verdict $? "two tasks: $(cat err)"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -8,19 +8,8 @@
 # corrections may differ by a hundredth, for what is small enough hangs on roundings.
 gicgen=$(realpath "$1")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-
-check() {
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-    fi
-}
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
 mkdir "$work/alone" "$work/lanes"
 cd "$work" || exit 1
@@ -57,7 +46,7 @@ agrees() {
             2>err && ./course >$way/out || good=1
     done
     [ $good -eq 0 ] && equal "$tolerance"
-    check $? "$file --lanes $lanes $options: $* $(cat err)"
+    verdict $? "$file --lanes $lanes $options: $* $(cat err)"
 }
 
 # Andrews' mechanism goes round twenty times in these steps and makes 6e4 times as much of a rounding (so says code with
@@ -85,16 +74,16 @@ agrees "$hmmwv" 8 '' 1e-3 clang -std=c11 -O1 -DGIC_FLOAT
 for how in 'g++ -std=c++11' 'clang++ -std=c++11 -DGIC_FLOAT'; do
     $how -x c++ -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -O1 -Ilanes -I"$root/runtime" \
         -c lanes/hmmwv.c -o x.o 2>err
-    check $? "$how hmmwv.c: $(cat err)"
+    verdict $? "$how hmmwv.c: $(cat err)"
 done
 "$gicgen" --lanes 8 "$hmmwv" -o again.c && sed 's/again.h/hmmwv.h/' again.c | cmp - lanes/hmmwv.c
-check $? "the same input gives other bytes"
+verdict $? "the same input gives other bytes"
 printf '#undef __GNUC__\n' | cat - lanes/hmmwv.c >other.c
 ! gcc -std=c11 -Ilanes -I"$root/runtime" -c other.c -o x.o 2>err && grep -q 'needs the vector extensions of gcc or clang' err
-check $? "another compiler is not told what it lacks: $(cat err)"
+verdict $? "another compiler is not told what it lacks: $(cat err)"
 "$gicgen" --lanes 3 "$hmmwv" -o three.c 2>err
 [ $? -eq 2 ] && grep -q 'lanes takes 2, 4, 8 or 16, not: 3' err
-check $? "three lanes"
+verdict $? "three lanes"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
