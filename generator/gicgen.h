@@ -185,9 +185,8 @@ typedef struct Whole {
 
 Whole *whole_new(Pool *pool, const Plan *plan);
 Whole *whole_open(Pool *pool, const Plan *plan, bool open);
-/* A number of the model, a difference of two. */
+/* A number of the model. */
 Ex whole_number(Whole *whole, const double *at);
-Ex whole_difference(Whole *whole, const double *a, const double *b);
 /* A point of a body (or of ground) relative to the base, in the base frame; s in the body frame: numbers of the model.
  */
 Vector whole_point(Whole *whole, int body, const double s[3]);

@@ -28,11 +28,6 @@ double mirror_inertia(int i)
     return i == 3 || i == 5 ? -1 : 1;
 }
 
-bool mirror_leads(const int *image, int i)
-{
-    return i < image[i];
-}
-
 typedef struct Search {
     Pool *pool;
     const Model *model;

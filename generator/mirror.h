@@ -14,8 +14,6 @@ typedef struct Mirror {
 
 /* NULL: the bodies, joints, coordinates or wheels are not symmetric, and *why says what; forces are not looked at. */
 const Mirror *mirror_find(Pool *pool, const Model *model, const char **why);
-/* Is this the side that is computed, with an image on the other? */
-bool mirror_leads(const int *image, int i);
 
 /* Sign of component i of vectors (such as positions), of axes of rotation, of a matrix, of (xx yy zz xy xz yz). */
 double mirror_vector(int i);

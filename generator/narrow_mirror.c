@@ -23,7 +23,8 @@ double wheel_grip_sign(int i)
 /* ---- which is whose image -----------------------------------------------------------------------------------------
  */
 
-int narrow_image_subset(const Narrower *n, int subset)
+/* The subset whose image a subset is, -1: none's. */
+static int image_subset(const Narrower *n, int subset)
 {
     const Subset *own = &n->plan->sequence->subset[subset];
     const int leader = own->bodies ? n->mirror->body[own->body[0]] : own->body[0];
@@ -211,7 +212,7 @@ void narrow_mirror(Narrower *n)
         if (n->mirror->body[b] <= b)
             give_motion(n, b, n->mirror->body[b]);
     for (int s = 0; s < sequence->subsets; ++s) {
-        image[s] = narrow_image_subset(n, s);
+        image[s] = image_subset(n, s);
         if (sequence->subset[s].class < 0)
             continue;
         const int other = sequence->body_subset[n->mirror->body[sequence->subset[s].body[0]]];

@@ -31,8 +31,6 @@ int narrow_target(const char *target, const char *array);
 /* ---- narrow_mirror.c: one side for both ---------------------------------------------------------------------------
  */
 
-/* The subset whose image a subset is, -1: none's. */
-int narrow_image_subset(const Narrower *n, int subset);
 /* What is taken for granted, and which numbers are images of which. */
 void narrow_mirror(Narrower *n);
 /* The equations of motion in the unknowns of one side and the middle. */

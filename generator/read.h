@@ -185,8 +185,6 @@ void point_check(const Item *item, const char *what, const double x[3]);
 void model_name_check(const char *name, Place at);
 /* reserved.c: why a name is none of those ("is reserved in C or C++"), or NULL. */
 const char *name_reserved(const char *name);
-/* A text that ends up in a comment and in a string of the generated code: one line. */
-void text_check(const char *text, const char *what, Place at);
 /* `vector` divided by its norm, without overflow; false when it is zero. */
 bool vector_normalize(double *vector, int size);
 /* Names that differ only in case or in `.` against `_` would give the same name in generated code. */

@@ -84,7 +84,8 @@ void model_name_check(const char *name, Place at)
         diag_fail(at, "take another name, such as my_model", "the model name '%s' %s", name, reserved);
 }
 
-void text_check(const char *text, const char *what, Place at)
+/* A text that ends up in a comment and in a string of the generated code: one line. */
+static void text_check(const char *text, const char *what, Place at)
 {
     for (const char *c = text; *c; ++c)
         if ((unsigned char)*c < 0x20 || *c == 0x7f)

@@ -210,7 +210,7 @@ Ex whole_number(Whole *whole, const double *at)
     return derived_number(whole, tuned_number(whole->model, at), *at);
 }
 
-Ex whole_difference(Whole *whole, const double *a, const double *b)
+static Ex whole_difference(Whole *whole, const double *a, const double *b)
 {
     return derived_number(whole, tuned_difference(whole->model, a, b), *a - *b);
 }

@@ -79,7 +79,7 @@ static const double *pose_of(const double *frame, int body)
     return frame + POSE * body;
 }
 
-void pose_point(const double *pose, const double s[3], double out[3])
+static void pose_point(const double *pose, const double s[3], double out[3])
 {
     double A[9];
     mat_from_euler(pose + 3, A);

@@ -116,11 +116,6 @@ void variable_restart(Variable *variable)
     variable->fresh = true;
 }
 
-int64_t variable_steps(const Variable *variable)
-{
-    return (int64_t)variable->driver->e->count;
-}
-
 /* Numbers that the right-hand side does not use drift from those that they depend on. Where they come into use by more
  * than the tolerance, the history is not theirs. */
 static bool jumps(const Variable *variable)

@@ -31,7 +31,4 @@ void variable_change(Variable *variable, const gic_model *model);
 /* Forget the history, because state, inputs or their derivatives jump here. */
 void variable_restart(Variable *variable);
 
-/* Steps made so far. */
-int64_t variable_steps(const Variable *variable);
-
 #endif
