@@ -193,7 +193,7 @@ static void evaluate(Drive *of, const quad *in, quad *out)
 void line_evaluate(const Model *model, const Configuration *configuration, const Line *line, WheelState *wheel,
                    LineState *state)
 {
-    const quad step = 1e-15; /* as in wheel.c */
+    const quad step = 1e-15, nothing = 1e-12; /* step: as in wheel.c */
     size_t W = (size_t)model->wheels, D = (size_t)model->powertrain->differentials;
     size_t ins = LINE_IN + OF_WHEEL_IN * W, outs = LINE_RESULTS + OF_WHEEL_OUT * W;
     quad *in = grab(2 * ins, sizeof *in), *size = in + ins, *out = grab(3 * outs, sizeof *out);
@@ -230,9 +230,16 @@ void line_evaluate(const Model *model, const Configuration *configuration, const
         law_size(model, configuration, model->powertrain->torque, (Locals){.speed = in[0], .throttle = out[THROTTLE]});
     scale[ENGINE_TORQUE] += terms;
     scale[SPEED_RATE] += terms / model->powertrain->inertia;
-    /* a half shaft's torque is what is left of moments on the wheel that may cancel, which no change of one shows */
+    /* A half shaft's torque is what is left of moments on the wheel that may cancel, which no change of one shows. In
+     * neutral it may be nothing, but for what quad precision leaves of the moments on all wheels. */
+    quad all = 0;
     for (size_t w = 0; w < W; ++w)
-        scale[LINE_RESULTS + OF_WHEEL_OUT * w + 1] += size[LINE_IN + OF_WHEEL_IN * w + 1];
+        all += size[LINE_IN + OF_WHEEL_IN * w + 1];
+    for (size_t w = 0; w < W; ++w) {
+        quad *own = &scale[LINE_RESULTS + OF_WHEEL_OUT * w];
+        own[0] += nothing * all / model->wheel[w].spin_inertia;
+        own[1] += nothing * all + size[LINE_IN + OF_WHEEL_IN * w + 1];
+    }
     memcpy(state->value, out, sizeof state->value);
     memcpy(state->scale, scale, sizeof state->scale);
     for (int w = 0; w < model->wheels; ++w) {

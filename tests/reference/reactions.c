@@ -29,7 +29,9 @@ Reaction joint_reaction(const Solver *solver, int index)
     quad_cross(arm, reaction.force, turn);
     quad force = sqrtq(quad_dot(reaction.force, reaction.force, 3));
     reaction.force_scale = force;
-    reaction.torque_scale = sqrtq(quad_dot(reaction.torque, reaction.torque, 3)) + force * sqrtq(quad_dot(arm, arm, 3));
+    /* where the arm is none, it is still known to some 2e-15 of the model's length only, as places are */
+    reaction.torque_scale = sqrtq(quad_dot(reaction.torque, reaction.torque, 3)) +
+                            force * (sqrtq(quad_dot(arm, arm, 3)) + 1e-3 * (quad)model->length);
     for (int i = 0; i < 3; ++i)
         reaction.torque[i] -= turn[i];
     return reaction;

@@ -55,7 +55,7 @@ static Pacejka pacejka(const Tire *t, const TireInput *in)
     quad least = p.scaled / 1000;
     p.load = limit(in->load, least, fmaxq(n(t, "FZMAX"), least));
     p.share = in->load / p.load;
-    p.d = (p.load - p.scaled) / p.scaled;
+    p.d = (1 + in->strain) * (p.load - p.scaled) / p.scaled;
     p.kappa = limit(in->kappa, n(t, "KPUMIN"), n(t, "KPUMAX"));
     p.alpha = limit(in->alpha, n(t, "ALPMIN"), n(t, "ALPMAX"));
     p.camber = limit(in->camber, n(t, "CAMMIN"), n(t, "CAMMAX"));

@@ -7,9 +7,10 @@
 #include "quad.h"
 
 /* What a tire feels. load: N; deflection: of which only PAC2002's radii and TMeasy's contact length make use, m;
- * friction: of the road; forward: speed of the contact point along e_x, m/s; spin: rad/s. */
+ * friction: of the road; forward: speed of the contact point along e_x, m/s; spin: rad/s. strain: by how much of
+ * itself PAC2002's df_z is off, else 0. */
 typedef struct TireInput {
-    quad load, deflection, kappa, alpha, camber, friction, forward, spin;
+    quad load, deflection, kappa, alpha, camber, friction, forward, spin, strain;
 } TireInput;
 
 /* N and N m about the contact point, along e_x, e_y and the normal. */

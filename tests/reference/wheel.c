@@ -71,7 +71,7 @@ static quad friction_at(const Road *road, quad x, quad y)
 }
 
 /* All that a wheel's results follow from, but for formulas, in one row so that each can be varied. */
-enum { CENTER, VELOCITY = 3, OMEGA = 6, AXIS = 9, FAST = 12, WHEEL_INPUTS = FAST + FAST_STATES };
+enum { CENTER, VELOCITY = 3, OMEGA = 6, AXIS = 9, FAST = 12, STRAIN = FAST + FAST_STATES, WHEEL_INPUTS };
 
 /* The wheel between road and carrier while its equations are gone through. */
 typedef struct Rolling {
@@ -165,6 +165,7 @@ static void slip_and_forces(const Rolling *of, const quad *in, const Contact *at
                        .camber = side * at->gamma,
                        .forward = vx,
                        .spin = spin,
+                       .strain = in[STRAIN],
                        .friction = friction_at(of->road, out[CONTACT], out[CONTACT + 1])};
     relaxation_lengths(tire, &input, sigma);
     out[SLIP_X_RATE] = (-at->fade * vsx - (fabsq(vx) + low * fabsq(vsx) / kappa_0) * kappa) / sigma[0];
@@ -265,7 +266,9 @@ static void gather(const Rolling *of, const quad fast[FAST_STATES], quad in[WHEE
     widen(wheel->axis, axis);
     rotate(q + 3, axis, in + AXIS);
     memcpy(in + FAST, fast, FAST_STATES * sizeof *in);
-    for (int i = 0; i < WHEEL_INPUTS; ++i)
+    in[STRAIN] = 0; /* where the load is limited, its change does not show that terms that follow it cancel */
+    size[STRAIN] = 1;
+    for (int i = 0; i < STRAIN; ++i)
         size[i] = i < VELOCITY || i >= FAST ? fabsq(in[i]) : norm(in + i / 3 * 3);
 }
 
