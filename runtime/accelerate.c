@@ -37,8 +37,12 @@ int world_accelerate(World *world)
                              .force = world->wrench[0],
                              .acceleration = world->qdd[0],
                              .multiplier = world->multiplier};
-    if (world->solver->solve(world->solving, &numbers) >= 0)
+    const int lost = world->solver->solve(world->solving, &numbers);
+    if (lost >= 0) {
+        const int *body = world->tie[lost].body, *subset = world->sequence->body_subset;
+        world->lost = subset[body[0]] > subset[body[1]] ? subset[body[0]] : subset[body[1]];
         return GIC_ERROR_MASS;
+    }
     for (int b = world->first; b < world->bodies; ++b) {
         euler_turn(world->q[b] + 3, world->qdd[b] + 3, world->alpha[b]);
         for (int i = 0; i < 3; ++i)

@@ -309,7 +309,7 @@ static int place(const Interpreted *context, Instance *self, const double *state
 
 /* ---- right-hand side -------------------------------------------------------------------------------------------- */
 
-static int accelerate(const Interpreted *context, double *rate)
+static int accelerate(const Interpreted *context, Instance *self, double *rate)
 {
     World *world = context->world;
     EngineProfile *profile = context->profile;
@@ -323,6 +323,7 @@ static int accelerate(const Interpreted *context, double *rate)
         world_gamma(world, t);
     const double ready = profile_clock(profile);
     status = world_accelerate(world);
+    interpreted_name_lost(context, self, status);
     const double solved_at = profile_clock(profile);
     memcpy(rate, world->qd[world->first], sizeof *rate * (size_t)gcp->columns);
     memcpy(rate + gcp->columns, world->qdd[world->first], sizeof *rate * (size_t)gcp->columns);
@@ -340,7 +341,7 @@ static int evaluate(const Interpreted *context, Instance *self, const double *st
     int status = recover(context, self, &memory, state);
     ++context->profile->evaluations;
     if (status == GIC_OK)
-        status = accelerate(context, rate);
+        status = accelerate(context, self, rate);
     if (status == GIC_OK)
         memcpy(memory.near, world->x, sizeof(double) * (size_t)world->model->coordinates);
     if (status != GIC_OK || state != instance_array(&self->head, context->code.state_offset))

@@ -335,7 +335,7 @@ static int place(const Interpreted *context, Instance *self, const double *state
 static int evaluate(const Interpreted *context, Instance *self, const double *state, double *rate)
 {
     const int status = place(context, self, state);
-    return status == GIC_OK ? interpreted_accelerate(context, state, rate) : status;
+    return status == GIC_OK ? interpreted_accelerate(context, self, state, rate) : status;
 }
 
 /* From the design poses alone, then on to the initial values of the coordinates. */

@@ -111,7 +111,15 @@ void interpreted_standard(const Interpreted *context, double *standard, double *
     base_rates(context, standard, q + 3, rate);
 }
 
-int interpreted_accelerate(const Interpreted *context, const double *state, double *rate)
+void interpreted_name_lost(const Interpreted *context, Instance *self, int status)
+{
+    if (status != GIC_ERROR_MASS)
+        return;
+    self->head.subset = context->world->lost;
+    self->head.grown = -1;
+}
+
+int interpreted_accelerate(const Interpreted *context, Instance *self, const double *state, double *rate)
 {
     World *world = context->world;
     EngineProfile *profile = context->profile;
@@ -124,6 +132,7 @@ int interpreted_accelerate(const Interpreted *context, const double *state, doub
         world_gamma(world, i);
     const double ready = profile_clock(profile);
     status = world_accelerate(world);
+    interpreted_name_lost(context, self, status);
     const double solved = profile_clock(profile);
     if (status != GIC_OK)
         return status;

@@ -51,7 +51,9 @@ void interpreted_gather(const Interpreted *context, const double *state);
 void interpreted_place_base(const Interpreted *context, const double *state, const double e[4]);
 /* Forces and accelerations at the World's configuration, for which J, dual and vectors of all ties are there; then
  * rate[]. Rows A to C of the profile. */
-int interpreted_accelerate(const Interpreted *context, const double *state, double *rate);
+int interpreted_accelerate(const Interpreted *context, Instance *self, const double *state, double *rate);
+/* After world_accelerate(): a status about masses names the subset, and no number of the state. */
+void interpreted_name_lost(const Interpreted *context, Instance *self, int status);
 
 /* ---- interpreted_fast.c ---------------------------------------------------------------------------------- */
 

@@ -204,6 +204,16 @@ static void assemble(Topology *topology, const Numbers *numbers)
     }
 }
 
+/* The constraint that a panel belongs to, or the first one on the base. */
+static int constraint_of(const Equations *equations, const Panel *panel, bool constraint)
+{
+    int found = constraint ? panel->owner : 0;
+    while (!constraint && found + 1 < equations->constraints && equations->constraint[found].body[0] != BODY_BASE &&
+           equations->constraint[found].body[1] != BODY_BASE)
+        ++found;
+    return found;
+}
+
 static int topology_solve(void *solver, const Numbers *numbers)
 {
     Topology *topology = solver;
@@ -218,7 +228,7 @@ static int topology_solve(void *solver, const Numbers *numbers)
             topology->solution[panel[i].unknown + k] = topology->value[panel[i].start + k * (panel[i].rows + 1)];
     for (int i = topology->bodies; i < topology->panels; ++i) {
         if (!pivots(topology, &panel[i], topology->solution + panel[i].unknown, LEAST_PIVOT))
-            return panel[i].owner;
+            return constraint_of(equations, &panel[i], i < topology->bodies + equations->constraints);
         eliminate(topology, &panel[i]);
     }
     for (int i = topology->panels - 1; i >= 0; --i)

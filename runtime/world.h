@@ -91,6 +91,7 @@ typedef struct World {
     Equations *equations;
     const Solver *solver;
     void *solving;
+    int lost; /* after GIC_ERROR_MASS: the subset whose joints or drives are not independent of the others */
 } World;
 
 /* ---- world.c: kinematics --------------------------------------------------------------------------------- */
@@ -154,7 +155,8 @@ bool powertrain_watches_coordinates(const Powertrain *powertrain);
 void world_set_solver(Pool *pool, World *world, const Solver *solver);
 /* q'' and multipliers, alpha, and w'' of free coordinates (Serban and Haug 2000, equation 16; multipliers of free
  * coordinates' rows are known beforehand and among the wrenches). Needs wrench, J, dual and gamma of all ties, and xdd
- * of driven coordinates. GIC_ERROR_MASS where the constraints are not independent. */
+ * of driven coordinates. GIC_ERROR_MASS where the constraints are not independent, or masses so unequal that they seem
+ * not to be; `lost` tells where. */
 int world_accelerate(World *world);
 
 /* ---- interpreted_outputs.c ------------------------------------------------------------------------------- */
