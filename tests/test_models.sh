@@ -182,7 +182,7 @@ for name in hmmwv_full hmmwv14 five_link solid_axle trailing_arm; do
     sed 's/^step:.*/step: 0.0005/; s/^integrator:.*/integrator: rk4/' "$file" >"$work/scene"
     run $name
     for column in chassis.z wheel_f_l.z wheel_r_l.z; do
-        near "$(sed -n 1p "$work/coarse")" "$(at end $column)" 2e-4 "$column at the end of $name.scene, step 5 ms"
+        near "$(sed -n 1p "$work/coarse")" "$(at end $column)" 2e-4 "$column at the end of $name.scene, AB3 at its step"
         sed -i 1d "$work/coarse"
     done
 done
