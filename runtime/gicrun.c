@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * gicrun: generate, compile and run a model. This file: the command line. */
 #include "linearize.h"
+#include "step_watch.h"
 
 #include <getopt.h>
 #include <stdlib.h>
@@ -57,7 +58,8 @@ static const char help[] =
     "empty GICGEN_CACHE keeps nothing. The compiler works in $TMPDIR (default: /tmp).\n"
     "\n"
     "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
-    "Exit status: 0 good, 1 error in a file or during the run, 2 wrong usage.\n";
+    "Exit status: 0 good, 1 error in a file or during the run, or a run that was unstable,\n"
+    "2 wrong usage.\n";
 
 static double read_tolerance(const char *word)
 {
@@ -226,7 +228,8 @@ int main(int count, char **word)
         analyse(pool, model, scene, engine, &request);
     else
         simulate(pool, engine, scene_narrow(pool, scene, model, engine),
-                 request.page ? animation_new(pool, model, scene, request.scene) : NULL, &request);
+                 request.page ? animation_new(pool, model, scene, request.scene) : NULL,
+                 step_watch_new(pool, model, scene, engine), &request);
     engine_close(engine);
     pool_free(pool);
     return 0;

@@ -229,6 +229,8 @@ int animation_frame(Animation *animation, const gic_model *code, gic_head *self)
 /* The page; exits with a message when it can't be written. */
 void animation_write(Animation *animation, const char *path);
 
+typedef struct StepWatch StepWatch; /* step_watch.h */
+
 /* ---- simulate.c, eval.c --------------------------------------------------------------------------------- */
 
 /* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
@@ -256,7 +258,8 @@ int scene_outputs(const gic_model *model, const Scene *scene, const gic_head *se
 const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scene, Solve solve);
 /* Run a scene: results, picture, page (animation: NULL where none is asked for), summary. A failure on the way keeps
  * what was computed and ends in diag_fail. */
-void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *animation, const Request *request);
+void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *animation, StepWatch *watch,
+              const Request *request);
 /* Evaluate rows of states (--eval). scene may be NULL; only its road is used. */
 void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);
 

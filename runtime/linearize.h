@@ -85,7 +85,9 @@ typedef struct Modes {
     const char *neutral; /* places (and their rates) that they belong to; NULL: none */
 } Modes;
 
-/* Of dz/dt = A z. */
+/* Of dz/dt = A z; NULL: the eigenvalues could not be found. */
+const Modes *modes_try(Pool *pool, const Linear *linear, const double *A);
+/* The same, which ends in diag_fail then. */
 const Modes *modes_find(Pool *pool, const Linear *linear, const double *A);
 /* --modes: a table; or CSV with -o. About the equilibrium, with the scene's velocity. */
 void modes_report(Pool *pool, const Scene *scene, const Request *request, const Equilibrium *found);

@@ -83,10 +83,11 @@ typedef struct Spectrum {
     gsl_matrix_complex *vector; /* by columns */
 } Spectrum;
 
-static Spectrum spectrum_new(const gsl_matrix *A, bool transposed)
+/* False: they could not be found. */
+static bool spectrum_find(const gsl_matrix *A, bool transposed, Spectrum *s)
 {
     const size_t n = A->size1;
-    Spectrum s = {gsl_vector_complex_alloc(n), gsl_matrix_complex_alloc(n, n)};
+    *s = (Spectrum){gsl_vector_complex_alloc(n), gsl_matrix_complex_alloc(n, n)};
     gsl_matrix *copy = gsl_matrix_alloc(n, n);
     gsl_eigen_nonsymmv_workspace *work = gsl_eigen_nonsymmv_alloc(n);
     gsl_eigen_nonsymmv_params(1, work);
@@ -94,11 +95,10 @@ static Spectrum spectrum_new(const gsl_matrix *A, bool transposed)
         gsl_matrix_transpose_memcpy(copy, A);
     else
         gsl_matrix_memcpy(copy, A);
-    if (gsl_eigen_nonsymmv(copy, s.value, s.vector, work) != GSL_SUCCESS)
-        diag_fail(gicrun_place, NULL, "the eigenvalues could not be found");
+    const bool found = gsl_eigen_nonsymmv(copy, s->value, s->vector, work) == GSL_SUCCESS;
     gsl_eigen_nonsymmv_free(work);
     gsl_matrix_free(copy);
-    return s;
+    return found;
 }
 
 static void spectrum_free(Spectrum *s)
@@ -190,11 +190,13 @@ static const char *name_neutral(Pool *pool, const Linear *linear, const Deflatio
     return names.s;
 }
 
-/* Of each conjugate pair one. */
-static void list_modes(Pool *pool, const Linear *linear, const gsl_matrix *A, const Deflation *d, Modes *modes)
+/* Of each conjugate pair one. False: they could not be found. */
+static bool list_modes(Pool *pool, const Linear *linear, const gsl_matrix *A, const Deflation *d, Modes *modes)
 {
-    Spectrum right = spectrum_new(d->A, false), left = spectrum_new(d->A, true);
-    for (size_t k = 0; k < d->rest; ++k) {
+    Spectrum right, left;
+    const bool found_right = spectrum_find(d->A, false, &right), found_left = spectrum_find(d->A, true, &left);
+    const bool found = found_right && found_left;
+    for (size_t k = 0; found && k < d->rest; ++k) {
         const gsl_complex value = gsl_vector_complex_get(right.value, k);
         if (GSL_IMAG(value) < 0)
             continue;
@@ -205,9 +207,10 @@ static void list_modes(Pool *pool, const Linear *linear, const gsl_matrix *A, co
     qsort(modes->mode, (size_t)modes->count, sizeof *modes->mode, by_size);
     spectrum_free(&left);
     spectrum_free(&right);
+    return found;
 }
 
-const Modes *modes_find(Pool *pool, const Linear *linear, const double *A)
+const Modes *modes_try(Pool *pool, const Linear *linear, const double *A)
 {
     const size_t count = (size_t)linear->count;
     Modes *modes = pool_alloc(pool, sizeof *modes);
@@ -219,11 +222,18 @@ const Modes *modes_find(Pool *pool, const Linear *linear, const double *A)
     Deflation d = deflate(scaled);
     modes->zeros = (int)(count - d.rest);
     modes->neutral = name_neutral(pool, linear, &d);
-    if (d.rest)
-        list_modes(pool, linear, scaled, &d, modes);
+    const bool found = !d.rest || list_modes(pool, linear, scaled, &d, modes);
     gsl_matrix_free(d.basis);
     gsl_matrix_free(d.A);
     gsl_matrix_free(scaled);
+    return found ? modes : NULL;
+}
+
+const Modes *modes_find(Pool *pool, const Linear *linear, const double *A)
+{
+    const Modes *modes = modes_try(pool, linear, A);
+    if (!modes)
+        diag_fail(gicrun_place, NULL, "the eigenvalues could not be found");
     return modes;
 }
 

@@ -2,6 +2,7 @@
  * Run a scene: steps, results, progress, summary. */
 #include "driver.h"
 #include "rest.h"
+#include "step_watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,6 +30,7 @@ typedef struct Run {
     Plot plot;
     const int *drawn;       /* indices of the picture's signals among the scene's */
     Animation *animation;   /* NULL: none */
+    StepWatch *watch;       /* NULL: none */
     int64_t samples, every; /* output times so far; one in `every` goes into the picture */
     double constraint;      /* largest residual so far */
     double integrating;     /* CPU seconds in steps */
@@ -357,6 +359,8 @@ static int advance(Run *run, double end)
         for (int i = 0; i < BATCH && status == GIC_OK && (run->variable ? gic_time(run->self) < end : left > 0); ++i) {
             status = scene_step(run->engine, run->model, run->scene, run->variable, run->self, end);
             run->steps += status == GIC_OK;
+            if (run->watch && status == GIC_OK)
+                step_watch_step(run->watch, run->model, run->self, run->copy);
             --left;
         }
         run->integrating += clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
@@ -391,12 +395,18 @@ static int run_all(Run *run, const gic_head **failed)
     return GIC_OK;
 }
 
-void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *animation, const Request *request)
+void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *animation, StepWatch *watch,
+              const Request *request)
 {
     const gic_model *model = engine->code;
     const Place at = {scene->source, 0, 0};
-    Run run = {
-        .pool = pool, .engine = engine, .model = model, .scene = scene, .request = request, .animation = animation};
+    Run run = {.pool = pool,
+               .engine = engine,
+               .model = model,
+               .scene = scene,
+               .request = request,
+               .animation = animation,
+               .watch = watch};
     run.self = instance_new(pool, engine);
     run.copy = instance_new(pool, engine);
     int status = scene_start(engine, scene, run.self);
@@ -436,4 +446,7 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *a
     if (status != GIC_OK)
         diag_fail(at, remedy_of(status), "the run ends at t = %.6g s: %s", gic_time(run.self),
                   instance_status(pool, model, failed, status));
+    const char *remedy = NULL, *finding = watch && !run.interrupted ? step_watch_judge(watch, &remedy) : NULL;
+    if (finding)
+        diag_fail(at, remedy, "%s", finding);
 }
