@@ -52,4 +52,65 @@ solid_axle ab3 0.025
 andrews rk4 0.015
 END
 echo "steps | gicrun, steps twice too long | $tried | $((tried - refused)) | $refused | named with time and quantity | $verdict"
+
+# Beyond the limit, tires or stops keep what grows within bounds: whatever accelerations of springs are off by more than
+# half, against a finer step, is to be reported or refused; and steps of 0.9 times the limit and less are not.
+# drive STEP NAME: the scene at hand with that step, rows every 0.24 s in $work/NAME.csv
+drive() {
+    {
+        printf 'gicscene: 1\nstep: %s\nintegrator: %s\nduration: %s\noutput_step: 0.24\n' "$1" "$integrator" "$duration"
+        [ "$ratio" -eq 1 ] || echo "ratio: $ratio"
+        grep -Ev '^(gicscene|step|integrator|ratio|duration|output_step):' "models/scenes/$scene.scene"
+    } >"$work/run.scene"
+    "$gicrun" -q --engine tcc -o "$work/$2.csv" "models/$model.veh" "$work/run.scene" 2>"$work/err"
+}
+off() {
+    paste -d , "$work/run.csv" "$work/fine.csv" | awk -F, 'NR == 1 {
+        half = NF / 2
+        for (i = 1; i <= half; ++i) if ($i ~ /^spring_.*acceleration/) column[i] = i
+        next
+    }
+    { for (i in column) { a += ($i - $(i + half))^2; b += $(i + half)^2 } }
+    END { print (sqrt(a / b) > 0.5) ? "wrong" : "right" }'
+}
+tried=0
+good=0
+told=0
+verdict=ok
+# model, scene, integrator, ratio, duration, longest good step in ms; how many steps 0.24 s have
+while read -r model scene integrator ratio duration limit counts; do
+    [ "$STRESS" = short ] && counts=$(echo "$counts" | awk '{print $1, $NF}')
+    for count in $counts; do
+        step=$(awk "BEGIN { printf \"%.15g\", 0.24 / $count }")
+        tried=$((tried + 1))
+        # a quarter, or what is well within the limit
+        fine=$(awk "BEGIN { for (k = 4; $step / k > 5e-4 * $limit; k *= 2); printf \"%.15g\", $step / k }")
+        drive "$fine" fine || verdict="$model, $scene: $fine s fails"
+        if drive "$step" run; then
+            good=$((good + 1))
+            [ "$(off)" = right ] || verdict="$model, $scene, $integrator, $step s: wrong, and nothing is said"
+        else
+            told=$((told + 1))
+            grep -Eq "is unstable.*'[a-z_.]*'( is at|, eigenvalue)|beyond all bounds" "$work/err" ||
+                verdict="gicrun says: $(head -n 1 "$work/err")"
+            awk "BEGIN { exit !($step > 9e-4 * $limit) }" ||
+                verdict="$model, $scene, $integrator, $step s: called unstable, and is not"
+        fi
+    done
+done <<END
+hmmwv_tires tires_brake ab3 6 4.8 8.5 32 29 28 27 26 25 24 22 20 18 16
+hmmwv_tmeasy tires_brake ab3 6 4.8 8.5 32 29 28 27 26 25 24 22 20 18 16
+hmmwv_tires tires_park ab3 1 4.8 2.2 120 80 60 50 40 30 20
+hmmwv_tires tires_park ab3 2 4.8 4.4 60 50 40 30 20
+hmmwv_tires tires_park ab3 4 4.8 8.5 32 29 27 26 25 24 22 20 18
+hmmwv_tires tires_park rk4 1 4.8 11.2 27 24 22 20 18 16 14 12 10 8
+hmmwv_tmeasy tires_park rk4 1 4.8 18.5 18 16 14 10 8 7
+hmmwv_tires tires_brake rk4 1 4.8 13.5 22 20 18 16 14 12
+hmmwv_vehicle full_run ab3 6 7.2 8.5 32 29 28 27 26 25 24 22 20 18 16
+hmmwv_vehicle acceleration_braking ab3 6 7.2 8.5 32 29 28 27 26 25 24 22 20 18 16
+hmmwv_full hmmwv_full ab3 1 3.84 4.5 80 60 54 50 40 35 30 27 26 24 20
+END
+[ "$verdict" = ok ] || found=1
+echo "steps | gicrun, kept within bounds by tires or stops | $tried | $good | $told | what is wrong is reported with time and \
+quantity, steps within limits are not | $verdict"
 exit $found
