@@ -9,21 +9,13 @@ gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 deny_exec=$(realpath "$3")
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
-: >"$work/said"
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 
-# check STATUS LABEL: counts, and shows what was said where it failed or where a sanitizer has something to say
+# check STATUS LABEL: also a failure is what a sanitizer has to say
 check() {
-    if [ "$1" -eq 0 ] && ! grep -q 'runtime error:\|Sanitizer' "$work/said"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL $2"
-        sed 's/^/    /' "$work/said"
-    fi
+    [ "$1" -eq 0 ] && ! grep -q 'runtime error:\|Sanitizer' "$work/said"
+    verdict $? "$2"
     : >"$work/said"
 }
 
