@@ -1,23 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_stress.sh: the frame of `make stress` notices every kind of finding; and the short version of all attacks.
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-passed=0
-failed=0
+# shellcheck source=tests/checking.sh
+. "$(dirname "$0")/checking.sh"
 frame=$(dirname "$0")/stress/run.sh
-
-check() {
-    name=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        cat "$work/out"
-    fi
-}
 
 # attack NAME TEXT...: an attack in the folder of attacks
 attack() {
