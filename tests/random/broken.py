@@ -57,9 +57,30 @@ class Entry:
         text = "{" + inner + "}" if self.is_map else self.map[""]
         self.vehicle.files[self.file][self.row] = self.lead + (self.name + ": " if self.name else "") + text
 
+    def change(self, key, text):
+        """Another value, None: no such key any more."""
+        if text is None:
+            del self.map[key]
+        else:
+            self.map[key] = text
+        self.save()
+        return self
+
     def put(self, text):
         """Other text for the whole value."""
         self.vehicle.files[self.file][self.row] = f"{self.lead}{self.name}: {text}"
+
+    def again(self, name=None):
+        """The same once more behind it, under another name."""
+        text = self.vehicle.files[self.file][self.row]
+        self.vehicle.files[self.file].insert(self.row + 1, text.replace(self.name, name, 1) if name else text)
+
+    def drop(self):
+        del self.vehicle.files[self.file][self.row]
+        self.vehicle.drop_titles()
+
+    def in_main(self):
+        return self.file == self.vehicle.main
 
     def mistake(self, *says):
         return Mistake(self.file, self.line, *((self.name,) if self.name else ()), *says)
@@ -128,15 +149,23 @@ class Vehicle:
         return next(row for row, line in enumerate(self.files[self.main]) if re.match(rf"{key}:", line))
 
 
-def kind(name):
+def always(_):
+    return True
+
+
+def kind(name, section=None, want=always):
+    """The decorated function breaks (vehicle, rng) or, where a section is given, one of its entries that are wanted."""
     def note(function):
+        def picked(vehicle, rng):
+            entry = some(vehicle, rng, section, want)
+            return function(entry) if entry else None
         assert name not in KINDS, name
-        KINDS[name] = function
+        KINDS[name] = picked if section else function
         return function
     return note
 
 
-def some(vehicle, rng, section, want=lambda entry: True):
+def some(vehicle, rng, section, want=always):
     found = [entry for entry in vehicle.entries(section) if want(entry)]
     return rng.choice(found) if found else None
 
@@ -155,51 +184,33 @@ def both(*conditions):
 
 # ---- kinds made of tables --------------------------------------------------------------------------------------------
 
-def missing(section, key, want, says=None):
-    @kind(f"{section} without {key}" + (f" of {says}" if says else ""))
-    def _(vehicle, rng):
-        entry = some(vehicle, rng, section, both(has(key), want))
-        if not entry:
-            return None
-        del entry.map[key]
-        entry.save()
-        return entry.mistake(key)
+def missing(section, key, want=always, says=None):
+    @kind(f"{section} without {key}" + (f" of {says}" if says else ""), section, both(has(key), want))
+    def _(entry):
+        return entry.change(key, None).mistake(key)
 
 
-def value(name, section, key, text, want=lambda entry: True, *says):
-    """`key` gets the value `text`; `@` stands for what it was."""
-    @kind(f"{section}: {name}")
-    def _(vehicle, rng):
-        entry = some(vehicle, rng, section, both(has(key), want))
-        if not entry:
-            return None
-        entry.map[key] = text.replace("@", entry.map[key])
-        entry.save()
-        return entry.mistake(*says)
+def value(name, section, key, text, *says, want=always):
+    """`key` gets the value `text`."""
+    @kind(f"{section}: {name}", section, both(has(key), want))
+    def _(entry):
+        return entry.change(key, text).mistake(*says)
 
 
-def added(name, section, text, want=lambda entry: True, *says):
+def added(name, section, text, *says, want=always):
     """Another `key: value`."""
-    @kind(f"{section}: {name}")
-    def _(vehicle, rng):
-        entry = some(vehicle, rng, section, both(want, lambda entry: text.split(":")[0] not in entry.map))
-        if not entry or not entry.is_map:
-            return None
-        key, what = text.split(": ", 1)
-        entry.map[key] = what
-        entry.save()
-        return entry.mistake(*says)
+    key, what = text.split(": ", 1)
 
-
-def always(_):
-    return True
+    @kind(f"{section}: {name}", section, both(want, lambda entry: key not in entry.map))
+    def _(entry):
+        return entry.change(key, what).mistake(*says) if entry.is_map else None
 
 
 for section, keys in (("bodies", "mass com inertia"), ("tables", "x y"), ("joints", "type bodies"),
                       ("coordinates", "type bodies"), ("forces", "type"), ("wheels", "body center spin_inertia"),
                       ("outputs", "type body"), ("differentials", "outputs")):
     for key in keys.split():
-        missing(section, key, always)
+        missing(section, key)
 for type_ in ("revolute", "spherical", "cylindrical", "universal", "point_on_line", "point_in_plane"):
     missing("joints", "point", of_type(type_), type_)
 for type_ in ("revolute", "cylindrical", "prismatic", "point_on_line", "point_in_plane", "parallel",
@@ -214,8 +225,8 @@ missing("coordinates", "axis", of_type("angle"), "angle")
 missing("coordinates", "axis", of_type("translation"), "translation")
 missing("forces", "value", of_type("force"))
 missing("forces", "body", of_type("load"))
-missing("wheels", "radius", always)
-missing("wheels", "stiffness", always)
+missing("wheels", "radius")
+missing("wheels", "stiffness")
 for key in "radius stiffness damping load dfx0 fxm fxs sxm sys trail sqe".split():
     missing("tires", key, of_type("tmeasy"))
 for part, keys in (("engine", "inertia throttle torque"), ("converter", "capacity torque"),
@@ -225,7 +236,7 @@ for part, keys in (("engine", "inertia throttle torque"), ("converter", "capacit
 
 for section in ("bodies", "joints", "coordinates", "forces", "wheels", "tables", "outputs", "inputs", "tires",
                 "differentials", "powertrain"):
-    added("key that there isn't", section, "colour: 1", lambda entry: entry.is_map, "colour")
+    added("key that there isn't", section, "colour: 1", "colour", want=lambda entry: entry.is_map)
 
     @kind(f"{section}: key twice")
     def _(vehicle, rng, section=section):
@@ -233,44 +244,31 @@ for section in ("bodies", "joints", "coordinates", "forces", "wheels", "tables",
         if not entry:
             return None
         key, what = rng.choice(list(entry.map.items()))
-        entry.map[key] = f"{what}, {key}: {what}"
-        entry.save()
-        return Mistake(entry.file, entry.line, key)
+        return Mistake(entry.file, entry.change(key, f"{what}, {key}: {what}").line, key)
 
-    @kind(f"{section}: an entry that is a number")
-    def _(vehicle, rng, section=section):
-        entry = some(vehicle, rng, section)
-        if not entry:
-            return None
+    @kind(f"{section}: an entry that is a number", section)
+    def _(entry):
         entry.put("12")
         return entry.mistake()
 
-    @kind(f"{section}: an empty entry")
-    def _(vehicle, rng, section=section):
-        entry = some(vehicle, rng, section)
-        if not entry:
-            return None
-        entry.put("{}" if section != "inputs" else "")
+    @kind(f"{section}: an empty entry", section)
+    def _(entry, text="{}" if section != "inputs" else ""):
+        entry.put(text)
         return entry.mistake()
 
-    @kind(f"{section}: a name twice")
-    def _(vehicle, rng, section=section):
-        entry = some(vehicle, rng, section)
-        if not entry:
-            return None
-        vehicle.files[entry.file].insert(entry.row + 1, vehicle.files[entry.file][entry.row])
+    @kind(f"{section}: a name twice", section)
+    def _(entry):
+        entry.again()
         return Mistake(entry.file, entry.line + 1, entry.name)
 
 # numbers that are none, in places of all kinds
-PLACES = (("bodies", "mass", always), ("joints", "length", always), ("forces", "damping", always),
-          ("wheels", "spin_inertia", always), ("tires", "radius", always), ("coordinates", "design", always),
-          ("differentials", "ratio", always), ("inputs", "default", always))
-for section, key, want in PLACES:
-    value(f"{key} not a number", section, key, ".nan", want)
-    value(f"{key} too large", section, key, "1e400", want)
-    value(f"{key} a word", section, key, "heavy", want, "heavy")
-    value(f"{key} a list", section, key, "[1, 2]", want)
-    value(f"{key} with a unit", section, key, "12 kg", want)
+for section, key in (("bodies", "mass"), ("joints", "length"), ("forces", "damping"), ("wheels", "spin_inertia"),
+                     ("tires", "radius"), ("coordinates", "design"), ("differentials", "ratio"), ("inputs", "default")):
+    value(f"{key} not a number", section, key, ".nan")
+    value(f"{key} too large", section, key, "1e400")
+    value(f"{key} a word", section, key, "heavy", "heavy")
+    value(f"{key} a list", section, key, "[1, 2]")
+    value(f"{key} with a unit", section, key, "12 kg")
 value("mass with a leading zero", "bodies", "mass", "007")
 value("mass hexadecimal", "bodies", "mass", "0x10")
 value("mass empty", "bodies", "mass", "")
@@ -284,7 +282,7 @@ value("inertia of zero", "bodies", "inertia", "[0, 0, 0]")
 value("inertia against the triangle inequality", "bodies", "inertia", "[1, 1, 3]")
 value("inertia indefinite", "bodies", "inertia", "{xx: 1, yy: 1, zz: 1, xy: 2}")
 value("inertia of two numbers", "bodies", "inertia", "[1, 1]")
-value("inertia with another key", "bodies", "inertia", "{xx: 1, yy: 1, zz: 1, ww: 2}", always, "ww")
+value("inertia with another key", "bodies", "inertia", "{xx: 1, yy: 1, zz: 1, ww: 2}", "ww")
 value("euler parameters too long", "bodies", "orientation", "{euler: [1, 1, 0, 0]}")
 value("euler parameters of three", "bodies", "orientation", "{euler: [1, 0, 0]}")
 value("orientation by a zero axis", "bodies", "orientation", "{axis: [0, 0, 0], angle: 1}")
@@ -292,94 +290,90 @@ value("orientation by parallel directions", "bodies", "orientation", "{x: [1, 0,
 value("orientation by half", "bodies", "orientation", "{x: [1, 0, 0]}")
 value("com of two numbers", "bodies", "com", "[1, 2]")
 value("com a million away", "bodies", "com", "[1e7, 2, 0]")
-value("com at a point that there isn't", "bodies", "com", "nowhere", always, "nowhere")
+value("com at a point that there isn't", "bodies", "com", "nowhere", "nowhere")
 value("axis of zero", "joints", "axis", "[0, 0, 0]")
 value("axis of four numbers", "joints", "axis", "[0, 0, 1, 1]")
 value("axes parallel", "joints", "axes", "[[0, 0, 1], [0, 0, 1]]")
 value("one axis of two", "joints", "axes", "[[0, 0, 1]]")
 value("axes 45 degrees off", "joints", "axes", "[[0, 0, 1], [0, 1, 1]]")
-value("point at a place that there isn't", "joints", "point", "nowhere", always, "nowhere")
-value("points in one place", "joints", "points", "[[0, 0, 1], [0, 0, 1]]", of_type("distance", "revolute_spherical"))
+value("point at a place that there isn't", "joints", "point", "nowhere", "nowhere")
+value("points in one place", "joints", "points", "[[0, 0, 1], [0, 0, 1]]",
+      want=of_type("distance", "revolute_spherical"))
 value("one point of two", "joints", "points", "[[0, 0, 1]]")
-added("length of zero", "joints", "length: 0", of_type("distance"), "length")
-added("length below zero", "joints", "length: -1", of_type("distance"), "length")
-added("offset beyond the length", "joints", "offset: 50", of_type("revolute_spherical"), "offset")
-added("length of a revolute", "joints", "length: 1", of_type("revolute"), "length")
-added("axis of a ball", "joints", "axis: [0, 0, 1]", of_type("spherical"), "axis")
-value("type that there isn't", "joints", "type", "hinge", always, "hinge")
-value("type in capitals", "joints", "type", "REVOLUTE", always, "REVOLUTE")
-value("type that there isn't", "coordinates", "type", "distance", always, "distance")
-value("type that there isn't", "forces", "type", "damper", always, "damper")
-value("type that there isn't", "outputs", "type", "speed", always, "speed")
-value("type that there isn't", "tires", "type", "fiala", always, "fiala")
-value("range the wrong way round", "coordinates", "range", "[5, -5]", always, "range")
-value("range of one number", "coordinates", "range", "[5]", always, "range")
-value("range without the design", "coordinates", "range", "[90, 91]", of_type("angle", "translation"))
-added("initial out of the range", "coordinates", "initial: 1000", always, "initial")
-added("design of a length", "coordinates", "design: 1", of_type("length"), "design")
-added("points of an angle", "coordinates", "points: [[0, 0, 0], [1, 0, 0]]", of_type("angle"), "points")
-value("driven by a number", "coordinates", "driven", "1", always, "driven")
-value("points in one place", "coordinates", "points", "[[0, 0, 1], [0, 0, 1]]", of_type("length"))
+added("length of zero", "joints", "length: 0", "length", want=of_type("distance"))
+added("length below zero", "joints", "length: -1", "length", want=of_type("distance"))
+added("offset beyond the length", "joints", "offset: 50", "offset", want=of_type("revolute_spherical"))
+added("length of a revolute", "joints", "length: 1", "length", want=of_type("revolute"))
+added("axis of a ball", "joints", "axis: [0, 0, 1]", "axis", want=of_type("spherical"))
+value("type that there isn't", "joints", "type", "hinge", "hinge")
+value("type in capitals", "joints", "type", "REVOLUTE", "REVOLUTE")
+value("type that there isn't", "coordinates", "type", "distance", "distance")
+value("type that there isn't", "forces", "type", "damper", "damper")
+value("type that there isn't", "outputs", "type", "speed", "speed")
+value("type that there isn't", "tires", "type", "fiala", "fiala")
+value("range the wrong way round", "coordinates", "range", "[5, -5]", "range")
+value("range of one number", "coordinates", "range", "[5]", "range")
+value("range without the design", "coordinates", "range", "[90, 91]", want=of_type("angle", "translation"))
+added("initial out of the range", "coordinates", "initial: 1000", "initial")
+added("design of a length", "coordinates", "design: 1", "design", want=of_type("length"))
+added("points of an angle", "coordinates", "points: [[0, 0, 0], [1, 0, 0]]", "points", want=of_type("angle"))
+value("driven by a number", "coordinates", "driven", "1", "driven")
+value("points in one place", "coordinates", "points", "[[0, 0, 1], [0, 0, 1]]", want=of_type("length"))
 value("axis of zero", "coordinates", "axis", "[0, 0, 0]")
-value("stiffness below zero", "forces", "stiffness", "-100", always, "stiffness")
-value("damping below zero", "forces", "damping", "-100", always, "damping")
-value("fade of zero", "forces", "fade", "0", always, "fade")
-value("low above high", "forces", "low", "1e6", has("high"))
-value("force of two components", "forces", "force", "[1, 2]", of_type("load"), "force")
-added("coordinate and bodies", "forces", "bodies: [ground, ground]", has("coordinate"))
-added("stiffness and table", "forces", "stiffness: 100", both(has("table"), of_type("spring_damper")))
-added("value of a spring", "forces", "value: 1", of_type("spring_damper"), "value")
-value("radius below zero", "wheels", "radius", "-0.3", always, "radius")
-value("stiffness of zero", "wheels", "stiffness", "0", always, "stiffness")
-value("fade below zero", "wheels", "fade", "-1", always, "fade")
-value("spin inertia of zero", "wheels", "spin_inertia", "0", always, "spin_inertia")
+value("stiffness below zero", "forces", "stiffness", "-100", "stiffness")
+value("damping below zero", "forces", "damping", "-100", "damping")
+value("fade of zero", "forces", "fade", "0", "fade")
+value("low above high", "forces", "low", "1e6", want=has("high"))
+value("force of two components", "forces", "force", "[1, 2]", "force", want=of_type("load"))
+added("coordinate and bodies", "forces", "bodies: [ground, ground]", want=has("coordinate"))
+added("stiffness and table", "forces", "stiffness: 100", want=both(has("table"), of_type("spring_damper")))
+added("value of a spring", "forces", "value: 1", "value", want=of_type("spring_damper"))
+value("radius below zero", "wheels", "radius", "-0.3", "radius")
+value("stiffness of zero", "wheels", "stiffness", "0", "stiffness")
+value("fade below zero", "wheels", "fade", "-1", "fade")
+value("spin inertia of zero", "wheels", "spin_inertia", "0", "spin_inertia")
 value("spin inertia beyond the body's", "wheels", "spin_inertia", "1e6")
-value("side in the middle", "wheels", "side", "middle", always, "middle")
-value("windup of zero", "wheels", "windup", "0", always, "windup")
-added("radius beside a tire", "wheels", "radius: 0.3", has("tire"), "radius")
-added("brake without a tire", "wheels", "brake: 100", has("radius"), "brake")
-added("drive body without drive", "wheels", "drive_body: ground", has("radius"), "drive_body")
-value("x falls", "tables", "x", "[0, 2, 1, 3, 4]", lambda entry: len(split(entry.map["x"][1:-1])) == 5)
+value("side in the middle", "wheels", "side", "middle", "middle")
+value("windup of zero", "wheels", "windup", "0", "windup")
+added("radius beside a tire", "wheels", "radius: 0.3", "radius", want=has("tire"))
+added("brake without a tire", "wheels", "brake: 100", "brake", want=has("radius"))
+added("drive body without drive", "wheels", "drive_body: ground", "drive_body", want=has("radius"))
+value("x falls", "tables", "x", "[0, 2, 1, 3, 4]", want=lambda entry: len(split(entry.map["x"][1:-1])) == 5)
 value("fewer x than y", "tables", "x", "[0, 1]")
 value("one point", "tables", "x", "[0]")
 value("no points", "tables", "x", "[]")
-value("interpolation that there isn't", "tables", "interpolation", "quintic", always, "quintic")
-value("continuation that there isn't", "tables", "beyond", "zero", always, "zero")
+value("interpolation that there isn't", "tables", "interpolation", "quintic", "quintic")
+value("continuation that there isn't", "tables", "beyond", "zero", "zero")
 value("sliding force above the maximum", "tires", "fxs", "[1e6, 2e6]")
-value("forces that fall", "tires", "fym", "[5000, 100]", always, "fym")
+value("forces that fall", "tires", "fym", "[5000, 100]", "fym")
 value("slips the wrong way round", "tires", "sxs", "[0.01, 0.01]")
-value("load of zero", "tires", "load", "0", always, "load")
-value("one number of two", "tires", "dfx0", "[1e5]", always, "dfx0")
-value("relaxation below zero", "tires", "relaxation", "[-1, 1]", always, "relaxation")
-added("file and type", "tires", "file: a.tir", has("type"))
-added("key of another type", "tires", "load: 1000", has("file"), "load")
-value("ratio below zero", "differentials", "ratio", "-1", always, "ratio")
-value("split of one", "differentials", "split", "1", always, "split")
-value("inertia below zero", "differentials", "inertia", "-1", always, "inertia")
-value("three outputs", "differentials", "outputs", "[a, b, c]", always, "outputs")
-value("output that there isn't", "differentials", "outputs", "[nothing]", lambda entry: "split" not in entry.map and
-      "lock" not in entry.map, "nothing")
+value("load of zero", "tires", "load", "0", "load")
+value("one number of two", "tires", "dfx0", "[1e5]", "dfx0")
+value("relaxation below zero", "tires", "relaxation", "[-1, 1]", "relaxation")
+added("file and type", "tires", "file: a.tir", want=has("type"))
+added("key of another type", "tires", "load: 1000", "load", want=has("file"))
+value("ratio below zero", "differentials", "ratio", "-1", "ratio")
+value("split of one", "differentials", "split", "1", "split")
+value("inertia below zero", "differentials", "inertia", "-1", "inertia")
+value("three outputs", "differentials", "outputs", "[a, b, c]", "outputs")
+value("output that there isn't", "differentials", "outputs", "[nothing]", "nothing",
+      want=lambda entry: not {"split", "lock"} & set(entry.map))
 value("one output twice", "differentials", "outputs", "[same, same]")
-added("split of one output", "differentials", "split: 0.5",
-      lambda entry: len(split(entry.map["outputs"][1:-1])) == 1, "split")
-value("inertia of zero", "powertrain", "inertia", "0", lambda entry: entry.name == "engine", "inertia")
-value("idle above the limit", "powertrain", "idle", "1e4", has("limit"))
-value("capacity that there isn't", "powertrain", "capacity", "nothing", always, "nothing")
-value("too few shift speeds", "powertrain", "up", "[]", always, "up")
-added("duration of zero", "powertrain", "duration: 0", lambda entry: entry.name == "transmission", "duration")
-missing("powertrain", "up", always, "gears")
-missing("powertrain", "down", always, "gears")
+added("split of one output", "differentials", "split: 0.5", "split",
+      want=lambda entry: len(split(entry.map["outputs"][1:-1])) == 1)
+value("inertia of zero", "powertrain", "inertia", "0", "inertia", want=lambda entry: entry.name == "engine")
+value("idle above the limit", "powertrain", "idle", "1e4", want=has("limit"))
+value("capacity that there isn't", "powertrain", "capacity", "nothing", "nothing")
+value("too few shift speeds", "powertrain", "up", "[]", "up")
+added("duration of zero", "powertrain", "duration: 0", "duration", want=lambda entry: entry.name == "transmission")
+missing("powertrain", "up", says="gears")
+missing("powertrain", "down", says="gears")
 
 # what has no name of its own in the message: the place is enough, and what stands there
 def plain(name, section, key, text, *says):
-    @kind(f"{section}: {name}")
-    def _(vehicle, rng):
-        entry = some(vehicle, rng, section, has(key))
-        if not entry:
-            return None
-        entry.map[key] = text
-        entry.save()
-        return Mistake(entry.file, entry.line, *says)
+    @kind(f"{section}: {name}", section, has(key))
+    def _(entry):
+        return Mistake(entry.file, entry.change(key, text).line, *says)
 
 
 plain("mass with a tag", "bodies", "mass", "!!float 3", "tag")
@@ -391,58 +385,35 @@ plain("reverse gear forwards", "powertrain", "reverse", "[3]", "gear -1")
 
 # names that there aren't
 
-value("body that there isn't", "forces", "body", "nobody", always, "nobody")
+value("body that there isn't", "forces", "body", "nobody", "nobody")
 
-value("coordinate that there isn't", "forces", "coordinate", "nothing", always, "nothing")
-value("table that there isn't", "forces", "table", "nothing", always, "nothing")
-value("frame that there isn't", "forces", "in", "nobody", always, "nobody")
-value("body that there isn't", "wheels", "body", "nobody", always, "nobody")
-value("tire that there isn't", "wheels", "tire", "nothing", always, "nothing")
-value("drive body that there isn't", "wheels", "drive_body", "nobody", always, "nobody")
-value("body that there isn't", "outputs", "body", "nobody", always, "nobody")
-value("coordinate that there isn't", "outputs", "coordinate", "nothing", always, "nothing")
-
-
-def same_bodies(section):
-    @kind(f"{section} between one body")
-    def _(vehicle, rng):
-        entry = some(vehicle, rng, section, has("bodies"))
-        if not entry:
-            return None
-        a = bodies_of(entry)[0]
-        entry.map["bodies"] = f"[{a}, {a}]"
-        entry.save()
-        return entry.mistake(a)
+value("coordinate that there isn't", "forces", "coordinate", "nothing", "nothing")
+value("table that there isn't", "forces", "table", "nothing", "nothing")
+value("frame that there isn't", "forces", "in", "nobody", "nobody")
+value("body that there isn't", "wheels", "body", "nobody", "nobody")
+value("tire that there isn't", "wheels", "tire", "nothing", "nothing")
+value("drive body that there isn't", "wheels", "drive_body", "nobody", "nobody")
+value("body that there isn't", "outputs", "body", "nobody", "nobody")
+value("coordinate that there isn't", "outputs", "coordinate", "nothing", "nothing")
 
 
 def bodies_of(entry):
     return [name for name in split(entry.map["bodies"][1:-1]) if name != "ground"]
 
 
-def other_body(section):
-    @kind(f"{section}: second body that there isn't")
-    def _(vehicle, rng):
-        entry = some(vehicle, rng, section, has("bodies"))
-        if not entry:
-            return None
-        entry.map["bodies"] = f"[{bodies_of(entry)[0]}, nobody]"
-        entry.save()
-        return entry.mistake("nobody")
-
-
 for section in ("joints", "coordinates", "forces"):
-    same_bodies(section)
-    other_body(section)
+    for name, other in ((" between one body", None), (": second body that there isn't", "nobody")):
+        @kind(section + name, section, has("bodies"))
+        def _(entry, other=other):
+            own = bodies_of(entry)[0]
+            return entry.change("bodies", f"[{own}, {other or own}]").mistake(other or own)
 
 
-@kind("joints: to the ground of a free base")
-def _(vehicle, rng):
-    entry = some(vehicle, rng, "joints")
-    if not entry or "base: ground" in vehicle.files[vehicle.main]:
+@kind("joints: to the ground of a free base", "joints")
+def _(entry):
+    if "base: ground" in entry.vehicle.files[entry.vehicle.main]:
         return None
-    entry.map["bodies"] = f"[ground, {split(entry.map['bodies'][1:-1])[1]}]"
-    entry.save()
-    return entry.mistake("ground")
+    return entry.change("bodies", f"[ground, {split(entry.map['bodies'][1:-1])[1]}]").mistake("ground")
 
 
 # ---- formulas --------------------------------------------------------------------------------------------------------
@@ -456,9 +427,7 @@ def formula(name, change, *says):
         if not places:
             return None
         entry, key = rng.choice(places)
-        entry.map[key] = '"' + change(entry.map[key][1:-1]) + '"'
-        entry.save()
-        return entry.mistake(key, *says)
+        return entry.change(key, '"' + change(entry.map[key][1:-1]) + '"').mistake(key, *says)
 
 
 formula("parenthesis not closed", lambda text: text + " + (1")
@@ -481,14 +450,9 @@ formula("number cut short", lambda text: text + " + 1e")
 formula("other brackets", lambda text: f"2 * [{text}]")
 
 
-@kind("formula: length of no element")
-def _(vehicle, rng):
-    entry = some(vehicle, rng, "forces", both(of_type("force"), has("coordinate")))
-    if not entry:
-        return None
-    entry.map["value"] = '"3 * length"'
-    entry.save()
-    return entry.mistake("value", "length")
+@kind("formula: length of no element", "forces", both(of_type("force"), has("coordinate")))
+def _(entry):
+    return entry.change("value", '"3 * length"').mistake("value", "length")
 
 
 @kind("parameters: after the one that needs it")
@@ -512,16 +476,12 @@ def _(vehicle, rng):
 
 
 def tunable(section, key, text):
-    @kind(f"{section}: tunable {key}")
-    def _(vehicle, rng):
-        entry = some(vehicle, rng, section, has(key))
-        if not entry:
-            return None
+    @kind(f"{section}: tunable {key}", section, has(key))
+    def _(entry):
+        vehicle = entry.vehicle
         vehicle.files[vehicle.main].insert(vehicle.top("parameters") + 1, "  tuned: {value: 1, tunable: true}")
         entry = next(e for e in vehicle.entries(section) if e.name == entry.name and e.file == entry.file)
-        entry.map[key] = text
-        entry.save()
-        return entry.mistake(key, "tuned")
+        return entry.change(key, text).mistake(key, "tuned")
 
 
 tunable("coordinates", "range", "[-10, tuned]")
@@ -582,33 +542,22 @@ for name, line, *says in (("gravity of two numbers", "gravity: [0, 0]", "gravity
 for section, name in (("bodies", "ground"), ("bodies", "world"), ("joints", "a-b"), ("coordinates", "3rd"),
                       ("forces", "_law"), ("outputs", "n" * 41), ("inputs", "é"), ("tables", "a.b"),
                       ("parameters", '""')):
-    @kind(f"{section}: name {name}")
-    def _(vehicle, rng, section=section, name=name):
-        # a prefix would mend it
-        entry = some(vehicle, rng, section, lambda entry: entry.file == vehicle.main)
-        if not entry:
-            return None
-        vehicle.files[entry.file][entry.row] = vehicle.files[entry.file][entry.row].replace(
-            entry.name, name.encode().decode("latin-1"), 1)
+    @kind(f"{section}: name {name}", section, Entry.in_main)  # a prefix would mend it
+    def _(entry, name=name):
+        lines = entry.vehicle.files[entry.file]
+        lines[entry.row] = lines[entry.row].replace(entry.name, name.encode().decode("latin-1"), 1)
         return Mistake(entry.file, entry.line, *([] if name in ("é", '""') else [name]))
 
 
-@kind("coordinates: names the same in capitals")
-def _(vehicle, rng):
-    entry = some(vehicle, rng, "coordinates", lambda entry: entry.file == vehicle.main)
-    if not entry:
-        return None
-    vehicle.files[entry.file].insert(entry.row + 1, vehicle.files[entry.file][entry.row].replace(
-        entry.name, entry.name.upper(), 1))
+@kind("coordinates: names the same in capitals", "coordinates", Entry.in_main)
+def _(entry):
+    entry.again(entry.name.upper())
     return Mistake(entry.file, None, entry.name.upper())
 
 
-@kind("inputs: the name of a driven coordinate")
-def _(vehicle, rng):
-    entry = some(vehicle, rng, "coordinates", lambda entry: "driven" in entry.map and entry.file == vehicle.main)
-    if not entry:
-        return None
-    return Mistake(vehicle.main, vehicle.append("inputs", f"  {entry.name}: {{default: 1}}"), entry.name)
+@kind("inputs: the name of a driven coordinate", "coordinates", both(has("driven"), Entry.in_main))
+def _(entry):
+    return Mistake(entry.vehicle.main, entry.vehicle.append("inputs", f"  {entry.name}: {{default: 1}}"), entry.name)
 
 
 def removed(section, used):
@@ -621,8 +570,7 @@ def removed(section, used):
         if not names:
             return None
         entry = rng.choice(names)
-        del vehicle.files[entry.file][entry.row]
-        vehicle.drop_titles()
+        entry.drop()
         return Mistake(None, None, entry.name)
 
 
@@ -650,9 +598,7 @@ def included(name, change):
 
 def set_include(key, text, *says):
     def change(vehicle, entry, part):
-        entry.map[key] = text
-        entry.save()
-        return entry.mistake(*says)
+        return entry.change(key, text).mistake(*says)
     return change
 
 
@@ -747,14 +693,9 @@ def _(vehicle, rng):
     return Mistake(None, None, "loose")
 
 
-@kind("mechanism: a rod of an impossible length")
-def _(vehicle, rng):
-    entry = some(vehicle, rng, "joints", of_type("distance"))
-    if not entry:
-        return None
-    entry.map["length"] = "30"
-    entry.save()
-    return Mistake(None, None, entry.name)
+@kind("mechanism: a rod of an impossible length", "joints", of_type("distance"))
+def _(entry):
+    return Mistake(None, None, entry.change("length", "30").name)
 
 
 def sides(names):
@@ -762,67 +703,34 @@ def sides(names):
     return sorted({other for name in names for other in (name, re.sub("_l$", "_r", name))})
 
 
-@kind("mechanism: a coordinate twice")
-def _(vehicle, rng):
-    entry = some(vehicle, rng, "coordinates", lambda entry: entry.file == vehicle.main)
-    if not entry:
-        return None
-    text = vehicle.files[entry.file][entry.row].replace(entry.name, "again", 1)
-    vehicle.files[entry.file].insert(entry.row + 1, text)
+def twice_there(entry):
+    entry.again("again")
     return Mistake(None, None, ["again", *sides([entry.name, *bodies_of(entry)])])
 
 
+kind("mechanism: a coordinate twice", "coordinates", Entry.in_main)(twice_there)
 for type_ in ("revolute", "spherical", "distance", "universal", "prismatic", "cylindrical", "parallel",
               "revolute_spherical"):
-    @kind(f"mechanism: a {type_} joint twice")
-    def _(vehicle, rng, type_=type_):
-        entry = some(vehicle, rng, "joints", of_type(type_))
-        if not entry:
-            return None
-        vehicle.files[entry.file].insert(entry.row + 1,
-                                         vehicle.files[entry.file][entry.row].replace(entry.name, "again", 1))
-        return Mistake(None, None, ["again", *sides([entry.name, *bodies_of(entry)])])
+    kind(f"mechanism: a {type_} joint twice", "joints", of_type(type_))(twice_there)
 
-    @kind(f"mechanism: a {type_} joint gone")
-    def _(vehicle, rng, type_=type_):
-        entry = some(vehicle, rng, "joints", of_type(type_))
-        if not entry:
-            return None
-        del vehicle.files[entry.file][entry.row]
-        vehicle.drop_titles()
+    @kind(f"mechanism: a {type_} joint gone", "joints", of_type(type_))
+    def _(entry):
+        entry.drop()
         return Mistake(None, None, sides(bodies_of(entry)))
 
 for type_ in ("length", "angle", "translation"):
-    @kind(f"mechanism: a {type_} gone")
-    def _(vehicle, rng, type_=type_):
-        entry = some(vehicle, rng, "coordinates", of_type(type_))
-        if not entry:
-            return None
+    @kind(f"mechanism: a {type_} gone", "coordinates", of_type(type_))
+    def _(entry):
         # all that would need it goes too
         name = rf"(?<![A-Za-z0-9_])(p\d_)?{re.sub('_l$', '_[lr]', entry.name)}(?![A-Za-z0-9_])"
-        for file, lines in vehicle.files.items():
-            vehicle.files[file] = [line for line in lines if not re.search(name, line)]
-        vehicle.drop_titles()
+        for file, lines in entry.vehicle.files.items():
+            entry.vehicle.files[file] = [line for line in lines if not re.search(name, line)]
+        entry.vehicle.drop_titles()
         return Mistake(None, None, sides(bodies_of(entry)))
 
 
-@kind("mechanism: a ball instead of a hinge")
-def _(vehicle, rng):
-    entry = some(vehicle, rng, "joints", of_type("revolute"))
-    if not entry:
-        return None
-    entry.map["type"] = "spherical"
-    del entry.map["axis"]
-    entry.save()
-    return Mistake(None, None, sides([entry.name, *bodies_of(entry)]))
-
-
-@kind("mechanism: a weld instead of a hinge")
-def _(vehicle, rng):
-    entry = some(vehicle, rng, "joints", of_type("revolute"))
-    if not entry:
-        return None
-    entry.map["type"] = "fixed"
-    del entry.map["axis"]
-    entry.save()
-    return Mistake(None, None, sides([entry.name, *bodies_of(entry)]))
+for name, type_ in (("ball", "spherical"), ("weld", "fixed")):
+    @kind(f"mechanism: a {name} instead of a hinge", "joints", of_type("revolute"))
+    def _(entry, type_=type_):
+        entry.change("type", type_).change("axis", None)
+        return Mistake(None, None, sides([entry.name, *bodies_of(entry)]))
