@@ -114,6 +114,18 @@ static void adams_bashforth(int32_t count, gic_real step, const gic_real *from, 
         next[i] = from[i] + weight * (GIC_R(23.0) * rate[i] - GIC_R(16.0) * past[i] + GIC_R(5.0) * older[i]);
 }
 
+/* Where a number of a state is out of bounds, or GIC_ERROR_RESULT where none is. */
+static int out_of_bounds(void *self, const gic_real *state, int32_t first, int32_t behind)
+{
+    gic_head *head = (gic_head *)self;
+    for (int32_t i = first; i < behind; ++i)
+        if (!gic_bounded(&state[i - first], 1)) {
+            head->grown = i;
+            return GIC_ERROR_UNSTABLE;
+        }
+    return GIC_ERROR_RESULT;
+}
+
 /* RK4 for the whole state, with its rate at `from`; `work` has room for two states. */
 static int runge_kutta(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
                        const gic_real *rate, gic_real *next, gic_real *work)
@@ -129,6 +141,9 @@ static int runge_kutta(const gic_model *model, void *self, gic_real time, gic_re
         for (int32_t i = 0; i < n; ++i)
             stage[i] = from[i] + reach * slope[i];
         const int status = evaluate(model, self, time + reach, stage, slope);
+        /* what the step made of it is no state: give_up() says so, unless it knows of a coordinate that went too far */
+        if (status == GIC_ERROR_INPUT)
+            (void)out_of_bounds(self, stage, 0, n);
         if (status != GIC_OK)
             return status;
         for (int32_t i = 0; i < n; ++i)
@@ -137,18 +152,6 @@ static int runge_kutta(const gic_model *model, void *self, gic_real time, gic_re
     for (int32_t i = 0; i < n; ++i)
         next[i] = from[i] + step / GIC_R(6.0) * next[i];
     return GIC_OK;
-}
-
-/* Where a number of a state is out of bounds, or GIC_ERROR_RESULT where none is. */
-static int out_of_bounds(void *self, const gic_real *state, int32_t first, int32_t behind)
-{
-    gic_head *head = (gic_head *)self;
-    for (int32_t i = first; i < behind; ++i)
-        if (!gic_bounded(&state[i - first], 1)) {
-            head->grown = i;
-            return GIC_ERROR_UNSTABLE;
-        }
-    return GIC_ERROR_RESULT;
 }
 
 /* What makes the numbers that an integrator found a state; it looks at bounds itself, and bounded ones stay so. */
@@ -260,7 +263,9 @@ static int give_up(const gic_model *model, void *self, gic_real step, int status
     head->hold = -1;
     copy(array_at(self, model->input_offset), input_before, model->input_count);
     /* a state that is none was not made by a step */
-    return head->status = gic_bounded(state, n) ? gic_blame(model, step, rate, status, &head->grown) : status;
+    if (gic_bounded(state, n))
+        status = gic_blame(model, step, rate, status, &head->grown);
+    return head->status = status == GIC_ERROR_INPUT && head->grown >= 0 ? GIC_ERROR_UNSTABLE : status;
 }
 
 /* A step was made: the instance moves on, with `history` rates kept. */

@@ -32,6 +32,8 @@ typedef struct Probe {
     int fail_at;   /* evaluation of the step that fails, from 0; -1: none */
     int poison_at; /* evaluation whose rate is not a number, from 0; -1: none */
     int settle_status;
+    int refuse_at; /* evaluation that refuses an input, from 1; 0: none */
+    int looks;     /* 1: evaluations refuse states that are none, as generated code does */
     int evaluation;
 } Probe;
 
@@ -47,6 +49,8 @@ static int probe_rhs(void *self, gic_real time, const gic_real *state, gic_real 
     Probe *probe = self;
     ++probe->head.rhs_count;
     const int evaluation = probe->evaluation++;
+    if ((probe->looks && !gic_bounded(state, N)) || evaluation + 1 == probe->refuse_at)
+        return GIC_ERROR_INPUT;
     rate[0] = state[1];
     rate[1] = -state[0] + probe->input[0] + time;
     if (evaluation == probe->poison_at)
@@ -220,6 +224,30 @@ static void test_failure_changes_nothing(void **unused)
                 assert_same(&probe, &undisturbed);
                 assert_int_equal(probe.head.subset, -1);
             }
+}
+
+/* A state that RK4 itself made in the middle of a step is named, an input that is none is not laid to the step. */
+static void test_failure_within_step(void **unused)
+{
+    (void)unused;
+    for (int fault = 0; fault < 4; ++fault)
+        for (int what = 0; what < 2; ++what) {
+            Probe probe = probe_new();
+            assert_int_equal(probe_step(&probe, 0.01, GIC_RK4), GIC_OK);
+            const Probe good = probe;
+            probe.looks = 1;
+            probe.poison_at = what ? fault : -1;
+            probe.refuse_at = what ? 0 : fault + 1;
+            const int expected = what ? GIC_ERROR_UNSTABLE : GIC_ERROR_INPUT;
+            assert_int_equal(probe_step(&probe, 0.01, GIC_RK4), expected);
+            assert_int_equal(probe.head.status, expected);
+            assert_int_equal(probe.head.grown, what ? 1 : -1);
+            assert_same(&probe, &good);
+            probe.poison_at = -1;
+            probe.refuse_at = 0;
+            assert_int_equal(probe_step(&probe, 0.01, GIC_RK4), GIC_OK);
+            assert_int_equal(probe.head.grown, -1);
+        }
 }
 
 static void test_snapshot(void **unused)
@@ -522,13 +550,21 @@ static void test_quintic(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order),          cmocka_unit_test(test_ab3_starts_with_rk4),
-        cmocka_unit_test(test_rate_and_input), cmocka_unit_test(test_failure_changes_nothing),
-        cmocka_unit_test(test_snapshot),       cmocka_unit_test(test_time),
-        cmocka_unit_test(test_arguments),      cmocka_unit_test(test_finite),
-        cmocka_unit_test(test_bounded),        cmocka_unit_test(test_unwound),
-        cmocka_unit_test(test_alike),          cmocka_unit_test(test_blame),
-        cmocka_unit_test(test_status_text),    cmocka_unit_test(test_orientation),
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_ab3_starts_with_rk4),
+        cmocka_unit_test(test_rate_and_input),
+        cmocka_unit_test(test_failure_changes_nothing),
+        cmocka_unit_test(test_snapshot),
+        cmocka_unit_test(test_time),
+        cmocka_unit_test(test_arguments),
+        cmocka_unit_test(test_finite),
+        cmocka_unit_test(test_failure_within_step),
+        cmocka_unit_test(test_bounded),
+        cmocka_unit_test(test_unwound),
+        cmocka_unit_test(test_alike),
+        cmocka_unit_test(test_blame),
+        cmocka_unit_test(test_status_text),
+        cmocka_unit_test(test_orientation),
         cmocka_unit_test(test_quintic),
     };
     return cmocka_run_group_tests_name("runtime", tests, NULL, NULL);
