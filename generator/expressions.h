@@ -344,7 +344,8 @@ typedef struct Block {
     Store *store;
     Check *check;
     Ex *load;       /* applied forces among its values, for those who count */
-    bool scheduled; /* its statements stand as schedule.c orders them; else depth-first from the results */
+    bool scheduled; /* its statements stand as schedule.c orders them, with stores to what it doesn't read where values
+                     * are found; else depth-first from the results, with all stores at the end */
     bool across;    /* the road must be the same on both sides, and is looked up on one: narrow.h */
 } Block;
 

@@ -593,6 +593,7 @@ static Formula *formulate_newton(Work *w, Solve solve)
 {
     int bodies = w->first->bodies;
     Formula *formula = formula_new(w, false);
+    formula->solve.scheduled = formula->chord.scheduled = true;
     Work found = held(w);
     Factors *factors = factor(&found);
     Ex *q = pool_alloc(w->pool, (size_t)(7 * bodies) * sizeof *q);
