@@ -58,7 +58,8 @@ echo "steps | gicrun, steps twice too long | $tried | $((tried - refused)) | $re
 # drive STEP NAME: the scene at hand with that step, rows every 0.24 s in $work/NAME.csv
 drive() {
     {
-        printf 'gicscene: 1\nstep: %s\nintegrator: %s\nduration: %s\noutput_step: 0.24\n' "$1" "$integrator" "$duration"
+        printf 'gicscene: 1\nstep: %s\nintegrator: %s\n' "$1" "$integrator"
+        printf 'duration: %s\noutput_step: 0.24\n' "$duration"
         [ "$ratio" -eq 1 ] || echo "ratio: $ratio"
         grep -Ev '^(gicscene|step|integrator|ratio|duration|output_step):' "models/scenes/$scene.scene"
     } >"$work/run.scene"
@@ -111,6 +112,6 @@ hmmwv_vehicle acceleration_braking ab3 6 7.2 8.5 32 29 28 27 26 25 24 22 20 18 1
 hmmwv_full hmmwv_full ab3 1 3.84 4.5 80 60 54 50 40 35 30 27 26 24 20
 END
 [ "$verdict" = ok ] || found=1
-echo "steps | gicrun, kept within bounds by tires or stops | $tried | $good | $told | what is wrong is reported with time and \
-quantity, steps within limits are not | $verdict"
+echo "steps | gicrun, kept within bounds by tires or stops | $tried | $good | $told | what is wrong is reported \
+with time and quantity, steps within limits are not | $verdict"
 exit $found
