@@ -37,8 +37,8 @@ int class_rows(const Plan *plan, int class)
     return lanes ? (members + lanes - 1) / lanes : members;
 }
 
-/* Rows begin at multiples of their length, so that none stands in two lines of a cache: that takes twice as long to read
- * and longer to hand on. */
+/* Rows begin at multiples of their length, so that none stands in two lines of a cache: that takes twice as long to
+ * read and longer to hand on. */
 static int row_begin(int size, int lanes)
 {
     return lanes ? (size + lanes - 1) / lanes * lanes : size;
