@@ -312,15 +312,16 @@ static void pendulum_gather(pendulum *self, const gic_real *y)
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
+static const gic_real pendulum_still[3] = {R(0.0), R(0.0), R(0.0)}; /* the angular velocity of a fixed base */
+
 /* The base is fixed: nothing to recover. */
 static int pendulum_orient(const pendulum *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
-    static const gic_real none[3] = {R(0.0), R(0.0), R(0.0)};
     (void)self;
     (void)y;
     e[0] = R(1.0);
     e[1] = e[2] = e[3] = R(0.0);
-    *turn = none;
+    *turn = pendulum_still;
     return GIC_OK;
 }
 

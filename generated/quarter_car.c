@@ -705,15 +705,16 @@ static void quarter_car_gather(quarter_car *self, const gic_real *y)
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
+static const gic_real quarter_car_still[3] = {R(0.0), R(0.0), R(0.0)}; /* the angular velocity of a fixed base */
+
 /* The base is fixed: nothing to recover. */
 static int quarter_car_orient(const quarter_car *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
-    static const gic_real none[3] = {R(0.0), R(0.0), R(0.0)};
     (void)self;
     (void)y;
     e[0] = R(1.0);
     e[1] = e[2] = e[3] = R(0.0);
-    *turn = none;
+    *turn = quarter_car_still;
     return GIC_OK;
 }
 

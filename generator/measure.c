@@ -21,9 +21,10 @@ typedef struct Named {
     Size size;
 } Named;
 
-/* A macro of two arguments that may stand in a size. */
+/* A macro of one or two arguments that may stand in a size. */
 typedef struct Macro {
     const char *name, *argument[2], *text;
+    int arguments;
 } Macro;
 
 typedef struct Function {
@@ -77,12 +78,18 @@ static const char *end_of_nothing(Measure *m, const char *s)
     if (sscanf(s, "#define %63[A-Za-z0-9_] %15[0-9]", name, number) == 2)
         *POOL_PUSH(m->pool, m->enumerator, m->enumerators) =
             (Named){pool_print(m->pool, "%s", name), {strtoul(number, NULL, 10), 0}};
+    int arguments = 0;
     if (sscanf(s, "#define %63[A-Za-z0-9_](%31[a-z_], %31[a-z_]) %127[^\n]", name, argument[0], argument[1], text) == 4)
-        *POOL_PUSH(m->pool, m->macro, m->macros) = (Macro){
-            pool_print(m->pool, "%s", name),
-            {pool_print(m->pool, "%s", argument[0]), pool_print(m->pool, "%s", argument[1])},
-            pool_print(m->pool, "%s", text),
-        };
+        arguments = 2;
+    else if (sscanf(s, "#define %63[A-Za-z0-9_](%31[a-z_]) %127[^\n]", name, argument[0], text) == 3)
+        arguments = 1;
+    if (arguments) {
+        Macro *macro = POOL_PUSH(m->pool, m->macro, m->macros);
+        *macro = (Macro){.name = pool_print(m->pool, "%s", name), .arguments = arguments};
+        for (int i = 0; i < arguments; ++i)
+            macro->argument[i] = pool_print(m->pool, "%s", argument[i]);
+        macro->text = pool_print(m->pool, "%s", text);
+    }
     while (*s && *s != '\n')
         s += *s == '\\' && s[1] ? 2 : 1;
     return s;
@@ -176,14 +183,15 @@ static size_t sum_read(Measure *m);
 static size_t macro_read(Measure *m, const Macro *macro)
 {
     Named argument[2];
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < macro->arguments; ++i) {
         if (!accept(m, i ? "," : "("))
             refuse(m, "a size that can't be read");
         argument[i] = (Named){macro->argument[i], {sum_read(m), 0}};
     }
     if (!accept(m, ")"))
         refuse(m, "a size that can't be read");
-    Measure inside = {.pool = m->pool, .enumerators = 2, .enumerator = argument};
+    Measure inside = {
+        .pool = m->pool, .enumerators = macro->arguments, .enumerator = argument, .types = m->types, .type = m->type};
     tokens_read(&inside, macro->text);
     return sum_read(&inside);
 }
@@ -201,6 +209,13 @@ static size_t factor_read(Measure *m)
             refuse(m, "a size that can't be read");
         return sum;
     }
+    if (accept(m, "sizeof")) {
+        const Named *type = accept(m, "(") ? find(m->type, m->types, token(m, 0)) : NULL;
+        ++m->next;
+        if (!type || !accept(m, ")"))
+            refuse(m, "a size that can't be read");
+        return type->size.bytes;
+    }
     const char *t = token(m, 0);
     const Named *enumerator = find(m->enumerator, m->enumerators, t);
     if (!enumerator && !isdigit((unsigned char)*t))
@@ -209,15 +224,27 @@ static size_t factor_read(Measure *m)
     return enumerator ? enumerator->size.bytes : strtoul(t, NULL, 10);
 }
 
-/* Sizes of arrays are sums and differences of products of numbers, enumerators and macros of those. */
+static size_t product_read(Measure *m)
+{
+    size_t product = factor_read(m);
+    while (is(m, "*") || is(m, "/") || is(m, "%")) {
+        const char operation = *m->token[m->next++];
+        const size_t factor = factor_read(m);
+        if (operation != '*' && factor == 0)
+            refuse(m, "a division by zero");
+        product = operation == '*' ? product * factor : operation == '/' ? product / factor : product % factor;
+    }
+    return product;
+}
+
+/* Sizes of arrays are sums and differences of products, quotients and remainders of numbers, enumerators, sizes of
+ * types and macros of those. */
 static size_t sum_read(Measure *m)
 {
     size_t sum = 0;
     bool minus = false;
     do {
-        size_t product = factor_read(m);
-        while (accept(m, "*"))
-            product *= factor_read(m);
+        const size_t product = product_read(m);
         sum = minus ? sum - product : sum + product;
         minus = is(m, "-");
     } while (accept(m, "+") || accept(m, "-"));

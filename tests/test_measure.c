@@ -31,7 +31,7 @@ CODE_AND_TEXT(
         const char *const *name;
         callback *call;
         int (*function)(const struct instance *self, gic_real x[4]);
-        gic_real state[2 * STATES + ROOM], matrix[ROOM][STATES];
+        gic_real state[2 * STATES + ROOM], matrix[ROOM][STATES], fill[(64 - sizeof(odd) % 64) / sizeof(gic_real)];
         kind what;
         char last;
     } instance;
@@ -66,8 +66,11 @@ static void other_reals(void **state)
     Pool *pool = pool_new();
     Measure *m = measure_new(pool, "model", sizeof(float));
     measure_read(m, "#define MOST 12 /* of them */\n#define F(x) \\\n  broken {\n"
-                    "typedef struct s { gic_real a; void *p; gic_real b; } s; /* 4 + 4, 8, 4 + 4 */");
+                    "#define FILL(bytes) ((64 - (bytes) % 64) / sizeof(gic_real))\n"
+                    "typedef struct s { gic_real a; void *p; gic_real b; } s; /* 4 + 4, 8, 4 + 4 */"
+                    "typedef struct t { s head; gic_real fill[FILL(sizeof(s))]; } t; /* 24, 40 */");
     assert_int_equal(measure_type(m, "s"), 24);
+    assert_int_equal(measure_type(m, "t"), 64);
     assert_int_equal(measure_number(m, "MOST"), 12);
     pool_free(pool);
 }
