@@ -150,9 +150,9 @@ for bodies in "arm wheel" "wheel arm"; do
             # shellcheck disable=SC2086
             "$gicrun" --engine tape $options --eval "$work/states" "$work/turning.veh" -o "$work/results" &&
                 "$agree" "$work/dump" "$work/accelerations" "$work/results" --tolerance 2e-15 >"$work/said"
-            check "a wheel turns, $kind of $bodies, $options" 0 $?
+            same "a wheel turns, $kind of $bodies, $options" 0 $?
         done
-        check "turned all the way, $kind of $bodies" "" \
+        same "turned all the way, $kind of $bodies" "" \
             "$("$gicrun" --engine tape --eval "$work/closely" "$work/turning.veh" -o "$work/results" 2>&1)"
     done
 done
