@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The runs of a sweep, in batches: side by side in lanes, or one after another. */
+#include "step_watch.h"
 #include "sweep.h"
 
 #include <math.h>
@@ -205,13 +206,16 @@ static void look_at_one(Runner *r)
         record(slot, c, output[sweep->scene->column[c]]);
 }
 
-static void run_one(Runner *r)
+/* One with constant steps is watched: what tires or stops keep within bounds has the status of what they don't. */
+static void run_one(Runner *r, Pool *pool)
 {
     const Sweep *sweep = r->sweep;
     const gic_model *code = sweep->engine->code;
     Slot *slot = r->slot;
     const Scene *scene = &slot->scene;
     Variable *variable = scene->method >= METHOD_ADAMS ? variable_open(code, scene->method, scene->tolerance) : NULL;
+    StepWatch *watch = step_watch_new(pool, sweep->model, scene, sweep->engine);
+    const char *remedy;
     slot->status = begin(sweep, slot, r->one);
     if (slot->status == GIC_OK)
         look_at_one(r);
@@ -220,6 +224,8 @@ static void run_one(Runner *r)
         int64_t left = scene->per_output;
         while (slot->status == GIC_OK && !r->stopped && (variable ? gic_time(r->one) < end : left > 0)) {
             slot->status = scene_step(sweep->engine, code, scene, variable, r->one, end);
+            if (watch && slot->status == GIC_OK)
+                step_watch_step(watch, code, r->one, r->copy);
             if (left-- % CHUNK == 0)
                 look_around(r);
         }
@@ -228,6 +234,8 @@ static void run_one(Runner *r)
             look_at_one(r);
     }
     variable_close(variable);
+    if (watch && slot->status == GIC_OK && !r->stopped && step_watch_judge(watch, &remedy))
+        slot->status = GIC_ERROR_UNSTABLE;
     look_around(r);
 }
 
@@ -281,7 +289,7 @@ bool sweep_run(const Sweep *sweep)
         if (more && sweep->many)
             run_lanes(&r);
         else if (more)
-            run_one(&r);
+            run_one(&r, own);
         if (more && !r.stopped)
             keep(&r);
         pool_free(own);

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_step_watch.sh GICRUN: runs that tires or stops keep within bounds although their steps are too long are reported,
-# with time and quantity; others are not, and no run is changed by being watched.
+# test_step_watch.sh GICRUN GICSWEEP: runs that tires or stops keep within bounds although their steps are too long are
+# reported, with time and quantity; others are not, and no run is changed by being watched.
 gicrun=$(realpath "$1")
+gicsweep=$(realpath "$2")
 models=$(dirname "$0")/../models
 # shellcheck source=tests/checking.sh
 . "$(dirname "$0")/checking.sh"
@@ -138,6 +139,18 @@ for file in "$models"/scenes/*.scene; do
     file=$(basename "$file" .scene)
     check "$file is among them" [ "${tried#* "$file" }" != "$tried" ]
 done
+
+# in a sweep whose runs go one after another, as those with tires do, such a run has the status of an unstable one
+statuses() {
+    scene tires_park rk4 1 "$1" 4.8 0.24
+    "$gicsweep" -q "$models/hmmwv_tmeasy.veh" "$work/tires_park.scene" --vary brake=0.6:0.7:2 \
+        -o "$work/sweep.csv" 2>"$work/err"
+    sed 1d "$work/sweep.csv" | cut -d, -f3,4 | tr '\n' ' '
+    rm -f "$work"/sweep.csv*
+}
+unstable=$(sed -n 's/.*X(GIC_ERROR_UNSTABLE, \(-[0-9]*\),.*/\1/p' "$models/../runtime/gic_runtime.h")
+check "a sweep, 0.024 s: unstable" [ "$(statuses 0.024)" = "$unstable,4.8 $unstable,4.8 " ]
+check "a sweep, 0.016 s: good" [ "$(statuses 0.016)" = "0,4.8 0,4.8 " ]
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
