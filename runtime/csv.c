@@ -58,11 +58,11 @@ Csv csv_open(Pool *pool, const char *path)
             diag_fail(gicrun_place, "choose another place with -o", "can't open %s: %s", path, strerror(errno));
     } else if (strcmp(path, "-")) {
         const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid());
+        watch(temporary); /* which takes memory itself: there is nothing yet that could be left */
         csv.file = fopen(temporary, "w");
         if (!csv.file)
             write_fail(&(Csv){.path = path, .temporary = temporary}, "create");
         csv.temporary = temporary;
-        watch(temporary);
     }
     return csv;
 }

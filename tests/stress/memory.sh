@@ -114,8 +114,8 @@ attack() {
     [ ! -d sound ] || by=$(((all + 199) / 200))
     [ "$STRESS" != short ] || by=$(((all + 24) / 25))
     tried=0 good=0 refused=0 wrong='' fallen=0
-    at=1
-    while [ $at -le "$all" ]; do
+    # where not all are tried, the last ones too: by then there are results
+    for at in $(seq 1 "$by" "$all") $([ "$by" -eq 1 ] || seq $((all - 3)) "$all"); do
         rm -rf results*
         DENY=$at LD_PRELOAD=./deny.so timeout 60 "$@" >out 2>err
         status=$?
@@ -135,7 +135,6 @@ attack() {
         else
             refused=$((refused + 1))
         fi
-        at=$((at + by))
     done
     [ $fallen -eq 0 ] || wrong=${wrong:-ok: MUMPS falls $fallen times}
     echo "memory | $name | $tried | $good | $refused | $all allocations | ${wrong:-ok}"
