@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_bench.sh GICBENCH: a short benchmark from end to end: all files are there and whole, tables can be read, what is
-# unstable is called so, errors are those of the integrators. No time is tested but against others of the same page.
+# unstable is called so, errors are those of the integrators. No time is tested but for hanging together with others of
+# the same page, which it does on any machine, however busy.
 gicbench=$1
 # shellcheck source=tests/checking.sh
 . "$(dirname "$0")/checking.sh"
@@ -76,31 +77,35 @@ check 'right-hand sides of every engine, compiled in several ways' awk -F, '
         if ($1 ~ /augmented/) augmented = 1; if ($1 ~ /FLOAT/) single = 1}
     END {exit bad || !(plain && fast && augmented && single && names["tcc"] && names["tape"] && names["gic"] &&
         names["gcp1"] && names["gcp2"])}' "$work/page/rhs.csv"
-# ratios are medians of three of the same run, times too: what disturbs one repetition is a factor of two at most
+# A time is the median of some repetitions, between the lowest and the highest; so is a ratio, repetition by repetition.
+# Whatever else the machine does meanwhile, it is one of the extremes over the other at most, but for the digits printed.
 check 'ratios to interpreted engines are those of the times' awk -F, '
     NR == 1 {for (i = 5; i <= NF; ++i) if ($i ~ / over it$/) {name = $i; sub(/ .*/, "", name); column[name] = i}}
-    NR > 1 {time[$1] = $2; row[$1] = $0}
+    NR > 1 {low[$1] = $3; high[$1] = $4; row[$1] = $0}
     END {for (name in column) for (r in row) {
-            split(row[r], cell, ","); ratio = cell[column[name]] * time[r] / time[name]; ++n
-            if (!(ratio > 0.5 && ratio < 2) || (r == name && cell[column[name]] != 1)) bad = 1}
+            split(row[r], cell, ","); ratio = cell[column[name]]; ++n
+            if (!(ratio * high[r] > 0.99 * low[name] && ratio * low[r] < 1.01 * high[name])) bad = 1
+            if (r == name && ratio != 1) bad = 1}
         exit bad || n < 4 * 13}' "$work/page/rhs.csv"
 # two multiply-adds a cycle and register at most, and 0.1 to 10 GHz
 check 'the multiply-adds of the processor are plausible' awk -F, '
-    NR > 1 {lanes[NR] = $1; rate[NR] = $2; if (!($3 <= $2 && $2 <= $4)) bad = 1}
-    END {exit bad || NR != 3 || lanes[2] != 1 || !(rate[2] > 0.1 && rate[2] < 20) ||
-        !(rate[3] > 0.7 * rate[2] && rate[3] < 1.3 * lanes[3] * rate[2])}' "$work/page/limit.csv"
+    NR > 1 {lanes[NR] = $1; if (!($3 <= $2 && $2 <= $4 && $2 > 0.1 * $1 && $2 < 20 * $1)) bad = 1}
+    END {exit bad || NR != 3 || lanes[2] != 1 || !(lanes[3] > 1)}' "$work/page/limit.csv"
 # the scene's step of 10 ms is ten times what AB3 can take
 check 'steps that AB3 can not make have no time' awk -F, 'NR > 1 {++n; if ($2 != "unstable" || $5 != "unstable") bad = 1}
     END {exit bad || n < 4}' "$work/page/rhs_step.csv"
-# tens of operations take longer than their share of the limit, or it is none: half as long would be noise no more
-check 'limits follow from operations and rates, and no code is beyond them' awk -F, '
-    FILENAME ~ /operations/ {if ($1 == "recovery") least = $3; if ($1 == "all (reduced)") {work = $2 + $3}; next}
-    FILENAME ~ /limit/ {if ($1 == 1) rate = $2; next}
+# twice as many operations as multiply-adds, at rates and times between their extremes
+check 'limits follow from operations and rates, and parts of them from times' awk -F, '
+    function within(value, low, high) {return value > 0.99 * low && value < 1.01 * high}
+    FILENAME ~ /operations/ {if ($1 == "all (reduced)") work = $2 + $3; next}
+    FILENAME ~ /limit/ {++rates; low[rates] = $3; high[rates] = $4; next}
     FNR == 1 {for (i = 5; i <= NF; ++i) if ($i == "limit [ns]") l = i; next}
-    $1 !~ /^(tape|gic|gcp)/ {++n; part = $(l + 1); if (!(part > 0 && part < 1.5 && $(l + 3) <= part * 1.01)) bad = 1
-        if (!(part * $2 > $l / 2 && part * $2 < 2 * $l)) bad = 1
-        if ($1 ~ / -O2$/) {expected = work / (2 * rate); if (!($l > 0.6 * expected && $l < 1.6 * expected)) bad = 1}}
-    END {exit bad || n < 6}' "$work/page/rhs_operations.csv" "$work/page/limit.csv" "$work/page/rhs.csv"
+    $1 ~ / -O2$/ {for (k = 2; k <= 3; ++k) { # rates: a heading, one at a time, in lanes
+            at = l + 2 * (k - 2); ++n
+            if (!within($at, work / (2 * high[k]), work / (2 * low[k]))) bad = 1
+            if (!within($(at + 1), work / (2 * high[k]) / $4, work / (2 * low[k]) / $3)) bad = 1}}
+    $1 !~ /^(tape|gic|gcp)/ {++m; if (!($(l + 1) > 0 && $(l + 3) > 0)) bad = 1}
+    END {exit bad || n < 4 || m < 6}' "$work/page/rhs_operations.csv" "$work/page/limit.csv" "$work/page/rhs.csv"
 # stiffness times extension, damping times rate, their sum; what else there is belongs to other parts
 check 'force laws are counted apart' grep -qx 'force laws,1,2,0,0,0' "$work/page/rhs_operations.csv"
 
@@ -188,9 +193,9 @@ wheels:
 XXX
 rhs -o "$work/box" "$work/box.veh"
 check 'a box on tires' [ $? -eq 0 ]
-check 'a fast step takes time, but less than a right-hand side' awk -F, '
-    FNR == 1 {next} FILENAME ~ /fast/ {++n; if (!($2 > 0 && $2 < time[$1])) bad = 1; next} {time[$1] = $2}
-    END {exit bad || n < 8}' "$work/box/rhs.csv" "$work/box/rhs_fast.csv"
+check 'a fast step has a time of its own for every variant' awk -F, '
+    FNR == 1 {++files; next} !($3 > 0 && $3 <= $2 && $2 <= $4) {bad = 1} {seen[$1] += files}
+    END {for (name in seen) {++n; if (seen[name] != 3) bad = 1} exit bad || n < 8}' "$work/box/rhs.csv" "$work/box/rhs_fast.csv"
 
 # a scene as it stands: shares of a step, which no clock inside takes
 models=$(cd "$(dirname "$0")/../models" && pwd)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # test_jit.sh GICGEN GICRUN STATES DENY_EXEC: the engines `tcc` and `auto`. Both do the operations of the other engines
 # that run generated formulas in the same order, so results must agree byte by byte, and so must statuses: with compiled
-# code along scenes of every model, with `tape` at ROWS (default 20) random states. What is fast must be: see below. And
-# what can be missing is: compiler, folder for temporary files, executable memory.
+# code along scenes of every model, with `tape` at ROWS (default 20) random states. What can be missing
+# is: compiler, folder for temporary files, executable memory.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 states=$(realpath "$3")
@@ -83,41 +83,6 @@ done
 same_states reactions.veh
 same_states reactions.veh --solve augmented
 
-# ---- fast enough --------------------------------------------------------------------------------------------------
-
-# From the model's file to the end of the first step of the HMMWV in 0.1 s on an idle machine: here as CPU time, the mean of
-# 10, because other processes take their share of this one. FIRST_STEP: for programs compiled for debugging.
-printf '%s\n' 'gicscene: 1' 'duration: 0.005' 'step: 0.005' >step.scene
-(
-    for _ in 1 2 3 4 5 6 7 8 9 10; do
-        alone -q --engine auto "$root/models/hmmwv.veh" step.scene -o step.csv 2>said
-    done
-    times
-) >times
-awk -v most="${FIRST_STEP:-0.1}" 'NR == 2 { # user and system time of children, 0m0.71s each
-        split($0, part, /[ms ]+/)
-        mean = (60 * (part[1] + part[3]) + part[2] + part[4]) / 10
-        print "the first step takes", mean, "s"
-    }
-    END { exit !(mean > 0 && mean < most) }' times >said
-verdict $? "the first step within 0.1 s"
-
-# the CPU time of steps is that of right-hand sides but for some per cent: at most 2.5 times that of cc -O2. By turns, the
-# shortest of 10 each: a processor that others use as well is at times twice as slow
-sed 's/^duration.*/duration: 4/; s/^step:.*/step: 0.0002/; s/^output_step:.*/output_step: 1/' \
-    "$root/models/scenes/paper_run.scene" >many.scene
-for _ in 1 2 3 4 5 6 7 8 9 10; do
-    for engine in tcc cc; do
-        "$gicrun" --engine $engine "$root/models/hmmwv.veh" many.scene -o many.csv 2>said
-        sed -n "s/^  CPU time *\([0-9.e-]*\) s in steps.*/$engine \1/p" said
-    done
-done >turns
-for engine in tcc cc; do
-    sed -n "s/^$engine //p" turns | sort -g | head -n 1
-done | tr '\n' ' ' >times
-awk '{ print "tcc", $1, "s, cc", $2, "s"; exit !($1 < 2.5 * $2) }' times >said
-verdict $? "steps take at most 2.5 times as long as with cc -O2"
-
 # ---- auto: compiled code takes over -------------------------------------------------------------------------------
 
 # some seconds, and a model that is compiled in a fraction of one
@@ -160,10 +125,9 @@ alone -q --engine tcc "$pendulum" variable.scene -o variable.csv 2>said &&
 verdict $? "auto: changes between variable steps"
 
 # a compiler that takes its time is ended with the run, or with a signal
-printf 'echo $$ >%s/pid\nsleep 30\n' "$work" >slow
-before=$(date +%s)
+printf 'echo $$ >%s/pid\nsleep 3000\n' "$work" >slow
 "$gicrun" -q --cc "sh $work/slow" "$pendulum" long.scene -o auto.csv 2>said && cmp long.csv auto.csv >>said &&
-    [ $(($(date +%s) - before)) -lt 25 ] && [ -s pid ] && ! kill -0 "$(cat pid)" 2>/dev/null && clean
+    [ -s pid ] && ! kill -0 "$(cat pid)" 2>/dev/null && clean
 verdict $? "auto: a run that ends before the compiler"
 rm -f pid
 sed 's/^duration: .*/duration: 100000/' long.scene >longer.scene

@@ -189,10 +189,11 @@ static void screen(Attack *attack, gic_head *const from[2], const double *number
     keep(&attack->worst, attack, number, worst);
 }
 
-/* Is what a refusal left of the instance as good as the one before? The last good state is found again, where it was.
- * Right at the bound rounding may refuse what it took before, from another start: then what is a little before it is.
+/* Is what a refusal left of the instance as good as the one before? The last good state is found again, where it was:
+ * `low` of the way from `good` to `target`. Right at the bound rounding may refuse what it took before, from another
+ * start: then what is a little before it, on the way that led there, is. That of good itself is the one from `origin`.
  */
-static bool goes_on(Attack *attack, double *good, double *target, double low, const double *known)
+static bool goes_on(Attack *attack, double *origin, double *good, double *target, double low, const double *known)
 {
     static const double back[] = {0, 1e-9, 1e-6, 1e-3};
     const int poses = attack->numbers + attack->states;
@@ -200,7 +201,10 @@ static bool goes_on(Attack *attack, double *good, double *target, double low, co
     gic_head *left = attack->left;
     memcpy(left, attack->code.self, attack->code.code->size);
     for (int i = 0; i < 4; ++i) {
-        mix(attack, good, target, low * (1 - back[i]), number);
+        if (low > 0)
+            mix(attack, good, target, low * (1 - back[i]), number);
+        else
+            mix(attack, good, origin, back[i], number);
         if (evaluate(attack, &attack->code, left, number) != GIC_OK)
             continue;
         /* poses move as a root at most: 1e-9 before the bound is 3e-5 of the way there */
@@ -209,8 +213,9 @@ static bool goes_on(Attack *attack, double *good, double *target, double low, co
     return false;
 }
 
-/* From the good state of the walk towards another: the last that is taken becomes the good one. */
-static void creep(Attack *attack, double *good, double *target)
+/* From the good state of the walk, reached from `origin`, towards another: the last that is taken becomes the good one,
+ * and that before it the origin. */
+static void creep(Attack *attack, double *origin, double *good, double *target)
 {
     const size_t size[] = {attack->code.code->size, attack->other.code->size};
     double number[attack->whole], known[attack->whole], low = 0, high = 1;
@@ -222,7 +227,7 @@ static void creep(Attack *attack, double *good, double *target)
         ++attack->tried;
         if (evaluate(attack, &attack->code, attack->good[0], number) != GIC_OK) {
             ++attack->refused;
-            attack->lost += any && !goes_on(attack, good, target, low, known);
+            attack->lost += any && !goes_on(attack, origin, good, target, low, known);
             high = share;
             continue;
         }
@@ -236,6 +241,8 @@ static void creep(Attack *attack, double *good, double *target)
         low = share;
     }
     mix(attack, good, target, low, number);
+    if (low > 0)
+        memcpy(origin, good, sizeof *good * (size_t)attack->numbers);
     memcpy(good, number, sizeof *good * (size_t)attack->numbers);
 }
 
@@ -248,15 +255,16 @@ static void coordinates_of(const Attack *attack, double *number, double *x)
 
 static void walk(Attack *attack, double *target)
 {
-    double good[attack->whole];
+    double good[attack->whole], origin[attack->whole];
     memcpy(good, instance_array(attack->code.fresh, attack->code.code->state_offset),
            sizeof *good * (size_t)attack->states);
     memcpy(good + attack->states, instance_array(attack->code.fresh, attack->code.code->input_offset),
            sizeof *good * (size_t)attack->inputs);
+    memcpy(origin, good, sizeof origin);
     memcpy(attack->good[0], attack->code.fresh, attack->code.code->size);
     memcpy(attack->good[1], attack->other.fresh, attack->other.code->size);
     for (int leg = 0; leg < LEGS; ++leg) {
-        creep(attack, good, target);
+        creep(attack, origin, good, target);
         random_state(attack, target);
         attack->astray = attack->astray || evaluate(attack, &attack->other, attack->good[1], good) != GIC_OK;
         memcpy(attack->good[1], attack->other.self, attack->other.code->size);
