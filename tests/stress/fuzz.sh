@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # fuzz.sh GICGEN RANDOM_VEHICLE: readers of models, formulas, tires, scenes and roads under clang's libFuzzer with
-# sanitizers (tests/fuzz/fuzz.c, which `make fuzz` builds), for SECONDS_EACH (short: 6, full: 60) each, from seeds:
+# sanitizers (tests/fuzz/fuzz.c, which `make fuzz` builds), for SECONDS_EACH (60, short or full) each, from seeds:
 # tests/fuzz/seeds, the project's own files, sound and broken, and random vehicles, of which 40 reach as many branches
 # as some ten minutes of fuzzing without them. What it made of them is gone afterwards but for findings, which stay in
 # $BUILD/stress/fuzz.
@@ -10,8 +10,7 @@ build=$(dirname "$gicgen")
 fuzz=$build/fuzz/check/fuzz
 random_vehicle=$(realpath "$2")
 cd "$(dirname "$0")/../.." || exit 1
-[ "$STRESS" = short ] && usual=6 vehicles=2 || usual=60 vehicles=40
-seconds=${SECONDS_EACH:-$usual}
+seconds=${SECONDS_EACH:-60}
 found=$build/stress/fuzz
 mkdir -p "$found" || exit 1
 work=$(mktemp -d) || exit 1
@@ -35,7 +34,7 @@ seeds() {
 
 # random vehicles in one file; they have no other to read a tire from
 mkdir "$work/random"
-for seed in $(seq "$vehicles"); do
+for seed in $(seq 40); do
     "$random_vehicle" --seed "$seed" --rich "$work" --tire models/tires/hmmwv_pac2002.tir || exit 1
     other=$(sed -n 's/^  \(tmeasy_[0-9]*\): .*/\1/p' "$work/$seed.plain.veh")
     sed "/^  pacejka_/d; s/tire: pacejka_[0-9]*/tire: $other/" "$work/$seed.plain.veh" >"$work/random/$seed.veh"
