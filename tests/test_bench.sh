@@ -119,8 +119,8 @@ check 'starts are measured for every engine' awk -F, '
     END {exit bad || names != " cc cc (kept) tcc tape gic gcp1 gcp2"}' "$work/page/start.csv"
 check 'cc and tcc compile, what is kept or interpreted is not compiled' awk -F, '
     NR > 1 && ($1 == "cc" || $1 == "tcc") != ($2 > 0) {bad = 1} END {exit bad || NR != 8}' "$work/page/start.csv"
-check 'a kept object starts sooner than a compiler does' awk -F, '
-    $1 == "cc" {compiled = $9} $1 == "cc (kept)" {kept = $10}
+check 'a kept object starts sooner at best than a compiler does at worst' awk -F, '
+    $1 == "cc" {compiled = $10} $1 == "cc (kept)" {kept = $9}
     END {exit !(kept > 0 && kept < compiled)}' "$work/page/start.csv"
 # the object itself, one of those of all variants, says how large it is: segments end within a page of the sections that
 # they hold
@@ -204,9 +204,12 @@ drive() { "$gicbench" --drive --quick --engines tape,gic "$@" >"$work/out" 2>"$w
 drive -o "$work/drive" "$models/hmmwv_vehicle.veh" "$work/drive.scene"
 check 'a scene as it stands' [ $? -eq 0 ]
 check 'it is printed too' grep -q 'Where the time of a step goes' "$work/out"
-# parts are timed one by one, so that with caches warm or cold, and on a busy machine, they may miss the step by half
-check 'parts are positive and together about a step' awk -F, '
-    NR > 1 {++n; parts = $7 + $8 + $9; if (!($2 > 0 && $7 > 0 && $8 > 0 && parts > $6 / 2 && parts < 2 * $6)) bad = 1}
+# parts are timed one by one, and what is left of a step is whatever they miss; cells have two or three digits
+check 'parts are positive and, with what is left, a step; tires and driveline have their share' awk -F, '
+    function apart(a, b) {return a > b ? a - b : b - a}
+    NR > 1 {++n; parts = $7 + $8 + $9; if (!($2 > 0 && $7 > 0 && $8 > 0)) bad = 1
+        if (apart(parts + $10, $6) > 0.06 * (parts + apart($10, 0))) bad = 1
+        if (apart($11, 100 * ($8 + $9) / $6) > 1 + 0.06 * $11) bad = 1}
     END {exit bad || n != 2}' "$work/drive/drive.csv"
 printf 'gicscene: 1\nduration: 0.2\nstep: 0.004\nratio: 4\ninitial: {velocity: [10, 0, 0]}\n' >"$work/box.scene"
 "$gicbench" --drive --quick --engines cc -o "$work/lanes" "$work/box.veh" "$work/box.scene" >"$work/out" 2>"$work/err"
