@@ -24,6 +24,7 @@ static const int whole[] = {INT_MIN, -1000, -3, -1, 0, 1, 2, 3, 4, 5, 17, 1 << 2
 enum { POISONS = sizeof poison / sizeof *poison, WHOLES = sizeof whole / sizeof *whole };
 
 enum { WARM = 8, AFTER = 4 }; /* steps before, and after the number is taken back */
+enum { PATIENCE = 60 };       /* seconds for a call: on a busy machine some of gcp2 take 20 */
 static const double step = 1e-4;
 
 typedef struct Trial {
@@ -304,7 +305,7 @@ static void attack(Trial *t, int function)
     t->callee = functions[function].name;
     snprintf(now, sizeof now, "%s: %s = %g into %s", t->code->name, t->what, t->value, t->callee);
     memcpy(t->before, t->self, t->code->size);
-    alarm(20);
+    alarm(PATIENCE);
     const int status = functions[function].call(t);
     alarm(0);
     ++t->tried;
@@ -473,7 +474,7 @@ static void attack_setup(Trial *t)
             t->callee = "setup_with";
             snprintf(now, sizeof now, "%s: %s = %g into setup_with", code->name, t->what, t->value);
             given[i] = poison[k];
-            alarm(20);
+            alarm(PATIENCE);
             const int status = code->setup_with(t->self, given);
             alarm(0);
             given[i] = wanted[i];
