@@ -148,7 +148,7 @@ static bool flow_push(Flow *flow, int source)
 
 /* ---- diagnosis -------------------------------------------------------------------------------- */
 
-enum { NAMES_SHOWN = 12 };
+enum { NAMES_SHOWN = 12, NAMES_MOST = 16 };
 
 /* A part of the graph that is to be reported. */
 typedef struct Part {
@@ -198,10 +198,11 @@ static void part_add_edges(const Graph *graph, Part *part)
 /* Append `'a', 'b' and 3 more`. */
 static void name_add(Text *text, const char *name, int position, int count)
 {
-    if (position < NAMES_SHOWN)
+    const int shown = count > NAMES_MOST ? NAMES_SHOWN : count; /* a few more are named as soon as counted */
+    if (position < shown)
         text_print(text, "%s'%s'", position ? ", " : "", name);
-    else if (position == NAMES_SHOWN)
-        text_print(text, " and %d more", count - NAMES_SHOWN);
+    else if (position == shown)
+        text_print(text, " and %d more", count - shown);
 }
 
 static const char *body_names(const Graph *graph, const Part *part)

@@ -106,9 +106,11 @@ static double *numbers(Reader *reader, const Value *value, const char *what, int
 void tables_read(Reader *reader, const Item *map)
 {
     Model *model = reader->model;
-    Entry *entry = section_entries(reader, map, "table", &model->tables);
-    model->table = pool_alloc(reader->pool, sizeof *model->table * (size_t)(model->tables + 1));
-    for (int i = 0; i < model->tables; ++i) {
+    int tables;
+    Entry *entry = section_entries(reader, map, "table", &tables);
+    model->table = pool_alloc(reader->pool, sizeof *model->table * (size_t)(tables + 1));
+    /* numbers of a table may be formulas of those before it */
+    for (int i = 0; i < tables; model->tables = ++i) {
         Value value[TABLE_KEYS];
         Table *table = &model->table[i];
         int count;

@@ -353,9 +353,10 @@ void coordinates_read(Reader *reader, const Item *map)
     const char **name = pool_alloc(reader->pool, sizeof *name * room);
     Place *at = pool_alloc(reader->pool, sizeof *at * room);
     for (int i = 0; i < model->coordinates; ++i) {
-        coordinate_read(reader, entry + i, model->coordinate + i);
-        name[i] = entry[i].name;
+        model->coordinate[i].name = name[i] = entry[i].name; /* formulas of any of them may name any other */
         at[i] = entry[i].at;
     }
+    for (int i = 0; i < model->coordinates; ++i)
+        coordinate_read(reader, entry + i, model->coordinate + i);
     generated_names_check(reader, "coordinate", name, at, model->coordinates);
 }

@@ -418,7 +418,8 @@ def _(entry):
 
 # ---- formulas --------------------------------------------------------------------------------------------------------
 
-def formula(name, change, *says):
+def formula(name, change, *says, steady=True):
+    """In a law and, where nothing in it asks for time, in a number of the geometry."""
     @kind(f"formula: {name}")
     def _(vehicle, rng):
         places = [(entry, key) for section in ("forces", "wheels", "differentials", "powertrain")
@@ -428,6 +429,20 @@ def formula(name, change, *says):
             return None
         entry, key = rng.choice(places)
         return entry.change(key, '"' + change(entry.map[key][1:-1]) + '"').mistake(key, *says)
+
+    if not steady:
+        return
+
+    @kind(f"formula of geometry: {name}")
+    def _(vehicle, rng):
+        places = [(entry, key, piece) for section in ("points", "bodies", "joints", "coordinates")
+                  for entry in vehicle.entries(section) for key, text in entry.map.items()
+                  if text.startswith("[") for piece in re.findall('"[^"]*"', text)]
+        if not places:
+            return None
+        entry, key, piece = rng.choice(places)
+        text = entry.map[key].replace(piece, '"' + change(piece[1:-1]) + '"', 1)
+        return entry.change(key, text).mistake(key or entry.name, *says)
 
 
 formula("parenthesis not closed", lambda text: text + " + (1")
@@ -443,7 +458,7 @@ formula("too many arguments", lambda text: f"sin({text}, 1)", "sin")
 formula("if without an else", lambda text: f"if({text}, 1)", "if")
 formula("assignment", lambda text: "x = " + text)
 formula("rate of a number", lambda text: text + " + rate(3)", "rate")
-formula("rate of what is no coordinate", lambda text: text + " + rate(nothing)", "nothing")
+formula("rate of what is no coordinate", lambda text: text + " + rate(nothing)", "nothing", steady=False)
 formula("character that there isn't", lambda text: text + " + 1$")
 formula("number that is too large", lambda text: text + " + 1e999")
 formula("number cut short", lambda text: text + " + 1e")
