@@ -198,6 +198,9 @@ batched := hmmwv steered quarter_car
 $(code)/%_batch.c: $(code)/%.c
 	$(BUILD)/gicgen --batch 8 $(firstword $(wildcard $(code)/$*.veh models/$*.veh)) -o $@
 
+# vectors are passed between functions of one file alone, so that an older gcc's way to do it is no matter
+$(batched:%=$(code)/%_batch.o): WARNINGS += -Wno-psabi
+
 $(BUILD)/tests/test_batch.o: tests/test_batch.c $(batched:%=$(code)/%_batch.c)
 	@mkdir -p $(@D)
 	$(COMPILE) -I$(code) -c -o $@ $<
