@@ -548,15 +548,26 @@ static void step_table(const Course *course)
                   "The step function is this program's, compiled with its own flags.";
 }
 
-/* Additions and multiplications of a right-hand side in lanes: of vectors; of single numbers. */
-static void lane_work(const Course *course, const Subject *subject, double *vector, double *scalar)
+/* The same vehicle without what makes forces: packed, force laws are no part of the equations of motion that could be
+ * counted apart. */
+static const Model *without_forces(Pool *pool, const Model *model)
+{
+    Model *bare = pool_alloc(pool, sizeof *bare);
+    *bare = *model;
+    bare->forces = bare->wheels = bare->fast_states = bare->ports = bare->outputs = bare->output_components = 0;
+    bare->powertrain = NULL;
+    return bare;
+}
+
+/* Additions and multiplications of a right-hand side of a model in lanes: of vectors; of single numbers. */
+static void lane_work(const Course *course, const Subject *subject, const Model *model, double *vector, double *scalar)
 {
     const Bench *bench = course->bench;
     Pool *pool = bench->pool;
-    const Sequence *sequence = sequence_find(pool, bench->model);
+    const Sequence *sequence = sequence_find(pool, model);
     const Recovery recovery = subject->variant->newton ? RECOVERY_NEWTON : bench->options.recovery;
     const Formulation *f =
-        formulate(pool, model_assemble(pool, bench->model, sequence), sequence, subject->variant->solve, recovery);
+        formulate(pool, model_assemble(pool, model, sequence), sequence, subject->variant->solve, recovery);
     f = formulation_lanes(pool, f, subject->variant->lanes);
     const Figures *figures = figures_new(pool, f);
     const double chords = average_chords(subject, figures);
@@ -586,18 +597,23 @@ static void lanes_table(const Course *course)
     const Bench *bench = course->bench;
     Pool *pool = bench->pool;
     double *limit = pool_alloc(pool, sizeof *limit * (size_t)bench->repetitions);
-    Sheet *table = report_table(bench->report, "rhs_lanes", "Alike parts side by side",
-                                "variant|operations on vectors|on single numbers|times as fast as one by one|low|high|"
-                                "limit [ns]|times the limit");
+    Sheet *table =
+        report_table(bench->report, "rhs_lanes", "Alike parts side by side",
+                     "variant|operations on vectors|on single numbers|on vectors without forces|"
+                     "on single numbers without them|times as fast as one by one|low|high|limit [ns]|times the limit");
+    const Model *bare = without_forces(pool, bench->model);
     for (int s = 0; s < course->subjects; ++s) {
         const Subject *subject = &course->subject[s], *alone = without_lanes(course, subject->variant);
-        double vector, scalar;
+        double vector, scalar, bare_vector, bare_scalar;
         if (!subject->variant->lanes || !alone || subject->status != GIC_OK || alone->status != GIC_OK)
             continue;
-        lane_work(course, subject, &vector, &scalar);
+        lane_work(course, subject, bench->model, &vector, &scalar);
+        lane_work(course, subject, bare, &bare_vector, &bare_scalar);
         table_cell(pool, table, "%s", subject->name);
         table_cell(pool, table, "%.0f", vector);
         table_cell(pool, table, "%.0f", scalar);
+        table_cell(pool, table, "%.0f", bare_vector);
+        table_cell(pool, table, "%.0f", bare_scalar);
         spread_cells(pool, table, spread_of_ratio(pool, alone->rhs, subject->rhs, bench->repetitions), 1);
         for (int r = 0; r < bench->repetitions; ++r)
             limit[r] = (vector + scalar) / (2 * course->limit[r].scalar);
@@ -605,8 +621,9 @@ static void lanes_table(const Course *course)
         table_cell(pool, table, "%.3g", spread_of_ratio(pool, subject->rhs, limit, bench->repetitions).median);
     }
     table->note =
-        "Additions and multiplications, force laws among them, those of a whole vector counted once; the limit "
-        "is what they would take, two in each multiply-add, at the rate of multiply-adds one after another. "
+        "Additions and multiplications, those of a whole vector counted once, with force laws and, of the same vehicle "
+        "without anything that makes forces, without; the limit is what the former would take, two in each "
+        "multiply-add, at the rate of multiply-adds one after another. "
         "One by one: by the same compiler with the same flags.";
 }
 

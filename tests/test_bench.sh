@@ -220,6 +220,15 @@ drive "$work/soft.veh" "$work/cart.scene"
 check 'a model without wheels: multibody alone' grep -q '^tape .* 0 *0 *[-0-9.e]* *0 *1 *1 *1 *0$' "$work/out"
 # ---- in lanes
 
+# four sledges in one vector of four: it does at least a fourth of what they need one by one, and no more than each of
+# them alone; without forces there is less to do
+rhs -o "$work/sledges" "$(dirname "$0")/pivots/sledges.veh"
+check 'alike parts in lanes' [ $? -eq 0 ]
+check 'operations in lanes are a fourth of those one by one, or some more' awk -F, '
+    FILENAME ~ /operations/ {if ($1 == "all (reduced)") all = $2 + $3; next}
+    FNR > 1 && !/newton/ {++n; if (!(4 * $2 + $3 >= all && $2 + $3 < all && $4 <= $2 && $5 <= $3 && $4 > 0)) bad = 1}
+    END {exit bad || n < 1}' "$work/sledges/rhs_operations.csv" "$work/sledges/rhs_lanes.csv"
+
 "$gicbench" --batch 8 --quick "$work/soft.veh" "$work/cart.scene" >"$work/out" 2>"$work/err"
 check 'vehicles in lanes' [ $? -eq 0 ]
 check 'all ways have times, and the same states' awk '/^way / {on = 1; next} on && NF {++n; if (!($(NF - 2) > 0 && $NF == 0)) bad = 1}
