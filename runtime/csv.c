@@ -101,14 +101,19 @@ void csv_time(Csv *csv, double value)
     fprintf(csv->file, "%.15g", value);
 }
 
+const char *csv_digits(double value, char text[CSV_DIGITS])
+{
+    snprintf(text, CSV_DIGITS, "%.15g", value); /* 0.1 rather than 0.10000000000000001 */
+    if (strtod(text, NULL) != value)
+        snprintf(text, CSV_DIGITS, "%.17g", value);
+    return text;
+}
+
 void csv_number(Csv *csv, double value)
 {
-    char text[32];
+    char text[CSV_DIGITS];
     cell(csv);
-    snprintf(text, sizeof text, "%.15g", value); /* 0.1 rather than 0.10000000000000001 */
-    if (strtod(text, NULL) != value)
-        snprintf(text, sizeof text, "%.17g", value);
-    fputs(text, csv->file);
+    fputs(csv_digits(value, text), csv->file);
 }
 
 void csv_text(Csv *csv, const char *text)

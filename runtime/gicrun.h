@@ -175,6 +175,8 @@ const char *csv_quoted(Pool *pool, const char *text);
 void csv_name(Csv *csv, const char *name, const char *unit); /* a cell `name [unit]`; unit may be NULL */
 void csv_time(Csv *csv, double value);                       /* to 15 digits: 0.28, as a person would write it */
 void csv_number(Csv *csv, double value);                     /* reads back bit-exactly */
+enum { CSV_DIGITS = 32 };                                    /* room for a number as text */
+const char *csv_digits(double value, char text[CSV_DIGITS]); /* the text of csv_number(), in `text` */
 void csv_text(Csv *csv, const char *text);                   /* in quotes; NULL: an empty cell */
 void csv_end_row(Csv *csv);
 void csv_close(Csv *csv);   /* exits with a message where not all could be written */

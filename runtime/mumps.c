@@ -36,6 +36,16 @@ typedef struct Mumps {
     Scaling *scaling;
 } Mumps;
 
+void mpi_abort_(const int *communicator, const int *code, int *error);
+
+/* Where MUMPS gets no memory for its first steps it calls this function of MPI. That of the library for one process, in
+ * whose place this one is, would end the program with status 0, as if all were well. */
+void mpi_abort_(const int *communicator, const int *code, int *error)
+{
+    (void)communicator, (void)code, (void)error;
+    diag_fail(gicrun_place, "is there memory enough?", "MUMPS gave up");
+}
+
 /* Call MUMPS, with more room where that is missing. */
 static void run(DMUMPS_STRUC_C *mumps, int job)
 {

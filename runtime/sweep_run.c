@@ -108,28 +108,27 @@ static void record(Slot *slot, int column, double value)
     range->greatest = first ? value : fmax(range->greatest, value);
 }
 
-/* Its row of the results. */
-static const char *row_text(const Sweep *sweep, const Slot *slot)
+static void add_number(Text *row, double value)
 {
-    char *bytes = NULL;
-    size_t size = 0;
-    Csv csv = {.file = open_memstream(&bytes, &size)};
-    if (!csv.file)
-        diag_fail(gicrun_place, NULL, "no memory for results");
-    csv_number(&csv, (double)slot->run);
+    char digits[CSV_DIGITS];
+    text_print(row, "%s%s", row->size ? "," : "", csv_digits(value, digits));
+}
+
+/* Its row of the results, whole or not at all: it goes into the journal. */
+static const char *row_text(Pool *pool, const Sweep *sweep, const Slot *slot)
+{
+    Text row = {.pool = pool};
+    add_number(&row, (double)slot->run);
     for (int v = 0; v < sweep->plan->varied; ++v)
-        csv_number(&csv, plan_value(sweep->plan, v, slot->run));
-    csv_number(&csv, slot->status);
-    csv_time(&csv, slot->time);
+        add_number(&row, plan_value(sweep->plan, v, slot->run));
+    add_number(&row, slot->status);
+    text_print(&row, ",%.15g", slot->time);
     for (int c = 0; c < sweep->scene->columns; ++c) {
-        csv_number(&csv, slot->range[c].end);
-        csv_number(&csv, slot->range[c].least);
-        csv_number(&csv, slot->range[c].greatest);
+        add_number(&row, slot->range[c].end);
+        add_number(&row, slot->range[c].least);
+        add_number(&row, slot->range[c].greatest);
     }
-    fclose(csv.file);
-    const char *text = pool_print(sweep->journal->pool, "%s", bytes);
-    free(bytes);
-    return text;
+    return pool_print(sweep->journal->pool, "%s", row.s);
 }
 
 /* ---- for the person who waits --------------------------------------------------------------------------------- */
@@ -256,7 +255,7 @@ static bool fill(Runner *r, Pool *pool, int64_t *next)
     return r->used > 0;
 }
 
-static void keep(Runner *r)
+static void keep(Runner *r, Pool *pool)
 {
     const char *row[r->slots];
     int64_t run[r->slots];
@@ -264,7 +263,7 @@ static void keep(Runner *r)
     for (int i = 0; i < r->used; ++i) {
         run[i] = r->slot[i].run;
         status[i] = r->slot[i].status;
-        row[i] = row_text(r->sweep, &r->slot[i]);
+        row[i] = row_text(pool, r->sweep, &r->slot[i]);
     }
     journal_add(r->sweep->journal, run, status, row, r->used);
 }
@@ -291,7 +290,7 @@ bool sweep_run(const Sweep *sweep)
         else if (more)
             run_one(&r, own);
         if (more && !r.stopped)
-            keep(&r);
+            keep(&r, own);
         pool_free(own);
     }
     if (r.shown)

@@ -115,13 +115,14 @@ attack() {
     [ "$STRESS" != short ] || by=$(((all + 24) / 25))
     tried=0 good=0 refused=0 wrong='' fallen=0
     # where not all are tried, the last ones too: by then there are results
-    for at in $(seq 1 "$by" "$all") $([ "$by" -eq 1 ] || seq $((all - 3)) "$all"); do
+    for at in $(seq 1 "$by" "$all") $([ "$by" -eq 1 ] || seq $((all - 11)) "$all"); do
         rm -rf results*
         DENY=$at LD_PRELOAD=./deny.so timeout 60 "$@" >out 2>err
         status=$?
-        # MUMPS falls where it gets no memory, in itself
+        # MUMPS falls where it gets no memory, in itself; at its very end, when results are there, whole
         if [ "$name" = "gicrun gcp2" ] && [ $status -eq 139 ]; then
             rm -f results*.tmp
+            ! cmp -s results.csv sound.csv || rm -f results.csv
             fallen=$((fallen + 1)) status=1
             echo 'error: ' >err
         fi
@@ -144,8 +145,8 @@ sed 's/^duration: .*/duration: 0.1/; s/^output_step: .*/output_step: 0.05/' "$mo
 sed 's/^duration: .*/duration: 0.1/; s/^output_step: .*/output_step: 0.05/' "$models/scenes/quarter_car.scene" >car.scene
 attack gicgen "$gicgen" "$models/hmmwv_vehicle.veh" -o results.c
 attack "gicgen --graph" "$gicgen" --graph results.dot "$models/hmmwv_tires.veh"
-engines="tape gic tcc"
-[ "$STRESS" = short ] || engines="$engines gcp1 gcp2"
+engines="tape gic tcc gcp2"
+[ "$STRESS" = short ] || engines="$engines gcp1"
 for engine in $engines; do
     attack "gicrun $engine" "$gicrun" -q --engine $engine "$models/hmmwv_tires.veh" short.scene -o results.csv
 done
