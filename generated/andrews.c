@@ -147,7 +147,7 @@ typedef struct andrews_links {
     gic_real x[ANDREWS_DEPENDENCE_ROOM], rate[ANDREWS_DEPENDENCE_ROOM], change[ANDREWS_DEPENDENCE_ROOM], turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[ANDREWS_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
+    int again, same[ANDREWS_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
 } andrews_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
@@ -1376,10 +1376,16 @@ static int32_t andrews_free_start(int32_t first, int32_t now, int32_t hold)
 }
 
 /* A long way's pieces but the last one, from start *now, which becomes that of the last one of them. */
-static GIC_COLD int andrews_recover_way(andrews *self, andrews_links *links, const gic_real *way, int pieces, int32_t *now)
+static GIC_COLD int andrews_recover_way(andrews *self, andrews_links *links, const gic_real *way, int32_t *now)
 {
     const int32_t first = *now;
-    int i, piece;
+    int i, piece, pieces = 1;
+    for (i = 0; i < ANDREWS_COORDINATES; ++i) {
+        const gic_real parts = GIC_FABS(way[i]) / andrews_piece[i];
+        if (!(parts < R(GIC_PIECES)))
+            return GIC_ERROR_REACH;
+        pieces = GIC_MAX(pieces, (int)parts + 1);
+    }
     for (piece = 1; piece < pieces; ++piece) {
         const gic_real share = (gic_real)piece / (gic_real)pieces;
         const int32_t next = andrews_free_start(first, *now, self->head.hold);
@@ -1404,13 +1410,13 @@ static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
     gic_real *const at = self->recovered_at;
     int32_t now = first, next;
     gic_real way[ANDREWS_COORDINATE_ROOM];
-    int i, pieces = 1, status = GIC_OK;
+    int i, far = 0, status = GIC_OK;
     links.cold = cold;
     links.again = self->recovered == 1 + first && gic_alike(at + 2 * ANDREWS_COORDINATE_ROOM, turn, 3) &&
         self->head.ahead <= at[2 * ANDREWS_COORDINATE_ROOM + 3];
     self->recovered = 0;
-    for (i = 0; i < ANDREWS_COORDINATES; ++i)
-        links.same[i] = links.again && gic_alike(&at[i], &self->x[i], 1) &&
+    for (i = 0; links.again && i < ANDREWS_COORDINATES; ++i)
+        links.same[i] = gic_alike(&at[i], &self->x[i], 1) &&
             gic_alike(&at[ANDREWS_COORDINATE_ROOM + i], &self->xd[i], 1);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
@@ -1419,14 +1425,10 @@ static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
         way[i] = self->x[i] - self->start[first][i];
     if (!(GIC_FABS(way[0]) < R(GIC_PIECES) * andrews_piece[0])) /* beta */
         way[0] = gic_unwound(way[0]);
-    for (i = 0; i < ANDREWS_COORDINATES; ++i) {
-        const gic_real parts = GIC_FABS(way[i]) / andrews_piece[i];
-        if (!(parts < R(GIC_PIECES)))
-            return GIC_ERROR_REACH;
-        pieces = GIC_MAX(pieces, (int)parts + 1);
-    }
-    if (pieces > 1)
-        status = andrews_recover_way(self, &links, way, pieces, &now);
+    for (i = 0; i < ANDREWS_COORDINATES; ++i)
+        far |= !(GIC_FABS(way[i]) < andrews_piece[i]);
+    if (far)
+        status = andrews_recover_way(self, &links, way, &now);
     if (status != GIC_OK)
         return status;
     next = andrews_free_start(first, now, self->head.hold);

@@ -168,7 +168,7 @@ typedef struct five_link_links {
     gic_real x[FIVE_LINK_DEPENDENCE_ROOM], rate[FIVE_LINK_DEPENDENCE_ROOM], change[FIVE_LINK_DEPENDENCE_ROOM], turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[FIVE_LINK_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
+    int again, same[FIVE_LINK_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
 } five_link_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
@@ -1555,10 +1555,16 @@ static int32_t five_link_free_start(int32_t first, int32_t now, int32_t hold)
 }
 
 /* A long way's pieces but the last one, from start *now, which becomes that of the last one of them. */
-static GIC_COLD int five_link_recover_way(five_link *self, five_link_links *links, const gic_real *way, int pieces, int32_t *now)
+static GIC_COLD int five_link_recover_way(five_link *self, five_link_links *links, const gic_real *way, int32_t *now)
 {
     const int32_t first = *now;
-    int i, piece;
+    int i, piece, pieces = 1;
+    for (i = 0; i < FIVE_LINK_COORDINATES; ++i) {
+        const gic_real parts = GIC_FABS(way[i]) / five_link_piece[i];
+        if (!(parts < R(GIC_PIECES)))
+            return GIC_ERROR_REACH;
+        pieces = GIC_MAX(pieces, (int)parts + 1);
+    }
     for (piece = 1; piece < pieces; ++piece) {
         const gic_real share = (gic_real)piece / (gic_real)pieces;
         const int32_t next = five_link_free_start(first, *now, self->head.hold);
@@ -1583,27 +1589,23 @@ static int five_link_recover(five_link *self, const gic_real turn[3], int cold)
     gic_real *const at = self->recovered_at;
     int32_t now = first, next;
     gic_real way[FIVE_LINK_COORDINATE_ROOM];
-    int i, pieces = 1, status = GIC_OK;
+    int i, far = 0, status = GIC_OK;
     links.cold = cold;
     links.again = self->recovered == 1 + first && gic_alike(at + 2 * FIVE_LINK_COORDINATE_ROOM, turn, 3) &&
         self->head.ahead <= at[2 * FIVE_LINK_COORDINATE_ROOM + 3];
     self->recovered = 0;
-    for (i = 0; i < FIVE_LINK_COORDINATES; ++i)
-        links.same[i] = links.again && gic_alike(&at[i], &self->x[i], 1) &&
+    for (i = 0; links.again && i < FIVE_LINK_COORDINATES; ++i)
+        links.same[i] = gic_alike(&at[i], &self->x[i], 1) &&
             gic_alike(&at[FIVE_LINK_COORDINATE_ROOM + i], &self->xd[i], 1);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     links.ahead[0] = self->head.ahead;
     for (i = 0; i < FIVE_LINK_COORDINATES; ++i)
         way[i] = self->x[i] - self->start[first][i];
-    for (i = 0; i < FIVE_LINK_COORDINATES; ++i) {
-        const gic_real parts = GIC_FABS(way[i]) / five_link_piece[i];
-        if (!(parts < R(GIC_PIECES)))
-            return GIC_ERROR_REACH;
-        pieces = GIC_MAX(pieces, (int)parts + 1);
-    }
-    if (pieces > 1)
-        status = five_link_recover_way(self, &links, way, pieces, &now);
+    for (i = 0; i < FIVE_LINK_COORDINATES; ++i)
+        far |= !(GIC_FABS(way[i]) < five_link_piece[i]);
+    if (far)
+        status = five_link_recover_way(self, &links, way, &now);
     if (status != GIC_OK)
         return status;
     next = five_link_free_start(first, now, self->head.hold);

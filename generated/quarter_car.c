@@ -144,7 +144,7 @@ typedef struct quarter_car_links {
     gic_real x[QUARTER_CAR_DEPENDENCE_ROOM], rate[QUARTER_CAR_DEPENDENCE_ROOM], change[QUARTER_CAR_DEPENDENCE_ROOM], turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[QUARTER_CAR_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
+    int again, same[QUARTER_CAR_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
 } quarter_car_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
@@ -649,10 +649,16 @@ static int32_t quarter_car_free_start(int32_t first, int32_t now, int32_t hold)
 }
 
 /* A long way's pieces but the last one, from start *now, which becomes that of the last one of them. */
-static GIC_COLD int quarter_car_recover_way(quarter_car *self, quarter_car_links *links, const gic_real *way, int pieces, int32_t *now)
+static GIC_COLD int quarter_car_recover_way(quarter_car *self, quarter_car_links *links, const gic_real *way, int32_t *now)
 {
     const int32_t first = *now;
-    int i, piece;
+    int i, piece, pieces = 1;
+    for (i = 0; i < QUARTER_CAR_COORDINATES; ++i) {
+        const gic_real parts = GIC_FABS(way[i]) / quarter_car_piece[i];
+        if (!(parts < R(GIC_PIECES)))
+            return GIC_ERROR_REACH;
+        pieces = GIC_MAX(pieces, (int)parts + 1);
+    }
     for (piece = 1; piece < pieces; ++piece) {
         const gic_real share = (gic_real)piece / (gic_real)pieces;
         const int32_t next = quarter_car_free_start(first, *now, self->head.hold);
@@ -677,27 +683,23 @@ static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int co
     gic_real *const at = self->recovered_at;
     int32_t now = first, next;
     gic_real way[QUARTER_CAR_COORDINATE_ROOM];
-    int i, pieces = 1, status = GIC_OK;
+    int i, far = 0, status = GIC_OK;
     links.cold = cold;
     links.again = self->recovered == 1 + first && gic_alike(at + 2 * QUARTER_CAR_COORDINATE_ROOM, turn, 3) &&
         self->head.ahead <= at[2 * QUARTER_CAR_COORDINATE_ROOM + 3];
     self->recovered = 0;
-    for (i = 0; i < QUARTER_CAR_COORDINATES; ++i)
-        links.same[i] = links.again && gic_alike(&at[i], &self->x[i], 1) &&
+    for (i = 0; links.again && i < QUARTER_CAR_COORDINATES; ++i)
+        links.same[i] = gic_alike(&at[i], &self->x[i], 1) &&
             gic_alike(&at[QUARTER_CAR_COORDINATE_ROOM + i], &self->xd[i], 1);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
     links.ahead[0] = self->head.ahead;
     for (i = 0; i < QUARTER_CAR_COORDINATES; ++i)
         way[i] = self->x[i] - self->start[first][i];
-    for (i = 0; i < QUARTER_CAR_COORDINATES; ++i) {
-        const gic_real parts = GIC_FABS(way[i]) / quarter_car_piece[i];
-        if (!(parts < R(GIC_PIECES)))
-            return GIC_ERROR_REACH;
-        pieces = GIC_MAX(pieces, (int)parts + 1);
-    }
-    if (pieces > 1)
-        status = quarter_car_recover_way(self, &links, way, pieces, &now);
+    for (i = 0; i < QUARTER_CAR_COORDINATES; ++i)
+        far |= !(GIC_FABS(way[i]) < quarter_car_piece[i]);
+    if (far)
+        status = quarter_car_recover_way(self, &links, way, &now);
     if (status != GIC_OK)
         return status;
     next = quarter_car_free_start(first, now, self->head.hold);

@@ -166,7 +166,7 @@ typedef struct trailing_arm_links {
     gic_real x[TRAILING_ARM_DEPENDENCE_ROOM], rate[TRAILING_ARM_DEPENDENCE_ROOM], change[TRAILING_ARM_DEPENDENCE_ROOM], turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[TRAILING_ARM_COORDINATE_ROOM]; /* the angular velocity is that of the last recovery; coordinates with rates */
+    int again, same[TRAILING_ARM_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
 } trailing_arm_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
@@ -1040,10 +1040,16 @@ static int32_t trailing_arm_free_start(int32_t first, int32_t now, int32_t hold)
 }
 
 /* A long way's pieces but the last one, from start *now, which becomes that of the last one of them. */
-static GIC_COLD int trailing_arm_recover_way(trailing_arm *self, trailing_arm_links *links, const gic_real *way, int pieces, int32_t *now)
+static GIC_COLD int trailing_arm_recover_way(trailing_arm *self, trailing_arm_links *links, const gic_real *way, int32_t *now)
 {
     const int32_t first = *now;
-    int i, piece;
+    int i, piece, pieces = 1;
+    for (i = 0; i < TRAILING_ARM_COORDINATES; ++i) {
+        const gic_real parts = GIC_FABS(way[i]) / trailing_arm_piece[i];
+        if (!(parts < R(GIC_PIECES)))
+            return GIC_ERROR_REACH;
+        pieces = GIC_MAX(pieces, (int)parts + 1);
+    }
     for (piece = 1; piece < pieces; ++piece) {
         const gic_real share = (gic_real)piece / (gic_real)pieces;
         const int32_t next = trailing_arm_free_start(first, *now, self->head.hold);
@@ -1068,13 +1074,13 @@ static int trailing_arm_recover(trailing_arm *self, const gic_real turn[3], int 
     gic_real *const at = self->recovered_at;
     int32_t now = first, next;
     gic_real way[TRAILING_ARM_COORDINATE_ROOM];
-    int i, pieces = 1, status = GIC_OK;
+    int i, far = 0, status = GIC_OK;
     links.cold = cold;
     links.again = self->recovered == 1 + first && gic_alike(at + 2 * TRAILING_ARM_COORDINATE_ROOM, turn, 3) &&
         self->head.ahead <= at[2 * TRAILING_ARM_COORDINATE_ROOM + 3];
     self->recovered = 0;
-    for (i = 0; i < TRAILING_ARM_COORDINATES; ++i)
-        links.same[i] = links.again && gic_alike(&at[i], &self->x[i], 1) &&
+    for (i = 0; links.again && i < TRAILING_ARM_COORDINATES; ++i)
+        links.same[i] = gic_alike(&at[i], &self->x[i], 1) &&
             gic_alike(&at[TRAILING_ARM_COORDINATE_ROOM + i], &self->xd[i], 1);
     for (i = 0; i < 3; ++i)
         links.turn[i] = turn[i];
@@ -1089,14 +1095,10 @@ static int trailing_arm_recover(trailing_arm *self, const gic_real turn[3], int 
         way[2] = gic_unwound(way[2]);
     if (!(GIC_FABS(way[3]) < R(GIC_PIECES) * trailing_arm_piece[3])) /* bar_r_r */
         way[3] = gic_unwound(way[3]);
-    for (i = 0; i < TRAILING_ARM_COORDINATES; ++i) {
-        const gic_real parts = GIC_FABS(way[i]) / trailing_arm_piece[i];
-        if (!(parts < R(GIC_PIECES)))
-            return GIC_ERROR_REACH;
-        pieces = GIC_MAX(pieces, (int)parts + 1);
-    }
-    if (pieces > 1)
-        status = trailing_arm_recover_way(self, &links, way, pieces, &now);
+    for (i = 0; i < TRAILING_ARM_COORDINATES; ++i)
+        far |= !(GIC_FABS(way[i]) < trailing_arm_piece[i]);
+    if (far)
+        status = trailing_arm_recover_way(self, &links, way, &now);
     if (status != GIC_OK)
         return status;
     next = trailing_arm_free_start(first, now, self->head.hold);
