@@ -1120,52 +1120,43 @@ static int hmmwv_tires_recover_piece(hmmwv_tires *self, hmmwv_tires_links *links
     return GIC_OK;
 }
 
-/* The start that is free for what comes after `now`: the first one stays until the last is good, for a way that fails is
- * forgotten. */
-static int32_t hmmwv_tires_free_start(int32_t first, int32_t now, int32_t hold)
+/* Piece after piece of a way from start `first`, which stays that until the last one is good, for a way that fails is
+ * forgotten. Leaves the last one's start in *last. */
+static int hmmwv_tires_recover_way(hmmwv_tires *self, hmmwv_tires_links *links, const gic_real *way, int far, int32_t *last)
 {
-    int32_t next = 0;
-    while (next == first || next == now || next == hold)
-        ++next;
-    return next;
-}
-
-/* A long way's pieces but the last one, from start *now, which becomes that of the last one of them. */
-static GIC_COLD int hmmwv_tires_recover_way(hmmwv_tires *self, hmmwv_tires_links *links, const gic_real *way, int32_t *now)
-{
-    const int32_t first = *now;
-    int i, piece, pieces = 1;
-    for (i = 0; i < HMMWV_TIRES_COORDINATES; ++i) {
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    int32_t now = first, next;
+    int i, piece, pieces = 1, status;
+    for (i = 0; far && i < HMMWV_TIRES_COORDINATES; ++i) {
         const gic_real parts = GIC_FABS(way[i]) / hmmwv_tires_piece[i];
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
     }
-    for (piece = 1; piece < pieces; ++piece) {
-        const gic_real share = (gic_real)piece / (gic_real)pieces;
-        const int32_t next = hmmwv_tires_free_start(first, *now, self->head.hold);
-        gic_real *const start = self->start[next];
-        int status;
-        for (i = 0; i < HMMWV_TIRES_COORDINATES; ++i)
-            start[i] = self->start[first][i] + share * way[i];
-        status = hmmwv_tires_recover_piece(self, links, self->start[*now], start);
+    for (piece = 1;; ++piece) {
+        for (next = 0; next == first || next == now || next == hold;)
+            ++next;
+        memcpy(self->start[next], self->x, HMMWV_TIRES_COORDINATES * sizeof *self->x);
+        for (i = 0; piece < pieces && i < HMMWV_TIRES_COORDINATES; ++i)
+            self->start[next][i] = self->start[first][i] + (gic_real)piece / (gic_real)pieces * way[i];
+        status = hmmwv_tires_recover_piece(self, links, self->start[now], self->start[next]);
         if (status != GIC_OK)
             return status;
-        *now = next;
+        now = *last = next;
+        if (piece >= pieces)
+            return GIC_OK;
     }
-    return GIC_OK;
 }
 
-/* All bodies at self->x, followed from the last good configuration, which stays that where a piece fails. What is done
- * every time is no loop: compilers would take numbers that never change out of it, and keep them on the stack. */
+/* All bodies at self->x, followed from the last good configuration, which stays that where a piece fails. */
 static int hmmwv_tires_recover(hmmwv_tires *self, const gic_real turn[3], int cold)
 {
     hmmwv_tires_links links;
-    const int32_t first = self->head.flip;
+    const int32_t first = self->head.flip, hold = self->head.hold;
     gic_real *const at = self->recovered_at;
-    int32_t now = first, next;
+    int32_t last = 0;
     gic_real way[HMMWV_TIRES_COORDINATE_ROOM];
-    int i, far = 0, status = GIC_OK;
+    int i, far = 0, status;
     links.cold = cold;
     links.again = self->recovered == 1 + first && gic_alike(at + 2 * HMMWV_TIRES_COORDINATE_ROOM, turn, 3) &&
         self->head.ahead <= at[2 * HMMWV_TIRES_COORDINATE_ROOM + 3];
@@ -1180,21 +1171,24 @@ static int hmmwv_tires_recover(hmmwv_tires *self, const gic_real turn[3], int co
         way[i] = self->x[i] - self->start[first][i];
     for (i = 0; i < HMMWV_TIRES_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < hmmwv_tires_piece[i]);
-    if (far)
-        status = hmmwv_tires_recover_way(self, &links, way, &now);
-    if (status != GIC_OK)
-        return status;
-    next = hmmwv_tires_free_start(first, now, self->head.hold);
-    memcpy(self->start[next], self->x, HMMWV_TIRES_COORDINATES * sizeof *self->x);
-    status = hmmwv_tires_recover_piece(self, &links, self->start[now], self->start[next]);
+    /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
+     * keep them on the stack. Newton's iteration by GCC is 5 percent quicker in one. */
+    if (far || HMMWV_TIRES_FOLLOWED > 0) {
+        status = hmmwv_tires_recover_way(self, &links, way, far, &last);
+    } else {
+        while (last == first || last == hold)
+            ++last;
+        memcpy(self->start[last], self->x, HMMWV_TIRES_COORDINATES * sizeof *self->x);
+        status = hmmwv_tires_recover_piece(self, &links, self->start[first], self->start[last]);
+    }
     if (status != GIC_OK)
         return status;
     memcpy(at, self->x, sizeof self->x);
     memcpy(at + HMMWV_TIRES_COORDINATE_ROOM, self->xd, sizeof self->xd);
     memcpy(at + 2 * HMMWV_TIRES_COORDINATE_ROOM, turn, 3 * sizeof *turn);
     at[2 * HMMWV_TIRES_COORDINATE_ROOM + 3] = self->head.ahead;
-    self->recovered = 1 + next;
-    self->head.flip = next;
+    self->recovered = 1 + last;
+    self->head.flip = last;
     return GIC_OK;
 }
 
