@@ -6,10 +6,13 @@
  * The settings are the fastest of all orderings and scalings for the HMMWV's matrix, 109 x 109: 15 % less time than
  * the default ones. Two fifths of what remains goes into bookkeeping that MUMPS 5.5 does at every call whatever the
  * settings: it adds up how large a file of its data would be. */
+#define _DEFAULT_SOURCE /* sigaltstack */
 #include "equations.h"
 #include "gicrun.h"
 
 #include <dmumps_c.h>
+#include <setjmp.h>
+#include <signal.h>
 #include <string.h>
 
 enum { JOB_OPEN = -1, JOB_CLOSE = -2, JOB_ANALYSE = 1, JOB_FACTOR_AND_SOLVE = 5 };
@@ -36,25 +39,65 @@ typedef struct Mumps {
     Scaling *scaling;
 } Mumps;
 
+/* Where this thread goes on if MUMPS cannot, null outside of it. MUMPS does not look whether it got all of its memory:
+ * it falls on what it did not get, it calls the function of MPI below, or Fortran's way of saying so calls itself until
+ * the stack ends. So the handler, which has no other way to know, stands on a stack of its own. */
+static _Thread_local sigjmp_buf *way_out;
+static _Thread_local char stack_of_handler[16384];
+static struct sigaction handler_before;
+
+static void fallen(int signal)
+{
+    if (!way_out)
+        sigaction(signal, &handler_before, NULL); /* not in MUMPS: it falls again, as it would have */
+    else
+        siglongjmp(*way_out, 1);
+}
+
+/* On the thread that is going to call MUMPS. */
+static void watch_falls(void)
+{
+    const stack_t stack = {.ss_sp = stack_of_handler, .ss_size = sizeof stack_of_handler};
+    struct sigaction action = {.sa_handler = fallen, .sa_flags = SA_ONSTACK}, now;
+    sigaltstack(&stack, NULL);
+    sigaction(SIGSEGV, NULL, &now);
+    if (now.sa_handler != fallen)
+        sigaction(SIGSEGV, &action, &handler_before);
+}
+
 void mpi_abort_(const int *communicator, const int *code, int *error);
 
-/* Where MUMPS gets no memory for its first steps it calls this function of MPI. That of the library for one process, in
- * whose place this one is, would end the program with status 0, as if all were well. */
+/* In place of that of the library for one process, which would end the program with status 0, as if all were well. */
 void mpi_abort_(const int *communicator, const int *code, int *error)
 {
     (void)communicator, (void)code, (void)error;
-    diag_fail(gicrun_place, "is there memory enough?", "MUMPS gave up");
+    siglongjmp(*way_out, 1);
+}
+
+/* Call MUMPS. False if it could not go on: nothing can be asked of it any more. */
+static bool call(DMUMPS_STRUC_C *mumps, int job)
+{
+    sigjmp_buf here;
+    mumps->job = job;
+    const bool whole = !sigsetjmp(here, 1);
+    if (whole) {
+        way_out = &here;
+        dmumps_c(mumps);
+    }
+    way_out = NULL;
+    return whole;
 }
 
 /* Call MUMPS, with more room where that is missing. */
 static void run(DMUMPS_STRUC_C *mumps, int job)
 {
-    mumps->job = job;
-    dmumps_c(mumps);
-    while (mumps->INFOG(1) == NO_ROOM_FOR_INTEGERS || mumps->INFOG(1) == NO_ROOM_FOR_NUMBERS) {
+    bool whole = call(mumps, job);
+    while (whole && (mumps->INFOG(1) == NO_ROOM_FOR_INTEGERS || mumps->INFOG(1) == NO_ROOM_FOR_NUMBERS)) {
         mumps->ICNTL(14) *= 2;
-        dmumps_c(mumps);
+        whole = call(mumps, job);
     }
+    if (!whole)
+        diag_fail(gicrun_place, "is there memory enough?", "MUMPS gave up");
     if (mumps->INFOG(1) < 0 && mumps->INFOG(1) != SINGULAR)
         diag_fail(gicrun_place, "is there memory enough?", "MUMPS failed with error %d, %d", mumps->INFOG(1),
                   mumps->INFOG(2));
@@ -105,6 +148,7 @@ static void *solver_open(Pool *pool, const Equations *equations)
     mumps->par = HOST_WORKS;
     mumps->sym = SYMMETRIC_INDEFINITE;
     mumps->comm_fortran = SEQUENTIAL;
+    watch_falls();
     run(mumps, JOB_OPEN);
     mumps->n = unknowns;
     mumps->irn = pool_alloc(pool, most * sizeof(MUMPS_INT));
@@ -178,7 +222,7 @@ static int solver_solve(void *opened, const Numbers *numbers)
 static void solver_close(void *opened)
 {
     Mumps *solver = opened;
-    run(&solver->mumps, JOB_CLOSE);
+    call(&solver->mumps, JOB_CLOSE); /* if that fails, results are there all the same */
 }
 
 const Solver mumps_solver = {"mumps", solver_open, solver_solve, solver_close};
