@@ -229,7 +229,7 @@ int main(int count, char **word)
     else
         simulate(pool, engine, scene_narrow(pool, scene, model, engine),
                  request.page ? animation_new(pool, model, scene, request.scene) : NULL,
-                 step_watch_new(pool, model, scene, engine), &request);
+                 step_watch_new(pool, step_theory_new(pool, model), scene, engine, false), &request);
     engine_close(engine);
     pool_free(pool);
     return 0;

@@ -22,7 +22,7 @@ enum {
     WINDOWS = 20,  /* of a run */
     SHORTEST = 25, /* steps of a window */
     SAMPLES = 8,   /* of a window at least */
-    SPREAD = 8,    /* steps from one sample to the next at most */
+    SPREAD = 8,    /* steps from one sample to the next at most, unless they are to be few */
 };
 
 static const double off = 0.1;           /* of the way: far above z^2 / 12 of what is resolved */
@@ -45,9 +45,18 @@ typedef struct Moment {
     double real, imaginary;
 } Moment;
 
-struct StepWatch {
+struct StepTheory {
     Pool *pool;
     const Model *model;
+    const Engine *tape; /* NULL: not needed so far */
+    const Linear *linear;
+    gic_head *moving;
+    double *f, *A;
+};
+
+struct StepWatch {
+    Pool *pool;
+    StepTheory *theory;
     const Scene *scene;
     const Engine *engine;
     int64_t window, spread, steps; /* steps of a window, between samples, so far */
@@ -58,10 +67,6 @@ struct StepWatch {
     int samples, rough;            /* of this window */
     int moments;
     Moment moment[WINDOWS];
-    const Engine *tape; /* NULL: not needed so far */
-    const Linear *linear;
-    gic_head *moving;
-    double *f, *A;
 };
 
 static double *numbers(Pool *pool, int count)
@@ -69,7 +74,14 @@ static double *numbers(Pool *pool, int count)
     return pool_alloc(pool, sizeof(double) * (size_t)(count + 1));
 }
 
-StepWatch *step_watch_new(Pool *pool, const Model *model, const Scene *scene, const Engine *engine)
+StepTheory *step_theory_new(Pool *pool, const Model *model)
+{
+    StepTheory *theory = pool_alloc(pool, sizeof *theory);
+    *theory = (StepTheory){.pool = pool, .model = model};
+    return theory;
+}
+
+StepWatch *step_watch_new(Pool *pool, StepTheory *theory, const Scene *scene, const Engine *engine, bool seldom)
 {
     const int64_t steps = scene->outputs * scene->per_output;
     if (scene->method > GIC_RK4 || steps < 2 * SHORTEST)
@@ -77,11 +89,11 @@ StepWatch *step_watch_new(Pool *pool, const Model *model, const Scene *scene, co
     const gic_model *code = engine->code;
     const int states = code->slow_count + code->fast_count;
     StepWatch *watch = pool_alloc(pool, sizeof *watch);
-    *watch = (StepWatch){.pool = pool, .model = model, .scene = scene, .engine = engine};
+    *watch = (StepWatch){.pool = pool, .theory = theory, .scene = scene, .engine = engine};
     /* rounded up, so that there are not more of them than there is room for */
     watch->window = (steps + WINDOWS - 1) / WINDOWS;
     watch->window = watch->window < SHORTEST ? SHORTEST : watch->window;
-    watch->spread = watch->window / SAMPLES < SPREAD ? watch->window / SAMPLES : SPREAD;
+    watch->spread = watch->window / SAMPLES < SPREAD || seldom ? watch->window / SAMPLES : SPREAD;
     watch->before = numbers(pool, states);
     watch->after = numbers(pool, states);
     watch->rate = numbers(pool, states);
@@ -184,25 +196,44 @@ void step_watch_step(StepWatch *watch, const gic_model *code, gic_head *self, gi
     memset(watch->sum, 0, sizeof *watch->sum * (size_t)(code->slow_count + code->fast_count));
 }
 
+static int64_t next_multiple(int64_t of, int64_t after)
+{
+    return (after / of + 1) * of;
+}
+
+int64_t step_watch_idle(const StepWatch *watch)
+{
+    const int64_t sample = watch->part > 0 ? watch->steps + 1 : next_multiple(watch->spread, watch->steps);
+    const int64_t end = next_multiple(watch->window, watch->steps);
+    return (sample < end ? sample : end) - watch->steps - 1;
+}
+
+void step_watch_pass(StepWatch *watch, int64_t steps)
+{
+    watch->steps += steps;
+}
+
 /* ---- after the run ---------------------------------------------------------------------------------------------- */
 
-static void open_linear(StepWatch *watch)
+static void open_linear(StepTheory *theory)
 {
-    watch->tape = engine_open(watch->pool, "tape", watch->model, &(EngineOptions){.quiet = true});
-    watch->linear = linear_open(watch->pool, watch->tape);
-    watch->moving = instance_new(watch->pool, watch->tape);
-    watch->f = numbers(watch->pool, watch->linear->count);
-    watch->A = numbers(watch->pool, watch->linear->count * watch->linear->count);
+    Pool *pool = theory->pool;
+    theory->tape = engine_open(pool, "tape", theory->model, &(EngineOptions){.quiet = true});
+    theory->linear = linear_open(pool, theory->tape);
+    theory->moving = instance_new(pool, theory->tape);
+    theory->f = numbers(pool, theory->linear->count);
+    theory->A = numbers(pool, theory->linear->count * theory->linear->count);
 }
 
 /* The equations linearized about a state of a moment. */
-static bool linearize_moment(StepWatch *watch, const Moment *moment, const double *state)
+static bool linearize_moment(const StepWatch *watch, const Moment *moment, const double *state)
 {
-    if (!watch->tape)
-        open_linear(watch);
-    const gic_model *tape = watch->tape->code;
-    gic_head *moving = watch->moving;
-    if (watch->tape->standard_count != watch->engine->standard_count ||
+    StepTheory *theory = watch->theory;
+    if (!theory->tape)
+        open_linear(theory);
+    const gic_model *tape = theory->tape->code;
+    gic_head *moving = theory->moving;
+    if (theory->tape->standard_count != watch->engine->standard_count ||
         tape->setup_with(moving, watch->scene->parameter) != GIC_OK)
         return false;
     moving->road = watch->scene->road;
@@ -210,8 +241,8 @@ static bool linearize_moment(StepWatch *watch, const Moment *moment, const doubl
     for (int i = tape->free_base; i < tape->discrete_count; ++i)
         ((int32_t *)(void *)((char *)moving + tape->discrete_offset))[i] = moment->discrete[i];
     gic_restart(moving, moment->time);
-    return engine_enter(watch->tape, moving, state) == GIC_OK &&
-           linearize(watch->linear, (Instance *)(void *)moving, watch->f, watch->A) == GIC_OK;
+    return engine_enter(theory->tape, moving, state) == GIC_OK &&
+           linearize(theory->linear, (Instance *)(void *)moving, theory->f, theory->A) == GIC_OK;
 }
 
 /* The part of the step with which a motion just does not grow; with all of it it does. */
@@ -229,7 +260,7 @@ static double shorten(int32_t method, double real, double imaginary)
  * (FORMAT.md section 14). */
 static void judge_mode(const StepWatch *watch, const Mode *mode, Moment *moment)
 {
-    const Linear *linear = watch->linear;
+    const Linear *linear = watch->theory->linear;
     const int32_t method = watch->scene->method;
     const int places = linear->places;
     double fast = 0;
@@ -259,7 +290,7 @@ static void judge_mode(const StepWatch *watch, const Mode *mode, Moment *moment)
 static void judge_state(StepWatch *watch, Moment *moment, const double *state)
 {
     const Modes *modes =
-        linearize_moment(watch, moment, state) ? modes_try(watch->pool, watch->linear, watch->A) : NULL;
+        linearize_moment(watch, moment, state) ? modes_try(watch->pool, watch->theory->linear, watch->theory->A) : NULL;
     for (int k = 0; modes && k < modes->count; ++k)
         judge_mode(watch, &modes->mode[k], moment);
 }

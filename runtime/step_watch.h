@@ -8,14 +8,23 @@
 
 #include "gicrun.h"
 
-/* For a run of a scene by an engine; model and scene: for code for any scene, before scene_narrow(). NULL: nobody
- * watches, for steps vary, or are too few for anything to be said. */
-StepWatch *step_watch_new(Pool *pool, const Model *model, const Scene *scene, const Engine *engine);
+typedef struct StepTheory StepTheory;
+
+/* What the runs of a model have in common: its equations for small motions, opened when first asked for. The model: for
+ * code for any scene, before scene_narrow(). */
+StepTheory *step_theory_new(Pool *pool, const Model *model);
+/* For a run of a scene, also before scene_narrow(), by an engine. NULL: nobody watches, for steps vary, or are too few
+ * for anything to be said. seldom: for runs of which instances are not at hand, few steps are looked at. */
+StepWatch *step_watch_new(Pool *pool, StepTheory *theory, const Scene *scene, const Engine *engine, bool seldom);
 /* After each step of an instance, which is only read. code: the engine's, or faster one; copy: the instance that
  * outputs are computed on, for engines may have factors for no more than those two. It is overwritten unless the
  * vehicle sleeps.
  */
 void step_watch_step(StepWatch *watch, const gic_model *code, gic_head *self, gic_head *copy);
+/* How many steps, of a vehicle that does not sleep, lie before the one that step_watch_step() is for next;
+ * step_watch_pass tells that they are gone. */
+int64_t step_watch_idle(const StepWatch *watch);
+void step_watch_pass(StepWatch *watch, int64_t steps);
 /* After the run: what is wrong with it, with the time from which on it is, the quantity that moves and the longest
  * step; *remedy: what to do about it. NULL: nothing. */
 const char *step_watch_judge(StepWatch *watch, const char **remedy);

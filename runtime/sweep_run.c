@@ -22,8 +22,9 @@ typedef struct Slot {
     int64_t run;
     Scene scene; /* its own; `user` of the instance */
     int status;
-    double time;  /* until when it went well */
-    Range *range; /* [columns] */
+    double time;      /* until when it went well */
+    Range *range;     /* [columns] */
+    StepWatch *watch; /* NULL: nobody watches */
 } Slot;
 
 typedef struct Runner {
@@ -31,6 +32,7 @@ typedef struct Runner {
     int slots, used;
     Slot *slot;
     gic_head *one, *copy;
+    StepTheory *theory;
     void *batch;
     double begun, looked;
     int64_t before; /* runs finished by others */
@@ -170,6 +172,33 @@ static void look_at_batch(Runner *r)
     }
 }
 
+/* Steps of all slots, at most `most`, until someone wants to look; who watches sees the instances after them. */
+static int32_t step_lanes(Runner *r, int64_t most)
+{
+    const Sweep *sweep = r->sweep;
+    const Scene *scene = sweep->scene;
+    const StepWatch *watch = r->slot->watch; /* all of them look after the same steps */
+    const int64_t idle = watch ? step_watch_idle(watch) : most;
+    const int32_t steps = (int32_t)(idle < most ? idle + 1 : most);
+    sweep->many->step(r->batch, scene->step, scene->method, steps);
+    for (int i = 0; i < r->used && watch; ++i) {
+        step_watch_pass(r->slot[i].watch, idle < most ? idle : most);
+        if (idle >= most)
+            continue;
+        sweep->many->store(r->batch, i, r->one);
+        step_watch_step(r->slot[i].watch, sweep->engine->code, r->one, r->copy);
+    }
+    return steps;
+}
+
+/* A run with constant steps is watched: what tires or stops keep within bounds has the status of what they don't. */
+static void judge(const Runner *r, Slot *slot)
+{
+    const char *remedy;
+    if (slot->watch && slot->status == GIC_OK && !r->stopped && step_watch_judge(slot->watch, &remedy))
+        slot->status = GIC_ERROR_UNSTABLE;
+}
+
 static void run_lanes(Runner *r)
 {
     const Sweep *sweep = r->sweep;
@@ -182,13 +211,14 @@ static void run_lanes(Runner *r)
     }
     look_at_batch(r);
     for (int64_t k = 0; k < scene->outputs && !r->stopped; ++k) {
-        for (int64_t left = scene->per_output; left > 0 && !r->stopped; left -= CHUNK) {
-            const int32_t steps = left < CHUNK ? (int32_t)left : CHUNK;
-            sweep->many->step(r->batch, scene->step, scene->method, steps);
+        for (int64_t left = scene->per_output; left > 0 && !r->stopped;) {
+            left -= step_lanes(r, left < CHUNK ? left : CHUNK);
             look_around(r);
         }
         look_at_batch(r);
     }
+    for (int i = 0; i < r->used; ++i)
+        judge(r, &r->slot[i]);
 }
 
 /* The present outputs of the only slot. */
@@ -205,16 +235,13 @@ static void look_at_one(Runner *r)
         record(slot, c, output[sweep->scene->column[c]]);
 }
 
-/* One with constant steps is watched: what tires or stops keep within bounds has the status of what they don't. */
-static void run_one(Runner *r, Pool *pool)
+static void run_one(Runner *r)
 {
     const Sweep *sweep = r->sweep;
     const gic_model *code = sweep->engine->code;
     Slot *slot = r->slot;
     const Scene *scene = &slot->scene;
     Variable *variable = scene->method >= METHOD_ADAMS ? variable_open(code, scene->method, scene->tolerance) : NULL;
-    StepWatch *watch = step_watch_new(pool, sweep->model, scene, sweep->engine);
-    const char *remedy;
     slot->status = begin(sweep, slot, r->one);
     if (slot->status == GIC_OK)
         look_at_one(r);
@@ -223,8 +250,8 @@ static void run_one(Runner *r, Pool *pool)
         int64_t left = scene->per_output;
         while (slot->status == GIC_OK && !r->stopped && (variable ? gic_time(r->one) < end : left > 0)) {
             slot->status = scene_step(sweep->engine, code, scene, variable, r->one, end);
-            if (watch && slot->status == GIC_OK)
-                step_watch_step(watch, code, r->one, r->copy);
+            if (slot->watch && slot->status == GIC_OK)
+                step_watch_step(slot->watch, code, r->one, r->copy);
             if (left-- % CHUNK == 0)
                 look_around(r);
         }
@@ -233,8 +260,7 @@ static void run_one(Runner *r, Pool *pool)
             look_at_one(r);
     }
     variable_close(variable);
-    if (watch && slot->status == GIC_OK && !r->stopped && step_watch_judge(watch, &remedy))
-        slot->status = GIC_ERROR_UNSTABLE;
+    judge(r, slot);
     look_around(r);
 }
 
@@ -248,6 +274,7 @@ static bool fill(Runner *r, Pool *pool, int64_t *next)
         Slot *slot = &r->slot[r->used++];
         slot->run = *next;
         slot->scene = vary_scene(pool, sweep, *next);
+        slot->watch = step_watch_new(pool, r->theory, &slot->scene, sweep->engine, true);
         slot->time = 0;
         for (int c = 0; c < sweep->scene->columns; ++c)
             slot->range[c] = (Range){NAN, NAN, NAN};
@@ -277,6 +304,7 @@ bool sweep_run(const Sweep *sweep)
         r.slot[i].range = pool_alloc(pool, sizeof(Range) * (size_t)(sweep->scene->columns + 1));
     r.one = instance_new(pool, sweep->engine);
     r.copy = instance_new(pool, sweep->engine);
+    r.theory = step_theory_new(pool, sweep->model);
     r.batch = sweep->many ? aligned_alloc(sweep->many->alignment, sweep->many->size) : NULL;
     if (sweep->many && !r.batch)
         diag_fail(gicrun_place, NULL, "no memory for %d vehicles", sweep->many->vehicles);
@@ -288,7 +316,7 @@ bool sweep_run(const Sweep *sweep)
         if (more && sweep->many)
             run_lanes(&r);
         else if (more)
-            run_one(&r, own);
+            run_one(&r);
         if (more && !r.stopped)
             keep(&r, own);
         pool_free(own);

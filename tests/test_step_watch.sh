@@ -140,17 +140,35 @@ for file in "$models"/scenes/*.scene; do
     check "$file is among them" [ "${tried#* "$file" }" != "$tried" ]
 done
 
-# in a sweep whose runs go one after another, as those with tires do, such a run has the status of an unstable one
-statuses() {
-    scene tires_park rk4 1 "$1" 4.8 0.24
-    "$gicsweep" -q "$models/hmmwv_tmeasy.veh" "$work/tires_park.scene" --vary brake=0.6:0.7:2 \
-        -o "$work/sweep.csv" 2>"$work/err"
+# In a sweep such a run has the status of an unstable one, whether runs go one after another, as those with tires do, or
+# in lanes: both look at the same steps.
+# sweep MODEL SCENE VARIED [OPTION...]: status and time of each of two runs
+sweep() {
+    model=$1
+    scene=$2
+    varied=$3
+    shift 3
+    "$gicsweep" -q "$@" "$models/$model.veh" "$work/$scene.scene" --vary "$varied" -o "$work/sweep.csv" 2>"$work/err"
     sed 1d "$work/sweep.csv" | cut -d, -f3,4 | tr '\n' ' '
-    rm -f "$work"/sweep.csv*
+    mv "$work/sweep.csv" "$work/last.csv"
 }
 unstable=$(sed -n 's/.*X(GIC_ERROR_UNSTABLE, \(-[0-9]*\),.*/\1/p' "$models/../runtime/gic_runtime.h")
-check "a sweep, 0.024 s: unstable" [ "$(statuses 0.024)" = "$unstable,4.8 $unstable,4.8 " ]
-check "a sweep, 0.016 s: good" [ "$(statuses 0.016)" = "0,4.8 0,4.8 " ]
+# model, scene, varied; step and duration that are too long, step and duration that are good, integrator, time of outputs
+while read -r model scene varied method long long_end good good_end output; do
+    for how in "" "--cc /nonexistent"; do
+        scene "$scene" "$method" 1 "$long" "$long_end" "$(awk "BEGIN {print $output * $long}")"
+        # shellcheck disable=SC2086  # words
+        found=$(sweep "$model" "$scene" "$varied" $how)
+        check "a sweep of $model, $long s $how: unstable" [ "$found" = "$unstable,$long_end $unstable,$long_end " ]
+        [ -z "$how" ] || check "the same bytes, $long s" cmp "$work/last.csv" "$work/before.csv"
+        mv "$work/last.csv" "$work/before.csv"
+    done
+    scene "$scene" "$method" 1 "$good" "$good_end" "$(awk "BEGIN {print $output * $good}")"
+    check "a sweep of $model, $good s: good" [ "$(sweep "$model" "$scene" "$varied")" = "0,$good_end 0,$good_end " ]
+done <<'END'
+hmmwv_tmeasy tires_park brake=0.6:0.7:2 rk4 0.024 4.8 0.016 4.8 10
+hmmwv rough_road speed=10:15:2 ab3 0.011 5.5 0.0095 4.75 20
+END
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
