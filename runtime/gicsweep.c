@@ -198,7 +198,8 @@ static void summary(const Sweep *sweep, int64_t before, double seconds, const ch
             (double)done / fmax(seconds, 1e-9));
     if (journal->failed)
         fprintf(stderr, "  %lld failed, the first is run %lld: %s\n", (long long)journal->failed,
-                (long long)journal->first_failed, gic_status_text(journal->first_status));
+                (long long)journal->first_failed,
+                journal->first_reason ? journal->first_reason : gic_status_text(journal->first_status));
 }
 
 int main(int count, char **word)

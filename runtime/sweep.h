@@ -52,12 +52,14 @@ typedef struct Journal {
     const char **row; /* [runs] text of each row; NULL: not finished */
     int first_status; /* of the failed run with the lowest number; GIC_OK: none failed */
     int64_t first_failed;
+    const char *first_reason; /* NULL: an earlier gicsweep knew it */
 } Journal;
 
 /* Open the journal beside `results`: take what an earlier gicsweep with the same key finished, or begin one. */
 Journal journal_open(Pool *pool, const char *results, const char *key, int64_t runs);
-/* Rows [count] of runs, into the file and onto the disk. */
-void journal_add(Journal *journal, const int64_t *run, const int *status, const char *const *row, int count);
+/* Rows [count] of runs, into the file and onto the disk. reason: [count] why they failed, in words. */
+void journal_add(Journal *journal, const int64_t *run, const int *status, const char *const *row,
+                 const char *const *reason, int count);
 /* The results are there: no more need of it. */
 void journal_remove(Journal *journal);
 

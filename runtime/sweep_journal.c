@@ -29,7 +29,7 @@ static void append(Journal *journal, const char *bytes, size_t size)
         journal_fail(journal, "write");
 }
 
-static void note(Journal *journal, int64_t run, int status, const char *row)
+static void note(Journal *journal, int64_t run, int status, const char *row, const char *reason)
 {
     if (journal->row[run])
         return;
@@ -39,6 +39,7 @@ static void note(Journal *journal, int64_t run, int status, const char *row)
     if (status != GIC_OK && (journal->first_status == GIC_OK || run < journal->first_failed)) {
         journal->first_status = status;
         journal->first_failed = run;
+        journal->first_reason = reason ? pool_print(journal->pool, "%s", reason) : NULL;
     }
 }
 
@@ -53,7 +54,7 @@ static bool take_line(Journal *journal, const char *line)
     const long status = strtol(next, &end, 10);
     if (end == next || *end != ' ')
         return false;
-    note(journal, run, (int)status, end + 1);
+    note(journal, run, (int)status, end + 1, NULL);
     return true;
 }
 
@@ -99,12 +100,13 @@ Journal journal_open(Pool *pool, const char *results, const char *key, int64_t r
     return journal;
 }
 
-void journal_add(Journal *journal, const int64_t *run, const int *status, const char *const *row, int count)
+void journal_add(Journal *journal, const int64_t *run, const int *status, const char *const *row,
+                 const char *const *reason, int count)
 {
     Text text = {.pool = journal->pool};
     for (int i = 0; i < count; ++i) {
         text_print(&text, "%lld %d %s\n", (long long)run[i], status[i], row[i]);
-        note(journal, run[i], status[i], row[i]);
+        note(journal, run[i], status[i], row[i], reason[i]);
     }
     append(journal, text.s, text.size);
 }

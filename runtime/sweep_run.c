@@ -22,13 +22,15 @@ typedef struct Slot {
     int64_t run;
     Scene scene; /* its own; `user` of the instance */
     int status;
-    double time;      /* until when it went well */
-    Range *range;     /* [columns] */
-    StepWatch *watch; /* NULL: nobody watches */
+    const char *reason; /* why it failed */
+    double time;        /* until when it went well */
+    Range *range;       /* [columns] */
+    StepWatch *watch;   /* NULL: nobody watches */
 } Slot;
 
 typedef struct Runner {
     const Sweep *sweep;
+    Pool *pool; /* of this batch */
     int slots, used;
     Slot *slot;
     gic_head *one, *copy;
@@ -152,6 +154,29 @@ static void look_around(Runner *r)
     r->shown = true;
 }
 
+/* ---- what goes wrong --------------------------------------------------------------------------------------- */
+
+/* The status of a slot, and if it is not GIC_OK what its instance knows of it. */
+static void set_status(const Runner *r, Slot *slot, int status, const gic_head *self)
+{
+    slot->status = status;
+    if (status != GIC_OK)
+        slot->reason = pool_print(r->pool, "at t = %.6g s: %s", gic_time(self),
+                                  instance_status(r->pool, r->sweep->engine->code, self, status));
+}
+
+/* A run with constant steps is watched: what tires or stops keep within bounds has the status of what they don't. */
+static void judge(const Runner *r, Slot *slot)
+{
+    const char *remedy;
+    const char *finding =
+        slot->watch && slot->status == GIC_OK && !r->stopped ? step_watch_judge(slot->watch, &remedy) : NULL;
+    if (!finding)
+        return;
+    slot->status = GIC_ERROR_UNSTABLE;
+    slot->reason = pool_print(r->pool, "%s\n  remedy: %s", finding, remedy);
+}
+
 /* ---- batches -------------------------------------------------------------------------------------------------- */
 
 /* Outputs of all slots that go on, at the present time. */
@@ -164,8 +189,8 @@ static void look_at_batch(Runner *r)
         Slot *slot = &r->slot[i];
         if (slot->status != GIC_OK)
             continue;
-        slot->status = many->status(r->batch, i);
         many->store(r->batch, i, r->one);
+        set_status(r, slot, many->status(r->batch, i), r->one);
         slot->time = gic_time(r->one);
         for (int c = 0; c < sweep->scene->columns && slot->status == GIC_OK; ++c)
             record(slot, c, many->output(r->batch, i, sweep->scene->column[c]));
@@ -191,21 +216,13 @@ static int32_t step_lanes(Runner *r, int64_t most)
     return steps;
 }
 
-/* A run with constant steps is watched: what tires or stops keep within bounds has the status of what they don't. */
-static void judge(const Runner *r, Slot *slot)
-{
-    const char *remedy;
-    if (slot->watch && slot->status == GIC_OK && !r->stopped && step_watch_judge(slot->watch, &remedy))
-        slot->status = GIC_ERROR_UNSTABLE;
-}
-
 static void run_lanes(Runner *r)
 {
     const Sweep *sweep = r->sweep;
     const Scene *scene = sweep->scene;
     sweep->many->setup(r->batch);
     for (int i = 0; i < r->used; ++i) {
-        r->slot[i].status = begin(sweep, &r->slot[i], r->one);
+        set_status(r, &r->slot[i], begin(sweep, &r->slot[i], r->one), r->one);
         if (r->slot[i].status == GIC_OK)
             sweep->many->load(r->batch, i, r->one);
     }
@@ -229,7 +246,7 @@ static void look_at_one(Runner *r)
     Slot *slot = r->slot;
     memcpy(r->copy, r->one, code->size); /* looking leaves no trace */
     slot->time = gic_time(r->one);
-    slot->status = code->outputs(r->copy);
+    set_status(r, slot, code->outputs(r->copy), r->copy);
     const double *output = instance_array(r->copy, code->output_offset);
     for (int c = 0; c < sweep->scene->columns && slot->status == GIC_OK; ++c)
         record(slot, c, output[sweep->scene->column[c]]);
@@ -242,14 +259,14 @@ static void run_one(Runner *r)
     Slot *slot = r->slot;
     const Scene *scene = &slot->scene;
     Variable *variable = scene->method >= METHOD_ADAMS ? variable_open(code, scene->method, scene->tolerance) : NULL;
-    slot->status = begin(sweep, slot, r->one);
+    set_status(r, slot, begin(sweep, slot, r->one), r->one);
     if (slot->status == GIC_OK)
         look_at_one(r);
     for (int64_t k = 0; k < scene->outputs && slot->status == GIC_OK && !r->stopped; ++k) {
         const double end = (double)(k + 1) * scene->output_step;
         int64_t left = scene->per_output;
         while (slot->status == GIC_OK && !r->stopped && (variable ? gic_time(r->one) < end : left > 0)) {
-            slot->status = scene_step(sweep->engine, code, scene, variable, r->one, end);
+            set_status(r, slot, scene_step(sweep->engine, code, scene, variable, r->one, end), r->one);
             if (slot->watch && slot->status == GIC_OK)
                 step_watch_step(slot->watch, code, r->one, r->copy);
             if (left-- % CHUNK == 0)
@@ -265,7 +282,7 @@ static void run_one(Runner *r)
 }
 
 /* The runs that the next batch is of; false: all are finished. */
-static bool fill(Runner *r, Pool *pool, int64_t *next)
+static bool fill(Runner *r, int64_t *next)
 {
     const Sweep *sweep = r->sweep;
     for (r->used = 0; r->used < r->slots && *next < sweep->plan->runs; ++*next) {
@@ -273,26 +290,28 @@ static bool fill(Runner *r, Pool *pool, int64_t *next)
             continue;
         Slot *slot = &r->slot[r->used++];
         slot->run = *next;
-        slot->scene = vary_scene(pool, sweep, *next);
-        slot->watch = step_watch_new(pool, r->theory, &slot->scene, sweep->engine, true);
+        slot->scene = vary_scene(r->pool, sweep, *next);
+        slot->watch = step_watch_new(r->pool, r->theory, &slot->scene, sweep->engine, true);
         slot->time = 0;
+        slot->reason = NULL;
         for (int c = 0; c < sweep->scene->columns; ++c)
             slot->range[c] = (Range){NAN, NAN, NAN};
     }
     return r->used > 0;
 }
 
-static void keep(Runner *r, Pool *pool)
+static void keep(Runner *r)
 {
-    const char *row[r->slots];
+    const char *row[r->slots], *reason[r->slots];
     int64_t run[r->slots];
     int status[r->slots];
     for (int i = 0; i < r->used; ++i) {
         run[i] = r->slot[i].run;
         status[i] = r->slot[i].status;
-        row[i] = row_text(pool, r->sweep, &r->slot[i]);
+        reason[i] = r->slot[i].reason;
+        row[i] = row_text(r->pool, r->sweep, &r->slot[i]);
     }
-    journal_add(r->sweep->journal, run, status, row, r->used);
+    journal_add(r->sweep->journal, run, status, row, reason, r->used);
 }
 
 bool sweep_run(const Sweep *sweep)
@@ -311,15 +330,15 @@ bool sweep_run(const Sweep *sweep)
     r.begun = clock_seconds(CLOCK_MONOTONIC);
     int64_t next = 0;
     for (bool more = true; more && !r.stopped;) {
-        Pool *own = pool_new(); /* what a batch of scenes takes is given back */
-        more = fill(&r, own, &next);
+        r.pool = pool_new(); /* what a batch of scenes takes is given back */
+        more = fill(&r, &next);
         if (more && sweep->many)
             run_lanes(&r);
         else if (more)
             run_one(&r);
         if (more && !r.stopped)
-            keep(&r, own);
-        pool_free(own);
+            keep(&r);
+        pool_free(r.pool);
     }
     if (r.shown)
         fputs("\r\x1b[K", stderr);

@@ -148,7 +148,7 @@ sweep() {
     scene=$2
     varied=$3
     shift 3
-    "$gicsweep" -q "$@" "$models/$model.veh" "$work/$scene.scene" --vary "$varied" -o "$work/sweep.csv" 2>"$work/err"
+    "$gicsweep" "$@" "$models/$model.veh" "$work/$scene.scene" --vary "$varied" -o "$work/sweep.csv" 2>"$work/err"
     sed 1d "$work/sweep.csv" | cut -d, -f3,4 | tr '\n' ' '
     mv "$work/sweep.csv" "$work/last.csv"
 }
@@ -160,6 +160,8 @@ while read -r model scene varied method long long_end good good_end output; do
         # shellcheck disable=SC2086  # words
         found=$(sweep "$model" "$scene" "$varied" $how)
         check "a sweep of $model, $long s $how: unstable" [ "$found" = "$unstable,$long_end $unstable,$long_end " ]
+        check "which says time, quantity and remedy" says "first is run 0: from t = .* s on the run is unstable.*: '"
+        check "a sweep of $model, $long s $how: a remedy" says "remedy: take steps of at most about 0.0"
         [ -z "$how" ] || check "the same bytes, $long s" cmp "$work/last.csv" "$work/before.csv"
         mv "$work/last.csv" "$work/before.csv"
     done

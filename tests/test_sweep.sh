@@ -120,7 +120,7 @@ check "no journal is left" [ ! -e "$work/killed.csv.journal" ]
 "$gicsweep" "$car" "$work/s.scene" --vary spring_f_l=0.24:2:2 -o "$work/fail.csv" 2>"$work/err"
 check "a failed run is no error" [ $? -eq 0 ]
 check "but has a status" [ "$(sed -n 3p "$work/fail.csv" | cut -d, -f3)" -lt 0 ]
-check "and is told of" grep -q "1 failed, the first is run 1: " "$work/err"
+check "and is told of" grep -q "1 failed, the first is run 1: at t = 0 s: .*subset 'wheel_f_l'" "$work/err"
 check "the good one is not disturbed" [ "$(sed -n 2p "$work/fail.csv" | cut -d, -f3)" -eq 0 ]
 
 # ---- tires: one after another
