@@ -4,7 +4,7 @@
 #   make demo           the complete HMMWV for 30 s, and one over the paper's road: build/demo/
 #   make bench          engines and integrators, time against error, and the 30 s: build/bench/ (QUICK=1: the short way)
 #   make test           every test
-#   make stress         attacks on everything, for some hours: build/stress/table.md (STRESS=short: ten minutes)
+#   make stress         attacks on everything, for an hour or two: build/stress/table.md (STRESS=short: ten minutes)
 #   make generated      generated/*.c and *.h from models/*.veh, and models/veh.schema.json
 #   make debug          the same programs with the sanitizers, in build/debug/
 #   make fuzz           build/fuzz/check/fuzz, the readers under clang's libFuzzer (tests/fuzz/fuzz.c)

@@ -15,7 +15,8 @@ some="gcp1 lanes"
 if [ "$STRESS" != short ]; then
     engines="tcc cc tape gic gcp1 gcp2 lanes"
     some=
-    many="$many models/hmmwv.veh models/five_link.veh models/solid_axle.veh models/hmmwv_tires.veh tests/tuning/car.veh"
+    many="$many models/hmmwv.veh models/hmmwv14.veh models/five_link.veh models/solid_axle.veh models/trailing_arm.veh"
+    many="$many tests/tuning/car.veh"
 fi
 found=0
 for engine in $engines; do
