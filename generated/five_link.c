@@ -1645,13 +1645,9 @@ static int five_link_orient(const five_link *self, const gic_real *y, gic_real e
 /* The dependent parameter takes its recovered value, and the largest one becomes the dependent one. */
 static int five_link_settle(five_link *self, gic_real *y)
 {
-    gic_real e[4];
-    int i, status = GIC_ERROR_INPUT;
-    if (GIC_BOUNDED(y, FIVE_LINK_STATES))
-        status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
-    for (i = 0; status == GIC_OK && i < 4; ++i)
-        y[3 + i] = e[i];
-    return status;
+    if (!GIC_BOUNDED(y, FIVE_LINK_STATES))
+        return GIC_ERROR_INPUT;
+    return gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, y + 3);
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */

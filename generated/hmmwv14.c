@@ -1653,13 +1653,9 @@ static int hmmwv14_orient(const hmmwv14 *self, const gic_real *y, gic_real e[4],
 /* The dependent parameter takes its recovered value, and the largest one becomes the dependent one. */
 static int hmmwv14_settle(hmmwv14 *self, gic_real *y)
 {
-    gic_real e[4];
-    int i, status = GIC_ERROR_INPUT;
-    if (GIC_BOUNDED(y, HMMWV14_STATES))
-        status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
-    for (i = 0; status == GIC_OK && i < 4; ++i)
-        y[3 + i] = e[i];
-    return status;
+    if (!GIC_BOUNDED(y, HMMWV14_STATES))
+        return GIC_ERROR_INPUT;
+    return gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, y + 3);
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */

@@ -1278,13 +1278,9 @@ static int hmmwv_vehicle_orient(const hmmwv_vehicle *self, const gic_real *y, gi
 /* The dependent parameter takes its recovered value, and the largest one becomes the dependent one. */
 static int hmmwv_vehicle_settle(hmmwv_vehicle *self, gic_real *y)
 {
-    gic_real e[4];
-    int i, status = GIC_ERROR_INPUT;
-    if (GIC_BOUNDED(y, HMMWV_VEHICLE_STATES))
-        status = gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, e);
-    for (i = 0; status == GIC_OK && i < 4; ++i)
-        y[3 + i] = e[i];
-    return status;
+    if (!GIC_BOUNDED(y, HMMWV_VEHICLE_STATES))
+        return GIC_ERROR_INPUT;
+    return gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, y + 3);
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */

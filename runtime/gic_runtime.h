@@ -310,7 +310,7 @@ int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int s
 /* No three Euler parameters stay independent over a full turn (Serban and Haug 2000, Proposition 3.1). e[4] from
  * `given`, with the dependent parameter recovered from the other three. *dependent is the index of the dependent one;
  * it moves to the parameter of largest magnitude when that is more than a tenth larger
- * (*switches counts it). Returns GIC_ERROR_ORIENTATION when `given` is not near unit length. */
+ * (*switches counts it). Returns GIC_ERROR_ORIENTATION when `given` is not near unit length. e may be `given`. */
 #define gic_orientation GIC_NAME(gic_orientation)
 int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switches, gic_real e[4]);
 
