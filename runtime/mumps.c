@@ -79,13 +79,14 @@ static bool call(DMUMPS_STRUC_C *mumps, int job)
 {
     sigjmp_buf here;
     mumps->job = job;
-    const bool whole = !sigsetjmp(here, 1);
-    if (whole) {
-        way_out = &here;
-        dmumps_c(mumps);
+    if (sigsetjmp(here, 1)) {
+        way_out = NULL;
+        return false;
     }
+    way_out = &here;
+    dmumps_c(mumps);
     way_out = NULL;
-    return whole;
+    return true;
 }
 
 /* Call MUMPS, with more room where that is missing. */

@@ -203,12 +203,12 @@ static int32_t step_lanes(Runner *r, int64_t most)
     const Sweep *sweep = r->sweep;
     const Scene *scene = sweep->scene;
     const StepWatch *watch = r->slot->watch; /* all of them look after the same steps */
-    const int64_t idle = watch ? step_watch_idle(watch) : most;
-    const int32_t steps = (int32_t)(idle < most ? idle + 1 : most);
+    const bool look = watch && step_watch_idle(watch) < most;
+    const int32_t steps = (int32_t)(look ? step_watch_idle(watch) + 1 : most);
     sweep->many->step(r->batch, scene->step, scene->method, steps);
     for (int i = 0; i < r->used && watch; ++i) {
-        step_watch_pass(r->slot[i].watch, idle < most ? idle : most);
-        if (idle >= most)
+        step_watch_pass(r->slot[i].watch, steps - look);
+        if (!look)
             continue;
         sweep->many->store(r->batch, i, r->one);
         step_watch_step(r->slot[i].watch, sweep->engine->code, r->one, r->copy);

@@ -160,7 +160,7 @@ while read -r model scene varied method long long_end good good_end output; do
         # shellcheck disable=SC2086  # words
         found=$(sweep "$model" "$scene" "$varied" $how)
         check "a sweep of $model, $long s $how: unstable" [ "$found" = "$unstable,$long_end $unstable,$long_end " ]
-        check "which says time, quantity and remedy" says "first is run 0: from t = .* s on the run is unstable.*: '"
+        check "a sweep of $model, $long s $how: time and quantity" says "first is run 0: from t = .* s on the run is unstable.*: '"
         check "a sweep of $model, $long s $how: a remedy" says "remedy: take steps of at most about 0.0"
         [ -z "$how" ] || check "the same bytes, $long s" cmp "$work/last.csv" "$work/before.csv"
         mv "$work/last.csv" "$work/before.csv"
