@@ -7,6 +7,7 @@
  * there: a step that passes would let the length shrink again while the arm turned back. Prints how many runs were
  * tried, how many ended as they should and how many passed, and the largest angle that was left, in steps. */
 #include "attack.h"
+#include "gicrun.h"
 
 #include <unistd.h>
 
@@ -63,14 +64,14 @@ int main(int argc, char **argv)
         fputs("usage: passage --count N --seed S [--recovery WAY]\n", stderr);
         return 2;
     }
-    char path[] = "/tmp/passage.XXXXXX";
+    Pool *pool = pool_new();
+    char *path = pool_print(pool, "%s/passage-XXXXXX", temporary_folder());
     const int file = mkstemp(path);
     if (file < 0 || write(file, text, sizeof text - 1) != (ssize_t)(sizeof text - 1)) {
         perror(path);
         return 1;
     }
     close(file);
-    Pool *pool = pool_new();
     const Model *model = model_read(pool, path);
     unlink(path);
     Subject subject = subject_open(pool, "tcc", model, recovery);
