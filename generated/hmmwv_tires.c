@@ -82,7 +82,7 @@
  */
 #include "hmmwv_tires.h"
 
-#if HMMWV_TIRES_H != 0x830fe6e7
+#if HMMWV_TIRES_H != 0xf292969b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -1220,12 +1220,23 @@ static int hmmwv_tires_orient(const hmmwv_tires *self, const gic_real *y, gic_re
     return gic_orientation(y + 3, &dependent, &switches, e);
 }
 
-/* The dependent parameter takes its recovered value, and the largest one becomes the dependent one. */
-static int hmmwv_tires_settle(hmmwv_tires *self, gic_real *y)
+/* A state of the numbers that an integrator found, which may stand in the same place: the dependent parameter takes its
+ * recovered value, and the largest one becomes the dependent one. All else is copied as it came, by vectors: one that
+ * is read where a single number was just written would wait for it. */
+static int hmmwv_tires_settle(hmmwv_tires *self, const gic_real *found, gic_real *y)
 {
-    if (!GIC_BOUNDED(y, HMMWV_TIRES_STATES))
+    gic_real e[4];
+    int i, status;
+    if (!GIC_BOUNDED(found, HMMWV_TIRES_STATES))
         return GIC_ERROR_INPUT;
-    return gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, y + 3);
+    status = gic_orientation(found + 3, &self->discrete[0], &self->head.switch_count, e);
+    if (status != GIC_OK)
+        return status;
+    for (i = 0; found != y && i < HMMWV_TIRES_STATES; ++i)
+        y[i] = found[i];
+    for (i = 0; i < 4; ++i)
+        y[3 + i] = e[i];
+    return GIC_OK;
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
@@ -3219,29 +3230,57 @@ static int hmmwv_tires_locate(hmmwv_tires *self, gic_real time, const gic_real *
     return self->head.status = status;
 }
 
-/* The same, and the state's rate. */
-static int hmmwv_tires_evaluate(hmmwv_tires *self, gic_real time, const gic_real *y, gic_real e[4], gic_real *rate)
+/* The same, and the state's rate, which is none where the status is not GIC_OK. */
+static int hmmwv_tires_evaluate(hmmwv_tires *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[HMMWV_TIRES_STATE_ROOM])
 {
-    gic_real result[HMMWV_TIRES_STATE_ROOM];
-    int i, status = hmmwv_tires_locate(self, time, y, e);
+    int status = hmmwv_tires_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
-        status = hmmwv_tires_turn_wheels(self, time, y, e, result + HMMWV_TIRES_SLOW);
+        status = hmmwv_tires_turn_wheels(self, time, y, e, rate + HMMWV_TIRES_SLOW);
     if (status == GIC_OK)
-        status = hmmwv_tires_dynamics(self, time, y, e, result);
+        status = hmmwv_tires_dynamics(self, time, y, e, rate);
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
-    if (status == GIC_OK && !GIC_FINITE(result + HMMWV_TIRES_TWIST, HMMWV_TIRES_STATES - HMMWV_TIRES_TWIST))
+    if (status == GIC_OK && !GIC_FINITE(rate + HMMWV_TIRES_TWIST, HMMWV_TIRES_STATES - HMMWV_TIRES_TWIST))
         status = GIC_ERROR_RESULT;
-    for (i = 0; status == GIC_OK && i < HMMWV_TIRES_STATES; ++i)
-        rate[i] = result[i];
     return self->head.status = status;
 }
 
 int hmmwv_tires_rhs(hmmwv_tires *self, gic_real time, const gic_real *state, gic_real *rate)
 {
-    gic_real e[4];
-    return hmmwv_tires_evaluate(self, time, state, e, rate);
+    gic_real e[4], result[HMMWV_TIRES_STATE_ROOM];
+    int i;
+    const int status = hmmwv_tires_evaluate(self, time, state, e, result);
+    for (i = 0; status == GIC_OK && i < HMMWV_TIRES_STATES; ++i)
+        rate[i] = result[i];
+    return status;
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define hmmwv_tires_any_march NULL
+#else
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows, and a rate that goes nowhere else. */
+static int hmmwv_tires_any_march(void *instance, gic_real time, gic_real step)
+{
+    hmmwv_tires *const self = (hmmwv_tires *)instance;
+    const gic_real weight = step / R(12.0);
+    gic_real *const past = self->history, *const older = past + HMMWV_TIRES_STATES;
+    gic_real e[4], rate[HMMWV_TIRES_STATE_ROOM], next[HMMWV_TIRES_STATE_ROOM];
+    int i, status = hmmwv_tires_evaluate(self, time, self->state, e, rate);
+    for (i = 0; status == GIC_OK && i < HMMWV_TIRES_STATES; ++i)
+        next[i] = self->state[i] + weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+    if (status == GIC_OK)
+        status = hmmwv_tires_settle(self, next, self->state);
+    if (status != GIC_OK)
+        return status;
+    for (i = 0; i < HMMWV_TIRES_STATES; ++i)
+        older[i] = past[i];
+    for (i = 0; i < HMMWV_TIRES_STATES; ++i)
+        past[i] = rate[i];
+    for (i = 0; i < HMMWV_TIRES_STATES; ++i)
+        self->rate[i] = rate[i];
+    return GIC_OK;
+}
+#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real hmmwv_tires_present(hmmwv_tires *self)
@@ -3256,7 +3295,12 @@ static gic_real hmmwv_tires_present(hmmwv_tires *self)
 /* The present state and its rate. */
 static int hmmwv_tires_refresh(hmmwv_tires *self, gic_real e[4])
 {
-    return hmmwv_tires_evaluate(self, hmmwv_tires_present(self), self->state, e, self->rate);
+    gic_real result[HMMWV_TIRES_STATE_ROOM];
+    int i;
+    const int status = hmmwv_tires_evaluate(self, hmmwv_tires_present(self), self->state, e, result);
+    for (i = 0; status == GIC_OK && i < HMMWV_TIRES_STATES; ++i)
+        self->rate[i] = result[i];
+    return status;
 }
 
 int hmmwv_tires_outputs(hmmwv_tires *self)
@@ -4880,7 +4924,7 @@ static int hmmwv_tires_any_rhs(void *self, gic_real time, const gic_real *state,
 
 static int hmmwv_tires_any_settle(void *self, gic_real *state)
 {
-    return hmmwv_tires_settle((hmmwv_tires *)self, state);
+    return hmmwv_tires_settle((hmmwv_tires *)self, state, state);
 }
 
 static int hmmwv_tires_any_outputs(void *self)
@@ -4951,6 +4995,7 @@ const gic_model hmmwv_tires_model = {
     hmmwv_tires_any_outputs,
     hmmwv_tires_any_poses,
     hmmwv_tires_any_self_test,
+    hmmwv_tires_any_march,
     HMMWV_TIRES_LINKS,
     offsetof(hmmwv_tires, link),
     hmmwv_tires_any_link,

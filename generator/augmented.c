@@ -8,8 +8,8 @@
  * and w'' of the free coordinates behind them, each from its own equation: what acts along a free coordinate acts on
  * the bodies, so that its multiplier vanishes. The equation of a driven coordinate is a constraint like the joints'.
  * Elimination goes in the order of the topology: first the bodies, whose M is m I and J where the centre of mass is
- * their point; then joint by joint, which couple where they share a body; last a free base, which all of them would
- * couple by. What is left after the bodies is, with the index 0 for the base,
+ * their point; then the equations of joints, which couple where they share a body; last a free base, which all of them
+ * would couple by. What is left after the bodies is, with the index 0 for the base,
  *
  *     [ J M^-1 J^T   J_0  ] [ lambda         ]   [ -bias - J M^-1 (applied less gyroscopic forces) ]
  *     [ J_0^T       -M_0  ] [ acceleration_0 ] = [ -(applied less gyroscopic forces)_0             ]
@@ -31,11 +31,6 @@ typedef struct Equation {
     Ex Z[2][6];     /* M^-1 J^T, but for the base */
 } Equation;
 
-/* The equations of one joint or driven coordinate, eliminated together. */
-typedef struct Tie {
-    int first, count, body[2];
-} Tie;
-
 typedef struct System {
     Whole *whole;
     Dag *dag;
@@ -45,11 +40,10 @@ typedef struct System {
     Ex base_inertia[6];
     Ex (*wrench)[6];                /* [bodies] applied less gyroscopic, moment about the centre of mass */
     Ex (*acceleration)[6], *lambda; /* the solution */
-    int equations, frees, ties;
+    int equations, frees;
     int unknowns;       /* multipliers, then the acceleration of a free base */
     Equation *equation; /* of joints and driven coordinates */
     Equation *free;     /* of free coordinates */
-    Tie *tie;
 } System;
 
 /* ---- bodies ---------------------------------------------------------------------------------------------- */
@@ -130,14 +124,6 @@ static void open_equation(System *s, Equation *equation, const Row *row, const i
     }
 }
 
-static Tie *open_tie(System *s, const int body[2], int count)
-{
-    Tie *tie = &s->tie[s->ties++];
-    *tie = (Tie){.first = s->equations, .count = count, .body = {body[0], body[1]}};
-    s->equations += count;
-    return tie;
-}
-
 static int open_joint(System *s, int index, const double (*origin)[3], int multiplier)
 {
     const Joint *joint = &s->whole->model->joint[index];
@@ -145,9 +131,8 @@ static int open_joint(System *s, int index, const double (*origin)[3], int multi
     Fixture fixture = whole_joint_fixture(s->whole, joint, origin);
     Row row[ROWS_MAX];
     int rows = joint_rows(s->dag, joint->type, &fixture, end, sequence_known_end(s->whole->plan->sequence, joint), row);
-    const Tie *tie = open_tie(s, joint->body, rows);
     for (int r = 0; r < rows; ++r)
-        open_equation(s, &s->equation[tie->first + r], &row[r], joint->body, -1, multiplier + r,
+        open_equation(s, &s->equation[s->equations++], &row[r], joint->body, -1, multiplier + r,
                       reaction_wanted(s->whole->model, index));
     return rows;
 }
@@ -173,8 +158,7 @@ static void open_coordinate(System *s, int index, const double (*origin)[3], int
     Fixture fixture = whole_coordinate_fixture(whole, coordinate, origin);
     Row row = coordinate_row(s->dag, coordinate->type, &fixture, end, whole->x[index], whole->xd[index]);
     push_along(s, &row, coordinate->body, s->loads->own[index]);
-    Equation *equation =
-        coordinate->driven ? &s->equation[open_tie(s, coordinate->body, 1)->first] : &s->free[s->frees++];
+    Equation *equation = coordinate->driven ? &s->equation[s->equations++] : &s->free[s->frees++];
     open_equation(s, equation, &row, coordinate->body, index, multiplier, drive_wanted(whole->model, index));
 }
 
@@ -193,8 +177,7 @@ static System open_system(Whole *whole)
                 .wrench = pool_alloc(pool, bodies * sizeof *s.wrench),
                 .acceleration = pool_alloc(pool, bodies * sizeof *s.acceleration),
                 .equation = pool_alloc(pool, (size_t)most * sizeof *s.equation),
-                .free = pool_alloc(pool, (size_t)(model->coordinates + 1) * sizeof *s.free),
-                .tie = pool_alloc(pool, (size_t)most * sizeof *s.tie)};
+                .free = pool_alloc(pool, (size_t)(model->coordinates + 1) * sizeof *s.free)};
     double(*origin)[3] = pool_alloc(pool, bodies * sizeof *origin);
     for (int b = 0; b < model->bodies; ++b) {
         memcpy(origin[b], model->body[b].com, sizeof origin[b]);
@@ -218,48 +201,47 @@ static System open_system(Whole *whole)
 
 /* ---- elimination ----------------------------------------------------------------------------------------- */
 
-static bool share_body(const Tie *a, const Tie *b)
+/* Order of the equations, then of the base: next comes always the equation whose elimination makes the fewest entries
+ * of H that were zero, of equals the one with the fewest neighbours, of those the last in the computational sequence.
+ * So leaves of the topology come first, and of a joint what few others feel. */
+static int *topology_order(const System *s, const Ex *H)
 {
-    bool share = false;
-    for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 2; ++j)
-            share = share || (a->body[i] == b->body[j] && a->body[i] != BODY_BASE);
-    return share;
-}
-
-/* Order of the equations, then of the base: next comes always the joint whose neighbours have the fewest equations
- * left, of equals the last in the computational sequence. So leaves of the topology come first. */
-static int *topology_order(const System *s)
-{
-    size_t ties = (size_t)s->ties;
-    bool *near = pool_alloc(s->dag->pool, (ties * ties + 1) * sizeof *near),
-         *done = pool_alloc(s->dag->pool, (ties + 1) * sizeof *done);
-    int *order = pool_alloc(s->dag->pool, ((size_t)s->unknowns + 1) * sizeof *order), count = 0;
-    for (int i = 0; i < s->ties; ++i)
-        for (int j = 0; j < s->ties; ++j)
-            near[s->ties * i + j] = i != j && share_body(&s->tie[i], &s->tie[j]);
-    for (int step = 0; step < s->ties; ++step) {
-        int best = -1, best_degree = 0;
-        for (int i = s->ties - 1; i >= 0; --i) {
-            int degree = 0;
-            for (int j = 0; j < s->ties; ++j)
-                degree += near[s->ties * i + j] && !done[j] ? s->tie[j].count : 0;
-            if (!done[i] && (best < 0 || degree < best_degree)) {
-                best = i;
+    const int n = s->unknowns;
+    bool *near = pool_alloc(s->dag->pool, ((size_t)n * (size_t)n + 1) * sizeof *near);
+    int *order = pool_alloc(s->dag->pool, ((size_t)n + 1) * sizeof *order);
+    int *left = pool_alloc(s->dag->pool, ((size_t)n + 1) * sizeof *left);
+    for (int i = 0; i < n; ++i) {
+        order[i] = i;
+        for (int j = i + 1; j < n; ++j)
+            near[n * i + j] = near[n * j + i] = !ex_is(s->dag, H[n * i + j], 0);
+    }
+    for (int step = 0; step < s->equations; ++step) {
+        int best = 0, best_fill = 0, best_degree = 0;
+        for (int at = s->equations - 1; at >= step; --at) {
+            const bool *row = &near[(size_t)n * (size_t)order[at]];
+            int degree = 0, fill = 0;
+            for (int j = step; j < n; ++j)
+                if (row[order[j]])
+                    left[degree++] = order[j];
+            for (int j = 0; j < degree; ++j)
+                for (int k = j + 1; k < degree; ++k)
+                    fill += !near[n * left[j] + left[k]];
+            if (at == s->equations - 1 || fill < best_fill || (fill == best_fill && degree < best_degree)) {
+                best = at;
+                best_fill = fill;
                 best_degree = degree;
             }
         }
-        done[best] = true;
-        for (int r = 0; r < s->tie[best].count; ++r)
-            order[count++] = s->tie[best].first + r;
         /* its neighbours become neighbours of each other */
-        for (int i = 0; i < s->ties; ++i)
-            for (int j = 0; j < s->ties; ++j)
-                if (i != j && near[s->ties * best + i] && near[s->ties * best + j])
-                    near[s->ties * i + j] = true;
+        const int next = order[best];
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n && near[n * next + i]; ++j)
+                near[n * i + j] |= near[n * next + j] && i != j;
+        for (int i = 0; i < n; ++i)
+            near[n * next + i] = near[n * i + next] = false;
+        memmove(&order[step + 1], &order[step], (size_t)(best - step) * sizeof *order);
+        order[step] = next;
     }
-    for (int i = s->equations; i < s->unknowns; ++i)
-        order[i] = i;
     return order;
 }
 
@@ -427,7 +409,7 @@ Block *augmented_block(Whole *whole)
     block_loads(block, s.loads->own, whole->model->coordinates);
     const Ex *driven = whole_driven_accelerations(whole), *H = reduced_matrix(&s);
     Ex *x = pool_alloc(dag->pool, (size_t)(s.unknowns + 1) * sizeof *x);
-    const Factors *factors = linear_factor_symmetric(dag, s.unknowns, H, topology_order(&s), 0);
+    const Factors *factors = linear_factor_symmetric(dag, s.unknowns, H, topology_order(&s, H), 0);
     for (int k = 0; k < s.equations; ++k) {
         Ex diagonal = H[s.unknowns * factors->row[k] + factors->row[k]];
         const Ex left = ex_sub(dag, factors->pivot[k], ex_mul(dag, ex_literal(dag, independent), diagonal));

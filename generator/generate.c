@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* The version of gic_runtime.h that emitted code is written for: GIC_ABI_VERSION. */
-enum { ABI_VERSION = 4 };
+enum { ABI_VERSION = 5 };
 
 /* ---- texts ------------------------------------------------------------------------------------------------ */
 
@@ -610,7 +610,7 @@ void insert_code(void *context, const char *name, Text *out, int indent)
     } else if (!strcmp(name, "turn wheels")) {
         if (g->formulation->wheels) {
             line(out, indent, "if (status == GIC_OK)");
-            line(out, indent + 4, "status = %s_turn_wheels(self, time, y, e, result + %s_SLOW);", g->model->name,
+            line(out, indent + 4, "status = %s_turn_wheels(self, time, y, e, rate + %s_SLOW);", g->model->name,
                  g->upper);
         }
     } else if (!strcmp(name, "gears")) {

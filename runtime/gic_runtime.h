@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Raised when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 4
+#define GIC_ABI_VERSION 5
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. */
@@ -177,6 +177,9 @@ typedef struct gic_model {
     int (*outputs)(void *self);
     int (*poses)(void *self, gic_real *pose);
     int (*self_test)(void *self, gic_self_test *result);
+    /* Step functions call it for a step of AB3 from `time` with two past rates, and NULL lets them make it of the
+     * functions above. On GIC_OK state, rate and history have moved, else none of them has. */
+    int (*march)(void *self, gic_real time, gic_real step);
     /* Dual rate (TIRES.md section 9); models without fast states have link_count 0 and NULL here. */
     int32_t link_count; /* numbers through which the slow part moves the fast one */
     size_t link_offset; /* of 5 link_count numbers: links at the present slow step and the two before, newest first, and

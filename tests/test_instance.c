@@ -94,6 +94,71 @@ static void test_interleaved(void **unused)
     assert_true(first.state[HMMWV_STATE_R_X] < second.state[HMMWV_STATE_R_X]);
 }
 
+/* Inputs that move with time, kept small, and what they were asked for. */
+typedef struct Demand {
+    const gic_model *model;
+    const double *initial;
+    double last;
+    int calls;
+} Demand;
+
+static void demand_inputs(void *user, int32_t lane, gic_real time, gic_real *input)
+{
+    Demand *demand = user;
+    (void)lane;
+    for (int i = 0; i < demand->model->input_count; ++i)
+        input[i] = demand->initial[i] + 1e-3 * sin(3 * time + i);
+    demand->last = time;
+    ++demand->calls;
+}
+
+/* A model's own function for steps of AB3 against the runtime's general ones, which a descriptor without it takes: the
+ * same bits in everything, inputs asked for at the same times, steps of other methods and lengths between. */
+static void test_march(void **unused)
+{
+    (void)unused;
+    for (int m = 0; m < MODELS; ++m) {
+        gic_model general = *models[m];
+        assert_non_null(general.march);
+        general.march = NULL;
+        uint64_t seed = 3;
+        Vehicle vehicle[] = {vehicle_new(models[m]), vehicle_new(&general)};
+        const size_t states = (size_t)vehicle[0].states * sizeof(double);
+        for (int i = (vehicle[0].states + general.free_base) / 2; i < vehicle[0].states; ++i) /* speeds */
+            vehicle[0].state[i] += 0.2 * random_even(&seed);
+        memcpy(vehicle[1].state, vehicle[0].state, states);
+        double *initial = calloc((size_t)general.input_count + 1, sizeof *initial);
+        assert_non_null(initial);
+        memcpy(initial, vehicle[0].input, (size_t)general.input_count * sizeof *initial);
+        Demand demand[2];
+        for (int v = 0; v < 2; ++v) {
+            demand[v] = (Demand){&general, initial, -1, 0};
+            vehicle[v].head->road = &wavy.head;
+            vehicle[v].head->input_function = demand_inputs;
+            vehicle[v].head->user = &demand[v];
+        }
+        for (int i = 0; i < 120; ++i) {
+            for (int v = 0; v < 2; ++v)
+                vehicle_steps(&vehicle[v], i < 60 ? 1e-3 : 5e-4, i % 40 == 30 ? GIC_RK4 : GIC_AB3, 1);
+            if (i % 7 == 0) /* whose rate is another one then */
+                for (int v = 0; v < 2; ++v)
+                    assert_int_equal(vehicle[v].model->outputs(vehicle[v].head), GIC_OK);
+            assert_memory_equal(vehicle[0].state, vehicle[1].state, states);
+            assert_memory_equal(vehicle[0].rate, vehicle[1].rate, states);
+            assert_memory_equal(vehicle_array(&vehicle[0], general.history_offset),
+                                vehicle_array(&vehicle[1], general.history_offset), 2 * states);
+            assert_memory_equal(vehicle[0].input, vehicle[1].input, (size_t)general.input_count * sizeof *initial);
+            assert_true(gic_time(vehicle[0].head) == gic_time(vehicle[1].head));
+            assert_int_equal(vehicle[0].head->history, vehicle[1].head->history);
+            assert_int_equal(vehicle[0].head->rhs_count, vehicle[1].head->rhs_count);
+            assert_true(demand[0].last == demand[1].last && demand[0].calls == demand[1].calls);
+        }
+        free(initial);
+        free(vehicle[0].head);
+        free(vehicle[1].head);
+    }
+}
+
 /* ---- independence of the way ---------------------------------------------------------------------------------- */
 
 /* The same state reached from the design and by way of other states: rates agree to rounding. The accelerations are
@@ -328,7 +393,7 @@ int main(void)
         cmocka_unit_test(test_out_of_reach),   cmocka_unit_test(test_not_finite),
         cmocka_unit_test(test_step_refused),   cmocka_unit_test(test_orientation_refused),
         cmocka_unit_test(test_road_refused),   cmocka_unit_test(test_wild),
-        cmocka_unit_test(test_inputs_refused),
+        cmocka_unit_test(test_inputs_refused), cmocka_unit_test(test_march),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
