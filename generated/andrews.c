@@ -1467,16 +1467,10 @@ static int andrews_orient(const andrews *self, const gic_real *y, gic_real e[4],
     return GIC_OK;
 }
 
-/* A state of the numbers that an integrator found, which may stand in the same place. */
-static int andrews_settle(andrews *self, const gic_real *found, gic_real *y)
+static int andrews_settle(andrews *self, gic_real *y)
 {
-    int i;
     (void)self;
-    if (!GIC_BOUNDED(found, ANDREWS_STATES))
-        return GIC_ERROR_INPUT;
-    for (i = 0; found != y && i < ANDREWS_STATES; ++i)
-        y[i] = found[i];
-    return GIC_OK;
+    return GIC_BOUNDED(y, ANDREWS_STATES) ? GIC_OK : GIC_ERROR_INPUT;
 }
 
 /* A status about a subset and a number of the state, -1: about none. */
@@ -1975,26 +1969,28 @@ int andrews_rhs(andrews *self, gic_real time, const gic_real *state, gic_real *r
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define andrews_any_march NULL
 #else
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows, and a rate that goes nowhere else. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
+ * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
 static int andrews_any_march(void *instance, gic_real time, gic_real step)
 {
     andrews *const self = (andrews *)instance;
     const gic_real weight = step / R(12.0);
-    gic_real *const past = self->history, *const older = past + ANDREWS_STATES;
-    gic_real e[4], rate[ANDREWS_STATE_ROOM], next[ANDREWS_STATE_ROOM];
-    int i, status = andrews_evaluate(self, time, self->state, e, rate);
-    for (i = 0; status == GIC_OK && i < ANDREWS_STATES; ++i)
-        next[i] = self->state[i] + weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
-    if (status == GIC_OK)
-        status = andrews_settle(self, next, self->state);
+    gic_real *const state = self->state, *const past = self->history, *const older = past + ANDREWS_STATES;
+    gic_real e[4], rate[ANDREWS_STATE_ROOM], before[ANDREWS_STATE_ROOM];
+    int i, status = andrews_evaluate(self, time, state, e, rate);
     if (status != GIC_OK)
         return status;
+    memcpy(before, state, ANDREWS_STATES * sizeof *state);
     for (i = 0; i < ANDREWS_STATES; ++i)
-        older[i] = past[i];
-    for (i = 0; i < ANDREWS_STATES; ++i)
-        past[i] = rate[i];
-    for (i = 0; i < ANDREWS_STATES; ++i)
-        self->rate[i] = rate[i];
+        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+    status = andrews_settle(self, state);
+    if (status != GIC_OK) {
+        memcpy(state, before, ANDREWS_STATES * sizeof *state);
+        return status;
+    }
+    memcpy(older, past, ANDREWS_STATES * sizeof *past);
+    memcpy(past, rate, ANDREWS_STATES * sizeof *rate);
+    memcpy(self->rate, rate, ANDREWS_STATES * sizeof *rate);
     return GIC_OK;
 }
 #endif
@@ -2638,7 +2634,7 @@ static int andrews_any_rhs(void *self, gic_real time, const gic_real *state, gic
 
 static int andrews_any_settle(void *self, gic_real *state)
 {
-    return andrews_settle((andrews *)self, state, state);
+    return andrews_settle((andrews *)self, state);
 }
 
 static int andrews_any_outputs(void *self)

@@ -1642,23 +1642,12 @@ static int five_link_orient(const five_link *self, const gic_real *y, gic_real e
     return gic_orientation(y + 3, &dependent, &switches, e);
 }
 
-/* A state of the numbers that an integrator found, which may stand in the same place: the dependent parameter takes its
- * recovered value, and the largest one becomes the dependent one. All else is copied as it came, by vectors: one that
- * is read where a single number was just written would wait for it. */
-static int five_link_settle(five_link *self, const gic_real *found, gic_real *y)
+/* The dependent parameter takes its recovered value, and the largest one becomes the dependent one. */
+static int five_link_settle(five_link *self, gic_real *y)
 {
-    gic_real e[4];
-    int i, status;
-    if (!GIC_BOUNDED(found, FIVE_LINK_STATES))
+    if (!GIC_BOUNDED(y, FIVE_LINK_STATES))
         return GIC_ERROR_INPUT;
-    status = gic_orientation(found + 3, &self->discrete[0], &self->head.switch_count, e);
-    if (status != GIC_OK)
-        return status;
-    for (i = 0; found != y && i < FIVE_LINK_STATES; ++i)
-        y[i] = found[i];
-    for (i = 0; i < 4; ++i)
-        y[3 + i] = e[i];
-    return GIC_OK;
+    return gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, y + 3);
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
@@ -2984,26 +2973,28 @@ int five_link_rhs(five_link *self, gic_real time, const gic_real *state, gic_rea
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define five_link_any_march NULL
 #else
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows, and a rate that goes nowhere else. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
+ * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
 static int five_link_any_march(void *instance, gic_real time, gic_real step)
 {
     five_link *const self = (five_link *)instance;
     const gic_real weight = step / R(12.0);
-    gic_real *const past = self->history, *const older = past + FIVE_LINK_STATES;
-    gic_real e[4], rate[FIVE_LINK_STATE_ROOM], next[FIVE_LINK_STATE_ROOM];
-    int i, status = five_link_evaluate(self, time, self->state, e, rate);
-    for (i = 0; status == GIC_OK && i < FIVE_LINK_STATES; ++i)
-        next[i] = self->state[i] + weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
-    if (status == GIC_OK)
-        status = five_link_settle(self, next, self->state);
+    gic_real *const state = self->state, *const past = self->history, *const older = past + FIVE_LINK_STATES;
+    gic_real e[4], rate[FIVE_LINK_STATE_ROOM], before[FIVE_LINK_STATE_ROOM];
+    int i, status = five_link_evaluate(self, time, state, e, rate);
     if (status != GIC_OK)
         return status;
+    memcpy(before, state, FIVE_LINK_STATES * sizeof *state);
     for (i = 0; i < FIVE_LINK_STATES; ++i)
-        older[i] = past[i];
-    for (i = 0; i < FIVE_LINK_STATES; ++i)
-        past[i] = rate[i];
-    for (i = 0; i < FIVE_LINK_STATES; ++i)
-        self->rate[i] = rate[i];
+        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+    status = five_link_settle(self, state);
+    if (status != GIC_OK) {
+        memcpy(state, before, FIVE_LINK_STATES * sizeof *state);
+        return status;
+    }
+    memcpy(older, past, FIVE_LINK_STATES * sizeof *past);
+    memcpy(past, rate, FIVE_LINK_STATES * sizeof *rate);
+    memcpy(self->rate, rate, FIVE_LINK_STATES * sizeof *rate);
     return GIC_OK;
 }
 #endif
@@ -4504,7 +4495,7 @@ static int five_link_any_rhs(void *self, gic_real time, const gic_real *state, g
 
 static int five_link_any_settle(void *self, gic_real *state)
 {
-    return five_link_settle((five_link *)self, state, state);
+    return five_link_settle((five_link *)self, state);
 }
 
 static int five_link_any_outputs(void *self)

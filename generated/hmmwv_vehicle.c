@@ -1275,23 +1275,12 @@ static int hmmwv_vehicle_orient(const hmmwv_vehicle *self, const gic_real *y, gi
     return gic_orientation(y + 3, &dependent, &switches, e);
 }
 
-/* A state of the numbers that an integrator found, which may stand in the same place: the dependent parameter takes its
- * recovered value, and the largest one becomes the dependent one. All else is copied as it came, by vectors: one that
- * is read where a single number was just written would wait for it. */
-static int hmmwv_vehicle_settle(hmmwv_vehicle *self, const gic_real *found, gic_real *y)
+/* The dependent parameter takes its recovered value, and the largest one becomes the dependent one. */
+static int hmmwv_vehicle_settle(hmmwv_vehicle *self, gic_real *y)
 {
-    gic_real e[4];
-    int i, status;
-    if (!GIC_BOUNDED(found, HMMWV_VEHICLE_STATES))
+    if (!GIC_BOUNDED(y, HMMWV_VEHICLE_STATES))
         return GIC_ERROR_INPUT;
-    status = gic_orientation(found + 3, &self->discrete[0], &self->head.switch_count, e);
-    if (status != GIC_OK)
-        return status;
-    for (i = 0; found != y && i < HMMWV_VEHICLE_STATES; ++i)
-        y[i] = found[i];
-    for (i = 0; i < 4; ++i)
-        y[3 + i] = e[i];
-    return GIC_OK;
+    return gic_orientation(y + 3, &self->discrete[0], &self->head.switch_count, y + 3);
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
@@ -3505,26 +3494,28 @@ int hmmwv_vehicle_rhs(hmmwv_vehicle *self, gic_real time, const gic_real *state,
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define hmmwv_vehicle_any_march NULL
 #else
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows, and a rate that goes nowhere else. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
+ * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
 static int hmmwv_vehicle_any_march(void *instance, gic_real time, gic_real step)
 {
     hmmwv_vehicle *const self = (hmmwv_vehicle *)instance;
     const gic_real weight = step / R(12.0);
-    gic_real *const past = self->history, *const older = past + HMMWV_VEHICLE_STATES;
-    gic_real e[4], rate[HMMWV_VEHICLE_STATE_ROOM], next[HMMWV_VEHICLE_STATE_ROOM];
-    int i, status = hmmwv_vehicle_evaluate(self, time, self->state, e, rate);
-    for (i = 0; status == GIC_OK && i < HMMWV_VEHICLE_STATES; ++i)
-        next[i] = self->state[i] + weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
-    if (status == GIC_OK)
-        status = hmmwv_vehicle_settle(self, next, self->state);
+    gic_real *const state = self->state, *const past = self->history, *const older = past + HMMWV_VEHICLE_STATES;
+    gic_real e[4], rate[HMMWV_VEHICLE_STATE_ROOM], before[HMMWV_VEHICLE_STATE_ROOM];
+    int i, status = hmmwv_vehicle_evaluate(self, time, state, e, rate);
     if (status != GIC_OK)
         return status;
+    memcpy(before, state, HMMWV_VEHICLE_STATES * sizeof *state);
     for (i = 0; i < HMMWV_VEHICLE_STATES; ++i)
-        older[i] = past[i];
-    for (i = 0; i < HMMWV_VEHICLE_STATES; ++i)
-        past[i] = rate[i];
-    for (i = 0; i < HMMWV_VEHICLE_STATES; ++i)
-        self->rate[i] = rate[i];
+        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+    status = hmmwv_vehicle_settle(self, state);
+    if (status != GIC_OK) {
+        memcpy(state, before, HMMWV_VEHICLE_STATES * sizeof *state);
+        return status;
+    }
+    memcpy(older, past, HMMWV_VEHICLE_STATES * sizeof *past);
+    memcpy(past, rate, HMMWV_VEHICLE_STATES * sizeof *rate);
+    memcpy(self->rate, rate, HMMWV_VEHICLE_STATES * sizeof *rate);
     return GIC_OK;
 }
 #endif
@@ -5286,7 +5277,7 @@ static int hmmwv_vehicle_any_rhs(void *self, gic_real time, const gic_real *stat
 
 static int hmmwv_vehicle_any_settle(void *self, gic_real *state)
 {
-    return hmmwv_vehicle_settle((hmmwv_vehicle *)self, state, state);
+    return hmmwv_vehicle_settle((hmmwv_vehicle *)self, state);
 }
 
 static int hmmwv_vehicle_any_outputs(void *self)

@@ -345,16 +345,10 @@ static int pendulum_orient(const pendulum *self, const gic_real *y, gic_real e[4
     return GIC_OK;
 }
 
-/* A state of the numbers that an integrator found, which may stand in the same place. */
-static int pendulum_settle(pendulum *self, const gic_real *found, gic_real *y)
+static int pendulum_settle(pendulum *self, gic_real *y)
 {
-    int i;
     (void)self;
-    if (!GIC_BOUNDED(found, PENDULUM_STATES))
-        return GIC_ERROR_INPUT;
-    for (i = 0; found != y && i < PENDULUM_STATES; ++i)
-        y[i] = found[i];
-    return GIC_OK;
+    return GIC_BOUNDED(y, PENDULUM_STATES) ? GIC_OK : GIC_ERROR_INPUT;
 }
 
 /* A status about a subset and a number of the state, -1: about none. */
@@ -516,26 +510,28 @@ int pendulum_rhs(pendulum *self, gic_real time, const gic_real *state, gic_real 
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define pendulum_any_march NULL
 #else
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows, and a rate that goes nowhere else. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
+ * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
 static int pendulum_any_march(void *instance, gic_real time, gic_real step)
 {
     pendulum *const self = (pendulum *)instance;
     const gic_real weight = step / R(12.0);
-    gic_real *const past = self->history, *const older = past + PENDULUM_STATES;
-    gic_real e[4], rate[PENDULUM_STATE_ROOM], next[PENDULUM_STATE_ROOM];
-    int i, status = pendulum_evaluate(self, time, self->state, e, rate);
-    for (i = 0; status == GIC_OK && i < PENDULUM_STATES; ++i)
-        next[i] = self->state[i] + weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
-    if (status == GIC_OK)
-        status = pendulum_settle(self, next, self->state);
+    gic_real *const state = self->state, *const past = self->history, *const older = past + PENDULUM_STATES;
+    gic_real e[4], rate[PENDULUM_STATE_ROOM], before[PENDULUM_STATE_ROOM];
+    int i, status = pendulum_evaluate(self, time, state, e, rate);
     if (status != GIC_OK)
         return status;
+    memcpy(before, state, PENDULUM_STATES * sizeof *state);
     for (i = 0; i < PENDULUM_STATES; ++i)
-        older[i] = past[i];
-    for (i = 0; i < PENDULUM_STATES; ++i)
-        past[i] = rate[i];
-    for (i = 0; i < PENDULUM_STATES; ++i)
-        self->rate[i] = rate[i];
+        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+    status = pendulum_settle(self, state);
+    if (status != GIC_OK) {
+        memcpy(state, before, PENDULUM_STATES * sizeof *state);
+        return status;
+    }
+    memcpy(older, past, PENDULUM_STATES * sizeof *past);
+    memcpy(past, rate, PENDULUM_STATES * sizeof *rate);
+    memcpy(self->rate, rate, PENDULUM_STATES * sizeof *rate);
     return GIC_OK;
 }
 #endif
@@ -904,7 +900,7 @@ static int pendulum_any_rhs(void *self, gic_real time, const gic_real *state, gi
 
 static int pendulum_any_settle(void *self, gic_real *state)
 {
-    return pendulum_settle((pendulum *)self, state, state);
+    return pendulum_settle((pendulum *)self, state);
 }
 
 static int pendulum_any_outputs(void *self)

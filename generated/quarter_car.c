@@ -738,16 +738,10 @@ static int quarter_car_orient(const quarter_car *self, const gic_real *y, gic_re
     return GIC_OK;
 }
 
-/* A state of the numbers that an integrator found, which may stand in the same place. */
-static int quarter_car_settle(quarter_car *self, const gic_real *found, gic_real *y)
+static int quarter_car_settle(quarter_car *self, gic_real *y)
 {
-    int i;
     (void)self;
-    if (!GIC_BOUNDED(found, QUARTER_CAR_STATES))
-        return GIC_ERROR_INPUT;
-    for (i = 0; found != y && i < QUARTER_CAR_STATES; ++i)
-        y[i] = found[i];
-    return GIC_OK;
+    return GIC_BOUNDED(y, QUARTER_CAR_STATES) ? GIC_OK : GIC_ERROR_INPUT;
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
@@ -1055,26 +1049,28 @@ int quarter_car_rhs(quarter_car *self, gic_real time, const gic_real *state, gic
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define quarter_car_any_march NULL
 #else
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows, and a rate that goes nowhere else. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
+ * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
 static int quarter_car_any_march(void *instance, gic_real time, gic_real step)
 {
     quarter_car *const self = (quarter_car *)instance;
     const gic_real weight = step / R(12.0);
-    gic_real *const past = self->history, *const older = past + QUARTER_CAR_STATES;
-    gic_real e[4], rate[QUARTER_CAR_STATE_ROOM], next[QUARTER_CAR_STATE_ROOM];
-    int i, status = quarter_car_evaluate(self, time, self->state, e, rate);
-    for (i = 0; status == GIC_OK && i < QUARTER_CAR_STATES; ++i)
-        next[i] = self->state[i] + weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
-    if (status == GIC_OK)
-        status = quarter_car_settle(self, next, self->state);
+    gic_real *const state = self->state, *const past = self->history, *const older = past + QUARTER_CAR_STATES;
+    gic_real e[4], rate[QUARTER_CAR_STATE_ROOM], before[QUARTER_CAR_STATE_ROOM];
+    int i, status = quarter_car_evaluate(self, time, state, e, rate);
     if (status != GIC_OK)
         return status;
+    memcpy(before, state, QUARTER_CAR_STATES * sizeof *state);
     for (i = 0; i < QUARTER_CAR_STATES; ++i)
-        older[i] = past[i];
-    for (i = 0; i < QUARTER_CAR_STATES; ++i)
-        past[i] = rate[i];
-    for (i = 0; i < QUARTER_CAR_STATES; ++i)
-        self->rate[i] = rate[i];
+        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+    status = quarter_car_settle(self, state);
+    if (status != GIC_OK) {
+        memcpy(state, before, QUARTER_CAR_STATES * sizeof *state);
+        return status;
+    }
+    memcpy(older, past, QUARTER_CAR_STATES * sizeof *past);
+    memcpy(past, rate, QUARTER_CAR_STATES * sizeof *rate);
+    memcpy(self->rate, rate, QUARTER_CAR_STATES * sizeof *rate);
     return GIC_OK;
 }
 #endif
@@ -1595,7 +1591,7 @@ static int quarter_car_any_rhs(void *self, gic_real time, const gic_real *state,
 
 static int quarter_car_any_settle(void *self, gic_real *state)
 {
-    return quarter_car_settle((quarter_car *)self, state, state);
+    return quarter_car_settle((quarter_car *)self, state);
 }
 
 static int quarter_car_any_outputs(void *self)

@@ -18,6 +18,8 @@ typedef struct Variant {
 } Variant;
 
 #define FASTEST "-O3 -march=native -ffp-contract=fast"
+/* clang's own vectors of what stands beside vectors cost more than they bring: 2 to 5 percent in lanes, nothing else */
+#define FASTEST_CLANG FASTEST " -fno-slp-vectorize"
 #define NEAR(error) "-O2 -DGIC_RECOVERY_ERROR=" #error
 
 /* The first is what the others are compared with, in double precision and the reduced form. */
@@ -26,7 +28,7 @@ static const Variant every_variant[] = {
     {"cc", NULL, "-O3", SOLVE_REDUCED, false, false, 0},
     {"cc", NULL, FASTEST, SOLVE_REDUCED, false, false, 0},
     {"cc", "clang", "-O2", SOLVE_REDUCED, false, false, 0},
-    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, false, 0},
+    {"cc", "clang", FASTEST_CLANG, SOLVE_REDUCED, false, false, 0},
     {"cc", NULL, "-O2", SOLVE_REDUCED, false, true, 0},
     {"cc", NULL, NEAR(1e-10), SOLVE_REDUCED, false, true, 0},
     {"cc", NULL, NEAR(1e-8), SOLVE_REDUCED, false, true, 0},
@@ -34,7 +36,7 @@ static const Variant every_variant[] = {
     {"cc", NULL, NEAR(1e-4), SOLVE_REDUCED, false, true, 0},
     {"cc", NULL, NEAR(1e-2), SOLVE_REDUCED, false, true, 0},
     {"cc", NULL, FASTEST, SOLVE_REDUCED, false, true, 0},
-    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, true, 0},
+    {"cc", "clang", FASTEST_CLANG, SOLVE_REDUCED, false, true, 0},
     {"cc", NULL, "-O2", SOLVE_AUGMENTED, false, false, 0},
     {"cc", NULL, FASTEST, SOLVE_AUGMENTED, false, false, 0},
     {"cc", NULL, "-O2 -DGIC_FLOAT", SOLVE_REDUCED, true, false, 0},
@@ -45,9 +47,9 @@ static const Variant every_variant[] = {
     {"gcp1", NULL, "", SOLVE_REDUCED, false, false, 0},
     {"gcp2", NULL, "", SOLVE_REDUCED, false, false, 0},
     {"cc", NULL, FASTEST, SOLVE_REDUCED, false, false, 4},
-    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, false, 4},
+    {"cc", "clang", FASTEST_CLANG, SOLVE_REDUCED, false, false, 4},
     {"cc", NULL, FASTEST, SOLVE_REDUCED, false, true, 4},
-    {"cc", "clang", FASTEST, SOLVE_REDUCED, false, true, 4},
+    {"cc", "clang", FASTEST_CLANG, SOLVE_REDUCED, false, true, 4},
 };
 
 enum {
@@ -545,7 +547,7 @@ static void step_table(const Course *course)
             table_cell(pool, table, subject->unstable ? "unstable" : "failed");
     }
     table->note = "Steps in a row, and right-hand sides at the states from which they begin, by turns; inputs stay. "
-                  "The step function is this program's, compiled with its own flags.";
+                  "The step is the generated code's own function, what is around it this program's, with its flags.";
 }
 
 /* The same vehicle without what makes forces: packed, force laws are no part of the equations of motion that could be

@@ -365,6 +365,31 @@ static void test_wild(void **unused)
     }
 }
 
+/* The rates are good, but what a step of AB3 makes of them and of rates of the past is no state. */
+static void test_bad_history(void **unused)
+{
+    (void)unused;
+    static const double poison[] = {1e13, -1e300, NAN, INFINITY};
+    for (size_t i = 0; i < 4; ++i)
+        for (int k = 0; k < 2 * HMMWV_STATES; k += 9) {
+            Failure *failure = failure_new();
+            const double kept = failure->bad.history[k];
+            failure->bad.history[k] = poison[i];
+            static hmmwv before;
+            hmmwv_snapshot(&failure->bad, &before);
+            assert_int_equal(hmmwv_step(&failure->bad, 0.005, GIC_AB3), GIC_ERROR_UNSTABLE);
+            assert_string_equal(hmmwv_status_state(&failure->bad), hmmwv_model.state[k % HMMWV_STATES].name);
+            assert_memory_equal(failure->bad.state, before.state, sizeof before.state);
+            assert_memory_equal(failure->bad.history, before.history, sizeof before.history);
+            assert_memory_equal(failure->bad.rate, before.rate, sizeof before.rate);
+            assert_true(hmmwv_time(&failure->bad) == hmmwv_time(&before));
+            failure->bad.history[k] = kept;
+            ride(&failure->bad, GIC_AB3, 10);
+            ride(&failure->good, GIC_AB3, 10);
+            assert_same(&failure->bad, &failure->good);
+        }
+}
+
 /* Inputs that are not numbers; a driven coordinate out of reach. */
 static void test_inputs_refused(void **unused)
 {
@@ -394,6 +419,7 @@ int main(void)
         cmocka_unit_test(test_step_refused),   cmocka_unit_test(test_orientation_refused),
         cmocka_unit_test(test_road_refused),   cmocka_unit_test(test_wild),
         cmocka_unit_test(test_inputs_refused), cmocka_unit_test(test_march),
+        cmocka_unit_test(test_bad_history),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
