@@ -311,6 +311,8 @@ static int march(const gic_model *model, void *self, gic_real step)
     if (!model->march || model->abi_version != GIC_ABI_VERSION || model->real_size != sizeof(gic_real) ||
         !(time + step > time))
         return 0;
+    const int64_t rhs_count = head->rhs_count, newton_count = head->newton_count, late_count = head->late_count,
+                  correction_count = head->correction_count, kept_count = head->kept_count, air_count = head->air_count;
     head->grown = -1;
     head->ahead = step;
     head->hold = head->flip;
@@ -324,6 +326,12 @@ static int march(const gic_model *model, void *self, gic_real step)
     }
     head->flip = head->hold;
     head->hold = -1;
+    head->rhs_count = rhs_count;
+    head->newton_count = newton_count;
+    head->correction_count = correction_count;
+    head->late_count = late_count;
+    head->kept_count = kept_count;
+    head->air_count = air_count;
     if (head->input_function)
         copy(input, input_before, model->input_count);
     return 0;
