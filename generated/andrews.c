@@ -1966,15 +1966,11 @@ int andrews_rhs(andrews *self, gic_real time, const gic_real *state, gic_real *r
     return status;
 }
 
-#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
-#define andrews_any_march NULL
-#else
 /* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
  * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
-static int andrews_any_march(void *instance, gic_real time, gic_real step)
+static int andrews_march(andrews *self, gic_real time)
 {
-    andrews *const self = (andrews *)instance;
-    const gic_real weight = step / R(12.0);
+    const gic_real weight = self->head.ahead / R(12.0);
     gic_real *const state = self->state, *const past = self->history, *const older = past + ANDREWS_STATES;
     gic_real e[4], rate[ANDREWS_STATE_ROOM], before[ANDREWS_STATE_ROOM];
     int i, status = andrews_evaluate(self, time, state, e, rate);
@@ -1993,7 +1989,6 @@ static int andrews_any_march(void *instance, gic_real time, gic_real step)
     memcpy(self->rate, rate, ANDREWS_STATES * sizeof *rate);
     return GIC_OK;
 }
-#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real andrews_present(andrews *self)
@@ -2651,6 +2646,15 @@ static int andrews_any_self_test(void *self, gic_self_test *result)
 {
     return andrews_self_test((andrews *)self, result);
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define andrews_any_march NULL
+#else
+static int andrews_any_march(void *self, gic_real time)
+{
+    return andrews_march((andrews *)self, time);
+}
+#endif
 
 const gic_model andrews_model = {
     ANDREWS_ABI,

@@ -2970,15 +2970,11 @@ int five_link_rhs(five_link *self, gic_real time, const gic_real *state, gic_rea
     return status;
 }
 
-#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
-#define five_link_any_march NULL
-#else
 /* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
  * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
-static int five_link_any_march(void *instance, gic_real time, gic_real step)
+static int five_link_march(five_link *self, gic_real time)
 {
-    five_link *const self = (five_link *)instance;
-    const gic_real weight = step / R(12.0);
+    const gic_real weight = self->head.ahead / R(12.0);
     gic_real *const state = self->state, *const past = self->history, *const older = past + FIVE_LINK_STATES;
     gic_real e[4], rate[FIVE_LINK_STATE_ROOM], before[FIVE_LINK_STATE_ROOM];
     int i, status = five_link_evaluate(self, time, state, e, rate);
@@ -2997,7 +2993,6 @@ static int five_link_any_march(void *instance, gic_real time, gic_real step)
     memcpy(self->rate, rate, FIVE_LINK_STATES * sizeof *rate);
     return GIC_OK;
 }
-#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real five_link_present(five_link *self)
@@ -4512,6 +4507,15 @@ static int five_link_any_self_test(void *self, gic_self_test *result)
 {
     return five_link_self_test((five_link *)self, result);
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define five_link_any_march NULL
+#else
+static int five_link_any_march(void *self, gic_real time)
+{
+    return five_link_march((five_link *)self, time);
+}
+#endif
 
 const gic_model five_link_model = {
     FIVE_LINK_ABI,

@@ -3531,15 +3531,11 @@ int hmmwv14_rhs(hmmwv14 *self, gic_real time, const gic_real *state, gic_real *r
     return status;
 }
 
-#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
-#define hmmwv14_any_march NULL
-#else
 /* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
  * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
-static int hmmwv14_any_march(void *instance, gic_real time, gic_real step)
+static int hmmwv14_march(hmmwv14 *self, gic_real time)
 {
-    hmmwv14 *const self = (hmmwv14 *)instance;
-    const gic_real weight = step / R(12.0);
+    const gic_real weight = self->head.ahead / R(12.0);
     gic_real *const state = self->state, *const past = self->history, *const older = past + HMMWV14_STATES;
     gic_real e[4], rate[HMMWV14_STATE_ROOM], before[HMMWV14_STATE_ROOM];
     int i, status = hmmwv14_evaluate(self, time, state, e, rate);
@@ -3558,7 +3554,6 @@ static int hmmwv14_any_march(void *instance, gic_real time, gic_real step)
     memcpy(self->rate, rate, HMMWV14_STATES * sizeof *rate);
     return GIC_OK;
 }
-#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real hmmwv14_present(hmmwv14 *self)
@@ -5703,6 +5698,15 @@ static int hmmwv14_any_self_test(void *self, gic_self_test *result)
 {
     return hmmwv14_self_test((hmmwv14 *)self, result);
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define hmmwv14_any_march NULL
+#else
+static int hmmwv14_any_march(void *self, gic_real time)
+{
+    return hmmwv14_march((hmmwv14 *)self, time);
+}
+#endif
 
 const gic_model hmmwv14_model = {
     HMMWV14_ABI,

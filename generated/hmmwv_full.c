@@ -2820,15 +2820,11 @@ int hmmwv_full_rhs(hmmwv_full *self, gic_real time, const gic_real *state, gic_r
     return status;
 }
 
-#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
-#define hmmwv_full_any_march NULL
-#else
 /* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
  * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
-static int hmmwv_full_any_march(void *instance, gic_real time, gic_real step)
+static int hmmwv_full_march(hmmwv_full *self, gic_real time)
 {
-    hmmwv_full *const self = (hmmwv_full *)instance;
-    const gic_real weight = step / R(12.0);
+    const gic_real weight = self->head.ahead / R(12.0);
     gic_real *const state = self->state, *const past = self->history, *const older = past + HMMWV_FULL_STATES;
     gic_real e[4], rate[HMMWV_FULL_STATE_ROOM], before[HMMWV_FULL_STATE_ROOM];
     int i, status = hmmwv_full_evaluate(self, time, state, e, rate);
@@ -2847,7 +2843,6 @@ static int hmmwv_full_any_march(void *instance, gic_real time, gic_real step)
     memcpy(self->rate, rate, HMMWV_FULL_STATES * sizeof *rate);
     return GIC_OK;
 }
-#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real hmmwv_full_present(hmmwv_full *self)
@@ -4534,6 +4529,15 @@ static int hmmwv_full_any_self_test(void *self, gic_self_test *result)
 {
     return hmmwv_full_self_test((hmmwv_full *)self, result);
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define hmmwv_full_any_march NULL
+#else
+static int hmmwv_full_any_march(void *self, gic_real time)
+{
+    return hmmwv_full_march((hmmwv_full *)self, time);
+}
+#endif
 
 const gic_model hmmwv_full_model = {
     HMMWV_FULL_ABI,

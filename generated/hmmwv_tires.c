@@ -3244,15 +3244,11 @@ int hmmwv_tires_rhs(hmmwv_tires *self, gic_real time, const gic_real *state, gic
     return status;
 }
 
-#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
-#define hmmwv_tires_any_march NULL
-#else
 /* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
  * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
-static int hmmwv_tires_any_march(void *instance, gic_real time, gic_real step)
+static int hmmwv_tires_march(hmmwv_tires *self, gic_real time)
 {
-    hmmwv_tires *const self = (hmmwv_tires *)instance;
-    const gic_real weight = step / R(12.0);
+    const gic_real weight = self->head.ahead / R(12.0);
     gic_real *const state = self->state, *const past = self->history, *const older = past + HMMWV_TIRES_STATES;
     gic_real e[4], rate[HMMWV_TIRES_STATE_ROOM], before[HMMWV_TIRES_STATE_ROOM];
     int i, status = hmmwv_tires_evaluate(self, time, state, e, rate);
@@ -3271,7 +3267,6 @@ static int hmmwv_tires_any_march(void *instance, gic_real time, gic_real step)
     memcpy(self->rate, rate, HMMWV_TIRES_STATES * sizeof *rate);
     return GIC_OK;
 }
-#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real hmmwv_tires_present(hmmwv_tires *self)
@@ -4932,6 +4927,15 @@ static int hmmwv_tires_any_self_test(void *self, gic_self_test *result)
 {
     return hmmwv_tires_self_test((hmmwv_tires *)self, result);
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define hmmwv_tires_any_march NULL
+#else
+static int hmmwv_tires_any_march(void *self, gic_real time)
+{
+    return hmmwv_tires_march((hmmwv_tires *)self, time);
+}
+#endif
 
 const gic_model hmmwv_tires_model = {
     HMMWV_TIRES_ABI,

@@ -3230,15 +3230,11 @@ int hmmwv_tmeasy_rhs(hmmwv_tmeasy *self, gic_real time, const gic_real *state, g
     return status;
 }
 
-#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
-#define hmmwv_tmeasy_any_march NULL
-#else
 /* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
  * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
-static int hmmwv_tmeasy_any_march(void *instance, gic_real time, gic_real step)
+static int hmmwv_tmeasy_march(hmmwv_tmeasy *self, gic_real time)
 {
-    hmmwv_tmeasy *const self = (hmmwv_tmeasy *)instance;
-    const gic_real weight = step / R(12.0);
+    const gic_real weight = self->head.ahead / R(12.0);
     gic_real *const state = self->state, *const past = self->history, *const older = past + HMMWV_TMEASY_STATES;
     gic_real e[4], rate[HMMWV_TMEASY_STATE_ROOM], before[HMMWV_TMEASY_STATE_ROOM];
     int i, status = hmmwv_tmeasy_evaluate(self, time, state, e, rate);
@@ -3257,7 +3253,6 @@ static int hmmwv_tmeasy_any_march(void *instance, gic_real time, gic_real step)
     memcpy(self->rate, rate, HMMWV_TMEASY_STATES * sizeof *rate);
     return GIC_OK;
 }
-#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real hmmwv_tmeasy_present(hmmwv_tmeasy *self)
@@ -4918,6 +4913,15 @@ static int hmmwv_tmeasy_any_self_test(void *self, gic_self_test *result)
 {
     return hmmwv_tmeasy_self_test((hmmwv_tmeasy *)self, result);
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define hmmwv_tmeasy_any_march NULL
+#else
+static int hmmwv_tmeasy_any_march(void *self, gic_real time)
+{
+    return hmmwv_tmeasy_march((hmmwv_tmeasy *)self, time);
+}
+#endif
 
 const gic_model hmmwv_tmeasy_model = {
     HMMWV_TMEASY_ABI,

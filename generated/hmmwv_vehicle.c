@@ -3491,15 +3491,11 @@ int hmmwv_vehicle_rhs(hmmwv_vehicle *self, gic_real time, const gic_real *state,
     return status;
 }
 
-#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
-#define hmmwv_vehicle_any_march NULL
-#else
 /* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
  * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
-static int hmmwv_vehicle_any_march(void *instance, gic_real time, gic_real step)
+static int hmmwv_vehicle_march(hmmwv_vehicle *self, gic_real time)
 {
-    hmmwv_vehicle *const self = (hmmwv_vehicle *)instance;
-    const gic_real weight = step / R(12.0);
+    const gic_real weight = self->head.ahead / R(12.0);
     gic_real *const state = self->state, *const past = self->history, *const older = past + HMMWV_VEHICLE_STATES;
     gic_real e[4], rate[HMMWV_VEHICLE_STATE_ROOM], before[HMMWV_VEHICLE_STATE_ROOM];
     int i, status = hmmwv_vehicle_evaluate(self, time, state, e, rate);
@@ -3518,7 +3514,6 @@ static int hmmwv_vehicle_any_march(void *instance, gic_real time, gic_real step)
     memcpy(self->rate, rate, HMMWV_VEHICLE_STATES * sizeof *rate);
     return GIC_OK;
 }
-#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real hmmwv_vehicle_present(hmmwv_vehicle *self)
@@ -5294,6 +5289,15 @@ static int hmmwv_vehicle_any_self_test(void *self, gic_self_test *result)
 {
     return hmmwv_vehicle_self_test((hmmwv_vehicle *)self, result);
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define hmmwv_vehicle_any_march NULL
+#else
+static int hmmwv_vehicle_any_march(void *self, gic_real time)
+{
+    return hmmwv_vehicle_march((hmmwv_vehicle *)self, time);
+}
+#endif
 
 const gic_model hmmwv_vehicle_model = {
     HMMWV_VEHICLE_ABI,

@@ -507,15 +507,11 @@ int pendulum_rhs(pendulum *self, gic_real time, const gic_real *state, gic_real 
     return status;
 }
 
-#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
-#define pendulum_any_march NULL
-#else
 /* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
  * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
-static int pendulum_any_march(void *instance, gic_real time, gic_real step)
+static int pendulum_march(pendulum *self, gic_real time)
 {
-    pendulum *const self = (pendulum *)instance;
-    const gic_real weight = step / R(12.0);
+    const gic_real weight = self->head.ahead / R(12.0);
     gic_real *const state = self->state, *const past = self->history, *const older = past + PENDULUM_STATES;
     gic_real e[4], rate[PENDULUM_STATE_ROOM], before[PENDULUM_STATE_ROOM];
     int i, status = pendulum_evaluate(self, time, state, e, rate);
@@ -534,7 +530,6 @@ static int pendulum_any_march(void *instance, gic_real time, gic_real step)
     memcpy(self->rate, rate, PENDULUM_STATES * sizeof *rate);
     return GIC_OK;
 }
-#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real pendulum_present(pendulum *self)
@@ -917,6 +912,15 @@ static int pendulum_any_self_test(void *self, gic_self_test *result)
 {
     return pendulum_self_test((pendulum *)self, result);
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define pendulum_any_march NULL
+#else
+static int pendulum_any_march(void *self, gic_real time)
+{
+    return pendulum_march((pendulum *)self, time);
+}
+#endif
 
 const gic_model pendulum_model = {
     PENDULUM_ABI,

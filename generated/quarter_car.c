@@ -1046,15 +1046,11 @@ int quarter_car_rhs(quarter_car *self, gic_real time, const gic_real *state, gic
     return status;
 }
 
-#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
-#define quarter_car_any_march NULL
-#else
 /* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
  * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
-static int quarter_car_any_march(void *instance, gic_real time, gic_real step)
+static int quarter_car_march(quarter_car *self, gic_real time)
 {
-    quarter_car *const self = (quarter_car *)instance;
-    const gic_real weight = step / R(12.0);
+    const gic_real weight = self->head.ahead / R(12.0);
     gic_real *const state = self->state, *const past = self->history, *const older = past + QUARTER_CAR_STATES;
     gic_real e[4], rate[QUARTER_CAR_STATE_ROOM], before[QUARTER_CAR_STATE_ROOM];
     int i, status = quarter_car_evaluate(self, time, state, e, rate);
@@ -1073,7 +1069,6 @@ static int quarter_car_any_march(void *instance, gic_real time, gic_real step)
     memcpy(self->rate, rate, QUARTER_CAR_STATES * sizeof *rate);
     return GIC_OK;
 }
-#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real quarter_car_present(quarter_car *self)
@@ -1608,6 +1603,15 @@ static int quarter_car_any_self_test(void *self, gic_self_test *result)
 {
     return quarter_car_self_test((quarter_car *)self, result);
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define quarter_car_any_march NULL
+#else
+static int quarter_car_any_march(void *self, gic_real time)
+{
+    return quarter_car_march((quarter_car *)self, time);
+}
+#endif
 
 const gic_model quarter_car_model = {
     QUARTER_CAR_ABI,

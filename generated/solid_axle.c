@@ -2921,15 +2921,11 @@ int solid_axle_rhs(solid_axle *self, gic_real time, const gic_real *state, gic_r
     return status;
 }
 
-#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
-#define solid_axle_any_march NULL
-#else
 /* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
  * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
-static int solid_axle_any_march(void *instance, gic_real time, gic_real step)
+static int solid_axle_march(solid_axle *self, gic_real time)
 {
-    solid_axle *const self = (solid_axle *)instance;
-    const gic_real weight = step / R(12.0);
+    const gic_real weight = self->head.ahead / R(12.0);
     gic_real *const state = self->state, *const past = self->history, *const older = past + SOLID_AXLE_STATES;
     gic_real e[4], rate[SOLID_AXLE_STATE_ROOM], before[SOLID_AXLE_STATE_ROOM];
     int i, status = solid_axle_evaluate(self, time, state, e, rate);
@@ -2948,7 +2944,6 @@ static int solid_axle_any_march(void *instance, gic_real time, gic_real step)
     memcpy(self->rate, rate, SOLID_AXLE_STATES * sizeof *rate);
     return GIC_OK;
 }
-#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real solid_axle_present(solid_axle *self)
@@ -4352,6 +4347,15 @@ static int solid_axle_any_self_test(void *self, gic_self_test *result)
 {
     return solid_axle_self_test((solid_axle *)self, result);
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define solid_axle_any_march NULL
+#else
+static int solid_axle_any_march(void *self, gic_real time)
+{
+    return solid_axle_march((solid_axle *)self, time);
+}
+#endif
 
 const gic_model solid_axle_model = {
     SOLID_AXLE_ABI,

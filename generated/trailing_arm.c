@@ -2485,15 +2485,11 @@ int trailing_arm_rhs(trailing_arm *self, gic_real time, const gic_real *state, g
     return status;
 }
 
-#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
-#define trailing_arm_any_march NULL
-#else
 /* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
  * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
-static int trailing_arm_any_march(void *instance, gic_real time, gic_real step)
+static int trailing_arm_march(trailing_arm *self, gic_real time)
 {
-    trailing_arm *const self = (trailing_arm *)instance;
-    const gic_real weight = step / R(12.0);
+    const gic_real weight = self->head.ahead / R(12.0);
     gic_real *const state = self->state, *const past = self->history, *const older = past + TRAILING_ARM_STATES;
     gic_real e[4], rate[TRAILING_ARM_STATE_ROOM], before[TRAILING_ARM_STATE_ROOM];
     int i, status = trailing_arm_evaluate(self, time, state, e, rate);
@@ -2512,7 +2508,6 @@ static int trailing_arm_any_march(void *instance, gic_real time, gic_real step)
     memcpy(self->rate, rate, TRAILING_ARM_STATES * sizeof *rate);
     return GIC_OK;
 }
-#endif
 
 /* The inputs of the present time, which it returns. */
 static gic_real trailing_arm_present(trailing_arm *self)
@@ -4012,6 +4007,15 @@ static int trailing_arm_any_self_test(void *self, gic_self_test *result)
 {
     return trailing_arm_self_test((trailing_arm *)self, result);
 }
+
+#ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
+#define trailing_arm_any_march NULL
+#else
+static int trailing_arm_any_march(void *self, gic_real time)
+{
+    return trailing_arm_march((trailing_arm *)self, time);
+}
+#endif
 
 const gic_model trailing_arm_model = {
     TRAILING_ARM_ABI,

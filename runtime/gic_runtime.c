@@ -320,7 +320,7 @@ static int march(const gic_model *model, void *self, gic_real step)
         copy(input_before, input, model->input_count);
         set_inputs(model, self, time);
     }
-    if (model->march(self, time, step) == GIC_OK) {
+    if (model->march(self, time) == GIC_OK) {
         arrive(model, self);
         return 1;
     }

@@ -177,9 +177,9 @@ typedef struct gic_model {
     int (*outputs)(void *self);
     int (*poses)(void *self, gic_real *pose);
     int (*self_test)(void *self, gic_self_test *result);
-    /* Step functions call it for a step of AB3 from `time` with two past rates, and NULL lets them make it of the
-     * functions above. On GIC_OK state, rate and history have moved, else none of them has. */
-    int (*march)(void *self, gic_real time, gic_real step);
+    /* Step functions call it for a step of AB3, head.ahead long, from `time` with two past rates, and NULL lets them
+     * make it of the functions above. On GIC_OK state, rate and history have moved, else none of them has. */
+    int (*march)(void *self, gic_real time);
     /* Dual rate (TIRES.md section 9); models without fast states have link_count 0 and NULL here. */
     int32_t link_count; /* numbers through which the slow part moves the fast one */
     size_t link_offset; /* of 5 link_count numbers: links at the present slow step and the two before, newest first, and
@@ -249,8 +249,8 @@ int gic_finite(const gic_real *x, int32_t count);
 #define gic_bounded GIC_NAME(gic_bounded)
 int gic_bounded(const gic_real *x, int32_t count);
 
-/* GIC_FINITE and GIC_BOUNDED are the same as part of the code around them: counts are small and mostly known. tcc, which
- * inlines nothing, calls the functions. */
+/* GIC_FINITE and GIC_BOUNDED are the same as part of the code around them: counts are small and mostly known. tcc,
+ * which inlines nothing, calls the functions. */
 #ifdef GIC_FLOAT
 typedef uint32_t gic_word;
 #define GIC_BITS_OF_SIGN UINT32_C(0x80000000)
