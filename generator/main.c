@@ -144,12 +144,10 @@ static Options read_options(int count, char **word)
         usage_error("no model given", NULL);
     if (options.scene && options.task != TASK_GENERATE && options.task != TASK_REPORT)
         usage_error("--scene is for code and --report", NULL);
-    if (options.scene && options.batch.lanes)
-        usage_error("--lanes and --scene don't go together yet", NULL);
     if (options.batch.lanes && options.task != TASK_GENERATE && options.task != TASK_BATCH)
         usage_error("--lanes is for code", NULL);
-    if (options.batch.lanes && options.scene && options.task == TASK_GENERATE)
-        usage_error("--lanes and --scene are not for the same code", NULL);
+    if (options.batch.lanes && options.scene)
+        usage_error("--lanes and --scene are not for the same code: leave one out", NULL);
     if (options.task == TASK_BATCH && !options.batch.lanes)
         options.batch.lanes = 4;
     return options;

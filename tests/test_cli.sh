@@ -56,6 +56,8 @@ run 2 --batch 0 "$model"
 says err "--batch takes a number of vehicles up to 65536, not: 0"
 run 2 --batch 8 --lanes 3 "$model"
 says err "--lanes takes 2, 4, 8 or 16, not: 3"
+run 2 --lanes 4 --scene "$root/models/scenes/paper_run.scene" "$model"
+says err "--lanes and --scene are not for the same code"
 run 1 --batch 8 "$root/models/hmmwv_tires.veh"
 says err "can't have wheels with tires yet"
 run 1 missing.veh
