@@ -27,7 +27,7 @@ static const char help[] = "usage: gicsweep MODEL.veh SCENE --vary NAME=LOW:HIGH
                            "      --seed NUMBER  of the random numbers; the same seed, the same runs; default: 1\n"
                            "  -o, --output FILE  results as CSV; default: sweep.csv. Finished runs are kept in\n"
                            "                     FILE.journal: the same command goes on where it was stopped\n"
-                           "      --engine NAME  one run after another, by an engine of gicrun\n"
+                           "      --engine NAME  each run by itself, by an engine of gicrun\n"
                            "      --cc COMMAND   C compiler, perhaps with options; default: $CC or cc\n"
                            "      --cflags FLAGS more options for it, behind ours, all in one word\n"
                            "  -q, --quiet        neither progress nor summary\n"
@@ -35,7 +35,8 @@ static const char help[] = "usage: gicsweep MODEL.veh SCENE --vary NAME=LOW:HIGH
                            "      --version      version\n"
                            "\n"
                            "Vehicles run in the lanes of vectors and, with OpenMP, in $OMP_NUM_THREADS threads, where\n"
-                           "the compiler can do that; else one after another, with the same digits.\n"
+                           "compiler and model allow that; else each by itself, in as many processes, with the same\n"
+                           "digits.\n"
                            "Exit status: 0 good, even if runs failed; 1 error in a file; 2 wrong usage.\n";
 
 enum { VEHICLES = 64, LANES = 4 };
@@ -136,7 +137,7 @@ static const Engine *open_code(Pool *pool, const Options *o, const Model *model,
     if (engine)
         return engine;
     if (!o->quiet)
-        fprintf(stderr, "gicsweep: note: one run after another instead of lanes: %s\n", why);
+        fprintf(stderr, "gicsweep: note: each run by itself instead of lanes: %s\n", why);
     return engine_open(pool, *many || !tried ? "cc" : "tcc", model, &o->code);
 }
 
@@ -194,8 +195,11 @@ static void summary(const Sweep *sweep, int64_t before, double seconds, const ch
     fprintf(stderr, "%s: %lld runs in %s", sweep->engine->code->name, (long long)journal->finished, results);
     if (before)
         fprintf(stderr, ", %lld of them from an earlier start", (long long)before);
-    fprintf(stderr, "; %s, %.3g s, %.4g runs/s\n", sweep->many ? "in lanes" : "one after another", seconds,
-            (double)done / fmax(seconds, 1e-9));
+    if (sweep->many || sweep->processes == 1 || done < 2)
+        fprintf(stderr, "; %s", sweep->many ? "in lanes" : "one after another");
+    else
+        fprintf(stderr, "; %lld at a time", (long long)(done < sweep->processes ? done : sweep->processes));
+    fprintf(stderr, ", %.3g s, %.4g runs/s\n", seconds, (double)done / fmax(seconds, 1e-9));
     if (journal->failed)
         fprintf(stderr, "  %lld failed, the first is run %lld: %s\n", (long long)journal->failed,
                 (long long)journal->first_failed,
@@ -210,7 +214,12 @@ int main(int count, char **word)
     const Scene *scene = scene_read(pool, o.scene, model, NULL, 0);
     scene_no_rig(scene);
     scene = equilibrium_start(pool, model, scene, o.code.solve);
-    Sweep sweep = {.pool = pool, .model = model, .scene = scene, .plan = &o.plan, .quiet = o.quiet};
+    Sweep sweep = {.pool = pool,
+                   .model = model,
+                   .scene = scene,
+                   .plan = &o.plan,
+                   .quiet = o.quiet,
+                   .processes = share_processes()};
     sweep.engine = open_code(pool, &o, model, scene, &sweep.many);
     plan_close(pool, &o.plan, model, sweep.engine);
 

@@ -41,6 +41,34 @@ void plan_close(Pool *pool, SweepPlan *plan, const Model *model, const Engine *e
 /* The value of a varied number in a run. */
 double plan_value(const SweepPlan *plan, int varied, int64_t run);
 
+/* ---- sweep_share.c: runs shared out among processes ----------------------------------------------------------- */
+
+/* What came of a run. */
+typedef struct Result {
+    int64_t run;
+    int status;
+    const char *row, *reason; /* its row of the results; why it failed, NULL: it didn't, or nobody knows */
+} Result;
+
+typedef struct Share {
+    int64_t count;
+    const int64_t *run; /* [count] those to be made */
+    int lock;           /* a file that is for the caller's process alone */
+    /* In one of the processes: make a run. False: someone asked to stop. */
+    bool (*make)(void *context, int64_t run, Result *result);
+    /* In the caller's: results that came, perhaps none, at least ten times a second. False: stop. */
+    bool (*take)(void *context, const Result *result, int results);
+    void *context;
+} Share;
+
+enum { SHARE_PROCESSES_MOST = 256 };
+
+/* Processes that this machine can run side by side: $OMP_NUM_THREADS, as for threads, or one for each processor. */
+int share_processes(void);
+/* Make all runs in up to so many processes; texts of results are the pool's. False: take() wanted to stop. A process
+ * that fails ends the program with a message. */
+bool share_runs(Pool *pool, const Share *share, int processes);
+
 /* ---- sweep_journal.c: what is finished --------------------------------------------------------------------- */
 
 /* Rows of finished runs, each in the file before the next batch begins: a kill loses none of them. */
@@ -57,9 +85,8 @@ typedef struct Journal {
 
 /* Open the journal beside `results`: take what an earlier gicsweep with the same key finished, or begin one. */
 Journal journal_open(Pool *pool, const char *results, const char *key, int64_t runs);
-/* Rows [count] of runs, into the file and onto the disk. reason: [count] why they failed, in words. */
-void journal_add(Journal *journal, const int64_t *run, const int *status, const char *const *row,
-                 const char *const *reason, int count);
+/* Rows of runs, into the file and onto the disk; texts stay in use. */
+void journal_add(Journal *journal, const Result *result, int results);
 /* The results are there: no more need of it. */
 void journal_remove(Journal *journal);
 
@@ -71,7 +98,8 @@ typedef struct Sweep {
     const Scene *scene;
     SweepPlan *plan;
     const Engine *engine;
-    const gic_batch_model *many; /* NULL: one run after another */
+    const gic_batch_model *many; /* NULL: no lanes, */
+    int processes;               /* so many processes instead, at most */
     Journal *journal;
     bool quiet;
 } Sweep;

@@ -29,17 +29,17 @@ static void append(Journal *journal, const char *bytes, size_t size)
         journal_fail(journal, "write");
 }
 
-static void note(Journal *journal, int64_t run, int status, const char *row, const char *reason)
+static void note(Journal *journal, const Result *result)
 {
-    if (journal->row[run])
+    if (journal->row[result->run])
         return;
-    journal->row[run] = row;
+    journal->row[result->run] = result->row;
     ++journal->finished;
-    journal->failed += status != GIC_OK;
-    if (status != GIC_OK && (journal->first_status == GIC_OK || run < journal->first_failed)) {
-        journal->first_status = status;
-        journal->first_failed = run;
-        journal->first_reason = reason ? pool_print(journal->pool, "%s", reason) : NULL;
+    journal->failed += result->status != GIC_OK;
+    if (result->status != GIC_OK && (journal->first_status == GIC_OK || result->run < journal->first_failed)) {
+        journal->first_status = result->status;
+        journal->first_failed = result->run;
+        journal->first_reason = result->reason;
     }
 }
 
@@ -54,7 +54,7 @@ static bool take_line(Journal *journal, const char *line)
     const long status = strtol(next, &end, 10);
     if (end == next || *end != ' ')
         return false;
-    note(journal, run, (int)status, end + 1, NULL);
+    note(journal, &(Result){run, (int)status, end + 1, NULL});
     return true;
 }
 
@@ -100,13 +100,12 @@ Journal journal_open(Pool *pool, const char *results, const char *key, int64_t r
     return journal;
 }
 
-void journal_add(Journal *journal, const int64_t *run, const int *status, const char *const *row,
-                 const char *const *reason, int count)
+void journal_add(Journal *journal, const Result *result, int results)
 {
     Text text = {.pool = journal->pool};
-    for (int i = 0; i < count; ++i) {
-        text_print(&text, "%lld %d %s\n", (long long)run[i], status[i], row[i]);
-        note(journal, run[i], status[i], row[i], reason[i]);
+    for (int i = 0; i < results; ++i) {
+        text_print(&text, "%lld %d %s\n", (long long)result[i].run, result[i].status, result[i].row);
+        note(journal, &result[i]);
     }
     append(journal, text.s, text.size);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The runs of a sweep, in batches: side by side in lanes, or one after another. */
+ * The runs of a sweep: in batches, side by side in lanes, or one by one, in one process or several. */
 #include "step_watch.h"
 #include "sweep.h"
 
@@ -39,6 +39,7 @@ typedef struct Runner {
     double begun, looked;
     int64_t before; /* runs finished by others */
     bool shown, stopped;
+    bool silent; /* others tell how far it is */
 } Runner;
 
 /* ---- one run ------------------------------------------------------------------------------------------------ */
@@ -145,7 +146,7 @@ static void look_around(Runner *r)
         return;
     r->looked = now;
     r->stopped = interrupt_arrived();
-    if (r->sweep->quiet || !isatty(STDERR_FILENO))
+    if (r->silent || r->sweep->quiet || !isatty(STDERR_FILENO))
         return;
     fprintf(stderr, "\r%5.1f %%  %lld of %lld runs, %lld failed, %.4g runs/s\x1b[K",
             100 * (double)journal->finished / (double)journal->runs, (long long)journal->finished,
@@ -281,37 +282,76 @@ static void run_one(Runner *r)
     look_around(r);
 }
 
-/* The runs that the next batch is of; false: all are finished. */
-static bool fill(Runner *r, int64_t *next)
+/* A run that has not begun. */
+static void take_up(Runner *r, Slot *slot, int64_t run)
 {
     const Sweep *sweep = r->sweep;
-    for (r->used = 0; r->used < r->slots && *next < sweep->plan->runs; ++*next) {
-        if (sweep->journal->row[*next])
-            continue;
-        Slot *slot = &r->slot[r->used++];
-        slot->run = *next;
-        slot->scene = vary_scene(r->pool, sweep, *next);
-        slot->watch = step_watch_new(r->pool, r->theory, &slot->scene, sweep->engine, true);
-        slot->time = 0;
-        slot->reason = NULL;
-        for (int c = 0; c < sweep->scene->columns; ++c)
-            slot->range[c] = (Range){NAN, NAN, NAN};
-    }
-    return r->used > 0;
+    slot->run = run;
+    slot->scene = vary_scene(r->pool, sweep, run);
+    slot->watch = step_watch_new(r->pool, r->theory, &slot->scene, sweep->engine, true);
+    slot->time = 0;
+    slot->reason = NULL;
+    for (int c = 0; c < sweep->scene->columns; ++c)
+        slot->range[c] = (Range){NAN, NAN, NAN};
+}
+
+/* What a slot's run came to, in texts that live as long as the journal. */
+static Result result_of(const Runner *r, const Slot *slot)
+{
+    Pool *pool = r->sweep->journal->pool;
+    return (Result){slot->run, slot->status, row_text(r->pool, r->sweep, slot),
+                    slot->reason ? pool_print(pool, "%s", slot->reason) : NULL};
 }
 
 static void keep(Runner *r)
 {
-    const char *row[r->slots], *reason[r->slots];
-    int64_t run[r->slots];
-    int status[r->slots];
-    for (int i = 0; i < r->used; ++i) {
-        run[i] = r->slot[i].run;
-        status[i] = r->slot[i].status;
-        reason[i] = r->slot[i].reason;
-        row[i] = row_text(r->pool, r->sweep, &r->slot[i]);
+    Result result[r->slots];
+    for (int i = 0; i < r->used; ++i)
+        result[i] = result_of(r, &r->slot[i]);
+    journal_add(r->sweep->journal, result, r->used);
+}
+
+/* In batches, in this process. */
+static void run_batches(Runner *r, const int64_t *run, int64_t count)
+{
+    for (int64_t next = 0; next < count && !r->stopped;) {
+        r->pool = pool_new(); /* what a batch of scenes takes is given back */
+        for (r->used = 0; r->used < r->slots && next < count; ++next)
+            take_up(r, &r->slot[r->used++], run[next]);
+        if (r->sweep->many)
+            run_lanes(r);
+        else
+            run_one(r);
+        if (!r->stopped)
+            keep(r);
+        pool_free(r->pool);
     }
-    journal_add(r->sweep->journal, run, status, row, reason, r->used);
+}
+
+/* ---- in several processes ---------------------------------------------------------------------------------------- */
+
+/* In a process of its own. */
+static bool make_run(void *context, int64_t run, Result *result)
+{
+    Runner *r = context;
+    r->silent = true;
+    r->pool = pool_new();
+    r->used = 1;
+    take_up(r, r->slot, run);
+    run_one(r);
+    if (!r->stopped)
+        *result = result_of(r, r->slot);
+    pool_free(r->pool);
+    return !r->stopped;
+}
+
+static bool take_results(void *context, const Result *result, int results)
+{
+    Runner *r = context;
+    if (results)
+        journal_add(r->sweep->journal, result, results);
+    look_around(r);
+    return !r->stopped;
 }
 
 bool sweep_run(const Sweep *sweep)
@@ -328,18 +368,16 @@ bool sweep_run(const Sweep *sweep)
     if (sweep->many && !r.batch)
         diag_fail(gicrun_place, NULL, "no memory for %d vehicles", sweep->many->vehicles);
     r.begun = clock_seconds(CLOCK_MONOTONIC);
-    int64_t next = 0;
-    for (bool more = true; more && !r.stopped;) {
-        r.pool = pool_new(); /* what a batch of scenes takes is given back */
-        more = fill(&r, &next);
-        if (more && sweep->many)
-            run_lanes(&r);
-        else if (more)
-            run_one(&r);
-        if (more && !r.stopped)
-            keep(&r);
-        pool_free(r.pool);
-    }
+    int64_t *run = pool_alloc(pool, sizeof *run * (size_t)(sweep->plan->runs + 1)), count = 0;
+    for (int64_t i = 0; i < sweep->plan->runs; ++i)
+        if (!sweep->journal->row[i])
+            run[count++] = i;
+    const Share share = {count, run, sweep->journal->file, make_run, take_results, &r};
+    const int processes = count < sweep->processes ? (int)count : sweep->processes;
+    if (!sweep->many && processes > 1)
+        r.stopped = !share_runs(pool, &share, processes);
+    else
+        run_batches(&r, run, count);
     if (r.shown)
         fputs("\r\x1b[K", stderr);
     free(r.batch);

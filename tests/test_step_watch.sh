@@ -140,7 +140,7 @@ for file in "$models"/scenes/*.scene; do
     check "$file is among them" [ "${tried#* "$file" }" != "$tried" ]
 done
 
-# In a sweep such a run has the status of an unstable one, whether runs go one after another, as those with tires do, or
+# In a sweep such a run has the status of an unstable one, whether runs go each by itself, as those with tires do, or
 # in lanes: both look at the same steps.
 # sweep MODEL SCENE VARIED [OPTION...]: status and time of each of two runs
 sweep() {

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_sweep.sh GICSWEEP GICRUN: sweeps have the digits of gicrun, run by run; grids and hypercubes have the runs that
-# they should; a killed sweep goes on and ends with the same bytes; without a compiler the same bytes; clear errors.
+# they should; a killed sweep goes on and ends with the same bytes; without a compiler, or shared out among processes, the
+# same bytes; clear errors.
 gicsweep=$1
 gicrun=$2
 # shellcheck source=tests/checking.sh
@@ -59,7 +60,7 @@ done
 "$gicsweep" --cc /nonexistent "$car" "$work/s.scene" --vary speed=4:20:3 --vary spring_f_l=0.23:0.24:2 \
     -o "$work/plain.csv" 2>"$work/err"
 check "without a compiler the same bytes" cmp -s "$work/grid.csv" "$work/plain.csv"
-check "which it says" grep -q "note: one run after another instead of lanes: .*/nonexistent" "$work/err"
+check "which it says" grep -q "note: each run by itself instead of lanes: .*/nonexistent" "$work/err"
 check "numbers alone" [ "$(sed 1d "$work/grid.csv" | tr -d '0-9.,e+\n-' | wc -c)" -eq 0 ]
 if [ -x /usr/bin/python3 ] && /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
     check "numpy reads it" /usr/bin/python3 - "$work/grid.csv" <<'XXX'
@@ -123,12 +124,72 @@ check "but has a status" [ "$(sed -n 3p "$work/fail.csv" | cut -d, -f3)" -lt 0 ]
 check "and is told of" grep -q "1 failed, the first is run 1: at t = 0 s: .*subset 'wheel_f_l'" "$work/err"
 check "the good one is not disturbed" [ "$(sed -n 2p "$work/fail.csv" | cut -d, -f3)" -eq 0 ]
 
-# ---- tires: one after another
+# ---- tires: no lanes, but processes
 
-sed 's/outputs:.*/outputs: [chassis.z]/; s/^initial:.*//' "$work/s.scene" >"$work/tires.scene"
-"$gicsweep" models/hmmwv_tires.veh "$work/tires.scene" --vary speed=4:5:2 -o "$work/tires.csv" 2>"$work/err"
-check "tires" [ "$(wc -l <"$work/tires.csv")" -eq 3 ]
-check "not yet in lanes" grep -q "note: one run after another instead of lanes: .*tires" "$work/err"
+cat >"$work/tires.scene" <<'XXX'
+gicscene: 1
+duration: 1
+step: 0.002
+road: {type: bumps, bumps: [{x: 4, length: 2, height: 0.06, tracks: left}]}
+outputs: [chassis.z]
+XXX
+# tires PROCESSES FILE
+tires() {
+    exec env OMP_NUM_THREADS="$1" "$gicsweep" models/hmmwv_tires.veh "$work/tires.scene" --vary speed=4:6:300 -o "$2" 2>"$work/err"
+}
+(tires 1 "$work/tires.csv")
+check "tires" [ "$(wc -l <"$work/tires.csv")" -eq 301 ]
+check "not yet in lanes" grep -q "note: each run by itself instead of lanes: .*tires" "$work/err"
+check "by one process" grep -q "300 runs in .*; one after another" "$work/err"
+check "all of them good" [ "$(sed 1d "$work/tires.csv" | cut -d, -f3 | sort -u)" = 0 ]
+(tires 3 "$work/shared.csv")
+check "by three" grep -q "300 runs in .*; 3 at a time" "$work/err"
+check "the same bytes" cmp -s "$work/tires.csv" "$work/shared.csv"
+
+# ends SIGNAL WHOM: begin such a sweep and send a signal to it, or to the first of its processes; $code: its exit status
+ends() {
+    rm -f "$work/ended.csv.journal"
+    (tires 2 "$work/ended.csv") &
+    sweep=$!
+    while kill -0 $sweep 2>/dev/null && [ "$(cat "$work/ended.csv.journal" 2>/dev/null | wc -l)" -lt 10 ]; do sleep 0.02; done
+    children=$(cat /proc/[0-9]*/stat 2>/dev/null | awk -v sweep=$sweep '{ child = $1; sub(/.*\) /, ""); if ($2 == sweep) print child }')
+    if [ "$2" = sweep ]; then kill "-$1" $sweep; else kill "-$1" "${children%%[!0-9]*}"; fi
+    wait $sweep 2>/dev/null
+    code=$?
+    kept=$(($(wc -l <"$work/ended.csv.journal") - 1))
+    cp "$work/err" "$work/end"
+}
+# goes_on WHAT: the next one ends with the same bytes
+goes_on() {
+    (tires 2 "$work/ended.csv")
+    check "$1: no finished run is lost" grep -q "300 runs in .*, $kept of them from an earlier start" "$work/err"
+    check "$1: the same bytes in the end" cmp -s "$work/tires.csv" "$work/ended.csv"
+}
+# gone: none of the processes does anything any more; they end with the sweep
+gone() {
+    for child in $children; do
+        for _ in 1 2 3 4 5 6 7 8 9 10; do
+            state=$(sed 's/.*) \(.\).*/\1/' "/proc/$child/stat" 2>/dev/null)
+            [ -z "$state" ] || [ "$state" = Z ] && continue 2
+            sleep 0.1
+        done
+        return 1
+    done
+    [ -n "$children" ]
+}
+ends KILL sweep
+check "killed: its processes too" gone
+goes_on "killed"
+ends TERM sweep
+check "asked to stop: says what is kept" grep -q "interrupted; $kept of 300 runs are kept" "$work/end"
+check "asked to stop: its processes too" gone
+goes_on "asked to stop"
+ends KILL process
+check "a process killed: a message and status 1" [ "$code:$(grep -c 'was ended by signal 9' "$work/end")" = 1:1 ]
+check "a process killed: the others too" gone
+goes_on "a process killed"
+"$gicsweep" models/hmmwv_tires.veh "$work/tires.scene" --vary speed=4:4e9:4 -o "$work/fail.csv" 2>"$work/err"
+check "reasons of failures come along" grep -q "3 failed, the first is run 1: at t = 0 s: " "$work/err"
 
 # ---- errors
 
