@@ -53,6 +53,11 @@ enum { PROCESS_NOT_STARTED = -1, PROCESS_INTERRUPTED = -2 };
  * status (128 + signal when one killed it) or one of the above; *said: all it printed, or why it didn't start. */
 int process_run(Pool *pool, char *const argv[], const char *input, const char **said);
 
+/* A file without a name, for what a child reads or prints: unlike a pipe it never blocks either side. -1: none; and all
+ * that is in one. */
+int nameless_file(Pool *pool);
+const char *nameless_text(Pool *pool, int file);
+
 /* $TMPDIR or /tmp. */
 const char *temporary_folder(void);
 

@@ -60,8 +60,7 @@ const char *temporary_folder(void)
     return folder && *folder ? folder : "/tmp";
 }
 
-/* A file without a name, for what a child reads or prints: unlike a pipe it never blocks either side. -1: none. */
-static int nameless_file(Pool *pool)
+int nameless_file(Pool *pool)
 {
     char *path = pool_print(pool, "%s/gicrun-XXXXXX", temporary_folder());
     int file = mkstemp(path);
@@ -82,7 +81,7 @@ static bool write_all(int file, const char *bytes, size_t size)
     return lseek(file, 0, SEEK_SET) == 0;
 }
 
-static const char *read_all(Pool *pool, int file)
+const char *nameless_text(Pool *pool, int file)
 {
     Text text = {.pool = pool};
     char buffer[4096];
@@ -145,7 +144,7 @@ int process_run(Pool *pool, char *const argv[], const char *input, const char **
         else
             result = await(child);
         if (!error)
-            *said = read_all(pool, out);
+            *said = nameless_text(pool, out);
     }
     if (in >= 0)
         close(in);

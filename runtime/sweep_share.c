@@ -29,7 +29,9 @@ typedef struct Parcel {
 
 typedef struct Worker {
     pid_t process;
-    int pipe;   /* -1: it is finished */
+    int pipe;   /* -1: it is finished, */
+    int status; /* as waitpid() says */
+    int said;   /* its standard error: what ends all of them is told once */
     Text heard; /* what came and is no whole parcel yet */
 } Worker;
 
@@ -74,11 +76,12 @@ static _Noreturn void work(const Share *share, _Atomic int64_t *taken, int pipe)
  */
 
 /* One more than there are. False: there is no process to be had. */
-static bool start(const Share *share, _Atomic int64_t *taken, Worker *all, int workers)
+static bool start(Pool *pool, const Share *share, _Atomic int64_t *taken, Worker *all, int workers)
 {
     Worker *worker = &all[workers];
     int ends[2];
-    if (pipe(ends))
+    *worker = (Worker){.said = nameless_file(pool), .heard = {.pool = pool}};
+    if (worker->said < 0 || pipe(ends))
         return false;
     fflush(NULL); /* or the child would write it too */
     const pid_t parent = getpid();
@@ -88,6 +91,7 @@ static bool start(const Share *share, _Atomic int64_t *taken, Worker *all, int w
         for (int w = 0; w < workers; ++w) /* each pipe has one reader: who writes learns of its end */
             close(all[w].pipe);
         close(share->lock); /* held by its parent alone, so that it ends with it */
+        dup2(worker->said, STDERR_FILENO);
 #ifdef __linux__
         prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
@@ -123,27 +127,29 @@ static int open_parcels(Pool *pool, Worker *worker, Result **result, int results
     return results;
 }
 
-/* It has no more to say: NULL where it is done, else what happened to it, nothing where it has said so itself. */
-static const char *finish(Pool *pool, Worker *worker)
-{
-    int status = 0;
-    close(worker->pipe);
-    worker->pipe = -1;
-    while (waitpid(worker->process, &status, 0) < 0 && errno == EINTR)
-        ;
-    if (WIFSIGNALED(status))
-        return pool_print(pool, "a process that made runs was ended by signal %d", WTERMSIG(status));
-    return WEXITSTATUS(status) ? "" : NULL;
-}
-
-/* What has come from a worker, if anything. Returns as finish() where that was its end. */
-static const char *hear(Pool *pool, Worker *worker)
+/* What has come from a worker, if anything; or it has ended. */
+static void hear(Worker *worker)
 {
     char bytes[65536];
     const ssize_t n = read(worker->pipe, bytes, sizeof bytes);
     if (n > 0)
         text_add(&worker->heard, bytes, (size_t)n);
-    return n > 0 || (n < 0 && errno == EINTR) ? NULL : finish(pool, worker);
+    if (n > 0 || (n < 0 && errno == EINTR))
+        return;
+    close(worker->pipe);
+    worker->pipe = -1;
+    while (waitpid(worker->process, &worker->status, 0) < 0 && errno == EINTR)
+        ;
+}
+
+/* What a worker that failed has said, or what happened to it. */
+static _Noreturn void fail_as(Pool *pool, const Worker *worker)
+{
+    if (WIFSIGNALED(worker->status))
+        diag_fail(gicrun_place, "finished runs are kept: the same command goes on",
+                  "a process that made runs was ended by signal %d", WTERMSIG(worker->status));
+    fputs(nameless_text(pool, worker->said), stderr);
+    exit(1);
 }
 
 static void end_all(Worker *worker, int workers)
@@ -160,11 +166,11 @@ bool share_runs(Pool *pool, const Share *share, int processes)
         diag_fail(gicrun_place, NULL, "no memory for the counter of runs: %s", strerror(errno));
     Worker worker[processes];
     struct pollfd ready[processes];
-    const char *broken = NULL;
+    const Worker *broken = NULL;
     bool stopped = false;
     int workers = 0;
-    while (workers < processes && start(share, taken, worker, workers))
-        worker[workers++].heard = (Text){.pool = pool};
+    while (workers < processes && start(pool, share, taken, worker, workers))
+        ++workers;
     if (!workers)
         diag_fail(gicrun_place, "try again when there are fewer of them", "can't start a process: %s", strerror(errno));
     for (int open = workers; open;) {
@@ -173,13 +179,15 @@ bool share_runs(Pool *pool, const Share *share, int processes)
         for (int w = 0; w < workers; ++w) /* closed ones, which are negative, are passed over */
             ready[w] = (struct pollfd){.fd = worker[w].pipe, .events = POLLIN};
         const int some = poll(ready, (nfds_t)workers, LOOK_MS);
-        for (int w = 0; w < workers && some > 0; ++w)
-            if (ready[w].revents) {
-                const char *end = hear(pool, &worker[w]);
-                open -= worker[w].pipe < 0;
-                broken = broken || stopped ? broken : end; /* how we ended them is no news */
-                results = open_parcels(pool, &worker[w], &result, results);
-            }
+        for (int w = 0; w < workers && some > 0; ++w) {
+            if (!ready[w].revents)
+                continue;
+            hear(&worker[w]);
+            open -= worker[w].pipe < 0;
+            if (!broken && !stopped && worker[w].status) /* how we ended them is no news */
+                broken = &worker[w];
+            results = open_parcels(pool, &worker[w], &result, results);
+        }
         const bool more = share->take(share->context, result, results);
         if (!stopped && (!more || broken)) {
             stopped = true;
@@ -187,9 +195,9 @@ bool share_runs(Pool *pool, const Share *share, int processes)
         }
     }
     munmap((void *)taken, sizeof *taken);
-    if (broken && *broken)
-        diag_fail(gicrun_place, "finished runs are kept: the same command goes on", "%s", broken);
     if (broken)
-        exit(1);
+        fail_as(pool, broken);
+    for (int w = 0; w < workers; ++w)
+        close(worker[w].said);
     return !stopped;
 }

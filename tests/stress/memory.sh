@@ -150,5 +150,9 @@ attack "gicrun --animate" "$gicrun" -q --engine tape "$models/hmmwv_tires.veh" s
 attack "gicrun --plot" "$gicrun" -q --engine tape "$models/hmmwv_tires.veh" short.scene --plot results.svg
 attack "gicsweep" "$gicsweep" -q --engine tape "$models/hmmwv_tires.veh" short.scene --vary drive_torque=0:10:2 \
     -o results.csv
+OMP_NUM_THREADS=2
+attack "gicsweep, two processes" "$gicsweep" -q --engine tape "$models/hmmwv_tires.veh" short.scene \
+    --vary drive_torque=0:10:3 -o results.csv
+OMP_NUM_THREADS=1
 [ "$STRESS" = short ] ||
     attack "gicbench" "$gicbench" --quick --drive --engines tape -o results "$models/hmmwv_tires.veh" short.scene
