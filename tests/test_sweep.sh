@@ -188,6 +188,9 @@ ends KILL process
 check "a process killed: a message and status 1" [ "$code:$(grep -c 'was ended by signal 9' "$work/end")" = 1:1 ]
 check "a process killed: the others too" gone
 goes_on "a process killed"
+ends TERM process
+check "a process asked to stop: says what is kept" grep -q "interrupted; $kept of 300 runs are kept" "$work/end"
+goes_on "a process asked to stop"
 "$gicsweep" models/hmmwv_tires.veh "$work/tires.scene" --vary speed=4:4e9:4 -o "$work/fail.csv" 2>"$work/err"
 check "reasons of failures come along" grep -q "3 failed, the first is run 1: at t = 0 s: " "$work/err"
 
