@@ -67,7 +67,7 @@ enum { SHARE_PROCESSES_MOST = 256 };
 int share_processes(void);
 /* Make all runs in up to so many processes; texts of results are the pool's. False: take() wanted to stop. A process
  * that fails ends the program with a message. */
-bool share_runs(Pool *pool, const Share *share, int processes);
+bool share_runs(Pool *pool, const Share *share, size_t processes);
 
 /* ---- sweep_journal.c: what is finished --------------------------------------------------------------------- */
 

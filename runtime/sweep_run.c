@@ -375,7 +375,7 @@ bool sweep_run(const Sweep *sweep)
     const Share share = {count, run, sweep->journal->file, make_run, take_results, &r};
     const int processes = count < sweep->processes ? (int)count : sweep->processes;
     if (!sweep->many && processes > 1)
-        r.stopped = !share_runs(pool, &share, processes) || sweep->journal->finished < sweep->plan->runs;
+        r.stopped = !share_runs(pool, &share, (size_t)processes) || sweep->journal->finished < sweep->plan->runs;
     else
         run_batches(&r, run, count);
     if (r.shown)

@@ -76,7 +76,7 @@ static _Noreturn void work(const Share *share, _Atomic int64_t *taken, int pipe)
  */
 
 /* One more than there are. False: there is no process to be had. */
-static bool start(Pool *pool, const Share *share, _Atomic int64_t *taken, Worker *all, int workers)
+static bool start(Pool *pool, const Share *share, _Atomic int64_t *taken, Worker *all, size_t workers)
 {
     Worker *worker = &all[workers];
     int ends[2];
@@ -88,7 +88,7 @@ static bool start(Pool *pool, const Share *share, _Atomic int64_t *taken, Worker
     worker->process = fork();
     if (worker->process == 0) {
         close(ends[0]);
-        for (int w = 0; w < workers; ++w) /* each pipe has one reader: who writes learns of its end */
+        for (size_t w = 0; w < workers; ++w) /* each pipe has one reader: who writes learns of its end */
             close(all[w].pipe);
         close(share->lock); /* held by its parent alone, so that it ends with it */
         dup2(worker->said, STDERR_FILENO);
@@ -152,14 +152,14 @@ static _Noreturn void fail_as(Pool *pool, const Worker *worker)
     exit(1);
 }
 
-static void end_all(Worker *worker, int workers)
+static void end_all(Worker *worker, size_t workers)
 {
-    for (int w = 0; w < workers; ++w)
+    for (size_t w = 0; w < workers; ++w)
         if (worker[w].pipe >= 0)
             kill(worker[w].process, SIGKILL);
 }
 
-bool share_runs(Pool *pool, const Share *share, int processes)
+bool share_runs(Pool *pool, const Share *share, size_t processes)
 {
     _Atomic int64_t *taken = mmap(NULL, sizeof *taken, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (taken == MAP_FAILED)
@@ -168,18 +168,18 @@ bool share_runs(Pool *pool, const Share *share, int processes)
     struct pollfd ready[processes];
     const Worker *broken = NULL;
     bool stopped = false;
-    int workers = 0;
+    size_t workers = 0;
     while (workers < processes && start(pool, share, taken, worker, workers))
         ++workers;
     if (!workers)
         diag_fail(gicrun_place, "try again when there are fewer of them", "can't start a process: %s", strerror(errno));
-    for (int open = workers; open;) {
+    for (size_t open = workers; open;) {
         Result *result = NULL;
         int results = 0;
-        for (int w = 0; w < workers; ++w) /* closed ones, which are negative, are passed over */
+        for (size_t w = 0; w < workers; ++w) /* closed ones, which are negative, are passed over */
             ready[w] = (struct pollfd){.fd = worker[w].pipe, .events = POLLIN};
-        const int some = poll(ready, (nfds_t)workers, LOOK_MS);
-        for (int w = 0; w < workers && some > 0; ++w) {
+        const int some = poll(ready, workers, LOOK_MS);
+        for (size_t w = 0; w < workers && some > 0; ++w) {
             if (!ready[w].revents)
                 continue;
             hear(&worker[w]);
@@ -197,7 +197,7 @@ bool share_runs(Pool *pool, const Share *share, int processes)
     munmap((void *)taken, sizeof *taken);
     if (broken)
         fail_as(pool, broken);
-    for (int w = 0; w < workers; ++w)
+    for (size_t w = 0; w < workers; ++w)
         close(worker[w].said);
     return !stopped;
 }

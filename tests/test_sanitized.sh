@@ -183,6 +183,11 @@ for engine in tcc tape gic gcp1 gcp2; do
     fails 0 'warning: 2 of 4 rows have no result' --engine $engine --eval crank.csv crank.veh
 done
 
+for processes in 1 2; do
+    OMP_NUM_THREADS=$processes "$debug/gicsweep" -q --engine tcc "$pendulum" pendulum.scene --vary angle=0:0.5:4 -o sweep.csv \
+        2>said && [ "$(wc -l <sweep.csv)" -eq 5 ] && clean
+    check $? "gicsweep, $processes processes"
+done
 "$debug/gicbench" --quick -o page "$pendulum" pendulum.scene pendulum.scene 2>said && [ -s page/index.html ] && clean
 check $? "gicbench"
 
