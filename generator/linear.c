@@ -8,6 +8,8 @@
 
 /* An entry must reach this fraction of the largest one in its column, so that multipliers stay below ten. */
 static const double pivot_threshold = 0.1;
+/* One that changes by more than this over the samples may change its sign not far from them. */
+static const double pivot_steady = 0.3;
 /* Below this, relative to its row, an entry is rounding. */
 static const double pivot_zero = 1e-9;
 
@@ -36,8 +38,29 @@ static int pivot_cost(const Dag *dag, int n, const Ex *A, const bool *row_done, 
     return cost;
 }
 
-/* The smallest ratio over the usable samples of |A(i, j)| to the largest entry of its column in the rest, rows scaled.
- */
+/* The smallest magnitude among the usable samples of a member over the largest one; 0 where the sign differs: there is
+ * a configuration between them at which it vanishes. */
+static double steadiness(const Dag *dag, Ex e, const bool *usable)
+{
+    const int configurations = dag->samples / dag->members;
+    double steady = 1;
+    for (int m = 0; m < dag->members; ++m) {
+        double least = INFINITY, most = -INFINITY;
+        for (int s = m * configurations; s < (m + 1) * configurations; ++s)
+            if (usable[s]) {
+                least = fmin(least, ex_value(dag, e, s));
+                most = fmax(most, ex_value(dag, e, s));
+            }
+        if (least < 0 && most > 0)
+            return 0;
+        if (least <= most && most != least)
+            steady = fmin(steady, fmin(fabs(least), fabs(most)) / fmax(fabs(least), fabs(most)));
+    }
+    return steady;
+}
+
+/* The smallest ratio over the usable samples of |A(i, j)| to the largest entry of its column in the rest, rows scaled;
+ * less where it is much smaller at some samples than at others, and may vanish at configurations that are none. */
 static double pivot_quality(const Dag *dag, int n, const Ex *A, const bool *row_done, const double *row_scale,
                             const bool *usable, int i, int j)
 {
@@ -52,7 +75,8 @@ static double pivot_quality(const Dag *dag, int n, const Ex *A, const bool *row_
         double ratio = own > 0 ? own / largest : 0;
         quality = fmin(quality, ratio);
     }
-    return quality;
+    const double steady = steadiness(dag, A[n * i + j], usable);
+    return steady < pivot_steady ? fmin(quality, pivot_threshold) * fmax(steady, pivot_zero) : quality;
 }
 
 /* Is there a usable sample at which the entry is nothing but rounding? */

@@ -37,6 +37,7 @@ static int play(Instance *self, const Tape *tape, double rest)
 static int derive(Instance *self, double rest)
 {
     const TapeEngine *engine = tape_of(self);
+    tape_forget(self); /* it was of other numbers */
     int status = play(self, engine->derive, rest);
     if (status != GIC_OK)
         return status;

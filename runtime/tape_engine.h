@@ -106,6 +106,8 @@ TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve, Recovery reco
 /* tape_recover.c: all bodies at the coordinates of the instance, followed from the last good configuration; and the
  * largest constraint residual of all subsets there, relative to their sizes. */
 int tape_recover(Instance *self, const double turn[3], bool cold);
+/* The last recovery was of another geometry: none of it is kept by the next one. */
+void tape_forget(Instance *self);
 double tape_residual(Instance *self);
 
 /* The same file: links->array filled as far as it is about what a subset is connected to. */

@@ -130,6 +130,18 @@ static int recover_piece(Instance *self, TapeLinks *links, double *old, double *
     return GIC_OK;
 }
 
+/* 1 + the start that the last recovery left; 0: it was not good. */
+static double *recovered_from(Instance *self)
+{
+    const TapeEngine *engine = tape_of(self);
+    return tape_array(self, engine->recovered_offset) + 2 * engine->code.coordinate_count + 4;
+}
+
+void tape_forget(Instance *self)
+{
+    *recovered_from(self) = 0;
+}
+
 int tape_recover(Instance *self, const double turn[3], bool cold)
 {
     const TapeEngine *engine = tape_of(self);
@@ -141,7 +153,7 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
     int pieces = 1;
     double *at = tape_array(self, engine->recovered_offset), *at_rate = at + coordinates,
            *at_turn = at_rate + coordinates;
-    double *recovered = at_turn + 4, way[coordinates + 1];
+    double *recovered = recovered_from(self), way[coordinates + 1];
     const double *xd = tape_array(self, engine->xd_offset);
     links.cold = cold;
     links.again =
