@@ -51,7 +51,7 @@
  */
 #include "andrews.h"
 
-#if ANDREWS_H != 0x12ce42dd
+#if ANDREWS_H != 0x662a52a7
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -1419,7 +1419,7 @@ static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
     for (i = 0; i < ANDREWS_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < andrews_piece[i]);
     /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
-     * keep them on the stack. Newton's iteration by GCC is 5 percent quicker in one. */
+     * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
     if (far || ANDREWS_FOLLOWED > 0) {
         status = andrews_recover_way(self, &links, way, far, &last);
     } else {

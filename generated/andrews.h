@@ -50,7 +50,7 @@
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #ifndef ANDREWS_H
-#define ANDREWS_H 0x12ce42dd
+#define ANDREWS_H 0x662a52a7
 
 #include "gic_runtime.h"
 
@@ -93,6 +93,7 @@ enum {
     ANDREWS_MOTION_ROOM = 210,
     ANDREWS_INERTIA_ROOM = 92,
     ANDREWS_MULTIPLIER_ROOM = 1,
+    ANDREWS_LAYOUT = 898285831,
     ANDREWS_CONDITIONS = 0,
     ANDREWS_DERIVED = 0,
     ANDREWS_PIECES = 1,

@@ -71,7 +71,7 @@
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
-#define FIVE_LINK_H 0x5141db85
+#define FIVE_LINK_H 0x7c0ebe97
 
 #include "gic_runtime.h"
 
@@ -114,6 +114,7 @@ enum {
     FIVE_LINK_MOTION_ROOM = 222,
     FIVE_LINK_INERTIA_ROOM = 179,
     FIVE_LINK_MULTIPLIER_ROOM = 1,
+    FIVE_LINK_LAYOUT = 1718454744,
     FIVE_LINK_CONDITIONS = 0,
     FIVE_LINK_DERIVED = 0,
     FIVE_LINK_PIECES = 1,

@@ -77,7 +77,7 @@
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #ifndef HMMWV_H
-#define HMMWV_H 0x48a6987d
+#define HMMWV_H 0x20ee811b
 
 #include "gic_runtime.h"
 
@@ -120,6 +120,7 @@ enum {
     HMMWV_MOTION_ROOM = 282,
     HMMWV_INERTIA_ROOM = 225,
     HMMWV_MULTIPLIER_ROOM = 1,
+    HMMWV_LAYOUT = 277266900,
     HMMWV_CONDITIONS = 0,
     HMMWV_DERIVED = 0,
     HMMWV_PIECES = 1,

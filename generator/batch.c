@@ -191,6 +191,7 @@ static void insert_batch(void *context, const char *name, Text *out, int indent)
     } else if (!strcmp(name, "hash")) {
         line(out, indent, "const char *const hash = \"%s\"; /* of the model that this file is of */",
              g->formulation->hash);
+        line(out, indent, "const int layout = %d; /* of its instances */", plan_layout(g->pool, g->plan));
     } else {
         insert_code(context, name, out, indent);
     }

@@ -516,11 +516,11 @@ static bool turn_known(Closed *z, int body)
     int second = hold->triad ? 0 : 1;
     if (hold->arms <= second)
         return false;
-    Ex across[3], y[3], minus = 0;
+    Ex across[3], y[3];
     Ex share = split(dag, first, hold->arm[second], across);
     if (!is_sound(z, ex_dot(dag, across, across), ex_dot(dag, hold->arm[second], hold->arm[second])))
         return false;
-    minus = ex_neg(dag, share);
+    const Ex minus = ex_neg(dag, share);
     combine(dag, 2, (Ex[]){minus, ex_literal(dag, 1)}, (const Ex *[]){first_image, hold->image[second]}, y);
     turn_pair(z, body, first, first_image, across, y);
     set_image(z, body, first, first_image);

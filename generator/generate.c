@@ -157,6 +157,7 @@ static void write_sizes(Generation *g, Text *out, int indent)
                 {"MOTION_ROOM", room(plan->motion_size)},
                 {"INERTIA_ROOM", room(plan->inertia_size)},
                 {"MULTIPLIER_ROOM", room(plan->multipliers)},
+                {"LAYOUT", plan_layout(g->pool, plan)},
                 {"CONDITIONS", conditions(g)},
                 {"DERIVED", plan->derived->count},
                 {"PIECES", model->tuning && model->tuning->assembles ? ASSEMBLY_PIECES : 1},

@@ -167,6 +167,9 @@ bool plan_follows(const Plan *plan, int subset);
 /* Is the solution of a subset a function of its coordinates, their rates and the angular velocity of the base alone, so
  * that one for the same numbers can be kept? One that Newton's iteration finds depends on its start, by rounding. */
 bool plan_keeps(const Plan *plan, int subset);
+/* A number that tells forms of the equations and places of numbers from others: code for many vehicles, which reads an
+ * instance's, must be made for the same ones. */
+int plan_layout(Pool *pool, const Plan *plan);
 
 /* Inputs of every global block, as C names: y state, e recovered Euler parameters of the base, x and xd values and
  * rates of all coordinates, u inputs, m motions, n inertias, lambda multipliers (Plan.multiplier_offset). Fixed base:

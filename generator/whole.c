@@ -19,6 +19,19 @@ static void add_derived(Plan *plan, Pool *pool, int subset)
             formula->derived_of[i * class->members + member];
 }
 
+int plan_layout(Pool *pool, const Plan *plan)
+{
+    Text text = {.pool = pool};
+    text_print(&text, "%d %d %d %d", plan->solve, plan->start_size, plan->motion_size, plan->inertia_size);
+    for (int s = 0; s < plan->sequence->subsets; ++s) {
+        const int class = plan->sequence->subset[s].class;
+        text_print(&text, " %d %d", plan->start_offset[s], plan->stride[s]);
+        if (class >= 0)
+            text_print(&text, " %d", plan->formula[class]->closed);
+    }
+    return (int)(text_hash(text.s, text.size) & 0x7fffffff);
+}
+
 Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Formula **formula,
                const double (*origin)[3])
 {

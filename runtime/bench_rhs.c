@@ -581,13 +581,19 @@ static void lane_work(const Course *course, const Subject *subject, const Model 
     }
 }
 
+/* NULL: the default one. */
+static bool same_compiler(const char *a, const char *b)
+{
+    return a && b ? !strcmp(a, b) : a == b;
+}
+
 /* The same code by the same compiler with the same flags, one by one. */
 static const Subject *without_lanes(const Course *course, const Variant *variant)
 {
     for (int s = 0; s < course->subjects; ++s) {
         const Variant *other = course->subject[s].variant;
-        if (!other->lanes && other->compiler == variant->compiler && !strcmp(other->flags, variant->flags) &&
-            other->solve == variant->solve && other->newton == variant->newton)
+        if (!other->lanes && same_compiler(other->compiler, variant->compiler) &&
+            !strcmp(other->flags, variant->flags) && other->solve == variant->solve && other->newton == variant->newton)
             return &course->subject[s];
     }
     return NULL;

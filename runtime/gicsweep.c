@@ -3,6 +3,7 @@
 #include "cache.h"
 #include "sweep.h"
 
+#include <errno.h>
 #include <getopt.h>
 #include <math.h>
 #include <stdlib.h>
@@ -51,8 +52,9 @@ typedef struct Options {
 static int64_t whole(const char *option, const char *word, int64_t most)
 {
     char *end;
+    errno = 0;
     const long long value = strtoll(word, &end, 10);
-    if (end == word || *end || value < 0 || value > most)
+    if (errno == ERANGE || end == word || *end || value < 0 || value > most)
         usage_fail("gicsweep", option, word);
     return value;
 }
@@ -176,7 +178,7 @@ static void write_results(const Sweep *sweep, const char *path)
     csv_name(&csv, "status", NULL);
     csv_name(&csv, "time", "s");
     for (int c = 0; c < sweep->scene->columns; ++c) {
-        const gic_signal *signal = &sweep->engine->code->output[sweep->scene->column[c]];
+        const gic_signal *signal = &sweep->scene->signal[sweep->scene->column[c]];
         for (int p = 0; p < 3; ++p)
             csv_name(&csv, pool_print(pool, "%s.%s", signal->name, part[p]), signal->unit);
     }

@@ -58,6 +58,12 @@ static bool take_line(Journal *journal, const char *line)
     return true;
 }
 
+static _Noreturn void refuse_foreign(const Journal *journal)
+{
+    diag_fail(gicrun_place, "remove it, or choose another place with -o",
+              "%s is of another sweep: another model, scene, range or version", journal->path);
+}
+
 /* What is in the file: whole lines. */
 static void take(Journal *journal, const char *first)
 {
@@ -66,8 +72,7 @@ static void take(Journal *journal, const char *first)
     char *text = pool_alloc(journal->pool, size + 1);
     memcpy(text, bytes, size);
     if (strncmp(text, first, strlen(first)) != 0)
-        diag_fail(gicrun_place, pool_print(journal->pool, "remove it, or choose another place with -o"),
-                  "%s is of another sweep: another model, scene, range or version", journal->path);
+        refuse_foreign(journal);
     size_t good = strlen(first);
     for (char *end; (end = strchr(text + good, '\n')); good = (size_t)(end + 1 - text)) {
         *end = 0;
@@ -91,6 +96,9 @@ Journal journal_open(Pool *pool, const char *results, const char *key, int64_t r
                   journal.path);
     const off_t size = lseek(journal.file, 0, SEEK_END);
     if (size < (off_t)strlen(first)) {
+        const char *bytes = file_read(journal.pool, journal.path, SIZE_MAX, &(size_t){0});
+        if (strncmp(bytes, first, (size_t)size) != 0)
+            refuse_foreign(&journal);
         if (ftruncate(journal.file, 0))
             journal_fail(&journal, "write");
         append(&journal, first, strlen(first));

@@ -193,8 +193,12 @@ static void look_at_batch(Runner *r)
         many->store(r->batch, i, r->one);
         set_status(r, slot, many->status(r->batch, i), r->one);
         slot->time = gic_time(r->one);
-        for (int c = 0; c < sweep->scene->columns && slot->status == GIC_OK; ++c)
-            record(slot, c, many->output(r->batch, i, sweep->scene->column[c]));
+        for (int c = 0; c < sweep->scene->columns && slot->status == GIC_OK; ++c) {
+            const int column = sweep->scene->column[c]; /* instances don't take outputs with them, but inputs */
+            const bool input = column >= sweep->engine->code->output_count;
+            record(slot, c,
+                   input ? scene_value(sweep->engine->code, r->one, column) : many->output(r->batch, i, column));
+        }
     }
 }
 
@@ -248,9 +252,8 @@ static void look_at_one(Runner *r)
     memcpy(r->copy, r->one, code->size); /* looking leaves no trace */
     slot->time = gic_time(r->one);
     set_status(r, slot, code->outputs(r->copy), r->copy);
-    const double *output = instance_array(r->copy, code->output_offset);
     for (int c = 0; c < sweep->scene->columns && slot->status == GIC_OK; ++c)
-        record(slot, c, output[sweep->scene->column[c]]);
+        record(slot, c, scene_value(code, r->copy, sweep->scene->column[c]));
 }
 
 static void run_one(Runner *r)

@@ -122,6 +122,35 @@ static void test_failures(void **state)
     assert_true(car[2].head.subset >= 0);
 }
 
+/* A stage of a step that leaves all bounds: an unstable step, and the same number is named. */
+static void test_growth(void **state)
+{
+    static hmmwv car[HMMWV_VEHICLES];
+    static hmmwv_batch batch;
+    (void)state;
+    for (int32_t method = GIC_AB3; method <= GIC_RK4; ++method) {
+        assert_int_equal(hmmwv_batch_setup(&batch), GIC_OK);
+        for (int32_t i = 0; i < HMMWV_VEHICLES; ++i) {
+            begin(&car[i], i);
+            if (i % 2) { /* 2^30 is out of bounds */
+                car[i].state[HMMWV_STATE_R_X + i % 3] = 1073741000;
+                car[i].state[HMMWV_STATE_V_X] = car[i].state[HMMWV_STATE_V_Y] = car[i].state[HMMWV_STATE_V_Z] = 1e9;
+            }
+            hmmwv_batch_load(&batch, i, &car[i]);
+        }
+        assert_int_equal(hmmwv_batch_step(&batch, 0.005, (gic_method)method, 1), HMMWV_VEHICLES / 2);
+        for (int32_t i = 0; i < HMMWV_VEHICLES; ++i) {
+            static hmmwv stored;
+            steps(&car[i], 1, (gic_method)method);
+            assert_int_equal(car[i].head.status, i % 2 ? GIC_ERROR_UNSTABLE : GIC_OK);
+            assert_int_equal(hmmwv_batch_status(&batch, i), car[i].head.status);
+            assert_int_equal(hmmwv_setup(&stored), GIC_OK);
+            hmmwv_batch_store(&batch, i, &stored);
+            assert_int_equal(stored.head.grown, car[i].head.grown);
+        }
+    }
+}
+
 static void test_places(void **state)
 {
     static hmmwv_batch room[2];
@@ -198,8 +227,8 @@ static void test_quarter_car(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_bits), cmocka_unit_test(test_failures),
-                                       cmocka_unit_test(test_places), cmocka_unit_test(test_inputs),
-                                       cmocka_unit_test(test_quarter_car)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_bits),   cmocka_unit_test(test_failures),
+                                       cmocka_unit_test(test_growth), cmocka_unit_test(test_places),
+                                       cmocka_unit_test(test_inputs), cmocka_unit_test(test_quarter_car)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

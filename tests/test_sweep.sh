@@ -116,6 +116,42 @@ check "no finished run is lost" grep -q "1000 runs in .*, $kept of them from an 
 check "the same bytes in the end" cmp -s "$work/whole.csv" "$work/killed.csv"
 check "no journal is left" [ ! -e "$work/killed.csv.journal" ]
 
+# ---- inputs among the outputs, in lanes and alone, as gicrun writes them
+
+cat >"$work/cart.veh" <<'XXX'
+gicgen: 1
+model: cart
+base: ground
+bodies:
+  cart: {mass: 2, position: [0, 0, 0], com: [0, 0, 0], inertia: [1, 1, 1]}
+inputs:
+  push: {unit: N}
+joints:
+  guide: {type: prismatic, bodies: [ground, cart], axis: [1, 0, 0]}
+coordinates:
+  s: {type: translation, bodies: [ground, cart], axis: [1, 0, 0], range: [-100, 100]}
+forces:
+  push: {type: force, coordinate: s, value: push}
+outputs:
+  s: {type: coordinate, coordinate: s}
+XXX
+cat >"$work/cart.scene" <<'XXX'
+gicscene: 1
+duration: 1
+step: 0.01
+output_step: 0.05
+inputs: {push: {knots: {times: [0, 0.5, 1], values: [1, -2, 5]}}}
+outputs: [s.value, input.push]
+XXX
+"$gicrun" -q "$work/cart.veh" "$work/cart.scene" -o "$work/one.csv" 2>"$work/err"
+for engine in '' '--engine tcc' '--engine tape'; do
+    # shellcheck disable=SC2086  # words
+    "$gicsweep" -q $engine "$work/cart.veh" "$work/cart.scene" --vary s=0:1:2 -o "$work/inputs.csv" 2>"$work/err"
+    check "an input among the outputs $engine: its name" [ "$(head -1 "$work/inputs.csv" | cut -d, -f8-)" = \
+        "input.push.end [N],input.push.min [N],input.push.max [N]" ]
+    check "and gicrun's numbers" [ "$(sed -n 2p "$work/inputs.csv" | cut -d, -f5-)" = "$(ranges "$work/one.csv")" ]
+done
+
 # ---- runs that fail are rows
 
 "$gicsweep" "$car" "$work/s.scene" --vary spring_f_l=0.24:2:2 -o "$work/fail.csv" 2>"$work/err"
@@ -203,6 +239,11 @@ check "an unknown name" says "nothing that can be varied is called 'wings'" 1 sw
 check "no range" says "takes name=low:high" 2 sweep --vary speed=1
 check "no count" says "needs a count" 2 sweep --vary speed=1:2
 check "a count too many" says "no count of its own" 2 sweep --latin 4 --vary speed=1:2:3
+check "a seed too large" says "--seed takes a whole number" 2 sweep --latin 4 --seed 99999999999999999999999 --vary speed=1:2
+printf 'mine' >"$work/e.csv.journal"
+check "somebody's file" says "is of another sweep" 1 sweep --vary speed=1:2:2
+check "which is left as it was" [ "$(cat "$work/e.csv.journal")" = mine ]
+rm "$work/e.csv.journal"
 check "no count of runs" says "at least one run" 2 sweep --latin 0 --vary speed=1:2
 check "twice" says "given twice" 2 sweep --vary speed=1:2:3 --vary speed=1:2:3
 check "nothing varied" says "nothing is varied" 2 sweep

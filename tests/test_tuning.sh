@@ -116,5 +116,25 @@ printf 'gicscene: 1\nduration: 0.2\nstep: 0.002\nintegrator: rk4\noutput_step: 0
         END { exit bad || NR < 6 }'
 verdict $? "parameters of a scene"
 
+# where coordinates begin at their design, what set-up has assembled is what everything goes on from: the first outputs,
+# by engines that keep recoveries, against the interpreted one, which keeps none, to 1e-9
+sed "s/, initial: lift//; s|\.\./\.\./models|$root/models|" "$root/tests/tuning/rig.veh" >rest.veh
+printf 'gicscene: 1\nduration: 0.004\nstep: 0.002\noutput_step: 0.002\nparameters: {tie: 0.395}\n' >rest.scene
+"$gicrun" --quiet --engine gic rest.veh rest.scene -o sound.csv
+verdict $? "set up at the design: gic"
+for how in 'tcc' 'cc' 'tape' 'tcc --recovery newton' 'tcc --solve augmented' 'cc --lanes 2'; do
+    # shellcheck disable=SC2086  # words
+    "$gicrun" --quiet --engine $how rest.veh rest.scene -o found.csv && paste -d, sound.csv found.csv | awk -F, '
+        NR > 1 { n = NF / 2; for (i = 1; i <= n; ++i) { d = $i - $(n + i); x = $i; if (!(d * d <= 1e-18 * (1 + x * x))) bad = 1 } }
+        END { exit bad || NR < 3 || n < 3 }'
+    verdict $? "set up at the design: $how"
+done
+
+# a vehicle that leaves a batch finds no recovery of what the instance was before
+"$gicgen" "$root/tests/tuning/car.veh" -o car.c && "$gicgen" --batch 4 "$root/tests/tuning/car.veh" -o car_batch.c &&
+    cc -std=c11 -O1 -ffp-contract=off -w -I. -I"$root/runtime" "$root/tests/tuning/store.c" car.c car_batch.c \
+        "$root/runtime/gic_runtime.c" -lm -o store && ./store
+verdict $? "a vehicle from a batch into a used instance"
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
