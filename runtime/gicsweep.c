@@ -35,9 +35,9 @@ static const char help[] = "usage: gicsweep MODEL.veh SCENE --vary NAME=LOW:HIGH
                            "  -h, --help         this text\n"
                            "      --version      version\n"
                            "\n"
-                           "Vehicles run in the lanes of vectors and, with OpenMP, in $OMP_NUM_THREADS threads, where\n"
-                           "compiler and model allow that; else each by itself, in as many processes, with the same\n"
-                           "digits.\n"
+                           "Vehicles run in the lanes of vectors where compiler and model allow that, else each by\n"
+                           "itself, with the same digits; and in $OMP_NUM_THREADS processes, by default one for each\n"
+                           "processor.\n"
                            "Exit status: 0 good, even if runs failed; 1 error in a file; 2 wrong usage.\n";
 
 enum { VEHICLES = 64, LANES = 4 };
@@ -127,15 +127,14 @@ static const char *against_lanes(const Scene *scene, const Model *model)
 static const Engine *open_code(Pool *pool, const Options *o, const Model *model, const Scene *scene,
                                const gic_batch_model **many)
 {
-    static const char *const flags[] = {"-O3 -march=native -fopenmp", "-O3 -march=native"};
     const Batch batch = {VEHICLES, LANES};
     const Engine *engine = NULL;
     const char *why = against_lanes(scene, model);
     if (o->engine)
         return engine_open(pool, o->engine, model, &o->code);
     const bool tried = !why;
-    for (size_t i = 0; tried && !engine && i < sizeof flags / sizeof *flags; ++i)
-        engine = engine_batch(pool, model, &o->code, &batch, flags[i], many, &why);
+    if (tried)
+        engine = engine_batch(pool, model, &o->code, &batch, "-O3 -march=native", many, &why);
     if (engine)
         return engine;
     if (!o->quiet)
@@ -197,10 +196,9 @@ static void summary(const Sweep *sweep, int64_t before, double seconds, const ch
     fprintf(stderr, "%s: %lld runs in %s", sweep->engine->code->name, (long long)journal->finished, results);
     if (before)
         fprintf(stderr, ", %lld of them from an earlier start", (long long)before);
-    if (sweep->many || sweep->processes == 1 || done < 2)
-        fprintf(stderr, "; %s", sweep->many ? "in lanes" : "one after another");
-    else
-        fprintf(stderr, "; %lld at a time", (long long)(done < sweep->processes ? done : sweep->processes));
+    fprintf(stderr, "; %s", sweep->many ? "in lanes" : "each by itself");
+    if (sweep->processes > 1)
+        fprintf(stderr, ", up to %d processes", sweep->processes);
     fprintf(stderr, ", %.3g s, %.4g runs/s\n", seconds, (double)done / fmax(seconds, 1e-9));
     if (journal->failed)
         fprintf(stderr, "  %lld failed, the first is run %lld: %s\n", (long long)journal->failed,

@@ -54,8 +54,9 @@ typedef struct Share {
     int64_t count;
     const int64_t *run; /* [count] those to be made */
     int lock;           /* a file that is for the caller's process alone */
-    /* In one of the processes: make a run. False: someone asked to stop. */
-    bool (*make)(void *context, int64_t run, Result *result);
+    int together;       /* so many of them are made at once, at most */
+    /* In one of the processes: make runs. False: someone asked to stop. */
+    bool (*make)(void *context, const int64_t *run, int runs, Result *result);
     /* In the caller's: results that came, perhaps none, at least ten times a second. False: stop. */
     bool (*take)(void *context, const Result *result, int results);
     void *context;
@@ -63,7 +64,7 @@ typedef struct Share {
 
 enum { SHARE_PROCESSES_MOST = 256 };
 
-/* Processes that this machine can run side by side: $OMP_NUM_THREADS, as for threads, or one for each processor. */
+/* Processes that this machine can run side by side: $OMP_NUM_THREADS, or one for each processor. */
 int share_processes(void);
 /* Make all runs in up to so many processes; texts of results are the pool's. False: take() wanted to stop. A process
  * that fails ends the program with a message. */
@@ -98,8 +99,8 @@ typedef struct Sweep {
     const Scene *scene;
     SweepPlan *plan;
     const Engine *engine;
-    const gic_batch_model *many; /* NULL: no lanes, */
-    int processes;               /* so many processes instead, at most */
+    const gic_batch_model *many; /* NULL: no lanes */
+    int processes;               /* that share the runs, at most */
     Journal *journal;
     bool quiet;
 } Sweep;

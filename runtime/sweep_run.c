@@ -306,46 +306,29 @@ static Result result_of(const Runner *r, const Slot *slot)
                     slot->reason ? pool_print(pool, "%s", slot->reason) : NULL};
 }
 
-static void keep(Runner *r)
+/* Runs side by side, as many as there are slots at most. False: someone asked to stop. */
+static bool make_runs(void *context, const int64_t *run, int runs, Result *result)
 {
-    Result result[r->slots];
-    for (int i = 0; i < r->used; ++i)
+    Runner *r = context;
+    r->pool = pool_new(); /* what the scenes of a batch take is given back */
+    for (r->used = 0; r->used < runs; ++r->used)
+        take_up(r, &r->slot[r->used], run[r->used]);
+    if (r->sweep->many)
+        run_lanes(r);
+    else
+        run_one(r);
+    for (int i = 0; i < runs && !r->stopped; ++i)
         result[i] = result_of(r, &r->slot[i]);
-    journal_add(r->sweep->journal, result, r->used);
+    pool_free(r->pool);
+    return !r->stopped;
 }
 
-/* In batches, in this process. */
-static void run_batches(Runner *r, const int64_t *run, int64_t count)
-{
-    for (int64_t next = 0; next < count && !r->stopped;) {
-        r->pool = pool_new(); /* what a batch of scenes takes is given back */
-        for (r->used = 0; r->used < r->slots && next < count; ++next)
-            take_up(r, &r->slot[r->used++], run[next]);
-        if (r->sweep->many)
-            run_lanes(r);
-        else
-            run_one(r);
-        if (!r->stopped)
-            keep(r);
-        pool_free(r->pool);
-    }
-}
-
-/* ---- in several processes ---------------------------------------------------------------------------------------- */
-
-/* In a process of its own. */
-static bool make_run(void *context, int64_t run, Result *result)
+/* The same where the caller tells how far it is. */
+static bool make_silently(void *context, const int64_t *run, int runs, Result *result)
 {
     Runner *r = context;
     r->silent = true;
-    r->pool = pool_new();
-    r->used = 1;
-    take_up(r, r->slot, run);
-    run_one(r);
-    if (!r->stopped)
-        *result = result_of(r, r->slot);
-    pool_free(r->pool);
-    return !r->stopped;
+    return make_runs(r, run, runs, result);
 }
 
 static bool take_results(void *context, const Result *result, int results)
@@ -355,6 +338,17 @@ static bool take_results(void *context, const Result *result, int results)
         journal_add(r->sweep->journal, result, results);
     look_around(r);
     return !r->stopped;
+}
+
+/* In this process. */
+static void run_alone(Runner *r, const int64_t *run, int64_t count)
+{
+    Result result[r->slots];
+    for (int64_t next = 0; next < count && !r->stopped; next += r->slots) {
+        const int runs = count - next < r->slots ? (int)(count - next) : r->slots;
+        if (make_runs(r, run + next, runs, result))
+            journal_add(r->sweep->journal, result, runs);
+    }
 }
 
 bool sweep_run(const Sweep *sweep)
@@ -375,12 +369,16 @@ bool sweep_run(const Sweep *sweep)
     for (int64_t i = 0; i < sweep->plan->runs; ++i)
         if (!sweep->journal->row[i])
             run[count++] = i;
-    const Share share = {count, run, sweep->journal->file, make_run, take_results, &r};
-    const int processes = count < sweep->processes ? (int)count : sweep->processes;
-    if (!sweep->many && processes > 1)
-        r.stopped = !share_runs(pool, &share, (size_t)processes) || sweep->journal->finished < sweep->plan->runs;
+    /* equal parts where there are few runs for many processes */
+    const int64_t part = (count + sweep->processes - 1) / sweep->processes;
+    const int together = part < r.slots ? (int)part : r.slots;
+    const int64_t batches = together ? (count + together - 1) / together : 0;
+    const size_t processes = (size_t)(batches < sweep->processes ? batches : sweep->processes);
+    const Share share = {count, run, sweep->journal->file, together, make_silently, take_results, &r};
+    if (processes > 1)
+        r.stopped = !share_runs(pool, &share, processes) || sweep->journal->finished < sweep->plan->runs;
     else
-        run_batches(&r, run, count);
+        run_alone(&r, run, count);
     if (r.shown)
         fputs("\r\x1b[K", stderr);
     free(r.batch);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Runs shared out among processes, each of which makes one after another: whoever is ready takes the next, by a counter
- * in memory that all of them see, and sends back what came of it. Processes, not threads: engines and the libraries
- * behind them keep things of their own. */
+ * Runs shared out among processes: whoever is ready takes the next ones, by a counter in memory that all of them see,
+ * and sends back what came of them. Processes, not threads: engines and the libraries behind them keep things of their
+ * own, and nobody waits for anybody, whatever else the machine has to do. */
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #include "sweep.h"
 
@@ -60,14 +60,19 @@ static void send_bytes(int pipe, const void *bytes, size_t size)
 
 static _Noreturn void work(const Share *share, _Atomic int64_t *taken, int pipe)
 {
-    Result result;
-    for (int64_t i;
-         (i = atomic_fetch_add(taken, 1)) < share->count && share->make(share->context, share->run[i], &result);) {
-        const Parcel parcel = {result.run, result.status, (uint32_t)strlen(result.row) + 1,
-                               result.reason ? (uint32_t)strlen(result.reason) + 1 : 0};
-        send_bytes(pipe, &parcel, sizeof parcel);
-        send_bytes(pipe, result.row, parcel.row);
-        send_bytes(pipe, result.reason, parcel.reason);
+    Result result[share->together];
+    for (int64_t i; (i = atomic_fetch_add(taken, share->together)) < share->count;) {
+        const int64_t left = share->count - i;
+        const int runs = left < share->together ? (int)left : share->together;
+        if (!share->make(share->context, share->run + i, runs, result))
+            break;
+        for (int k = 0; k < runs; ++k) {
+            const Parcel parcel = {result[k].run, result[k].status, (uint32_t)strlen(result[k].row) + 1,
+                                   result[k].reason ? (uint32_t)strlen(result[k].reason) + 1 : 0};
+            send_bytes(pipe, &parcel, sizeof parcel);
+            send_bytes(pipe, result[k].row, parcel.row);
+            send_bytes(pipe, result[k].reason, parcel.reason);
+        }
     }
     _exit(0);
 }
