@@ -90,10 +90,6 @@ static StateNumber fast_number(Pool *pool, const Model *model, int index)
 
 StateNumber state_number(Pool *pool, const Formulation *f, int index)
 {
-    static const char *const base[13][2] = {
-        {"r.x", "m"},         {"r.y", "m"},         {"r.z", "m"},        {"e0", "1"},    {"e1", "1"},
-        {"e2", "1"},          {"e3", "1"},          {"v.x", "m/s"},      {"v.y", "m/s"}, {"v.z", "m/s"},
-        {"omega.x", "rad/s"}, {"omega.y", "rad/s"}, {"omega.z", "rad/s"}};
     const Model *model = f->model;
     if (index >= f->plan->states)
         return fast_number(pool, model, index - f->plan->states);
@@ -108,7 +104,8 @@ StateNumber state_number(Pool *pool, const Formulation *f, int index)
     const Body *body = &model->body[BODY_BASE];
     int which = index < 7 ? index : index - f->plan->free_coordinates;
     double initial = which < 3 ? body->position[which] : which < 7 ? body->euler[which - 3] : 0;
-    return (StateNumber){base[which][0], base[which][1], initial};
+    const char *unit = which < 3 ? "m" : which < 7 ? "1" : which < 10 ? "m/s" : "rad/s";
+    return (StateNumber){base_state_name[which], unit, initial};
 }
 
 double coordinate_piece(const Formulation *f, int coordinate)

@@ -327,4 +327,8 @@ void keys_print(Text *out);
 /* Read and resolve a `.veh` file. Any mistake ends in diag_fail. */
 const Model *model_read(Pool *pool, const char *path);
 
+/* States of a free base, as FORMAT.md section 10 names them: pose, then twist. */
+enum { BASE_STATES = 13 };
+extern const char *const base_state_name[BASE_STATES];
+
 #endif

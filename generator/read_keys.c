@@ -511,13 +511,14 @@ static int compare_folded(const void *a, const void *b)
 
 void generated_names_check(Reader *reader, const char *thing, const char *const *name, const Place *at, int count)
 {
-    if (count < 2)
-        return;
-    Folded *sorted = pool_alloc(reader->pool, sizeof *sorted * (size_t)count);
+    Folded *sorted = pool_alloc(reader->pool, sizeof *sorted * (size_t)(count + 1));
     for (int i = 0; i < count; ++i) {
         char *folded = pool_print(reader->pool, "%s", name[i]);
         for (char *c = folded; *c; ++c)
             *c = (char)(*c == '.' ? '_' : toupper((unsigned char)*c));
+        if (!strcmp(folded, "ROOM"))
+            diag_fail(at[i], "rename it", "the %s '%s' would have the name of an array's size in generated code", thing,
+                      name[i]);
         sorted[i] = (Folded){name[i], folded, at[i], i};
     }
     qsort(sorted, (size_t)count, sizeof *sorted, compare_folded);

@@ -137,6 +137,8 @@ void ports_read(Reader *reader, const Item *map)
     Model *model = reader->model;
     Entry *entry = section_entries(reader, map, "port", &model->ports);
     model->port = pool_alloc(reader->pool, sizeof *model->port * (size_t)(model->ports + 1));
+    const char **name = pool_alloc(reader->pool, sizeof *name * (size_t)(model->ports + 1));
+    Place *at = pool_alloc(reader->pool, sizeof *at * (size_t)(model->ports + 1));
     for (int i = 0; i < model->ports; ++i) {
         Value value[PORT_KEYS];
         section_read(reader, &port_section, 0, entry + i, value);
@@ -151,5 +153,8 @@ void ports_read(Reader *reader, const Item *map)
         if (value[PORT_POINT].item)
             body_point(reader, port->body, value[PORT_POINT].number, value[PORT_POINT].tuned,
                        value[PORT_POINT].item->at, port->point);
+        name[i] = port->name;
+        at[i] = port->at;
     }
+    generated_names_check(reader, "port", name, at, model->ports);
 }

@@ -344,6 +344,27 @@ static void coordinate_read(Reader *reader, const Entry *entry, Coordinate *coor
     range_tune(reader, value + DUAL_RANGE, entry->what, coordinate);
 }
 
+const char *const base_state_name[BASE_STATES] = {"r.x", "r.y", "r.z", "e0",      "e1",      "e2",     "e3",
+                                                  "v.x", "v.y", "v.z", "omega.x", "omega.y", "omega.z"};
+
+/* Coordinates and their rates are states, beside those of a free base. */
+static void states_check(Reader *reader, const Place *at)
+{
+    const Model *model = reader->model;
+    const int base = model->free_base ? BASE_STATES : 0;
+    const size_t count = (size_t)(base + 2 * model->coordinates);
+    const char **name = pool_alloc(reader->pool, (count + 1) * sizeof *name);
+    Place *place = pool_alloc(reader->pool, (count + 1) * sizeof *place);
+    for (int i = 0; i < base; ++i)
+        name[i] = base_state_name[i];
+    for (int i = 0; i < model->coordinates; ++i) {
+        name[base + i] = model->coordinate[i].name;
+        name[base + model->coordinates + i] = pool_print(reader->pool, "%s.rate", model->coordinate[i].name);
+        place[base + i] = place[base + model->coordinates + i] = at[i];
+    }
+    generated_names_check(reader, "state", name, place, (int)count);
+}
+
 void coordinates_read(Reader *reader, const Item *map)
 {
     Model *model = reader->model;
@@ -359,4 +380,5 @@ void coordinates_read(Reader *reader, const Item *map)
     for (int i = 0; i < model->coordinates; ++i)
         coordinate_read(reader, entry + i, model->coordinate + i);
     generated_names_check(reader, "coordinate", name, at, model->coordinates);
+    states_check(reader, at);
 }
