@@ -106,7 +106,7 @@ static Batched open_way(const Bench *bench, const Way *w, int vehicles)
     if (b.many) {
         b.batch = aligned_alloc(b.many->alignment, b.many->size);
         if (!b.batch)
-            diag_fail(gicrun_place, "ask for fewer vehicles", "no memory for %d vehicles", vehicles);
+            diag_fail(program_place(), "ask for fewer vehicles", "no memory for %d vehicles", vehicles);
     }
     b.car = pool_alloc(bench->pool, sizeof *b.car * (size_t)vehicles);
     for (int i = 0; i < vehicles; ++i)

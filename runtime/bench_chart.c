@@ -59,6 +59,6 @@ void chart_write(Pool *pool, const Chart *chart, const char *path)
     const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid()), *said = "";
     int status = gnuplot_run(pool, chart_script(pool, chart, temporary), temporary, path, &said);
     if (status)
-        diag_fail(gicrun_place, "gnuplot draws it (Debian: apt-get install gnuplot-nox)", "no picture %s: %s", path,
+        diag_fail(program_place(), "gnuplot draws it (Debian: apt-get install gnuplot-nox)", "no picture %s: %s", path,
                   said);
 }

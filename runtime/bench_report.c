@@ -191,7 +191,7 @@ static void write_file(Pool *pool, const char *folder, const char *name, const T
         return;
     const int error = errno;
     unlink(temporary);
-    diag_fail(gicrun_place, "choose another folder with -o", "can't write %s: %s", path, strerror(error));
+    diag_fail(program_place(), "choose another folder with -o", "can't write %s: %s", path, strerror(error));
 }
 
 void report_tell(const Report *report, FILE *file)

@@ -151,7 +151,7 @@ static void find_stretches(Course *course)
     }
     variable_close(variable);
     if (status != GIC_OK)
-        diag_fail(scene ? (Place){scene->source, 0, 0} : gicrun_place,
+        diag_fail(scene ? (Place){scene->source, 0, 0} : program_place(),
                   "right-hand sides are timed on a run that goes well", "the run ends at t = %.6g s: %s",
                   gic_time(self), instance_status(pool, engine->code, self, status));
 }

@@ -274,7 +274,7 @@ static const Formulation *formulation_of(Pool *pool, const Model *model, const E
 static void check_command(const EngineOptions *options)
 {
     if (!options->compiler[strspn(options->compiler, " \t")])
-        diag_fail(gicrun_place, "name it: --cc gcc, or set CC", "the compiler command is empty");
+        diag_fail(program_place(), "name it: --cc gcc, or set CC", "the compiler command is empty");
 }
 
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options)
@@ -283,9 +283,10 @@ const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *opt
     Build b = build_new(pool, formulation_of(pool, model, options), options, "");
     const gic_model *code = open_code(&b);
     if (!code)
-        diag_fail(gicrun_place, b.failure.remedy, "%s", b.failure.message);
+        diag_fail(program_place(), b.failure.remedy, "%s", b.failure.message);
     if (b.unkept && !options->quiet)
-        fprintf(stderr, "gicrun: note: the compiled model is not kept for the next run: %s\n", b.unkept);
+        fprintf(stderr, "%s: note: the compiled model is not kept for the next run: %s\n",
+                program_place().source->path, b.unkept);
     return engine_of(pool, &b, options, code);
 }
 

@@ -25,7 +25,8 @@ static void remove_unfinished(int status, void *what)
     Unfinished *unfinished = what;
     const bool ours = unfinished->process == getpid();
     if (ours && !unlink(unfinished->path) && status == 0) {
-        fputs("gicrun: error: a library ended the program\n  remedy: is there memory enough?\n", stderr);
+        fprintf(stderr, "%s: error: a library ended the program\n  remedy: is there memory enough?\n",
+                program_place().source->path);
         _exit(1);
     }
     pool_free(unfinished->pool);
@@ -45,7 +46,7 @@ static _Noreturn void write_fail(const Csv *csv, const char *what)
     int reason = errno;
     if (csv->temporary)
         remove(csv->temporary);
-    diag_fail(gicrun_place, "make room, or choose another place with -o", "can't %s %s: %s", what,
+    diag_fail(program_place(), "make room, or choose another place with -o", "can't %s %s: %s", what,
               strcmp(csv->path, "-") ? csv->path : "to standard output", strerror(reason));
 }
 
@@ -55,7 +56,7 @@ Csv csv_open(Pool *pool, const char *path)
     if (file_is_special(path)) {
         csv.file = fopen(path, "w");
         if (!csv.file)
-            diag_fail(gicrun_place, "choose another place with -o", "can't open %s: %s", path, strerror(errno));
+            diag_fail(program_place(), "choose another place with -o", "can't open %s: %s", path, strerror(errno));
     } else if (strcmp(path, "-")) {
         const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid());
         watch(temporary); /* which takes memory itself: there is nothing yet that could be left */

@@ -25,6 +25,12 @@ bool engine_known(const char *name)
     return engine_index(name) >= 0;
 }
 
+bool engine_generates(const char *name)
+{
+    Open *const open = engine_opener[engine_index(name)];
+    return open != engine_gic && open != engine_gcp1 && open != engine_gcp2;
+}
+
 const Engine *engine_open(Pool *pool, const char *name, const Model *model, const EngineOptions *options)
 {
     return engine_opener[engine_index(name)](pool, model, options);

@@ -61,6 +61,9 @@ typedef struct Engine {
 extern const char *const engine_name[];
 bool engine_known(const char *name);
 
+/* Does it run generated code? The others interpret the model. */
+bool engine_generates(const char *name);
+
 /* For those engines that generate or compile. */
 typedef struct EngineOptions {
     Solve solve;

@@ -84,9 +84,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
         case RHS: bench.rhs = true; break;
         case DRIVE: bench.drive = true; break;
         case BATCH:
-            bench.vehicles = atoi(optarg);
-            if (bench.vehicles < 1 || bench.vehicles > 65536)
-                usage_fail("gicbench", "--batch takes a number of vehicles up to 65536, not", optarg);
+            bench.vehicles = (int)usage_whole("gicbench", "--batch takes 1 to 65536 vehicles, not", optarg, 1, 65536);
             break;
         case SCENES: scenes = true; break;
         case COMPILER: bench.options.compiler = optarg; break;
@@ -102,6 +100,9 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
         if (files < 2 || files % 2)
             usage_fail("gicbench", "a model and a scene, please, or several pairs of them", NULL);
         bench.engine_name = (*names)[0];
+        if (!engine_generates(bench.engine_name))
+            usage_fail("gicbench", "--scenes compares generated code, which is not what runs in the engine",
+                       bench.engine_name);
         bench.files = files;
         bench.file = word + optind;
         return bench;
@@ -125,7 +126,7 @@ static void make_folder(const char *folder)
 {
     struct stat there;
     if (mkdir(folder, 0777) && !(errno == EEXIST && !stat(folder, &there) && S_ISDIR(there.st_mode)))
-        diag_fail(gicrun_place, "choose another place with -o", "can't make the folder %s: %s", folder,
+        diag_fail(program_place(), "choose another place with -o", "can't make the folder %s: %s", folder,
                   strerror(errno));
 }
 

@@ -36,10 +36,14 @@ typedef struct Request {
 /* `program: error: message 'word'` and how to find out more; exit status 2. word may be NULL. */
 _Noreturn void usage_fail(const char *program, const char *message, const char *word);
 
+/* The whole number that word says, from least to most; anything else is usage_fail. */
+int64_t usage_whole(const char *program, const char *message, const char *word, int64_t least, int64_t most);
+
 /* ---- process.c: other programs, and signals that ask to stop -------------------------------------------- */
 
-/* The place of messages that are not about an input file: `gicrun: error: ...`. */
-extern const Place gicrun_place;
+/* The place of messages that are not about an input file: `gicsweep: error: ...`, by the name that the program was
+ * called by. */
+Place program_place(void);
 
 /* Between hold and release SIGINT, SIGTERM and SIGHUP wait, so that what was begun can be put in order: temporary files
  * removed, results kept. Release lets them through: one that has arrived ends the program there. */

@@ -49,16 +49,6 @@ typedef struct Options {
     bool quiet;
 } Options;
 
-static int64_t whole(const char *option, const char *word, int64_t most)
-{
-    char *end;
-    errno = 0;
-    const long long value = strtoll(word, &end, 10);
-    if (errno == ERANGE || end == word || *end || value < 0 || value > most)
-        usage_fail("gicsweep", option, word);
-    return value;
-}
-
 static Options read_command_line(Pool *pool, int count, char **word)
 {
     enum { VARY = 256, LATIN, SEED, ENGINE, COMPILER, FLAGS, VERSION };
@@ -80,12 +70,12 @@ static Options read_command_line(Pool *pool, int count, char **word)
         switch (option) {
         case VARY: vary_read(pool, &o.plan, optarg); break;
         case LATIN:
-            o.plan.latin = whole("--latin takes a number of runs, not", optarg, SWEEP_RUNS_MOST);
-            if (!o.plan.latin)
-                usage_fail("gicsweep", "--latin takes at least one run, not", optarg);
+            o.plan.latin =
+                usage_whole("gicsweep", "--latin takes 1 to 10000000 runs, not", optarg, 1, SWEEP_RUNS_MOST);
             break;
         case SEED:
-            o.plan.seed = (uint64_t)whole("--seed takes a whole number from 0 on, not", optarg, INT64_MAX);
+            o.plan.seed = (uint64_t)usage_whole("gicsweep", "--seed takes a whole number from 0 on, not", optarg, 0,
+                                                INT64_MAX);
             break;
         case 'o': o.results = optarg; break;
         case ENGINE:

@@ -163,19 +163,19 @@ const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *op
     const double before = cpu_seconds();
     jit->state = tcc_new();
     if (!jit->state)
-        diag_fail(gicrun_place, NULL, "no memory for tcc");
+        diag_fail(program_place(), NULL, "no memory for tcc");
     tcc_set_error_func(jit->state, &said, collect);
     tcc_set_options(jit->state, "-nostdlib -nostdinc");
     tcc_set_output_type(jit->state, TCC_OUTPUT_MEMORY);
     add_host_functions(jit->state);
     const int status = tcc_compile_string(jit->state, text) ? -1 : place(jit);
     if (status < 0)
-        diag_fail(gicrun_place, "use another engine: --engine cc or --engine tape",
+        diag_fail(program_place(), "use another engine: --engine cc or --engine tape",
                   "tcc can't compile the generated code: %s", said.s ? said.s : "it does not say why");
     if (status) {
         if (!options->quiet)
-            fprintf(stderr, "gicrun: note: the system refuses executable memory (%s), so the model is interpreted\n",
-                    strerror(errno));
+            fprintf(stderr, "%s: note: the system refuses executable memory (%s), so the model is interpreted\n",
+                    program_place().source->path, strerror(errno));
         tcc_delete(jit->state);
         return engine_tape(pool, model, options);
     }

@@ -233,7 +233,7 @@ const Modes *modes_find(Pool *pool, const Linear *linear, const double *A)
 {
     const Modes *modes = modes_try(pool, linear, A);
     if (!modes)
-        diag_fail(gicrun_place, NULL, "the eigenvalues could not be found");
+        diag_fail(program_place(), NULL, "the eigenvalues could not be found");
     return modes;
 }
 

@@ -98,9 +98,9 @@ static void run(DMUMPS_STRUC_C *mumps, int job)
         whole = call(mumps, job);
     }
     if (!whole)
-        diag_fail(gicrun_place, "is there memory enough?", "MUMPS gave up");
+        diag_fail(program_place(), "is there memory enough?", "MUMPS gave up");
     if (mumps->INFOG(1) < 0 && mumps->INFOG(1) != SINGULAR)
-        diag_fail(gicrun_place, "is there memory enough?", "MUMPS failed with error %d, %d", mumps->INFOG(1),
+        diag_fail(program_place(), "is there memory enough?", "MUMPS failed with error %d, %d", mumps->INFOG(1),
                   mumps->INFOG(2));
 }
 

@@ -187,15 +187,15 @@ void plot_write(Pool *pool, const Plot *plot, const char *path)
     interrupt_hold();                   /* gnuplot_run does, but the file is there before */
     FILE *file = fopen(temporary, "w"); /* where gnuplot can't write it goes on with standard output */
     if (!file)
-        diag_fail(gicrun_place, "choose another place with --plot", "can't create %s: %s", path, strerror(errno));
+        diag_fail(program_place(), "choose another place with --plot", "can't create %s: %s", path, strerror(errno));
     fclose(file);
     int status = gnuplot_run(pool, plot_script(pool, plot, path, temporary), temporary, path, &said);
     if (status == PROCESS_NOT_STARTED)
-        diag_fail(gicrun_place, "install it (Debian: apt-get install gnuplot-nox), or run without --plot",
+        diag_fail(program_place(), "install it (Debian: apt-get install gnuplot-nox), or run without --plot",
                   "no picture: gnuplot can't be started: %s", said);
     if (status) {
         fputs(said, stderr);
-        diag_fail(gicrun_place, "gnuplot's messages are above; is there room on the disk?",
+        diag_fail(program_place(), "gnuplot's messages are above; is there room on the disk?",
                   "no picture: %s could not be drawn", path);
     }
 }

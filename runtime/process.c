@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Other programs, and signals that ask to stop. Signals are looked for, not handled: no handler, no global. */
+#define _GNU_SOURCE /* program_invocation_short_name */
 #include "gicrun.h"
 
 #include <errno.h>
@@ -12,8 +13,12 @@
 
 extern char **environ;
 
-static const Source program = {.path = "gicrun"};
-const Place gicrun_place = {&program, 0, 0};
+Place program_place(void)
+{
+    static Source program;
+    program.path = program_invocation_short_name;
+    return (Place){&program, 0, 0};
+}
 
 /* What is held: the signals that ask to stop, unless whoever started us wants them ignored (nohup). */
 static sigset_t held_signals(void)

@@ -413,7 +413,7 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *a
     if (status != GIC_OK)
         diag_fail(at, NULL, "the model can't be set up: %s", instance_status(pool, model, run.self, status));
     if (scene->method >= METHOD_ADAMS && !(run.variable = variable_open(model, scene->method, scene->tolerance)))
-        diag_fail(gicrun_place, NULL, "no memory for the integrator");
+        diag_fail(program_place(), NULL, "no memory for the integrator");
     status = compute_outputs(&run);
     if (status != GIC_OK)
         diag_fail(at, "is the initial state one that the mechanism can reach from its design?",

@@ -12,7 +12,7 @@
 
 static _Noreturn void journal_fail(const Journal *journal, const char *what)
 {
-    diag_fail(gicrun_place, "make room, or choose another place with -o", "can't %s %s: %s", what, journal->path,
+    diag_fail(program_place(), "make room, or choose another place with -o", "can't %s %s: %s", what, journal->path,
               strerror(errno));
 }
 
@@ -60,7 +60,7 @@ static bool take_line(Journal *journal, const char *line)
 
 static _Noreturn void refuse_foreign(const Journal *journal)
 {
-    diag_fail(gicrun_place, "remove it, or choose another place with -o",
+    diag_fail(program_place(), "remove it, or choose another place with -o",
               "%s is of another sweep: another model, scene, range or version", journal->path);
 }
 
@@ -92,7 +92,7 @@ Journal journal_open(Pool *pool, const char *results, const char *key, int64_t r
     if (journal.file < 0)
         journal_fail(&journal, "open");
     if (flock(journal.file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
-        diag_fail(gicrun_place, "wait for it, or choose another place with -o", "another gicsweep is writing %s",
+        diag_fail(program_place(), "wait for it, or choose another place with -o", "another gicsweep is writing %s",
                   journal.path);
     const off_t size = lseek(journal.file, 0, SEEK_END);
     if (size < (off_t)strlen(first)) {

@@ -55,6 +55,17 @@ static int state_of(const Engine *engine, const char *name)
     return -1;
 }
 
+/* Say so where a coordinate whose beginning is varied, or which a varied input drives, leaves its range. */
+static void warn_range(const Vary *vary, const Model *model, const char *name)
+{
+    for (int i = 0; i < model->coordinates; ++i) {
+        const Coordinate *own = &model->coordinate[i];
+        if ((vary->kind == VARY_STATE && !strcmp(own->name, name)) ||
+            (vary->kind == VARY_INPUT && own->driven && own->input == vary->index))
+            scene_warn_range(own, program_place(), fmin(vary->low, vary->high), fmax(vary->low, vary->high));
+    }
+}
+
 static void look_up(Pool *pool, Vary *vary, const Model *model, const Engine *engine)
 {
     static const char *const kind[] = {"parameter/", "input/", "state/"};
@@ -72,15 +83,16 @@ static void look_up(Pool *pool, Vary *vary, const Model *model, const Engine *en
             ++found;
         }
     if (found > 1)
-        diag_fail(gicrun_place, "write parameter/NAME, input/NAME or state/NAME",
+        diag_fail(program_place(), "write parameter/NAME, input/NAME or state/NAME",
                   "'%s' is the name of more than one thing in this model", vary->name);
     if (!found)
-        diag_fail(gicrun_place,
+        diag_fail(program_place(),
                   pool_print(pool,
                              "the parameter must be `tunable: true` in %s; inputs and states have the names in "
                              "the header that gicgen writes; `speed` is a vehicle's",
                              model->source->path),
                   "nothing that can be varied is called '%s'", vary->name);
+    warn_range(vary, model, name);
 }
 
 /* The generator splitmix64: the same numbers on every machine. */

@@ -363,7 +363,7 @@ bool sweep_run(const Sweep *sweep)
     r.theory = step_theory_new(pool, sweep->model);
     r.batch = sweep->many ? aligned_alloc(sweep->many->alignment, sweep->many->size) : NULL;
     if (sweep->many && !r.batch)
-        diag_fail(gicrun_place, NULL, "no memory for %d vehicles", sweep->many->vehicles);
+        diag_fail(program_place(), NULL, "no memory for %d vehicles", sweep->many->vehicles);
     r.begun = clock_seconds(CLOCK_MONOTONIC);
     int64_t *run = pool_alloc(pool, sizeof *run * (size_t)(sweep->plan->runs + 1)), count = 0;
     for (int64_t i = 0; i < sweep->plan->runs; ++i)

@@ -151,7 +151,7 @@ static void hear(Worker *worker)
 static _Noreturn void fail_as(Pool *pool, const Worker *worker)
 {
     if (WIFSIGNALED(worker->status))
-        diag_fail(gicrun_place, "finished runs are kept: the same command goes on",
+        diag_fail(program_place(), "finished runs are kept: the same command goes on",
                   "a process that made runs was ended by signal %d", WTERMSIG(worker->status));
     fputs(nameless_text(pool, worker->said), stderr);
     exit(1);
@@ -168,7 +168,7 @@ bool share_runs(Pool *pool, const Share *share, size_t processes)
 {
     _Atomic int64_t *taken = mmap(NULL, sizeof *taken, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (taken == MAP_FAILED)
-        diag_fail(gicrun_place, NULL, "no memory for the counter of runs: %s", strerror(errno));
+        diag_fail(program_place(), NULL, "no memory for the counter of runs: %s", strerror(errno));
     Worker worker[processes];
     struct pollfd ready[processes];
     const Worker *broken = NULL;
@@ -177,7 +177,7 @@ bool share_runs(Pool *pool, const Share *share, size_t processes)
     while (workers < processes && start(pool, share, taken, worker, workers))
         ++workers;
     if (!workers)
-        diag_fail(gicrun_place, "try again when there are fewer of them", "can't start a process: %s", strerror(errno));
+        diag_fail(program_place(), "try again when there are fewer of them", "can't start a process: %s", strerror(errno));
     for (size_t open = workers; open;) {
         Result *result = NULL;
         int results = 0;

@@ -119,7 +119,7 @@ static TapeMove place_of(const Recorder *r, const char *name)
     for (int i = 0; i < r->arrays; ++i)
         if (!strncmp(r->array[i], name, length) && !r->array[i][length])
             return (TapeMove){.array = i, .offset = bracket ? atoi(bracket + 1) : 0, .count = 1};
-    fprintf(stderr, "gicrun: error: the tape knows no '%s'\n", name);
+    fprintf(stderr, "error: the tape knows no '%s'\n", name);
     abort();
 }
 

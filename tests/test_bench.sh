@@ -280,7 +280,10 @@ fails 2 'several pairs' --scenes "$work/soft.veh" "$work/cart.scene" "$work/soft
 sed 's/^step.*/integrator: adams\noutput_step: 0.01/' "$work/cart.scene" >"$work/variable.scene"
 fails 1 'constant steps' --scenes --engines tcc "$work/soft.veh" "$work/variable.scene"
 fails 1 'constant steps' --drive --engines tape "$work/soft.veh" "$work/variable.scene"
-fails 2 'number of vehicles' --batch x "$work/soft.veh" "$work/cart.scene"
+for count in x 5.7 0 65537 1e3 99999999999999999999; do
+    fails 2 '1 to 65536 vehicles' --batch "$count" "$work/soft.veh" "$work/cart.scene"
+done
+fails 2 "generated code.*'gic'" --scenes --engines gic "$work/soft.veh" "$work/cart.scene"
 fails 2 "no engine 'fast'" --engines fast "$work/soft.veh" "$work/cart.scene"
 fails 2 'at least one name' --engines '' "$work/soft.veh" "$work/cart.scene"
 fails 1 "can't make the folder" -o "$work/no/page" "$work/soft.veh" "$work/cart.scene"

@@ -230,6 +230,18 @@ goes_on "a process asked to stop"
 "$gicsweep" models/hmmwv_tires.veh "$work/tires.scene" --vary speed=4:4e9:4 -o "$work/fail.csv" 2>"$work/err"
 check "reasons of failures come along" grep -q "3 failed, the first is run 1: at t = 0 s: " "$work/err"
 
+# ---- ranges of coordinates
+
+for what in spring_f_l=0.19:0.24:2 spring_f_l=0.24:0.30:2 state/spring_f_l=0.30:0.24:2; do
+    "$gicsweep" "$car" "$work/s.scene" --vary $what -o "$work/far.csv" 2>"$work/err"
+    check "outside the range: $what" \
+        grep -q "^gicsweep: warning: coordinate 'spring_f_l' leaves its range \[0.2, 0.29\]" "$work/err"
+done
+"$gicsweep" models/hmmwv_tires.veh "$work/tires.scene" --vary rack=-0.06:0:2 -o "$work/far.csv" 2>"$work/err"
+check "driven outside the range" grep -q "^gicsweep: warning: coordinate 'rack' leaves its range" "$work/err"
+"$gicsweep" "$car" "$work/s.scene" --vary spring_f_l=0.21:0.28:2 --vary speed=4:5:2 -o "$work/far.csv" 2>"$work/err"
+check "inside" eval '! grep -q warning "$work/err"'
+
 # ---- errors
 
 sweep() {
@@ -241,10 +253,11 @@ check "no count" says "needs a count" 2 sweep --vary speed=1:2
 check "a count too many" says "no count of its own" 2 sweep --latin 4 --vary speed=1:2:3
 check "a seed too large" says "--seed takes a whole number" 2 sweep --latin 4 --seed 99999999999999999999999 --vary speed=1:2
 printf 'mine' >"$work/e.csv.journal"
-check "somebody's file" says "is of another sweep" 1 sweep --vary speed=1:2:2
+check "somebody's file" says "^gicsweep: error: .*is of another sweep" 1 sweep --vary speed=1:2:2
 check "which is left as it was" [ "$(cat "$work/e.csv.journal")" = mine ]
 rm "$work/e.csv.journal"
-check "no count of runs" says "at least one run" 2 sweep --latin 0 --vary speed=1:2
+check "no count of runs" says "1 to 10000000 runs, not '0'" 2 sweep --latin 0 --vary speed=1:2
+check "half a run" says "1 to 10000000 runs, not '2.5'" 2 sweep --latin 2.5 --vary speed=1:2
 check "twice" says "given twice" 2 sweep --vary speed=1:2:3 --vary speed=1:2:3
 check "nothing varied" says "nothing is varied" 2 sweep
 check "too many runs" says "ten million" 2 sweep --vary speed=1:2:10000 --vary spring_f_l=0.23:0.24:10000
