@@ -258,7 +258,8 @@ silent second
 
 # a plane loop of four revolutes says three times that it is plane
 four_bar revolutes revolute '[-0.4, 0.5]'
-refused first "'first'" "'second'" "'third'" "'last'" "'turn'" "'crank'" "'coupler'" "'rocker'" "21 conditions" "3 more"
+refused last "'first'" "'second'" "'third'" "'last'" "'turn'" "'crank'" "'coupler'" "'rocker'" "21 conditions" "3 more" \
+    "make joint 'last' (revolute, 5) a point_on_line (2)"
 four_bar line point_on_line '[-0.4, 0.5]'
 good
 
