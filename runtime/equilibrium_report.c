@@ -167,17 +167,24 @@ static void write_state(Pool *pool, const Equilibrium *found, const char *path)
     const gic_model *code = found->engine->code;
     gic_head *self = &found->self->head;
     const struct {
+        const char *kind;
         const gic_signal *signal;
         int count;
         size_t offset;
-    } part[] = {{code->state, code->slow_count + code->fast_count, code->state_offset},
-                {code->input, code->input_count, code->input_offset},
-                {code->parameter, code->parameter_count, code->parameter_offset}};
+    } part[] = {{"state", code->state, code->slow_count + code->fast_count, code->state_offset},
+                {"input", code->input, code->input_count, code->input_offset},
+                {"parameter", code->parameter, code->parameter_count, code->parameter_offset}};
     interrupt_hold();
     Csv csv = csv_open(pool, path);
     for (size_t p = 0; p < sizeof part / sizeof *part; ++p)
-        for (int i = 0; i < part[p].count; ++i)
-            csv_name(&csv, part[p].signal[i].name, part[p].signal[i].unit);
+        for (int i = 0; i < part[p].count; ++i) {
+            const char *name = part[p].signal[i].name;
+            bool taken = false;
+            for (size_t q = 0; q < p; ++q)
+                for (int k = 0; k < part[q].count; ++k)
+                    taken = taken || !strcmp(part[q].signal[k].name, name);
+            csv_name(&csv, taken ? pool_print(pool, "%s/%s", part[p].kind, name) : name, part[p].signal[i].unit);
+        }
     for (int i = code->free_base; i < code->discrete_count; ++i)
         csv_name(&csv, code->discrete[i].name, code->discrete[i].unit);
     csv_end_row(&csv);

@@ -22,6 +22,17 @@ static const char *number_name(const Engine *engine, int i)
                            : model->discrete[model->free_base + gear].name;
 }
 
+/* The same where several things have one name, `parameter/name`; NULL: of a gear. */
+static const char *full_name(Pool *pool, const Engine *engine, int i)
+{
+    const gic_model *model = engine->code;
+    const int inputs = i - engine->standard_count, parameters = inputs - model->input_count;
+    if (parameters >= model->parameter_count)
+        return NULL;
+    return pool_print(pool, "%s/%s", inputs < 0 ? "state" : parameters < 0 ? "input" : "parameter",
+                      number_name(engine, i));
+}
+
 /* Must the table have it? All slow states, and what driven coordinates do. */
 static bool is_needed(const Engine *engine, int i)
 {
@@ -46,14 +57,17 @@ static Columns find_columns(Pool *pool, const Engine *engine, const CsvTable *ta
                        .gears = model->discrete_count - model->free_base};
     const int numbers = columns.states + columns.inputs + columns.parameters + columns.gears;
     const char **name = pool_alloc(pool, sizeof *name * (size_t)(numbers + 1));
+    const char **full = pool_alloc(pool, sizeof *full * (size_t)(numbers + 1));
     columns.column = pool_alloc(pool, sizeof *columns.column * (size_t)(numbers + 1));
     for (int i = 0; i < numbers; ++i) {
         name[i] = number_name(engine, i);
+        full[i] = full_name(pool, engine, i);
         columns.column[i] = -1;
     }
     for (int k = 0; k < table->columns; ++k) {
         int i = 0;
-        while (i < numbers && (strcmp(name[i], table->name[k]) || columns.column[i] >= 0))
+        while (i < numbers && ((strcmp(name[i], table->name[k]) && (!full[i] || strcmp(full[i], table->name[k]))) ||
+                               columns.column[i] >= 0))
             ++i;
         const char *nearest = diag_nearest(table->name[k], name, numbers);
         if (i == numbers)

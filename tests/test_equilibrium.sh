@@ -146,6 +146,30 @@ done
 run --equilibrium "$hmmwv" -o -
 check 'the state alone on standard output' [ "$(wc -l <"$work/out"),$(head -c 3 "$work/out")" = 2,r.x ]
 
+# a coordinate and a parameter of one name: 40 N m/rad of a spring, 0.25 kg m^2 about the axis
+cat >"$work/twice.veh" <<'XXX'
+gicgen: 1
+model: twice
+base: ground
+parameters: {angle: {value: 40, unit: N m/rad, tunable: true}}
+bodies:
+  rod: {mass: 1, com: [0, 0, 0], inertia: [0.25, 0.25, 0.25]}
+joints:
+  pivot: {type: revolute, bodies: [ground, rod], point: [0, 0, 0], axis: [0, -1, 0]}
+coordinates:
+  angle: {type: angle, bodies: [ground, rod], axis: [0, -1, 0], range: [-1, 1]}
+forces:
+  spring: {type: spring_damper, coordinate: angle, stiffness: angle, free: 0.1}
+XXX
+run --equilibrium "$work/twice.veh" -o "$work/rest"
+check 'a parameter called like a coordinate' [ "$(head -1 "$work/rest" | sed 's/ \[[^]]*\]//g')" = \
+    angle,angle.rate,parameter/angle ]
+"$gicrun" --eval "$work/rest" "$work/twice.veh" -o "$work/eval" && still "$work/eval"
+check 'is read again' [ $? -eq 0 ]
+printf 'parameter/angle,state/angle,angle.rate\n50,0.2,0\n' >"$work/rest"
+"$gicrun" --eval "$work/rest" "$work/twice.veh" -o "$work/eval"
+check 'each as what it says' near "$(column "$work/eval" angle.acceleration)" -20 1e-12
+
 # balanced on its tip; outside its range
 scene 'initial: {coordinates: {angle: 4.71238898038469}}' >"$work/a.scene"
 run --equilibrium "$root/models/pendulum.veh" "$work/a.scene"
