@@ -133,6 +133,10 @@ check 'the message tells when and which subset' says "error: the run ends at t =
 # w' = 0.3 at first and w must stay below 1.75: rows are there, and all are numbers
 check 'its results are kept' awk -F, 'NR > 1 && !($2 >= 1.25 - 1e-9 && $2 < 1.75) {bad = 1}
     END {exit bad || NR < 100}' "$work/crank.csv"
+# from rest, a step of 20 s carries the cart out of all bounds
+printf 'gicscene: 1\nduration: 40\nstep: 20\nintegrator: rk4\ninitial: {coordinates: {x: 0.1}}\n' >"$work/leap.scene"
+run "$work/carts.veh" "$work/leap.scene" -o "$work/leap.csv"
+check 'a step far too long, from rest' says "ends at t = 0 s: a state moves too far within a step.*'x', at rest at 0.1 m before"
 sed 's/rates: {w: 0.3}/coordinates: {w: 1.8}/' "$work/crank.scene" >"$work/far.scene"
 run "$work/crank.veh" "$work/far.scene" -o "$work/far.csv"
 check 'an initial state out of reach is an error' says 'error: the run can.t start: '
