@@ -166,7 +166,7 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = x[0] - R(-0.06171389001427645);
         const gic_real t2 = GIC_COS(t1);
@@ -234,7 +234,7 @@ static GIC_COLD gic_real andrews_residual_K1(const gic_real *GIC_RESTRICT k, con
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = x[0] - R(-0.06171389001427645);
         const gic_real t2 = GIC_COS(t1) * (R(0.061674723509842204) * motion[7] + R(0.9980963022073495) * motion[6]) - GIC_SIN(t1) * (R(0.061674723509842204) * motion[4] + R(0.9980963022073495) * motion[3]);
@@ -267,7 +267,7 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(1.9531227755102036));
     int i;
-    (void)k, (void)inertia;
+    (void)k, (void)motion, (void)inertia;
     for (i = 0; i < 14; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -653,7 +653,7 @@ static GIC_COLD gic_real andrews_residual_K2_K3(const gic_real *GIC_RESTRICT k, 
 {
     const gic_real *const m0 = links->known[0]; /* K1 */
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(GIC_MAX(R(0.0), GIC_FABS((motion[0] - R(0.006999999999999999) * m0[3]) * R(28.571428571428562))), GIC_FABS((motion[1] - R(0.006999999999999999) * m0[6]) * R(28.571428571428562)));
         const gic_real t2 = motion[1] + R(-0.027999999999999997) * motion[6] - (R(0.03273) + R(-0.03500000000000001) * motion[37]);
@@ -701,7 +701,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(3.0082428125000003));
     int i;
-    (void)k, (void)inertia;
+    (void)k, (void)motion, (void)inertia;
     for (i = 0; i < 14; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -1285,7 +1285,7 @@ static GIC_COLD gic_real andrews_residual_K5_K4(const gic_real *GIC_RESTRICT k, 
 {
     const gic_real *const m0 = links->known[0]; /* K3 */
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = (motion[30] - (R(-0.06934) + (k[2] * motion[4] + k[3] * motion[3]))) * R(24.999999999999996);
         const gic_real t2 = (motion[31] - (R(-0.00227) + (k[2] * motion[7] + k[3] * motion[6]))) * R(24.999999999999996);
@@ -2533,8 +2533,8 @@ static GIC_COLD gic_real andrews_residual(const andrews *self)
     andrews_links links;
     gic_real largest = R(0.0), one;
     (void)start;
-    (void)links;
     (void)one;
+    links.cold = 0;
     links.x[0] = start[0];
     one = andrews_residual_K1(andrews_k_K1[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);

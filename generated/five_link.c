@@ -188,7 +188,7 @@ static int five_link_solve_rack(five_link *self, const gic_real *GIC_RESTRICT k,
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = x[0];
         motion[1] = t1;
@@ -235,7 +235,7 @@ static GIC_COLD gic_real five_link_residual_rack(const gic_real *GIC_RESTRICT k,
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
         worst = t1;
@@ -266,7 +266,7 @@ static int five_link_solve_lca_f_l(five_link *self, const gic_real *GIC_RESTRICT
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = R(0.5) * (R(0.1582643473416399) - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = R(0.004637870464427621) - t1 * t1;
@@ -382,7 +382,7 @@ static GIC_COLD gic_real five_link_residual_lca_f_l(const gic_real *GIC_RESTRICT
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = R(0.01121887479261392) * motion[11] + k[10] * motion[10] - R(0.19748500000000002);
         const gic_real t2 = k[8] + (R(0.01121887479261392) * motion[8] + k[10] * motion[7]) - k[11];
@@ -424,7 +424,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(27.187356821586203));
     int i;
-    (void)k, (void)inertia;
+    (void)k, (void)motion, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -1026,7 +1026,7 @@ static GIC_COLD gic_real five_link_residual_wheel_r_l(const gic_real *GIC_RESTRI
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = motion[1] - k[0];
         const gic_real t2 = motion[0] - R(-1.465699);
@@ -1100,7 +1100,7 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = k[0] * m1[7];
         const gic_real t2 = k[0] * m1[10];
@@ -1409,7 +1409,7 @@ static GIC_COLD gic_real five_link_residual_wheel_f_l(const gic_real *GIC_RESTRI
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (k[0] * m1[7] + k[2]))));
         const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]));
@@ -4382,8 +4382,8 @@ static GIC_COLD gic_real five_link_residual(const five_link *self)
     five_link_links links;
     gic_real largest = R(0.0), one;
     (void)start;
-    (void)links;
     (void)one;
+    links.cold = 0;
     links.x[0] = start[4];
     one = five_link_residual_rack(five_link_k_rack[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);

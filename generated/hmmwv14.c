@@ -196,7 +196,7 @@ static int hmmwv14_solve_rack(hmmwv14 *self, const gic_real *GIC_RESTRICT k, con
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = x[0];
         motion[1] = t1;
@@ -243,7 +243,7 @@ static GIC_COLD gic_real hmmwv14_residual_rack(const gic_real *GIC_RESTRICT k, c
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
         worst = t1;
@@ -304,7 +304,7 @@ static int hmmwv14_solve_lca_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, 
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = k[1] - t1 * t1;
@@ -420,7 +420,7 @@ static GIC_COLD gic_real hmmwv14_residual_lca_f_l(const gic_real *GIC_RESTRICT k
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = k[25] * motion[11] + k[26] * motion[10] - k[21];
         const gic_real t2 = k[20] + (k[25] * motion[8] + k[26] * motion[7]) - k[27];
@@ -469,7 +469,7 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = k[0] * m1[7];
         const gic_real t2 = k[0] * m1[10];
@@ -929,7 +929,7 @@ static GIC_COLD gic_real hmmwv14_residual_uca_f_l_wheel_f_l(const gic_real *GIC_
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = motion[36] + (R(0.33360360000000006) * motion[41] + (k[35] * motion[40] + R(-0.017475200000000024) * motion[39]));
         const gic_real t2 = t1 - (R(1.5309008) + (R(1.1338201752909144e-08) * motion[5] + (R(0.06298224285030377) + k[36] * motion[4])));
@@ -990,7 +990,7 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = k[0] * m0[7];
         const gic_real t2 = k[0] * m0[10];
@@ -1389,7 +1389,7 @@ static GIC_COLD gic_real hmmwv14_residual_uca_r_l_wheel_r_l(const gic_real *GIC_
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = motion[30] + (R(0.33401) * motion[35] + k[35] * motion[34]) - (R(-1.475859) + (R(2.8645315225742096e-09) * motion[5] + (R(-0.17745448389306268) + k[36] * motion[4])));
         const gic_real t2 = motion[31] + (R(0.33401) * motion[38] + k[35] * motion[37]) - (k[2] + (R(2.8645315225742096e-09) * motion[8] + (k[9] + k[36] * motion[7])));
@@ -5565,8 +5565,8 @@ static GIC_COLD gic_real hmmwv14_residual(const hmmwv14 *self)
     hmmwv14_links links;
     gic_real largest = R(0.0), one;
     (void)start;
-    (void)links;
     (void)one;
+    links.cold = 0;
     links.x[0] = start[4];
     one = hmmwv14_residual_rack(hmmwv14_k_rack[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);

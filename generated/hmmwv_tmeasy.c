@@ -198,7 +198,7 @@ static int hmmwv_tmeasy_solve_rack(hmmwv_tmeasy *self, const gic_real *GIC_RESTR
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = x[0];
         motion[1] = t1;
@@ -245,7 +245,7 @@ static GIC_COLD gic_real hmmwv_tmeasy_residual_rack(const gic_real *GIC_RESTRICT
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
         worst = t1;
@@ -306,7 +306,7 @@ static int hmmwv_tmeasy_solve_lca_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RE
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = k[1] - t1 * t1;
@@ -422,7 +422,7 @@ static GIC_COLD gic_real hmmwv_tmeasy_residual_lca_f_l(const gic_real *GIC_RESTR
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = k[25] * motion[11] + k[26] * motion[10] - k[21];
         const gic_real t2 = k[20] + (k[25] * motion[8] + k[26] * motion[7]) - k[27];
@@ -459,7 +459,7 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = k[0] * m1[7];
         const gic_real t2 = k[0] * m1[10];
@@ -768,7 +768,7 @@ static GIC_COLD gic_real hmmwv_tmeasy_residual_wheel_f_l(const gic_real *GIC_RES
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (k[0] * m1[7] + k[2]))));
         const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]));
@@ -814,7 +814,7 @@ static int hmmwv_tmeasy_solve_wheel_r_l(hmmwv_tmeasy *self, const gic_real *GIC_
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = k[0] * m0[7];
         const gic_real t2 = k[0] * m0[10];
@@ -965,7 +965,7 @@ static GIC_COLD gic_real hmmwv_tmeasy_residual_wheel_r_l(const gic_real *GIC_RES
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m0[7] + k[1])) * R(2.928503331078754)));
         const gic_real t2 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m0[10]) * R(2.928503331078754))), R(0.0));
@@ -4713,8 +4713,8 @@ static GIC_COLD gic_real hmmwv_tmeasy_residual(const hmmwv_tmeasy *self)
     hmmwv_tmeasy_links links;
     gic_real largest = R(0.0), one;
     (void)start;
-    (void)links;
     (void)one;
+    links.cold = 0;
     links.x[0] = start[4];
     one = hmmwv_tmeasy_residual_rack(hmmwv_tmeasy_k_rack[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);

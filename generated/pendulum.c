@@ -144,7 +144,7 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = GIC_COS(x[0]);
         const gic_real t2 = GIC_SIN(x[0]);
@@ -202,7 +202,7 @@ static GIC_COLD gic_real pendulum_residual_rod(const gic_real *GIC_RESTRICT k, c
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_FABS(GIC_COS(x[0]) * motion[9] - GIC_SIN(x[0]) * motion[3]);
         const gic_real t2 = GIC_MAX(R(0.0), t1);
@@ -811,8 +811,8 @@ static GIC_COLD gic_real pendulum_residual(const pendulum *self)
     pendulum_links links;
     gic_real largest = R(0.0), one;
     (void)start;
-    (void)links;
     (void)one;
+    links.cold = 0;
     links.x[0] = start[0];
     one = pendulum_residual_rod(pendulum_k_rod[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);

@@ -163,7 +163,7 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = R(0.687) + x[0];
         motion[2] = t1;
@@ -180,7 +180,7 @@ static GIC_COLD gic_real quarter_car_residual_carriage(const gic_real *GIC_RESTR
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[2] - R(0.687) - x[0]));
         worst = t1;
@@ -204,7 +204,7 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = R(-0.21300000000000008) + m0[2];
         motion[2] = t1;
@@ -284,7 +284,7 @@ static GIC_COLD gic_real quarter_car_residual_arm(const gic_real *GIC_RESTRICT k
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(GIC_MAX(R(0.0), GIC_FABS((motion[2] - (R(-0.21300000000000008) + m0[2])) * R(3.852963219305648))), R(0.0));
         const gic_real t2 = motion[2] + (R(0.01121887479261392) * motion[11] + R(0.2403881036540444) * motion[10]) - (R(-0.015515000000000057) + m0[2]);
@@ -312,7 +312,7 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
     const gic_real *const m1 = links->known[1]; /* arm */
     const gic_real *const rate = links->rate;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = R(0.49375935710120966) * m1[7];
         const gic_real t2 = R(0.49375935710120966) * m1[10];
@@ -548,7 +548,7 @@ static GIC_COLD gic_real quarter_car_residual_wheel(const gic_real *GIC_RESTRICT
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const m1 = links->known[1]; /* arm */
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (R(0.49375935710120966) * m1[7] + R(0.307086)))));
         const gic_real t2 = GIC_MAX(t1, GIC_FABS(R(2.928075656552032) * (motion[2] - (m1[2] + R(0.49375935710120966) * m1[10]))));
@@ -1491,8 +1491,8 @@ static GIC_COLD gic_real quarter_car_residual(const quarter_car *self)
     quarter_car_links links;
     gic_real largest = R(0.0), one;
     (void)start;
-    (void)links;
     (void)one;
+    links.cold = 0;
     links.x[0] = start[0];
     one = quarter_car_residual_carriage(quarter_car_k_carriage[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);

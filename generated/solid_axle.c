@@ -183,7 +183,7 @@ static int solid_axle_solve_rack(solid_axle *self, const gic_real *GIC_RESTRICT 
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = x[0];
         motion[1] = t1;
@@ -230,7 +230,7 @@ static GIC_COLD gic_real solid_axle_residual_rack(const gic_real *GIC_RESTRICT k
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
         worst = t1;
@@ -261,7 +261,7 @@ static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRI
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = R(0.5) * (R(0.1582643473416399) - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = R(0.004637870464427621) - t1 * t1;
@@ -377,7 +377,7 @@ static GIC_COLD gic_real solid_axle_residual_lca_f_l(const gic_real *GIC_RESTRIC
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = R(0.01121887479261392) * motion[11] + k[10] * motion[10] - R(0.19748500000000002);
         const gic_real t2 = k[8] + (R(0.01121887479261392) * motion[8] + k[10] * motion[7]) - k[11];
@@ -412,7 +412,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
     gic_real step = R(0.0), reach = R(0.0), before = R(1.0);
     const gic_real enough = GIC_ENOUGH(R(5.811920471924843));
     int i;
-    (void)k, (void)inertia;
+    (void)k, (void)motion, (void)inertia;
     for (i = 0; i < 7; ++i)
         q[i] = old[i];
     if (!links->cold) {
@@ -1074,7 +1074,7 @@ static GIC_COLD gic_real solid_axle_residual_axle(const gic_real *GIC_RESTRICT k
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = motion[2] - R(0.18600000000000005);
         const gic_real t2 = motion[1] - R(-0.45);
@@ -1152,7 +1152,7 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = k[0] * m1[7];
         const gic_real t2 = k[0] * m1[10];
@@ -1461,7 +1461,7 @@ static GIC_COLD gic_real solid_axle_residual_wheel_f_l(const gic_real *GIC_RESTR
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (k[0] * m1[7] + k[2]))));
         const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]));
@@ -4224,8 +4224,8 @@ static GIC_COLD gic_real solid_axle_residual(const solid_axle *self)
     solid_axle_links links;
     gic_real largest = R(0.0), one;
     (void)start;
-    (void)links;
     (void)one;
+    links.cold = 0;
     links.x[0] = start[4];
     one = solid_axle_residual_rack(solid_axle_k_rack[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);

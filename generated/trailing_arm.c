@@ -186,7 +186,7 @@ static int trailing_arm_solve_rack(trailing_arm *self, const gic_real *GIC_RESTR
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = x[0];
         motion[1] = t1;
@@ -233,7 +233,7 @@ static GIC_COLD gic_real trailing_arm_residual_rack(const gic_real *GIC_RESTRICT
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
         worst = t1;
@@ -261,7 +261,7 @@ static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RE
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = GIC_COS(x[0]);
         const gic_real t2 = GIC_SIN(x[0]);
@@ -389,7 +389,7 @@ static GIC_COLD gic_real trailing_arm_residual_lca_f_l(const gic_real *GIC_RESTR
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_COS(x[0]) * (k[7] * (k[3] * motion[11] + R(0.9709689408513393) * motion[10]));
         const gic_real t2 = t1 - GIC_SIN(x[0]) * (k[3] * motion[8] + R(0.9709689408513393) * motion[7]);
@@ -425,7 +425,7 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = k[0] * m1[7];
         const gic_real t2 = k[0] * m1[10];
@@ -734,7 +734,7 @@ static GIC_COLD gic_real trailing_arm_residual_wheel_f_l(const gic_real *GIC_RES
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (k[0] * m1[7] + k[2]))));
         const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]));
@@ -781,7 +781,7 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
-    (void)k, (void)start, (void)inertia;
+    (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = GIC_COS(x[0]);
         const gic_real t2 = GIC_SIN(x[0]);
@@ -904,7 +904,7 @@ static GIC_COLD gic_real trailing_arm_residual_lca_f_l_2(const gic_real *GIC_RES
 {
     const gic_real *const x = links->x;
     gic_real worst;
-    (void)k;
+    (void)k, (void)motion;
     {
         const gic_real t1 = -(GIC_SIN(x[0]) * motion[3] + GIC_COS(x[0]) * motion[9]);
         const gic_real t2 = GIC_MAX(R(0.0), GIC_FABS(t1));
@@ -3882,8 +3882,8 @@ static GIC_COLD gic_real trailing_arm_residual(const trailing_arm *self)
     trailing_arm_links links;
     gic_real largest = R(0.0), one;
     (void)start;
-    (void)links;
     (void)one;
+    links.cold = 0;
     links.x[0] = start[4];
     one = trailing_arm_residual_rack(trailing_arm_k_rack[0], &links, self->motion + 0);
     largest = GIC_MAX(largest, one);

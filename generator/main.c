@@ -88,6 +88,7 @@ static int whole_argument(const char *option, const char *word, int most)
 static Options read_options(int count, char **word)
 {
     Options options = {.task = TASK_GENERATE};
+    bool formed = false, recovered = false;
     for (int i = 1; i < count; ++i) {
         const char *w = word[i];
         if (!strcmp(w, "-h") || !strcmp(w, "--help")) {
@@ -111,11 +112,13 @@ static Options read_options(int count, char **word)
                 usage_error("--lanes takes 2, 4, 8 or 16, not", word[i]);
         } else if (!strcmp(w, "--solve")) {
             const char *form = argument(count, word, &i);
+            formed = true;
             options.solve = solve_of(form);
             if (options.solve == SOLVES)
                 usage_error("--solve takes reduced or augmented, not", form);
         } else if (!strcmp(w, "--recovery")) {
             const char *way = argument(count, word, &i);
+            recovered = true;
             options.recovery = recovery_of(way);
             if (options.recovery == RECOVERIES)
                 usage_error("--recovery takes auto, newton or closed, not", way);
@@ -144,7 +147,12 @@ static Options read_options(int count, char **word)
         usage_error("no model given", NULL);
     if (options.scene && options.task != TASK_GENERATE && options.task != TASK_REPORT)
         usage_error("--scene is for code and --report", NULL);
-    if (options.batch.lanes && options.task != TASK_GENERATE && options.task != TASK_BATCH)
+    const bool code = options.task == TASK_GENERATE || options.task == TASK_BATCH;
+    if (options.output && options.page)
+        usage_error("--graph and --report name their file themselves, without -o", options.output);
+    if ((formed || recovered) && !code && options.task != TASK_REPORT)
+        usage_error(formed ? "--solve is for code and --report" : "--recovery is for code and --report", NULL);
+    if (options.batch.lanes && !code)
         usage_error("--lanes is for code", NULL);
     if (options.batch.lanes && options.scene)
         usage_error("--lanes and --scene are not for the same code: leave one out", NULL);

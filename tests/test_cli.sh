@@ -52,6 +52,12 @@ run 2 "$model" --solve quickly
 says err "--solve takes reduced or augmented, not: quickly"
 run 2 "$model" --recovery quickly
 says err "--recovery takes auto, newton or closed, not: quickly"
+run 2 --report page.html -o page.c "$model"
+says err "--graph and --report name their file themselves, without -o: page.c"
+run 2 --solve reduced --sequence "$model"
+says err "--solve is for code and --report"
+run 2 --recovery closed --dump-model "$model"
+says err "--recovery is for code and --report"
 run 2 --batch 0 "$model"
 says err "--batch takes a number of vehicles up to 65536, not: 0"
 run 2 --batch 8 --lanes 3 "$model"

@@ -30,7 +30,19 @@ reacting() {
 }
 reacting car "$root/tests/tuning/car.veh"
 reacting steered "$work/steered.veh" --solve augmented
-compiled="$names cart car steered gic_runtime gic_road"
+# welded NAME KEEP: a bracket welded to the ground, and with KEEP = 0 a rod on it
+welded() {
+    printf '%s\n' "gicgen: 1" "model: $1" "base: ground" bodies: \
+        "  bracket: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}" \
+        "  rod: {mass: 1, com: [0, 0, 1], inertia: [1, 1, 1]}" joints: "  weld: {type: fixed, bodies: [ground, bracket]}" \
+        "  pivot: {type: revolute, bodies: [bracket, rod], point: [0, 0, 0], axis: [0, 1, 0]}" coordinates: \
+        "  angle: {type: angle, bodies: [bracket, rod], axis: [0, 1, 0], range: [-1, 1]}" |
+        if [ "$2" -eq 1 ]; then sed '/rod/d; /coordinates/d'; else cat; fi >"$work/$1.veh"
+    "$gicgen" "$work/$1.veh" -o "$work/$1.c" || exit 1
+}
+welded bracket 1
+welded hinged 0
+compiled="$names cart car steered bracket hinged gic_runtime gic_road"
 cp "$root"/runtime/gic_runtime.[ch] "$root"/runtime/gic_road.[ch] "$work/"
 cd "$work" || exit 1
 
