@@ -312,6 +312,15 @@ static void describe_wheels(Linear *linear)
         }
 }
 
+/* A coordinate's name, or `coordinate/name` where a displacement of the base has it. */
+static const char *place_name(Pool *pool, const char *name, const char *const base[], int count)
+{
+    for (int i = 0; i < count; ++i)
+        if (!strcmp(name, base[i]))
+            return pool_print(pool, "coordinate/%s", name);
+    return name;
+}
+
 /* Places; their rates under the same names; fast states under their own, but for the last one of a powertrain, which is
  * a clock: nothing rests with it. */
 static void name_numbers(Pool *pool, Linear *linear)
@@ -325,7 +334,9 @@ static void name_numbers(Pool *pool, Linear *linear)
             add_number(pool, linear, base[i], 0.1);
         for (int c = 0; c < code->coordinate_count; ++c)
             if (code->coordinate_state[c] >= 0)
-                add_number(pool, linear, code->coordinate[c].name, engine->piece[c]);
+                add_number(pool, linear,
+                           place_name(pool, code->coordinate[c].name, base, code->free_base ? BASE_PLACES : 0),
+                           engine->piece[c]);
         linear->places = half ? linear->places : linear->count;
     }
     for (int i = 0; i < code->fast_count - linear->clocks; ++i)

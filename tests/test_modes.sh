@@ -57,6 +57,11 @@ eigenvalues() {
             NR == 2 && c {$c = speed} {print}' "$work/rest" >"$work/states" &&
         "$quad_linear" "$work/dump" "$work/states" --modes "$work/modes" --tolerance 1e-11 >"$work/out" 2>"$work/err"
 }
+# a coordinate that is called like a displacement of the base
+sed "s/^  rack: *{type: translation,/  roll: {type: translation,/; s/coordinate: rack/coordinate: roll/; s|parts/|$root/models/parts/|g" \
+    "$root/models/hmmwv.veh" >"$work/other.veh"
+run --modes "$work/other.veh" -o "$work/modes"
+check 'a coordinate called roll' [ "$(head -1 "$work/modes" | tr , '\n' | grep -c '^share\.roll$\|^share\.coordinate/roll$')" = 2 ]
 for name in hmmwv quarter_car andrews; do
     check "eigenvalues of $name" eigenvalues "$root/models/$name.veh"
 done
