@@ -34,6 +34,7 @@ static Ex vector_of(Packing *p, const Ex *e)
     for (int l = 0; l < p->lanes; ++l) {
         const Ex own = e[l] ? e[l] : any;
         const Node *node = &p->dag->node[own];
+        index[l] = -1;
         same = same && own == any;
         literal = literal && is_known(p, own);
         value[l] = ex_value(p->dag, own, 0);

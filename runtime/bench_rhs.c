@@ -216,8 +216,10 @@ static void open_subject(Course *course, const Variant *variant)
     if (variant->compiler)
         options.compiler = variant->compiler;
     subject->engine = engine_open(pool, variant->engine, bench->model, &options);
-    if (!strcmp(variant->engine, "tcc") && subject->engine->context)
-        return; /* interpreted, where memory can't be made executable */
+    if (!strcmp(variant->engine, "tcc") && subject->engine->context) {
+        engine_close(subject->engine); /* interpreted, where memory can't be made executable */
+        return;
+    }
     const gic_model *code = subject->engine->code;
     const size_t states = (size_t)(code->slow_count + code->fast_count);
     subject->self = instance_new(pool, subject->engine);

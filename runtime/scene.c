@@ -59,9 +59,12 @@ int scene_name_index(Pool *pool, const Item *item, const char *word, const char 
     const char *nearest = diag_nearest(word, name, count);
     if (nearest)
         text_print(&remedy, "did you mean '%s'?", nearest);
-    for (int i = 0; !nearest && i < count && count <= 20; ++i)
+    const int shown = count <= 20 ? count : 16;
+    for (int i = 0; !nearest && i < shown; ++i)
         text_print(&remedy, "%s%s", i ? ", " : "there are: ", name[i]);
-    diag_fail(item->at, remedy.size ? remedy.s : count ? NULL : "remove it", "the model has no %s '%s'", kind, word);
+    if (!nearest && shown < count)
+        text_print(&remedy, " and %d more, which gicgen --dump-model lists", count - shown);
+    diag_fail(item->at, count ? remedy.s : "remove it", "the model has no %s '%s'", kind, word);
 }
 
 /* ---- time ----------------------------------------------------------------------------------------------- */

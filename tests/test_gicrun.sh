@@ -133,6 +133,10 @@ check 'the message tells when and which subset' says "error: the run ends at t =
 # w' = 0.3 at first and w must stay below 1.75: rows are there, and all are numbers
 check 'its results are kept' awk -F, 'NR > 1 && !($2 >= 1.25 - 1e-9 && $2 < 1.75) {bad = 1}
     END {exit bad || NR < 100}' "$work/crank.csv"
+printf 'gicscene: 1\nduration: 1\nstep: 0.01\noutputs: [nothing]\n' >"$work/nothing.scene"
+run "$(dirname "$0")/../models/hmmwv.veh" "$work/nothing.scene" -o "$work/nothing.csv"
+check 'an output that is none' says "nothing.scene:4:11: error: the model has no output 'nothing'"
+check 'and some of the many that are' says "remedy: there are: chassis, .* more, which gicgen --dump-model lists"
 # from rest, a step of 20 s carries the cart out of all bounds
 printf 'gicscene: 1\nduration: 40\nstep: 20\nintegrator: rk4\ninitial: {coordinates: {x: 0.1}}\n' >"$work/leap.scene"
 run "$work/carts.veh" "$work/leap.scene" -o "$work/leap.csv"
