@@ -26,6 +26,10 @@ agrees() {
     verdict $? "$file $options, $lanes lanes: $* $(./lanes)"
 }
 
+# a compiler that knows no vectors
+"$gicgen" "$root/models/hmmwv.veh" && "$gicgen" --batch 8 "$root/models/hmmwv.veh" && tcc -I. -c hmmwv_batch.c -o x.o 2>err
+[ $? -ne 0 ] && grep -q '#error.*needs the vector extensions of gcc or clang' err
+verdict $? "tcc: $(cat err)"
 # a body that stands still
 printf '%s\n' "gicgen: 1" "model: hinged" "base: ground" bodies: \
     "  bracket: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}" "  rod: {mass: 1, com: [0, 0, 1], inertia: [1, 1, 1]}" \
