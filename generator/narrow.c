@@ -573,15 +573,16 @@ static bool has_reactions(const Model *model)
     return false;
 }
 
+/* To the bit, as the code checks it. */
 static bool starts_even(const Narrower *n, const Mirror *mirror)
 {
     const Model *model = n->model;
     const Facts *facts = n->facts;
     for (int w = 0; w < model->coordinates; ++w) {
         const int image = mirror->coordinate[w];
-        const double value = facts->value[image] - mirror->sign[w] * facts->value[w];
-        const double rate = facts->rate[image] - mirror->sign[w] * facts->rate[w];
-        if (!model->coordinate[w].driven && !(fabs(value) <= NARROW_ROUNDING && fabs(rate) <= NARROW_ROUNDING))
+        const double sign = mirror->sign[w];
+        if (!model->coordinate[w].driven &&
+            (facts->value[image] != sign * facts->value[w] || facts->rate[image] != sign * facts->rate[w]))
             return false;
     }
     for (int i = 0; i < model->wheels; ++i) {

@@ -115,9 +115,6 @@ bool narrowing_wheel_image(const Narrowing *narrowing, int wheel);
 double wheel_fast_sign(int state);
 double wheel_grip_sign(int number);
 
-/* How far an initial state may be from being its own mirror image, where it is made one. */
-#define NARROW_ROUNDING 1e-9
-
 /* As formulate, of an assembled model and its sequence; facts NULL: the same. */
 const Formulation *formulate_narrow(Pool *pool, const Model *model, const Sequence *sequence, Solve solve,
                                     Recovery recovery, const Facts *facts);

@@ -135,21 +135,40 @@ static void print_fast_states(const Equilibrium *found, const double *state)
     }
 }
 
-/* What a scene may contain to start there. */
-static void print_initial(const Equilibrium *found, const double *state)
+/* The same as the start of a scene, where what is its own mirror image but for rounding is that to the bit. */
+static const Scene *start_at(Pool *pool, const Equilibrium *found, const double *state)
 {
     const gic_model *code = found->engine->code;
+    Scene *start = pool_alloc(pool, sizeof *start);
+    start->value = pool_alloc(pool, sizeof(double) * (size_t)(code->coordinate_count + 1));
+    start->rate = pool_alloc(pool, sizeof(double) * (size_t)(code->coordinate_count + 1));
+    for (int c = 0; c < code->coordinate_count; ++c)
+        if (code->coordinate_state[c] >= 0)
+            start->value[c] = state[code->coordinate_state[c]];
+    if (code->free_base) {
+        memcpy(start->position, state, sizeof start->position);
+        memcpy(start->euler, state + 3, sizeof start->euler);
+    }
+    return scene_even(pool, found->model, start);
+}
+
+/* What a scene may contain to start there. */
+static void print_initial(Pool *pool, const Equilibrium *found, const double *state)
+{
+    const gic_model *code = found->engine->code;
+    const Scene *start = start_at(pool, found, state);
+    const double *at = start->position, *euler = start->euler;
     bool begun = false;
     printf("\ninitial:\n");
     if (code->free_base) {
-        printf("  position: [%.17g, %.17g, %.17g]\n", state[0], state[1], state[2]);
-        printf("  orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}\n", state[3], state[4], state[5], state[6]);
+        printf("  position: [%.17g, %.17g, %.17g]\n", at[0], at[1], at[2]);
+        printf("  orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}\n", euler[0], euler[1], euler[2], euler[3]);
     }
     for (int c = 0; c < code->coordinate_count; ++c) {
         if (code->coordinate_state[c] < 0)
             continue;
         printf("%s    %s: %.17g\n", begun ? "" : "  coordinates:\n", code->coordinate[c].name,
-               state[code->coordinate_state[c]]);
+               start->value[c]);
         begun = true;
     }
     if (code->discrete_count > code->free_base)
@@ -255,5 +274,5 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
     print_forces(found, output);
     print_wheels(found, output);
     print_fast_states(found, state);
-    print_initial(found, state);
+    print_initial(pool, found, state);
 }

@@ -166,17 +166,16 @@ static bool is_across(const gic_road *road)
 /* ---- symmetry -------------------------------------------------------------------------------------------------------
  */
 
-static bool is_small(double x)
-{
-    return fabs(x) <= NARROW_ROUNDING;
-}
+/* How far a static equilibrium may be from being its own mirror image, to be made one. */
+static const double uneven = 1e-9;
 
-/* What of the base's motion and the road is not the same to both sides; NULL: nothing. */
-static const char *asymmetry_of(const Model *model, const Scene *scene, bool across)
+/* What of the base's motion and the road is by more than `most` not the same to both sides; NULL: nothing. */
+static const char *asymmetry_of(const Model *model, const Scene *scene, bool across, double most)
 {
-    if (!is_small(scene->euler[1]) || !is_small(scene->euler[3]))
+    const double *euler = scene->euler, *omega = scene->angular_velocity;
+    if (!(fabs(euler[1]) <= most && fabs(euler[3]) <= most))
         return "the vehicle is turned about x or z at the beginning";
-    if (!is_small(scene->velocity[1]) || !is_small(scene->angular_velocity[0]) || !is_small(scene->angular_velocity[2]))
+    if (!(fabs(scene->velocity[1]) <= most && fabs(omega[0]) <= most && fabs(omega[2]) <= most))
         return "the vehicle does not move straight ahead at the beginning";
     return model->wheels && !across ? "the road is not known to be the same on both sides" : NULL;
 }
@@ -185,7 +184,7 @@ const Scene *scene_even(Pool *pool, const Model *model, const Scene *given)
 {
     const char *why = NULL;
     const Mirror *mirror = model->free_base ? mirror_find(pool, model, &why) : NULL;
-    if (!mirror || asymmetry_of(model, given, true))
+    if (!mirror || asymmetry_of(model, given, true, uneven))
         return given;
     Scene *scene = pool_alloc(pool, sizeof *scene);
     *scene = *given;
@@ -204,7 +203,7 @@ const Scene *scene_even(Pool *pool, const Model *model, const Scene *given)
         const double sign = mirror->sign[w];
         const bool odd = of == w && sign < 0;
         const double value = odd ? 0 : sign * scene->value[of], rate = odd ? 0 : sign * scene->rate[of];
-        if (of <= w && is_small(scene->value[w] - value) && is_small(scene->rate[w] - rate)) {
+        if (of <= w && fabs(scene->value[w] - value) <= uneven && fabs(scene->rate[w] - rate) <= uneven) {
             scene->value[w] = value;
             scene->rate[w] = rate;
         }
@@ -226,7 +225,7 @@ const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, con
     facts->plane = plane_of(pool, scene->road);
     fix_inputs(pool, model, scene, facts);
     facts->across = !facts->plane && is_across(scene->road);
-    facts->asymmetry = asymmetry_of(model, scene, is_across(scene->road));
+    facts->asymmetry = asymmetry_of(model, scene, is_across(scene->road), 0);
     facts->value = scene->value;
     facts->rate = scene->rate;
     facts->state = scene->fast;

@@ -247,8 +247,8 @@ static const char *remedy_of(int status)
     case GIC_ERROR_INPUT: return "the run has probably become unstable: try a shorter step";
     case GIC_ERROR_UNSTABLE:
         return "try a shorter step, or variable ones (--integrator adams); where that changes nothing, the model "
-               "itself "
-               "is unstable: gicrun --modes shows its eigenvalues";
+               "itself is unstable: gicrun --modes shows its eigenvalues";
+    case GIC_ERROR_ASSUMPTION: return "--general makes code that takes nothing for granted";
     case GIC_ERROR_ARGUMENT: return "the tolerance can't be reached in double precision: write a larger one";
     default: return NULL;
     }
@@ -416,7 +416,9 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *a
         diag_fail(program_place(), NULL, "no memory for the integrator");
     status = compute_outputs(&run);
     if (status != GIC_OK)
-        diag_fail(at, "is the initial state one that the mechanism can reach from its design?",
+        diag_fail(at,
+                  status == GIC_ERROR_ASSUMPTION ? remedy_of(status)
+                                                 : "is the initial state one that the mechanism can reach from its design?",
                   "the run can't start: %s", instance_status(pool, model, run.copy, status));
     prepare_plot(&run);
     interrupt_hold(); /* or the temporary file of the results would stay */
