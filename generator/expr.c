@@ -275,6 +275,14 @@ void ex_set_sample(Dag *dag, Ex input, int sample, double value)
     dag->value[(size_t)input * (size_t)dag->samples + (size_t)sample] = value;
 }
 
+static bool are_finite(const double *x, int count)
+{
+    for (int i = 0; i < count; ++i)
+        if (!isfinite(x[i]))
+            return false;
+    return true;
+}
+
 Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c)
 {
     Node node = {.op = (uint8_t)op, .arg = {a, b, c}};
@@ -284,6 +292,7 @@ Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c)
             node.level = dag->node[node.arg[i]].level;
         if (dag->node[node.arg[i]].wide)
             node.wide = (uint8_t)dag->lanes;
+        node.undefined |= dag->node[node.arg[i]].undefined;
     }
     if (op == OP_ROAD || op == OP_ROAD_PART || op == OP_FRICTION || op == OP_TABLE)
         node.level = LEVEL_VARIABLE;
@@ -294,8 +303,10 @@ Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c)
     }
     node_evaluate(dag, &node, sample, 0, dag->samples);
     /* what depends on constants alone is computed now and becomes an entry of the class's table */
-    if (node.level < LEVEL_VARIABLE)
+    if (node.level < LEVEL_VARIABLE && are_finite(sample, dag->samples))
         return constant_or_literal(dag, sample);
+    node.undefined |= node.level < LEVEL_VARIABLE;
+    node.level = LEVEL_VARIABLE;
     return intern(dag, &node, sample);
 }
 
@@ -336,7 +347,7 @@ Ex ex_add(Dag *dag, Ex a, Ex b)
 
 Ex ex_sub(Dag *dag, Ex a, Ex b)
 {
-    if (a == b)
+    if (a == b && !dag->node[a].undefined)
         return ex_literal(dag, 0);
     if (ex_is(dag, b, 0))
         return a;
@@ -351,7 +362,7 @@ Ex ex_sub(Dag *dag, Ex a, Ex b)
 
 Ex ex_mul(Dag *dag, Ex a, Ex b)
 {
-    if (ex_is(dag, a, 0) || ex_is(dag, b, 0))
+    if ((ex_is(dag, a, 0) && !dag->node[b].undefined) || (ex_is(dag, b, 0) && !dag->node[a].undefined))
         return ex_literal(dag, 0);
     if (ex_is(dag, a, 1))
         return b;
@@ -381,7 +392,7 @@ Ex ex_mul(Dag *dag, Ex a, Ex b)
 
 Ex ex_div(Dag *dag, Ex a, Ex b)
 {
-    if (ex_is(dag, a, 0))
+    if (ex_is(dag, a, 0) && !ex_is(dag, b, 0) && !dag->node[b].undefined)
         return a;
     if (dag->node[b].level < LEVEL_VARIABLE)
         return ex_mul(dag, ex_op(dag, OP_DIV, ex_literal(dag, 1), b, 0), a);

@@ -58,6 +58,8 @@ typedef enum Level { LEVEL_LITERAL, LEVEL_CONSTANT, LEVEL_VARIABLE } Level;
 typedef struct Node {
     uint8_t op, level;
     uint8_t wide;     /* lanes of a vector; 0: one number */
+    uint8_t undefined; /* constants made a part of it that is no finite number: it is not folded, nor into anything, so
+                          that it is computed at run time and ends in a status */
     Ex arg[3];        /* OP_ROAD_PART: arg[1] is 0, 1 or 2 for h, dh/dx, dh/dy; OP_TABLE: arg[1] is the table's index;
                          OP_LANE: arg[1] is the lane; OP_FOLD: arg[2] is the step */
     const char *name; /* OP_INPUT: the C expression that reads it */

@@ -392,6 +392,41 @@ static const Law *parse_or(Parser *p)
     return law;
 }
 
+static const char finite_remedy[] = "look for a division by zero or a root of a negative number";
+
+/* Is it the same whatever happens, and what? Fails where such a part, which the whole does not pass over, is no finite
+ * number: the code would never run. */
+static bool is_known(Parser *p, const Law *law, double *value)
+{
+    const Model *model = p->names->model;
+    const bool call = law->op == LAW_CALL;
+    if (law->op == LAW_NUMBER ||
+        (law->op == LAW_PARAMETER && !model->parameter[law->index].tunable && !model->parameter[law->index].law)) {
+        *value = law_number(law, model);
+        return true;
+    }
+    if (!law->arg[0])
+        return false;
+    double x[3] = {0};
+    bool known[3] = {is_known(p, law->arg[0], &x[0])}, all = known[0];
+    if (call && law->call == OP_POSITIVE && known[0])
+        return is_known(p, law->arg[x[0] > 0 ? 1 : 2], value);
+    for (int i = 1; i < 3 && law->arg[i]; ++i) {
+        known[i] = is_known(p, law->arg[i], &x[i]);
+        all = all && known[i];
+    }
+    if (all) {
+        *value = call ? op_value((Op)law->call, x[0], x[1], x[2]) : table_value(&model->table[law->index], x[0]);
+        return true;
+    }
+    for (int i = 0; i < 3; ++i)
+        if (known[i] && !isfinite(x[i]))
+            fail(p, p->item->text, finite_remedy, "a part of it is not a finite number, whatever the state");
+    if (call && law->call == OP_DIV && known[1] && !isfinite(1 / x[1]))
+        fail(p, p->item->text, finite_remedy, "it divides by %g, whatever the state", x[1]);
+    return false;
+}
+
 const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNames *names)
 {
     Parser p = {.pool = pool, .item = item, .what = what, .names = names, .s = item->text};
@@ -401,6 +436,9 @@ const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNa
     skip(&p);
     if (*p.s)
         fail(&p, p.s, "an operator is missing, or one parenthesis is too many", "'%.12s' is unexpected", p.s);
+    double value;
+    if (is_known(&p, law, &value) && !isfinite(value) && !names->constant)
+        fail(&p, item->text, finite_remedy, "it is not a finite number, whatever the state");
     return item->negated ? negative(&p, law) : law;
 }
 

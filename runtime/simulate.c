@@ -254,6 +254,17 @@ static const char *remedy_of(int status)
     }
 }
 
+static const char *remedy_at_start(int status)
+{
+    switch (status) {
+    case GIC_ERROR_ASSUMPTION: return remedy_of(status);
+    case GIC_ERROR_RESULT:
+        return "does a formula divide by zero there, or take a root of a negative number? Are initial velocities or "
+               "loads too large?";
+    default: return "is the initial state one that the mechanism can reach from its design?";
+    }
+}
+
 /* ---- the run -------------------------------------------------------------------------------------------- */
 
 int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
@@ -416,9 +427,7 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *a
         diag_fail(program_place(), NULL, "no memory for the integrator");
     status = compute_outputs(&run);
     if (status != GIC_OK)
-        diag_fail(at,
-                  status == GIC_ERROR_ASSUMPTION ? remedy_of(status)
-                                                 : "is the initial state one that the mechanism can reach from its design?",
+        diag_fail(at, remedy_at_start(status),
                   "the run can't start: %s", instance_status(pool, model, run.copy, status));
     prepare_plot(&run);
     interrupt_hold(); /* or the temporary file of the results would stay */

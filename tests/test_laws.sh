@@ -47,5 +47,69 @@ printf '%s\nparameters: {half: 1}\n' "$scene" >fixed.scene
 [ $? -eq 1 ] && grep -q "fixed.scene:6:14: error: parameter 'half' is fixed" message && [ ! -e fixed.csv ]
 verdict $? "a parameter that is not tunable: $(cat message)"
 
+# ---- numbers that are none --------------------------------------------------------------------------------------
+
+# slider FORMULA: a force by it
+slider() {
+    cat >slider.veh <<END
+gicgen: 1
+model: slider
+base: ground
+parameters: {k: 7, a: 0, p: {value: 1, tunable: true}}
+inputs: {i: {}}
+bodies: {b: {mass: 2, com: [0, 0, 0], inertia: [1, 1, 1]}}
+joints: {j: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}}
+coordinates: {x: {type: translation, bodies: [ground, b], axis: [1, 0, 0]}}
+forces: {f: {type: force, coordinate: x, value: "$1"}}
+outputs: {f: {type: force, element: f}}
+END
+}
+while read -r formula; do
+    slider "$formula"
+    "$gicgen" slider.veh -o slider.c 2>message
+    [ $? -eq 1 ] && grep -q "^slider.veh:9:50: error: value of force 'f': .* whatever the state" message && [ ! -e slider.c ] &&
+        grep -q '^  remedy: look for a division by zero or a root of a negative number' message
+    verdict $? "no number, $formula: $(cat message)"
+done <<'END'
+x/a + 1
+(-8)^(1/3)
+x*sqrt(-1)
+acos(2)
+1/0
+0/0
+exp(1000)
+1e300*1e300*x
+if(x > 0, 1/a, 2)
+min(x, 1/a)
+p/a
+x + 0*(1/a)
+END
+# value FORMULA NUMBER: passed over, all the same
+while read -r formula value; do
+    slider "$formula"
+    "$gicgen" slider.veh -o slider.c 2>message && cc -std=c99 -Wall -Wextra -Werror -fsyntax-only -I. -I"$root/runtime" slider.c &&
+        "$gicrun" --quiet slider.veh plain.scene -o plain.csv 2>message && [ "$(tail -n 1 plain.csv | cut -d, -f2)" = "$value" ]
+    verdict $? "passed over, $formula: $(cat message) $(tail -n 1 plain.csv)"
+    rm -f slider.c
+done <<'END'
+min(1/a,5)*k 35
+if(a>0,x/a,3) 3
+if(i>0,i/i,3) 3
+min(1/i,5) 5
+atan(1/a)/pi 0.5
+END
+# inputs and parameters that a scene makes constant: in code for it alone as in any other
+printf '%s\nparameters: {p: 0}\n' "$scene" >zero.scene
+for formula in x/i 1/i 'sqrt(i - 1)*x' 'i*x/i' i/i x/p 'atan(x/i)'; do
+    slider "$formula"
+    for how in '' --general '--engine tape' '--engine gic' '--engine cc'; do
+        # shellcheck disable=SC2086  # a list of words
+        "$gicrun" --quiet $how slider.veh zero.scene -o none.csv 2>message
+        [ $? -eq 1 ] && grep -q "error: the run can't start: a result is not a finite number" message && [ ! -e none.csv ] &&
+            grep -q '^  remedy: does a formula divide by zero there' message
+        verdict $? "no number in a scene, $formula $how: $(cat message)"
+    done
+done
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
