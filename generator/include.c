@@ -47,7 +47,9 @@ static void version_check(const Item *file)
     if (file->kind != ITEM_MAP)
         diag_fail(file->at, "begin with `gicgen: 1`; models/FORMAT.md describes the rest",
                   "a model is a map of keys and values");
-    const Item *item = doc_find(file, "gicgen");
+    const Item *item = doc_find(file, "gicgen"), *scene = doc_find(file, "gicscene");
+    if (!item && scene)
+        diag_fail(scene->at, "name the model first, then the scene", "this is a scene, where a model is wanted");
     if (!item)
         diag_fail(file->at, "begin the file with `gicgen: 1`", "the model lacks the key 'gicgen'");
     double version = doc_number(item, "the format version");

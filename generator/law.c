@@ -157,15 +157,17 @@ static _Noreturn void unknown(Parser *p, const char *where, const char *name)
         *POOL_PUSH(p->pool, known, count) = model->parameter[i].name;
     for (int i = 0; i < model->inputs && !p->names->constant; ++i)
         *POOL_PUSH(p->pool, known, count) = model->input[i].name;
-    *POOL_PUSH(p->pool, known, count) = "time";
+    if (!p->names->constant)
+        *POOL_PUSH(p->pool, known, count) = "time";
     *POOL_PUSH(p->pool, known, count) = "pi";
     const char *nearest = diag_nearest(name, known, count);
     Text list = {.pool = p->pool};
     for (int i = 0; i < count && list.size < 200; ++i)
         text_print(&list, "%s%s", i ? ", " : "", known[i]);
+    const char *above = p->names->constant ? " (parameters stand above what uses them)" : "";
     fail(p, where,
-         nearest ? pool_print(p->pool, "did you mean '%s'?", nearest)
-                 : pool_print(p->pool, "names known here: %s", list.s),
+         nearest ? pool_print(p->pool, "did you mean '%s'?%s", nearest, above)
+                 : pool_print(p->pool, "names known here: %s%s", list.s, above),
          "there is no '%s'", name);
 }
 
@@ -188,6 +190,13 @@ static const Law *parse_rate(Parser *p)
 
 static const Law *parse_call(Parser *p, const char *where, const char *name)
 {
+    const Model *model = p->names->model;
+    bool ours = !strcmp(name, "rate") || !strcmp(name, "if");
+    for (int i = 0; i < FUNCTIONS; ++i)
+        ours = ours || !strcmp(name, function[i].name);
+    for (int i = 0; ours && i < model->tables; ++i)
+        if (!strcmp(model->table[i].name, name))
+            fail(p, where, "give the table another name", "'%s' is a function here, and the name of a table", name);
     if (!strcmp(name, "rate")) {
         only_constants(p, where, name);
         return parse_rate(p);
@@ -215,7 +224,6 @@ static const Law *parse_call(Parser *p, const char *where, const char *name)
             const Law *two = call(p, function[i].op, function[i].name, arg[0], arg[1], NULL);
             return three ? call(p, function[i].op, function[i].name, two, arg[2], NULL) : two;
         }
-    const Model *model = p->names->model;
     for (int i = 0; i < model->tables; ++i)
         if (!strcmp(model->table[i].name, name)) {
             if (count != 1)
@@ -239,6 +247,20 @@ static const Law *parse_call(Parser *p, const char *where, const char *name)
          "there is no function or table '%s'", name);
 }
 
+/* A word of formulas may not be the name of something too that could be meant as well. */
+static void has_one_meaning(Parser *p, const char *where, const char *name, const char *meaning)
+{
+    const Model *model = p->names->model;
+    const char *other = coordinate_named(model, name) >= 0 ? "coordinate" : NULL;
+    for (int i = 0; i < model->inputs; ++i)
+        other = strcmp(name, model->input[i].name) ? other : "input";
+    for (int i = 0; i < model->parameters; ++i)
+        other = strcmp(name, model->parameter[i].name) ? other : "parameter";
+    if (other)
+        fail(p, where, pool_print(p->pool, "give the %s another name", other), "'%s' is %s here, and the name of a%s %s",
+             name, meaning, *other == 'i' ? "n" : "", other);
+}
+
 static const Law *parse_name(Parser *p)
 {
     const char *where = p->s;
@@ -254,21 +276,28 @@ static const Law *parse_name(Parser *p)
         return parse_call(p, where, name);
     const Model *model = p->names->model;
     for (int i = 0; i < p->names->locals; ++i)
-        if (!strcmp(name, p->names->local[i]))
+        if (!strcmp(name, p->names->local[i])) {
+            if (!p->names->hide)
+                has_one_meaning(p, where, name, "a quantity of this element");
             return reference(p, LAW_LOCAL, i, p->names->local[i]);
+        }
     for (int i = 0; i < model->parameters; ++i)
         if (!strcmp(name, model->parameter[i].name))
             return reference(p, LAW_PARAMETER, i, model->parameter[i].name);
-    if (!strcmp(name, "pi"))
+    if (!strcmp(name, "pi")) {
+        has_one_meaning(p, where, name, "3.14159...");
         return number(p, 3.14159265358979323846);
+    }
     int coordinate = coordinate_named(model, name);
     bool is_time = !strcmp(name, "time");
     if (coordinate >= 0 || is_time)
         only_constants(p, where, name);
     if (coordinate >= 0)
         return reference(p, LAW_VALUE, coordinate, model->coordinate[coordinate].name);
-    if (is_time)
+    if (is_time) {
+        has_one_meaning(p, where, name, "the time of the simulation");
         return reference(p, LAW_TIME, 0, "time");
+    }
     for (int i = 0; i < model->inputs; ++i)
         if (!strcmp(name, model->input[i].name)) {
             only_constants(p, where, name);
@@ -371,7 +400,12 @@ static const Law *parse_not(Parser *p)
 {
     if (++p->depth > DEPTH_MOST)
         fail(p, p->s, "split the law into several force elements", "the formula is nested too deeply");
-    const Law *law = take(p, "not") ? truth(p, parse_not(p), false) : parse_comparison(p);
+    skip(p);
+    const char *where = p->s;
+    const bool negated = take(p, "not");
+    if (negated)
+        has_one_meaning(p, where, "not", "an operator");
+    const Law *law = negated ? truth(p, parse_not(p), false) : parse_comparison(p);
     --p->depth;
     return law;
 }

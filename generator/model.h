@@ -35,6 +35,7 @@ typedef struct LawNames {
     const struct Model *model; /* coordinates, inputs, parameters, tables */
     const char *const *local;  /* names of this place, or NULL */
     int locals;
+    bool hide;          /* they may hide names of the model; else a formula that uses such a one is refused */
     bool constant;      /* nothing but numbers and parameters is allowed */
     const char *remedy; /* why, when that is broken */
 } LawNames;

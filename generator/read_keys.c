@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { NAME_LENGTH = 40, SOME_MOST = 1000 /* bodies, and parameters, which every formula looks through */ };
 
@@ -202,12 +203,33 @@ bool mentions_parameter(const Reader *reader, const Item *item)
     return false;
 }
 
-/* What mentions no parameter and is no number gets doc_number's message. */
+/* Does it look like a formula, which names something: a word at its beginning or behind an operator? */
+static bool looks_like_formula(const Reader *reader, const Item *item)
+{
+    static const char *const word[] = {"nan", "inf", "infinity", "null", "true", "false", "yes", "no", "on", "off"};
+    if (item->kind != ITEM_SCALAR || (!reader->model->parameters && !strpbrk(item->text, "*/^(")))
+        return false;
+    char before = '+';
+    for (const char *s = item->text; *s; ++s) {
+        size_t length = 0;
+        while (isalpha((unsigned char)s[length]) || s[length] == '_')
+            ++length;
+        bool named = length && strchr("+-*/^(", before);
+        for (size_t i = 0; named && i < sizeof word / sizeof *word; ++i)
+            named = strlen(word[i]) != length || strncasecmp(word[i], s, length) != 0;
+        if (named)
+            return true;
+        before = *s == ' ' ? before : *s;
+    }
+    return false;
+}
+
+/* What mentions no parameter, nor looks as if it should, and is no number gets doc_number's message. */
 double number_read(Reader *reader, const Item *item, const char *what, Ex *tuned)
 {
     if (tuned)
         *tuned = 0;
-    if (!mentions_parameter(reader, item))
+    if (!mentions_parameter(reader, item) && !looks_like_formula(reader, item))
         return doc_number(item, what);
     LawNames names = {
         .model = reader->model, .constant = true, .remedy = "put what changes with time into a force element"};

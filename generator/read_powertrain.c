@@ -123,7 +123,7 @@ static const char *of(Reader *reader, const Key *key, const char *what)
 static void engine_read(Reader *reader, const Item *item, Powertrain *powertrain)
 {
     static const char what[] = "the engine", *const local[] = {"speed", "throttle"};
-    const LawNames plain = {.model = reader->model}, names = {.model = reader->model, .local = local, .locals = 2};
+    const LawNames plain = {.model = reader->model}, names = {.model = reader->model, .local = local, .locals = 2, .hide = true};
     Value value[ENGINE_KEYS];
     section_read(reader, &engine_section, 0, &(Entry){"engine", what, item->at, item}, value);
     powertrain->inertia = value[ENGINE_INERTIA].number[0];

@@ -210,6 +210,20 @@ static double cell_number(Pool *pool, const Source *source, const Cell *c, const
     return value;
 }
 
+/* A header of another separator, or none, would only show in the numbers. */
+static void check_header(Pool *pool, const CsvTable *table, const Cell *c, const char *name, const char *header)
+{
+    const char *other = strpbrk(name, ";\t");
+    char *stop;
+    if (other)
+        diag_fail(cell_place(table->source, c), "separate columns by commas, and write the decimal point as a point",
+                  *other == ';' ? "columns are separated by semicolons" : "columns are separated by tabs");
+    (void)strtod(name, &stop);
+    if (!*stop)
+        diag_fail(cell_place(table->source, c), pool_print(pool, "the first line names the columns: %s", header),
+                  "'%s' is no name of a column", name);
+}
+
 /* Name of a column: quotes around it and a unit in brackets behind it are dropped. */
 static const char *column_name(Pool *pool, const Source *source, Cell c, const char *header)
 {
@@ -236,6 +250,7 @@ static void read_header(Pool *pool, CsvTable *table, const char *header, const c
     int places = 0;
     for (Cell c; next_cell(&s, end, &c);) {
         const char *name = column_name(pool, table->source, c, header);
+        check_header(pool, table, &c, name, header);
         if (table->columns == COLUMNS_MOST)
             diag_fail(cell_place(table->source, &c), "remove some of them", "more than %d columns", COLUMNS_MOST);
         for (int i = 0; i < table->columns; ++i)

@@ -538,6 +538,9 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     const Item *root = doc_read(pool, path);
     Scene *scene = pool_alloc(pool, sizeof *scene);
     Reader reader = {pool, model, scene};
+    const Item *other = root->kind == ITEM_MAP ? doc_find(root, "gicgen") : NULL;
+    if (other && !doc_find(root, "gicscene"))
+        diag_fail(other->at, "name the model first, then the scene", "this is a model, where a scene is wanted");
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
                "steady", "sleep", "massless", "base", "driven", "output_step", "initial", "road", "inputs", "driver",
                "parameters", "outputs", "plot");

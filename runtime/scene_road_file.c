@@ -39,7 +39,7 @@ static void check_columns(Pool *pool, const CsvTable *table, const char *const *
             ++k;
         if (k == count)
             diag_fail(csv_name_place(table, i), pool_print(pool, "the columns are %s", header),
-                      "the file of a road has no column '%s'", table->name[i]);
+                      "a road knows no column '%s'", table->name[i]);
     }
 }
 

@@ -133,6 +133,13 @@ check 'the message tells when and which subset' says "error: the run ends at t =
 # w' = 0.3 at first and w must stay below 1.75: rows are there, and all are numbers
 check 'its results are kept' awk -F, 'NR > 1 && !($2 >= 1.25 - 1e-9 && $2 < 1.75) {bad = 1}
     END {exit bad || NR < 100}' "$work/crank.csv"
+run "$work/crank.scene" "$work/crank.veh"
+check 'a scene in place of the model' says 'crank.scene:1:11: error: this is a scene, where a model is wanted'
+run "$work/crank.veh" "$work/crank.veh"
+check 'a model in place of the scene' says 'crank.veh:1:9: error: this is a model, where a scene is wanted'
+: >"$work/empty.scene"
+run "$work/crank.veh" "$work/empty.scene"
+check 'an empty scene' says 'begin a model with .* a scene with .gicscene: 1'
 printf 'gicscene: 1\nduration: 1\nstep: 0.01\noutputs: [nothing]\n' >"$work/nothing.scene"
 run "$(dirname "$0")/../models/hmmwv.veh" "$work/nothing.scene" -o "$work/nothing.csv"
 check 'an output that is none' says "nothing.scene:4:11: error: the model has no output 'nothing'"

@@ -146,6 +146,9 @@ badfile() {
 scene '{type: table, file: road.csv}'
 refused 'road.csv:' 'the file is empty'
 badfile table 1:3: "no column 'hight'" x,hight 0,0 1,0
+badfile table 1:1: 'columns are separated by semicolons' 'x;height' '0;0' '1;0'
+badfile table 1:1: 'columns are separated by tabs' "x$(printf '\t')height" "0$(printf '\t')0"
+badfile table 1:1: "'0' is no name of a column" 0,0 1,0
 badfile table 1:3: 'height beside left or right' x,height,left 0,0,0 1,0,0
 badfile table 1:1: "the column 'x' is missing" left,right 0,0 1,0
 badfile table 1:1: "the column 'right' is missing" x,left 0,0 1,0
