@@ -125,7 +125,7 @@ const char *instance_status(Pool *pool, const gic_model *model, const gic_head *
         /* at rest before the step, it is the stages' rates that carry it away */
         return rate != 0 ? pool_print(pool, "%s: '%s' is at %.4g %s and changes by %.3g a second",
                                       gic_status_text(status), signal->name, value, signal->unit, rate)
-                         : pool_print(pool, "%s: '%s', at rest at %.4g %s before", gic_status_text(status),
+                         : pool_print(pool, "%s: '%s' is at %.4g %s, at rest before the step", gic_status_text(status),
                                       signal->name, value, signal->unit);
     }
     if (status == GIC_ERROR_MASS && self->grown >= 0 && self->grown < model->slow_count)
