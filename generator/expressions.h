@@ -234,6 +234,7 @@ typedef struct Motion {
     int images;
     struct Image {
         Ex s[3], v[3];
+        bool side; /* another direction stands for A s, across the same axis: what is true of directions alone */
     } * image; /* body-fixed vectors whose components in the base frame need no A: v = A s */
 } Motion;
 
@@ -258,6 +259,8 @@ Ex *motion_number(Motion *motion, int place);
 void motion_input_pose(Dag *dag, Motion *motion, const char *array, int offset);
 
 void motion_image(Dag *dag, Motion *motion, const Ex s[3], const Ex v[3]);
+/* In place of A s, for a direction s across an axis that never turns, another one across it. No point is there. */
+void motion_side(Dag *dag, Motion *motion, const Ex s[3], const Ex v[3]);
 
 /* A body-fixed vector: a point's position (`point`, arm from the reference point) or an axis (arm is the vector
  * itself). */

@@ -77,15 +77,24 @@ void motion_image(Dag *dag, Motion *motion, const Ex s[3], const Ex v[3])
     struct Image *image = POOL_PUSH(dag->pool, motion->image, motion->images);
     memcpy(image->s, s, sizeof image->s);
     memcpy(image->v, v, sizeof image->v);
+    image->side = false;
+}
+
+void motion_side(Dag *dag, Motion *motion, const Ex s[3], const Ex v[3])
+{
+    motion_image(dag, motion, s, v);
+    motion->image[motion->images - 1].side = true;
 }
 
 /* A u, or what is known instead. */
-static void rotate(Dag *dag, const Motion *motion, const Ex u[3], Ex out[3])
+static void rotate(Dag *dag, const Motion *motion, const Ex u[3], bool point, Ex out[3])
 {
     Ex opposite[3], minus = ex_literal(dag, -1);
     ex_scale3(dag, minus, u, opposite);
     for (int i = 0; i < motion->images; ++i) {
         const struct Image *image = &motion->image[i];
+        if (image->side && point)
+            continue;
         if (!memcmp(image->s, u, sizeof image->s)) {
             memcpy(out, image->v, sizeof image->v);
             return;
@@ -98,20 +107,24 @@ static void rotate(Dag *dag, const Motion *motion, const Ex u[3], Ex out[3])
     ex_apply(dag, motion->A, u, out);
 }
 
-Vector vector_axis(Dag *dag, const Motion *motion, const Ex u[3])
+static Vector vector_of(Dag *dag, const Motion *motion, const Ex u[3], bool point)
 {
-    Vector vector = {.point = false};
-    rotate(dag, motion, u, vector.arm);
+    Vector vector = {.point = point};
+    rotate(dag, motion, u, point, vector.arm);
     for (int i = 0; i < 3; ++i)
         vector.v[i] = vector.arm[i];
     turn(dag, motion, &vector);
     return vector;
 }
 
+Vector vector_axis(Dag *dag, const Motion *motion, const Ex u[3])
+{
+    return vector_of(dag, motion, u, false);
+}
+
 Vector vector_point(Dag *dag, const Motion *motion, const Ex s[3])
 {
-    Vector vector = vector_axis(dag, motion, s);
-    vector.point = true;
+    Vector vector = vector_of(dag, motion, s, true);
     ex_add3(dag, motion->c, vector.arm, vector.v);
     ex_add3(dag, motion->velocity, vector.rate, vector.rate);
     ex_add3(dag, motion->acceleration, vector.bias, vector.bias);

@@ -106,7 +106,7 @@ static void add_across(Whole *whole, int index, const Fixture *fixture, Motion *
                 for (int k = 0; k < 3; ++k)
                     side[k] = ex_literal(whole->dag, formula_value(formula, formula->across[i][j][k], member));
                 if (side[0] || side[1] || side[2])
-                    motion_image(whole->dag, first, fixture->side[j][0], side);
+                    motion_side(whole->dag, first, fixture->side[j][0], side);
             }
         }
     }

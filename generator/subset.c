@@ -216,7 +216,7 @@ static void make_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
         if (tie->still) {
             turned = *end[0];
             for (int j = 0; j < 2; ++j)
-                motion_image(w->dag, &turned, tie->fixture.side[j][0], tie->across[j]);
+                motion_side(w->dag, &turned, tie->fixture.side[j][0], tie->across[j]);
             end[0] = &turned;
         }
         if (tie->is_coordinate)

@@ -157,6 +157,42 @@ for bodies in "arm wheel" "wheel arm"; do
     done
 done
 
+# points that are as far from each other as a unit vector, and along one of a frame's axes, are no directions
+# pendulum PLACE BODIES: an arm and a rod, hinged at PLACE
+pendulum() {
+    cat <<XXX
+gicgen: 1
+model: double_pendulum
+base: ground
+bodies:
+  arm: {mass: 2, com: [0.5, 0, 0], inertia: [0.1, 0.2, 0.3]}
+  rod: {mass: 1, com: [1, 0, -0.5], inertia: [0.1, 0.2, 0.3]}
+joints:
+  h: {type: revolute, bodies: [ground, arm], point: [0, 0, 0], axis: [0, 1, 0]}
+  k: {type: revolute, bodies: [$2], point: $1, axis: [0, 1, 0]}
+coordinates:
+  w: {type: angle, bodies: [ground, arm], axis: [0, 1, 0]}
+  x: {type: angle, bodies: [arm, rod], axis: [0, 1, 0]}
+outputs:
+  h: {type: reaction, joint: h}
+  k: {type: reaction, joint: k}
+XXX
+}
+printf 'w,x,w.rate,x.rate\n0.1,0.2,0.3,0.1\n-0.3,0.1,1,-2\n' >"$work/states"
+for place in '[1, 0, 0]' '[-1, 0, 0]' '[0, 0, 1]' '[0, 0, -1]' '[0, 1, 0]' '[0.6, 0, 0.8]'; do
+    for bodies in "arm, rod" "rod, arm"; do
+        pendulum "$place" "$bodies" >"$work/double.veh"
+        "$gicgen" --dump-model "$work/double.veh" >"$work/dump" &&
+            "$reference" "$work/dump" "$work/states" -o "$work/accelerations" 2>"$work/said"
+        for options in "--recovery auto" "--recovery newton" "--solve augmented"; do
+            # shellcheck disable=SC2086
+            "$gicrun" --engine tape $options --eval "$work/states" "$work/double.veh" -o "$work/results" &&
+                "$agree" "$work/dump" "$work/accelerations" "$work/results" --tolerance 1e-13 --reactions >"$work/said"
+            same "hinged at $place, $bodies, $options" 0 $?
+        done
+    done
+done
+
 nearest=$(residual 0.0)
 for error in 1e-14 1e-9 1e-6 1e-3; do
     worst=$(residual $error)
