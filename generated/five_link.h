@@ -63,15 +63,15 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      13        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   68       111       1      1         0
- *   subset 'wheel_r_l' (2 times)                             597       680       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                301       409       5      2         0
+ *   subset 'lca_f_l' (2 times, closed form)                   69       111       1      1         0
+ *   subset 'wheel_r_l' (2 times)                             798       972      11      5         0
+ *   subset 'wheel_f_l' (2 times, closed form)                306       423       3      2         0
  *   forces and equations of motion                           719       704       7      0         4
- *   all together                                            2664      3129      31      6         4
+ *   all together                                            3078      3741      37     16         4
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
-#define FIVE_LINK_H 0x7c0ebe97
+#define FIVE_LINK_H 0xabcd6959
 
 #include "gic_runtime.h"
 
@@ -110,11 +110,11 @@ enum {
     FIVE_LINK_DISCRETE_ROOM = 1,
     FIVE_LINK_COORDINATE_ROOM = 5,
     FIVE_LINK_UNKNOWN_ROOM = 11,
-    FIVE_LINK_START_ROOM = 97,
+    FIVE_LINK_START_ROOM = 123,
     FIVE_LINK_MOTION_ROOM = 222,
     FIVE_LINK_INERTIA_ROOM = 179,
     FIVE_LINK_MULTIPLIER_ROOM = 1,
-    FIVE_LINK_LAYOUT = 1718454744,
+    FIVE_LINK_LAYOUT = 454520678,
     FIVE_LINK_CONDITIONS = 0,
     FIVE_LINK_DERIVED = 0,
     FIVE_LINK_PIECES = 1,

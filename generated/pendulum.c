@@ -22,14 +22,14 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'rod' (1 times, closed form)                       15        41       2      1         2
+ *   subset 'rod' (1 times, closed form)                       16        43       2      1         2
  *   forces and equations of motion                             1         2       1      0         0
- *   all together                                              16        43       3      1         2
+ *   all together                                              17        45       3      1         2
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0xfdf93ccf
+#if PENDULUM_H != 0xd2fc7055
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -144,6 +144,7 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
+    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = GIC_COS(x[0]);
@@ -165,8 +166,6 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
         motion[5] = t9;
         const gic_real t10 = t2 * t6 + t1 * t7;
         const gic_real t11 = t7 * R(-0.5);
-        if (!(GIC_FABS(t10) > R(0.0001)))
-            return GIC_ERROR_SINGULAR;
         const gic_real t12 = R(1.0) / -t10;
         const gic_real t13 = t10 * t12;
         motion[25] = t13;
@@ -176,16 +175,18 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
         inertia[15] = t15;
         const gic_real t16 = t13 * t11;
         const gic_real t17 = t13 * R(0.25);
+        if (!(R(0.5) * t10 - GIC_FABS(t14) * ahead[0] > R(0.004)))
+            return GIC_ERROR_SINGULAR;
         const gic_real t18 = t6 * t14;
         const gic_real t19 = t7 * t14;
-        const gic_real t20 = -t16;
-        inertia[17] = t20;
-        const gic_real t21 = t8 * t15 + (t17 + t11 * t16);
-        inertia[19] = t21;
-        const gic_real t22 = t15 * t15 + (t13 * t17 + t16 * t16);
-        inertia[22] = t22;
-        const gic_real t23 = rate[0] * (t1 * t18 - t2 * t19);
-        const gic_real t24 = t23 + t23 + (t1 * (t14 * t18) - t2 * (t14 * t19));
+        const gic_real t20 = t8 * t15 + (t17 + t11 * t16);
+        inertia[19] = t20;
+        const gic_real t21 = t15 * t15 + (t13 * t17 + t16 * t16);
+        inertia[22] = t21;
+        const gic_real t22 = rate[0] * (t1 * t18 - t2 * t19);
+        const gic_real t23 = -t16;
+        inertia[17] = t23;
+        const gic_real t24 = t22 + t22 + (t1 * (t14 * t18) - t2 * (t14 * t19));
         const gic_real t25 = t12 * t24;
         motion[19] = t25;
         const gic_real t26 = t13 * (R(0.25) * t25) + t16 * (t14 * (t14 * t8) + t11 * t25);

@@ -58,15 +58,15 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      13        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   68       111       1      1         0
- *   subset 'axle' (1 times)                                  661       744       6      0         0
- *   subset 'wheel_f_l' (2 times, closed form)                301       409       5      2         0
+ *   subset 'lca_f_l' (2 times, closed form)                   69       111       1      1         0
+ *   subset 'axle' (1 times)                                  894      1058      11      5         0
+ *   subset 'wheel_f_l' (2 times, closed form)                306       423       3      2         0
  *   forces and equations of motion                           716       713       5      0         4
- *   all together                                            2128      2522      23      6         4
+ *   all together                                            2373      2864      24     11         4
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H 0x3dab9155
+#define SOLID_AXLE_H 0x33068f85
 
 #include "gic_runtime.h"
 
@@ -105,11 +105,11 @@ enum {
     SOLID_AXLE_DISCRETE_ROOM = 1,
     SOLID_AXLE_COORDINATE_ROOM = 5,
     SOLID_AXLE_UNKNOWN_ROOM = 11,
-    SOLID_AXLE_START_ROOM = 57,
+    SOLID_AXLE_START_ROOM = 70,
     SOLID_AXLE_MOTION_ROOM = 198,
     SOLID_AXLE_INERTIA_ROOM = 165,
     SOLID_AXLE_MULTIPLIER_ROOM = 1,
-    SOLID_AXLE_LAYOUT = 1298615762,
+    SOLID_AXLE_LAYOUT = 2082726047,
     SOLID_AXLE_CONDITIONS = 0,
     SOLID_AXLE_DERIVED = 0,
     SOLID_AXLE_PIECES = 1,

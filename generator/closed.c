@@ -42,7 +42,6 @@ typedef struct Closed {
     Dag *dag;
     Motion *pose;
     Block *block;
-    Branches *branches;
     Hold *hold; /* [bodies] */
 } Closed;
 
@@ -92,9 +91,7 @@ static void combine(Dag *dag, int count, const Ex *s, const Ex *const *a, Ex out
 static const double meeting = 0.01;
 
 /* The root of `square` with the sign that `probe` has at the design; beyond reach the square is negative. whole: what
- * the square is where the two solutions are opposite. How fast what the step's equations say changes with what it finds
- * is to be the root, but for a constant factor; no division comes before it, so that a processor can do one meanwhile.
- */
+ * the square is where the two solutions are opposite. */
 static Ex branch_root(Closed *z, Ex square, Ex whole, Ex probe)
 {
     double sign[z->w->class->members];
@@ -103,7 +100,6 @@ static Ex branch_root(Closed *z, Ex square, Ex whole, Ex probe)
     block_check(z->block, square, false, 0, "GIC_ERROR_NEWTON");
     Ex least = ex_mul(z->dag, ex_literal(z->dag, meeting * meeting), whole);
     block_check(z->block, ex_sub(z->dag, square, least), false, 0, "GIC_ERROR_SINGULAR");
-    *POOL_PUSH(z->w->pool, z->branches->square, z->branches->count) = square;
     return ex_mul(z->dag, ex_constant(z->dag, sign), ex_sqrt(z->dag, square));
 }
 
@@ -652,24 +648,23 @@ static bool is_confirmed(const Closed *z)
     return true;
 }
 
-bool subset_closed(Work *w, Motion *pose, Block *block, Branches *branches)
+bool subset_closed(Work *w, Motion *pose, Block *block)
 {
     Closed z = {.w = w,
                 .dag = w->dag,
                 .pose = pose,
                 .block = block,
-                .branches = branches,
                 .hold = pool_alloc(w->pool, (size_t)w->first->bodies * sizeof *z.hold)};
     int placed = 0, before;
     do {
         before = placed;
         for (int b = 0; b < w->first->bodies; ++b)
             if (!z.hold[b].placed) {
-                int checks = block->checks, roots = branches->count;
+                const int checks = block->checks;
                 if (place_body(&z, b))
                     ++placed;
                 else
-                    block->checks = checks, branches->count = roots;
+                    block->checks = checks;
             }
     } while (placed > before);
     return placed == w->first->bodies && is_confirmed(&z);

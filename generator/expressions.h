@@ -187,26 +187,31 @@ typedef struct Derived {
 
 /* ---- linear.c: straight-line factorizations ------------------------------------------------------------ */
 
-/* P A Q = L U of a small matrix of expressions, n x n. entry[n k + j], in pivot order: left of the diagonal the
- * multipliers of L, on it the reciprocal of the pivot, right of it U. Symmetric: L D L^T, entry right of the diagonal
- * is the transposed multiplier. Pivots of a symmetric matrix may come in blocks B of two or three: then there is adj(B)
- * on the diagonal, beside it multipliers less the division by det(B), and `pivot` are the diagonal of B. */
+/* P A Q = L U of a small matrix of expressions, n x n, in blocks of pivots, 1 x 1 as a rule. entry[n k + j], in pivot
+ * order: left of the diagonal blocks the multipliers of L, right of them U.
+ * Not symmetric: the first `constants` pivots are constants, with their reciprocals on the diagonal, and only they have
+ * multipliers. A block of two or three has its inverse in `entry`; a larger one, its rows times row_scale, Householder's
+ * reflections 1 - beta v v^T (v on and left of the diagonal) and R (right of it, 1 over its diagonal in `reciprocal`).
+ * Symmetric: L D L^T, entry right of the diagonal is the transposed multiplier. Pivots may come in blocks B of two or
+ * three: then there is adj(B) on the diagonal, beside it multipliers less the division by det(B), and `pivot` are the
+ * diagonal of B. */
 typedef struct Factors {
     int n;
     bool symmetric;
+    int constants;
     int *row, *column;            /* [n] row and column of the k-th pivot */
     Ex *entry;                    /* [n][n] */
-    Ex *pivot;                    /* [n] */
+    Ex *pivot;                    /* [n] symmetric: the k-th diagonal element when it is reached */
     int *block;                   /* [n] first pivot of its block; itself */
-    Ex *determinant, *reciprocal; /* [n] symmetric: of the block that begins there, and 1 over that */
+    Ex *determinant, *reciprocal; /* [n] of the block that begins there, and 1 over that */
+    Ex *row_scale, *beta;         /* [n] of blocks of more than three */
 } Factors;
 
-/* Pivot order from the samples: cheapest at run time among the entries that are numerically good at every usable sample
- * (Markowitz count with threshold). column_scale [n] makes the unknowns comparable; usable [samples]. Returns NULL
- * where no pivot of relative size 1e-9 is left at some usable sample: *rank is the number of pivots found then,
- * row_left [n] marks the rows without one. */
-Factors *linear_factor(Dag *dag, int n, const Ex *A, const double *column_scale, const bool *usable, int *rank,
-                       bool *row_left);
+/* An order that is valid wherever A is not singular: constants first, cheapest at run time (Markowitz count), then the
+ * irreducible diagonal blocks of the rest. unknown_scale [n] makes the unknowns comparable: the larger, the smaller an
+ * unknown counts. usable [samples]. Returns NULL where A is singular (a pivot below 1e-9 of its row with full pivoting)
+ * at a usable sample. */
+Factors *linear_factor(Dag *dag, int n, const Ex *A, const double *unknown_scale, const bool *usable);
 /* Symmetric and positive definite, or quasidefinite (a positive and a negative definite block on the diagonal), so that
  * every order of pivots on the diagonal is good: in this one [n], or cheapest first where it is NULL. Uses the upper
  * triangle of A. The last `blocked` pivots come three at a time: one division instead of three that wait for each
@@ -219,6 +224,8 @@ void linear_solve_transposed(Dag *dag, const Factors *factors, const Ex *b, Ex *
 /* Dense numeric solve with row-scaled partial pivoting, in place: b [n] becomes x. False when singular. A is destroyed.
  */
 bool linear_solve_numeric(int n, double *A, double *b);
+/* Smallest pivot of A with its rows scaled to largest entries of 1, by elimination with full pivoting. A is destroyed. */
+double linear_least_pivot(int n, double *A);
 /* Determinant of A with its rows scaled to largest entries of 1; 0 when singular. A is destroyed. */
 double linear_determinant(int n, double *A);
 

@@ -1,109 +1,19 @@
 /* SPDX-License-Identifier: MIT
- * Straight-line factorizations of matrices of expressions. Pivots are chosen once, offline, so that the emitted code
- * has no search and no branch; each pivot's size is watched at run time instead. */
-#include "gicgen.h"
+ * Straight-line factorizations of matrices of expressions: the order is chosen once, offline, so that the emitted code
+ * has no search and no branch. Only entries that are constants serve as pivots by themselves; the rest is solved in the
+ * irreducible diagonal blocks of its structure (linear_block.c), whose determinants vanish where the matrix is singular
+ * and nowhere else. Samples choose between orders that are all valid. */
+#include "linear.h"
 
 #include <math.h>
 #include <string.h>
 
-/* An entry must reach this fraction of the largest one in its column, so that multipliers stay below ten. */
-static const double pivot_threshold = 0.1;
-/* One that changes by more than this over the samples may change its sign not far from them. */
-static const double pivot_steady = 0.3;
-/* Below this, relative to its row, an entry is rounding. */
+/* A constant must reach this fraction of the largest entry in its column, so that multipliers stay below twenty. */
+static const double pivot_threshold = 0.05;
+/* Below this, relative to its row, a pivot is rounding. */
 static const double pivot_zero = 1e-9;
 
-static bool varies(const Dag *dag, Ex e)
-{
-    return dag->node[e].level == LEVEL_VARIABLE;
-}
-
-/* Operations at run time when entry (i, j) of the rest of A becomes the next pivot. */
-static int pivot_cost(const Dag *dag, int n, const Ex *A, const bool *row_done, const bool *column_done, int i, int j)
-{
-    int cost = varies(dag, A[n * i + j]) ? 8 : 0; /* a division */
-    for (int r = 0; r < n; ++r) {
-        if (row_done[r] || r == i || ex_is(dag, A[n * r + j], 0))
-            continue;
-        bool multiplier_varies = varies(dag, A[n * r + j]) || varies(dag, A[n * i + j]);
-        cost += multiplier_varies && !ex_is(dag, A[n * i + j], 1) && !ex_is(dag, A[n * i + j], -1) ? 2 : 0;
-        for (int c = 0; c < n; ++c)
-            if (!column_done[c] && c != j && !ex_is(dag, A[n * i + c], 0)) {
-                cost += multiplier_varies || varies(dag, A[n * i + c]) ? 2 : 0;
-                cost += varies(dag, A[n * r + c])     ? 2
-                        : ex_is(dag, A[n * r + c], 0) ? 1
-                                                      : 0; /* fill spreads variation */
-            }
-    }
-    return cost;
-}
-
-/* The smallest magnitude among the usable samples of a member over the largest one; 0 where the sign differs: there is
- * a configuration between them at which it vanishes. */
-static double steadiness(const Dag *dag, Ex e, const bool *usable)
-{
-    const int configurations = dag->samples / dag->members;
-    double steady = 1;
-    for (int m = 0; m < dag->members; ++m) {
-        double least = INFINITY, most = -INFINITY;
-        for (int s = m * configurations; s < (m + 1) * configurations; ++s)
-            if (usable[s]) {
-                least = fmin(least, ex_value(dag, e, s));
-                most = fmax(most, ex_value(dag, e, s));
-            }
-        if (least < 0 && most > 0)
-            return 0;
-        if (least <= most && most != least)
-            steady = fmin(steady, fmin(fabs(least), fabs(most)) / fmax(fabs(least), fabs(most)));
-    }
-    return steady;
-}
-
-/* The smallest ratio over the usable samples of |A(i, j)| to the largest entry of its column in the rest, rows scaled;
- * less where it is much smaller at some samples than at others, and may vanish at configurations that are none. */
-static double pivot_quality(const Dag *dag, int n, const Ex *A, const bool *row_done, const double *row_scale,
-                            const bool *usable, int i, int j)
-{
-    double quality = 1;
-    for (int s = 0; s < dag->samples; ++s) {
-        if (!usable[s])
-            continue;
-        double largest = 0, own = fabs(ex_value(dag, A[n * i + j], s)) / row_scale[s * n + i];
-        for (int r = 0; r < n; ++r)
-            if (!row_done[r])
-                largest = fmax(largest, fabs(ex_value(dag, A[n * r + j], s)) / row_scale[s * n + r]);
-        double ratio = own > 0 ? own / largest : 0;
-        quality = fmin(quality, ratio);
-    }
-    const double steady = steadiness(dag, A[n * i + j], usable);
-    return steady < pivot_steady ? fmin(quality, pivot_threshold) * fmax(steady, pivot_zero) : quality;
-}
-
-/* Is there a usable sample at which the entry is nothing but rounding? */
-static bool pivot_vanishes(const Dag *dag, int n, const Ex *A, const double *row_scale, const double *column_scale,
-                           const bool *usable, int i, int j)
-{
-    for (int s = 0; s < dag->samples; ++s)
-        if (usable[s] && !(fabs(ex_value(dag, A[n * i + j], s)) > pivot_zero * row_scale[s * n + i] * column_scale[j]))
-            return true;
-    return false;
-}
-
-static void eliminate(Dag *dag, int n, Ex *A, const bool *row_done, const bool *column_done, int i, int j,
-                      Ex reciprocal)
-{
-    for (int r = 0; r < n; ++r) {
-        if (row_done[r] || r == i || ex_is(dag, A[n * r + j], 0))
-            continue;
-        Ex multiplier = ex_mul(dag, A[n * r + j], reciprocal);
-        A[n * r + j] = multiplier;
-        for (int c = 0; c < n; ++c)
-            if (!column_done[c] && c != j)
-                A[n * r + c] = ex_sub(dag, A[n * r + c], ex_mul(dag, multiplier, A[n * i + c]));
-    }
-}
-
-static Factors *factors_new(Dag *dag, int n, bool symmetric)
+Factors *factors_new(Dag *dag, int n, bool symmetric)
 {
     Factors *f = pool_alloc(dag->pool, sizeof *f);
     size_t count = (size_t)n;
@@ -115,10 +25,38 @@ static Factors *factors_new(Dag *dag, int n, bool symmetric)
                    .pivot = pool_alloc(dag->pool, count * sizeof *f->pivot),
                    .determinant = pool_alloc(dag->pool, count * sizeof *f->determinant),
                    .reciprocal = pool_alloc(dag->pool, count * sizeof *f->reciprocal),
+                   .row_scale = pool_alloc(dag->pool, count * sizeof *f->row_scale),
+                   .beta = pool_alloc(dag->pool, count * sizeof *f->beta),
                    .block = pool_alloc(dag->pool, count * sizeof *f->block)};
     for (int k = 0; k < n; ++k)
         f->block[k] = k;
     return f;
+}
+
+int factors_block_end(const Factors *f, int first)
+{
+    int end = first + 1;
+    while (end < f->n && f->block[end] == first)
+        ++end;
+    return end;
+}
+
+/* ---- constants as pivots ------------------------------------------------------------------------------------- */
+
+/* A matrix while pivots are taken out of it. */
+typedef struct Elimination {
+    Dag *dag;
+    int n;
+    Ex *A;
+    bool *row_done, *column_done;
+    const double *column_scale;
+    double *row_scale; /* [samples][n] largest entry of the row, columns scaled */
+    const bool *usable;
+} Elimination;
+
+static bool varies(const Dag *dag, Ex e)
+{
+    return dag->node[e].level == LEVEL_VARIABLE;
 }
 
 static double *row_scales(const Dag *dag, int n, const Ex *A, const double *column_scale)
@@ -127,233 +65,289 @@ static double *row_scales(const Dag *dag, int n, const Ex *A, const double *colu
     for (int s = 0; s < dag->samples; ++s)
         for (int i = 0; i < n; ++i) {
             for (int j = 0; j < n; ++j)
-                scale[s * n + i] = fmax(scale[s * n + i], fabs(ex_value(dag, A[n * i + j], s)) / column_scale[j]);
+                scale[s * n + i] = fmax(scale[s * n + i], fabs(ex_value(dag, A[n * i + j], s)) * column_scale[j]);
             if (!(scale[s * n + i] > 0))
                 scale[s * n + i] = 1;
         }
     return scale;
 }
 
-Factors *linear_factor(Dag *dag, int n, const Ex *A0, const double *column_scale, const bool *usable, int *rank,
-                       bool *row_left)
+/* Operations at run time when entry (i, j) of the rest of A becomes the next pivot. */
+static int pivot_cost(const Elimination *z, int i, int j)
 {
-    Factors *f = factors_new(dag, n, false);
-    Ex *A = pool_grow(dag->pool, (void *)A0, (size_t)(n * n) * sizeof *A0, (size_t)(n * n) * sizeof *A0);
-    double *row_scale = row_scales(dag, n, A0, column_scale);
-    bool row_done[n], column_done[n];
-    memset(row_done, 0, sizeof row_done);
-    memset(column_done, 0, sizeof column_done);
-    for (int k = 0; k < n; ++k) {
-        int best_i = -1, best_j = -1, best_cost = 0;
-        double best_quality = 0;
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j) {
-                if (row_done[i] || column_done[j] || ex_is(dag, A[n * i + j], 0) ||
-                    pivot_vanishes(dag, n, A, row_scale, column_scale, usable, i, j))
-                    continue;
-                double quality = pivot_quality(dag, n, A, row_done, row_scale, usable, i, j);
-                quality = fmin(quality, pivot_threshold); /* all that pass are equally good */
-                int cost = pivot_cost(dag, n, A, row_done, column_done, i, j);
-                if (best_i < 0 || quality > best_quality || (quality == best_quality && cost < best_cost)) {
-                    best_i = i, best_j = j;
-                    best_cost = cost;
-                    best_quality = quality;
-                }
+    const Dag *dag = z->dag;
+    const int n = z->n;
+    int cost = 0;
+    for (int r = 0; r < n; ++r) {
+        if (z->row_done[r] || r == i || ex_is(dag, z->A[n * r + j], 0))
+            continue;
+        bool multiplier_varies = varies(dag, z->A[n * r + j]);
+        cost += multiplier_varies && !ex_is(dag, z->A[n * i + j], 1) && !ex_is(dag, z->A[n * i + j], -1) ? 2 : 0;
+        for (int c = 0; c < n; ++c)
+            if (!z->column_done[c] && c != j && !ex_is(dag, z->A[n * i + c], 0)) {
+                cost += multiplier_varies || varies(dag, z->A[n * i + c]) ? 2 : 0;
+                cost += varies(dag, z->A[n * r + c])     ? 2
+                        : ex_is(dag, z->A[n * r + c], 0) ? 1
+                                                         : 0; /* fill spreads variation */
             }
-        if (best_i < 0) {
-            *rank = k;
-            for (int i = 0; i < n; ++i)
-                row_left[i] = !row_done[i];
-            return NULL;
-        }
-        row_done[best_i] = column_done[best_j] = true;
-        f->row[k] = best_i;
-        f->column[k] = best_j;
-        f->pivot[k] = A[n * best_i + best_j];
-        A[n * best_i + best_j] = ex_div(dag, ex_literal(dag, 1), f->pivot[k]);
-        eliminate(dag, n, A, row_done, column_done, best_i, best_j, A[n * best_i + best_j]);
     }
-    for (int k = 0; k < n; ++k)
-        for (int j = 0; j < n; ++j)
-            f->entry[n * k + j] = A[n * f->row[k] + f->column[j]];
-    *rank = n;
-    return f;
+    return cost;
 }
 
-/* Entries of the rest that row i touches: its elimination costs the square. */
-static int degree(const Dag *dag, int n, const Ex *A, const bool *done, int i)
+/* Is the constant (i, j) large enough at every usable sample, for its column in the rest, rows scaled? */
+static bool is_good(const Elimination *z, int i, int j)
+{
+    const int n = z->n;
+    for (int s = 0; s < z->dag->samples; ++s) {
+        if (!z->usable[s])
+            continue;
+        double largest = 0, own = fabs(ex_value(z->dag, z->A[n * i + j], s)) / z->row_scale[s * n + i];
+        for (int r = 0; r < n; ++r)
+            if (!z->row_done[r])
+                largest = fmax(largest, fabs(ex_value(z->dag, z->A[n * r + j], s)) / z->row_scale[s * n + r]);
+        if (!(own >= pivot_threshold * largest && own * z->column_scale[j] > pivot_zero))
+            return false;
+    }
+    return true;
+}
+
+static void eliminate(Elimination *z, int i, int j, Ex reciprocal)
+{
+    const int n = z->n;
+    for (int r = 0; r < n; ++r) {
+        if (z->row_done[r] || r == i || ex_is(z->dag, z->A[n * r + j], 0))
+            continue;
+        Ex multiplier = ex_mul(z->dag, z->A[n * r + j], reciprocal);
+        z->A[n * r + j] = multiplier;
+        for (int c = 0; c < n; ++c)
+            if (!z->column_done[c] && c != j)
+                z->A[n * r + c] = ex_sub(z->dag, z->A[n * r + c], ex_mul(z->dag, multiplier, z->A[n * i + c]));
+    }
+}
+
+/* Take the constants that are cheapest first; returns how many there were. */
+static int eliminate_constants(Elimination *z, Factors *f)
+{
+    const int n = z->n;
+    for (int k = 0; k < n; ++k) {
+        int best_i = -1, best_j = -1, best_cost = 0;
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) {
+                const Ex e = z->A[n * i + j];
+                if (z->row_done[i] || z->column_done[j] || varies(z->dag, e) || ex_is(z->dag, e, 0) ||
+                    !is_good(z, i, j))
+                    continue;
+                const int cost = pivot_cost(z, i, j);
+                if (best_i < 0 || cost < best_cost)
+                    best_i = i, best_j = j, best_cost = cost;
+            }
+        if (best_i < 0)
+            return k;
+        z->row_done[best_i] = z->column_done[best_j] = true;
+        f->row[k] = best_i;
+        f->column[k] = best_j;
+        f->determinant[k] = z->A[n * best_i + best_j];
+        f->reciprocal[k] = z->A[n * best_i + best_j] = ex_div(z->dag, ex_literal(z->dag, 1), f->determinant[k]);
+        eliminate(z, best_i, best_j, f->reciprocal[k]);
+    }
+    return n;
+}
+
+/* ---- the irreducible blocks of the rest ----------------------------------------------------------------------- */
+
+/* Structure of the rest of a matrix, `count` rows and columns. */
+typedef struct Structure {
+    int count;
+    int *row, *column; /* [count] */
+    bool *entry;       /* [count][count] is it not zero? */
+    int *matched;      /* [count] column of a row; its row is in place of the column's number then */
+    int *owner;        /* [count] row of a column, -1: none */
+    bool *reaches;     /* [count][count] */
+} Structure;
+
+static bool find_column(Structure *t, int row, bool *seen)
+{
+    for (int j = 0; j < t->count; ++j) {
+        if (!t->entry[t->count * row + j] || seen[j])
+            continue;
+        seen[j] = true;
+        if (t->owner[j] < 0 || find_column(t, t->owner[j], seen)) {
+            t->owner[j] = row;
+            t->matched[row] = j;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* False: no permutation puts entries on all of the diagonal. */
+static bool match(Structure *t)
+{
+    bool seen[t->count + 1];
+    for (int i = 0; i < t->count; ++i) {
+        memset(seen, 0, sizeof seen);
+        if (!find_column(t, i, seen))
+            return false;
+    }
+    return true;
+}
+
+/* Which rows need the unknowns of which others, directly or by way of others? */
+static void close(Structure *t)
+{
+    const int m = t->count;
+    for (int i = 0; i < m; ++i)
+        for (int j = 0; j < m; ++j)
+            t->reaches[m * i + j] = i == j || t->entry[m * i + t->matched[j]];
+    for (int k = 0; k < m; ++k)
+        for (int i = 0; i < m; ++i)
+            for (int j = 0; t->reaches[m * i + k] && j < m; ++j)
+                t->reaches[m * i + j] = t->reaches[m * i + j] || t->reaches[m * k + j];
+}
+
+static Structure structure_of(const Elimination *z, int count)
+{
+    Pool *pool = z->dag->pool;
+    const size_t room = (size_t)count + 1;
+    Structure t = {.row = pool_alloc(pool, room * sizeof *t.row),
+                   .column = pool_alloc(pool, room * sizeof *t.column),
+                   .entry = pool_alloc(pool, room * room * sizeof *t.entry),
+                   .matched = pool_alloc(pool, room * sizeof *t.matched),
+                   .owner = pool_alloc(pool, room * sizeof *t.owner),
+                   .reaches = pool_alloc(pool, room * room * sizeof *t.reaches)};
+    int columns = 0;
+    for (int i = 0; i < z->n; ++i) {
+        if (!z->row_done[i])
+            t.row[t.count++] = i;
+        if (!z->column_done[i])
+            t.column[columns++] = i;
+    }
+    for (int i = 0; i < count; ++i) {
+        t.owner[i] = -1;
+        for (int j = 0; j < count; ++j)
+            t.entry[count * i + j] = !ex_is(z->dag, z->A[z->n * t.row[i] + t.column[j]], 0);
+    }
+    return t;
+}
+
+/* How many rows a row reaches: blocks in descending order of that are upper triangular. */
+static int reach(const Structure *t, int row)
 {
     int count = 0;
-    for (int j = 0; j < n; ++j)
-        count += !done[j] && !ex_is(dag, A[n * i + j], 0);
+    for (int j = 0; j < t->count; ++j)
+        count += t->reaches[t->count * row + j];
     return count;
 }
 
-/* Pivots first .. first + size - 1 as one block B of the rest A: adj(B) into A. */
-static void adjugate_block(Dag *dag, int n, Ex *A, Factors *f, int first, int size)
+/* Power of two that makes a row's largest entry about 1. */
+static double row_scale(const Elimination *z, const int *column, int size, int row)
 {
-    Ex B[3][3], adj[3][3];
-    for (int i = 0; i < size; ++i)
+    double largest = 0;
+    int exponent = 0;
+    for (int s = 0; s < z->dag->samples; ++s)
+        for (int j = 0; z->usable[s] && j < size; ++j)
+            largest =
+                fmax(largest, fabs(ex_value(z->dag, z->A[z->n * row + column[j]], s)) * z->column_scale[column[j]]);
+    frexp(largest > 0 ? largest : 1, &exponent);
+    return ldexp(1, -exponent);
+}
+
+static void add_block(Elimination *z, Factors *f, int first, int size)
+{
+    Ex B[size * size];
+    double scale[size];
+    for (int i = 0; i < size; ++i) {
+        scale[i] = row_scale(z, f->column + first, size, f->row[first + i]);
         for (int j = 0; j < size; ++j)
-            B[i][j] = A[n * f->row[first + i] + f->row[first + j]];
-    for (int i = 0; i < 3; ++i)
-        for (int j = i; size == 3 && j < 3; ++j) {
-            const int r = (i + 1) % 3, s = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
-            adj[i][j] = adj[j][i] = ex_sub(dag, ex_mul(dag, B[r][c], B[s][d]), ex_mul(dag, B[r][d], B[s][c]));
-        }
-    if (size == 2) {
-        adj[0][0] = B[1][1];
-        adj[1][1] = B[0][0];
-        adj[0][1] = adj[1][0] = ex_neg(dag, B[0][1]);
+            B[size * i + j] = z->A[z->n * f->row[first + i] + f->column[first + j]];
     }
-    f->determinant[first] = size == 3 ? ex_dot(dag, B[0], adj[0])
-                                      : ex_sub(dag, ex_mul(dag, B[0][0], B[1][1]), ex_mul(dag, B[0][1], B[0][1]));
-    for (int i = 0; i < size; ++i)
-        for (int j = 0; j < size; ++j)
-            A[n * f->row[first + i] + f->row[first + j]] = adj[i][j];
+    factors_add_block(z->dag, f, first, size, B, scale);
 }
 
-/* The rest less what a block takes from it, A - U^T (adj B / det B) U; adj(B) U into the block's rows and, transposed,
- * columns. The quotient comes last, so that it is there when the products are. */
-static void eliminate_block(Dag *dag, int n, Ex *A, const Factors *f, const bool *done, int first, int size)
+/* False where the structure alone makes the matrix singular. */
+static bool add_blocks(Elimination *z, Factors *f, int first)
 {
-    Ex scaled[3][n];
-    for (int c = 0; c < n; ++c)
-        for (int i = 0; !done[c] && i < size; ++i) {
-            scaled[i][c] = 0;
-            for (int j = 0; j < size; ++j)
-                scaled[i][c] =
-                    ex_add(dag, scaled[i][c],
-                           ex_mul(dag, A[n * f->row[first + i] + f->row[first + j]], A[n * f->row[first + j] + c]));
-        }
-    for (int r = 0; r < n; ++r)
-        for (int c = r; !done[r] && c < n; ++c) {
-            Ex sum = 0;
-            for (int j = 0; !done[c] && j < size; ++j)
-                sum = ex_add(dag, sum, ex_mul(dag, A[n * f->row[first + j] + r], scaled[j][c]));
-            if (!done[c])
-                A[n * r + c] = A[n * c + r] = ex_sub(dag, A[n * r + c], ex_mul(dag, f->reciprocal[first], sum));
-        }
-    for (int c = 0; c < n; ++c)
-        for (int i = 0; !done[c] && i < size; ++i)
-            A[n * f->row[first + i] + c] = A[n * c + f->row[first + i]] = scaled[i][c];
-}
-
-static void eliminate_symmetric(Dag *dag, int n, Ex *A, const Factors *f, const bool *done, int k)
-{
-    const int own = f->row[k];
-    for (int r = 0; r < n; ++r) {
-        if (done[r] || ex_is(dag, A[n * r + own], 0))
-            continue;
-        Ex multiplier = ex_mul(dag, A[n * r + own], f->reciprocal[k]);
-        for (int c = r; c < n; ++c)
-            if (!done[c])
-                A[n * r + c] = A[n * c + r] = ex_sub(dag, A[n * r + c], ex_mul(dag, multiplier, A[n * own + c]));
-        A[n * r + own] = multiplier;
-    }
-    for (int c = 0; c < n; ++c)
-        if (!done[c])
-            A[n * own + c] = A[n * c + own];
-}
-
-Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A0, const int *order, int blocked)
-{
-    Factors *f = factors_new(dag, n, true);
-    Ex *A = pool_alloc(dag->pool, (size_t)(n * n) * sizeof *A);
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j)
-            A[n * i + j] = i <= j ? A0[n * i + j] : A0[n * j + i];
-    bool done[n];
-    memset(done, 0, sizeof done);
-    for (int k = 0, size; k < n; k += size) {
-        const int left = blocked - (n - blocked < k ? k - (n - blocked) : 0);
-        size = k < n - blocked || left == 1 ? 1 : left < 3 ? left : 3;
-        for (int own = k; own < k + size; ++own) {
-            int best = order ? order[own] : -1, best_cost = 0;
-            for (int i = 0; i < n && !order; ++i) {
-                int cost = done[i] ? 0 : degree(dag, n, A, done, i);
-                if (!done[i] && (best < 0 || cost < best_cost))
-                    best = i, best_cost = cost;
+    Structure t = structure_of(z, z->n - first);
+    bool placed[t.count + 1];
+    memset(placed, 0, sizeof placed);
+    if (!match(&t))
+        return false;
+    close(&t);
+    for (int size; first < z->n; first += size) {
+        int best = -1;
+        for (int i = 0; i < t.count; ++i)
+            if (!placed[i] && (best < 0 || reach(&t, i) > reach(&t, best)))
+                best = i;
+        size = 0;
+        for (int i = 0; i < t.count; ++i)
+            if (t.reaches[t.count * best + i] && t.reaches[t.count * i + best]) {
+                placed[i] = true;
+                f->row[first + size] = t.row[i];
+                f->column[first + size++] = t.column[t.matched[i]];
             }
-            done[best] = true;
-            f->row[own] = f->column[own] = best;
-            f->block[own] = k;
-        }
-        for (int own = k; own < k + size; ++own)
-            f->pivot[own] = A[n * f->row[own] + f->row[own]];
-        f->determinant[k] = f->pivot[k];
-        if (size > 1)
-            adjugate_block(dag, n, A, f, k, size);
-        f->reciprocal[k] = ex_div(dag, ex_literal(dag, 1), f->determinant[k]);
-        if (size > 1) {
-            eliminate_block(dag, n, A, f, done, k, size);
-        } else {
-            A[n * f->row[k] + f->row[k]] = f->reciprocal[k];
-            eliminate_symmetric(dag, n, A, f, done, k);
-        }
+        add_block(z, f, first, size);
     }
+    return true;
+}
+
+/* ---- factorization -------------------------------------------------------------------------------------------- */
+
+static bool is_singular(const Dag *dag, int n, const Ex *A, const double *column_scale, const bool *usable)
+{
+    double value[n * n];
+    for (int s = 0; s < dag->samples; ++s) {
+        for (int i = 0; usable[s] && i < n * n; ++i)
+            value[i] = ex_value(dag, A[i], s) * column_scale[i % n];
+        if (usable[s] && !(linear_least_pivot(n, value) > pivot_zero))
+            return true;
+    }
+    return false;
+}
+
+Factors *linear_factor(Dag *dag, int n, const Ex *A, const double *unknown_scale, const bool *usable)
+{
+    const size_t count = (size_t)n;
+    double column_scale[n];
+    for (int j = 0; j < n; ++j)
+        column_scale[j] = 1 / unknown_scale[j];
+    if (is_singular(dag, n, A, column_scale, usable))
+        return NULL;
+    Factors *f = factors_new(dag, n, false);
+    Elimination z = {.dag = dag,
+                     .n = n,
+                     .A = pool_grow(dag->pool, (void *)A, count * count * sizeof *A, count * count * sizeof *A),
+                     .row_done = pool_alloc(dag->pool, count * sizeof *z.row_done),
+                     .column_done = pool_alloc(dag->pool, count * sizeof *z.column_done),
+                     .column_scale = column_scale,
+                     .row_scale = row_scales(dag, n, A, column_scale),
+                     .usable = usable};
+    f->constants = eliminate_constants(&z, f);
+    if (!add_blocks(&z, f, f->constants))
+        return NULL;
     for (int k = 0; k < n; ++k)
         for (int j = 0; j < n; ++j)
-            f->entry[n * k + j] = A[n * f->row[k] + f->column[j]];
+            if (k < f->constants || j < f->constants || f->block[k] != f->block[j])
+                f->entry[n * k + j] = z.A[n * f->row[k] + f->column[j]];
     return f;
-}
-
-/* Behind the block that begins with pivot `first`. */
-static int block_end(const Factors *f, int first)
-{
-    int end = first + 1;
-    while (end < f->n && f->block[end] == first)
-        ++end;
-    return end;
-}
-
-/* y[k] less what the pivots first .. end - 1, a block, take from it. */
-static Ex less_block(Dag *dag, const Factors *f, const Ex *y, int k, int first, int end)
-{
-    Ex sum = 0;
-    for (int j = first; j < end; ++j)
-        sum = ex_add(dag, sum, ex_mul(dag, f->entry[f->n * k + j], y[j]));
-    return ex_sub(dag, y[k], end - first > 1 ? ex_mul(dag, f->reciprocal[first], sum) : sum);
-}
-
-static void solve_symmetric(Dag *dag, const Factors *f, Ex *y)
-{
-    const int n = f->n;
-    for (int k = 0; k < n; ++k)
-        for (int first = 0, end; first < f->block[k]; first = end) {
-            end = block_end(f, first);
-            y[k] = less_block(dag, f, y, k, first, end);
-        }
-    for (int first = n > 0 ? f->block[n - 1] : -1; first >= 0; first = first ? f->block[first - 1] : -1) {
-        const int end = block_end(f, first);
-        const bool alone = end - first == 1;
-        Ex x[3] = {0};
-        for (int k = first; k < end; ++k) {
-            for (int j = first; j < end; ++j)
-                x[k - first] = ex_add(dag, x[k - first], ex_mul(dag, y[j], f->entry[n * k + j]));
-            for (int j = end; j < n; ++j)
-                x[k - first] = ex_sub(dag, x[k - first], ex_mul(dag, f->entry[n * k + j], y[j]));
-        }
-        for (int k = first; k < end; ++k)
-            y[k] = alone ? x[k - first] : ex_mul(dag, f->reciprocal[first], x[k - first]);
-    }
 }
 
 void linear_solve(Dag *dag, const Factors *f, const Ex *b, Ex *x)
 {
-    int n = f->n;
+    const int n = f->n;
     Ex y[n];
     for (int k = 0; k < n; ++k) {
         y[k] = b[f->row[k]];
-        for (int j = 0; j < k && !f->symmetric; ++j)
+        for (int j = 0; j < k && j < f->constants && !f->symmetric; ++j)
             y[k] = ex_sub(dag, y[k], ex_mul(dag, f->entry[n * k + j], y[j]));
     }
     if (f->symmetric)
-        solve_symmetric(dag, f, y);
-    for (int k = n - 1; k >= 0 && !f->symmetric; --k) {
-        for (int j = k + 1; j < n; ++j)
-            y[k] = ex_sub(dag, y[k], ex_mul(dag, f->entry[n * k + j], y[j]));
-        y[k] = ex_mul(dag, y[k], f->entry[n * k + k]);
+        factors_solve_symmetric(dag, f, y);
+    for (int end = f->symmetric ? 0 : n, first; end > 0; end = first) {
+        first = f->block[end - 1];
+        for (int k = first; k < end; ++k)
+            for (int j = end; j < n; ++j)
+                y[k] = ex_sub(dag, y[k], ex_mul(dag, f->entry[n * k + j], y[j]));
+        factors_solve_block(dag, f, first, end, y);
     }
     for (int k = 0; k < n; ++k)
         x[f->column[k]] = y[k];
@@ -361,79 +355,20 @@ void linear_solve(Dag *dag, const Factors *f, const Ex *b, Ex *x)
 
 void linear_solve_transposed(Dag *dag, const Factors *f, const Ex *b, Ex *x)
 {
-    int n = f->n;
+    const int n = f->n;
     Ex y[n];
-    for (int k = 0; k < n; ++k) {
+    for (int k = 0; k < n; ++k)
         y[k] = b[f->column[k]];
-        for (int j = 0; j < k; ++j)
-            y[k] = ex_sub(dag, y[k], ex_mul(dag, f->entry[n * j + k], y[j]));
-        y[k] = ex_mul(dag, y[k], f->entry[n * k + k]);
+    for (int first = 0, end; first < n; first = end) {
+        end = factors_block_end(f, first);
+        for (int k = first; k < end; ++k)
+            for (int j = 0; j < first; ++j)
+                y[k] = ex_sub(dag, y[k], ex_mul(dag, f->entry[n * j + k], y[j]));
+        factors_solve_block_transposed(dag, f, first, end, y);
     }
-    for (int k = n - 1; k >= 0; --k)
+    for (int k = f->constants - 1; k >= 0; --k)
         for (int j = k + 1; j < n; ++j)
             y[k] = ex_sub(dag, y[k], ex_mul(dag, f->entry[n * j + k], y[j]));
     for (int k = 0; k < n; ++k)
         x[f->row[k]] = y[k];
-}
-
-/* Rows scaled to 1, then eliminated with partial pivoting; b (or NULL) goes along. The product of the pivots with the
- * sign of the exchanges, 0 where one is rounding. */
-static double eliminate_numeric(int n, double *A, double *b)
-{
-    double determinant = 1;
-    for (int i = 0; i < n; ++i) {
-        double largest = 0;
-        for (int j = 0; j < n; ++j)
-            largest = fmax(largest, fabs(A[n * i + j]));
-        if (!(largest > 0))
-            return 0;
-        for (int j = 0; j < n; ++j)
-            A[n * i + j] /= largest;
-        if (b)
-            b[i] /= largest;
-    }
-    for (int k = 0; k < n; ++k) {
-        int pivot = k;
-        for (int i = k + 1; i < n; ++i)
-            if (fabs(A[n * i + k]) > fabs(A[n * pivot + k]))
-                pivot = i;
-        if (!(fabs(A[n * pivot + k]) > 1e-12))
-            return 0;
-        for (int j = 0; pivot != k && j < n; ++j) {
-            double t = A[n * k + j];
-            A[n * k + j] = A[n * pivot + j];
-            A[n * pivot + j] = t;
-        }
-        if (pivot != k && b) {
-            double t = b[k];
-            b[k] = b[pivot];
-            b[pivot] = t;
-        }
-        determinant *= pivot != k ? -A[n * k + k] : A[n * k + k];
-        for (int i = k + 1; i < n; ++i) {
-            double multiplier = A[n * i + k] / A[n * k + k];
-            for (int j = k; multiplier != 0 && j < n; ++j)
-                A[n * i + j] -= multiplier * A[n * k + j];
-            if (b)
-                b[i] -= multiplier * b[k];
-        }
-    }
-    return determinant;
-}
-
-double linear_determinant(int n, double *A)
-{
-    return eliminate_numeric(n, A, NULL);
-}
-
-bool linear_solve_numeric(int n, double *A, double *b)
-{
-    if (eliminate_numeric(n, A, b) == 0)
-        return false;
-    for (int k = n - 1; k >= 0; --k) {
-        for (int j = k + 1; j < n; ++j)
-            b[k] -= A[n * k + j] * b[j];
-        b[k] /= A[n * k + k];
-    }
-    return true;
 }

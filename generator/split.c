@@ -1,20 +1,65 @@
 /* SPDX-License-Identifier: MIT
- * Classes whose members need different pivots come apart. */
+ * Classes whose members need different pivots come apart: what is 0 or 1 in one of them stays so in its code. A class that
+ * stays together is as right, for its factorization needs no pivot to be there (linear_block.c). */
 #include "subset.h"
 
+#include <math.h>
 #include <string.h>
 
-/* Is there one pivot order for these members of a class, at the design? */
+/* J of the members at the design, rows scaled to largest entries of 1: [members][n][n]. */
+static double *design_jacobians(const Work *w)
+{
+    const size_t n = (size_t)w->n, members = (size_t)w->class->members;
+    double *J = pool_alloc(w->pool, members * n * n * sizeof *J), *row = J;
+    for (size_t m = 0; m < members; ++m)
+        for (size_t i = 0; i < n; ++i, row += n) {
+            double largest = 0;
+            for (size_t j = 0; j < n; ++j) {
+                row[j] = ex_value(w->dag, w->J[n * i + j], (int)m * w->configurations) / (j % 6 < 3 ? w->size : 1);
+                largest = fmax(largest, fabs(row[j]));
+            }
+            for (size_t j = 0; j < n; ++j)
+                row[j] /= largest > 0 ? largest : 1;
+        }
+    return J;
+}
+
+static void eliminate(int n, double *A, int row, int column, const bool *row_done)
+{
+    for (int i = 0; i < n; ++i) {
+        const double multiplier = A[n * i + column] / A[n * row + column];
+        for (int j = 0; i != row && !row_done[i] && multiplier != 0 && j < n; ++j)
+            A[n * i + j] -= multiplier * A[n * row + j];
+    }
+}
+
+/* Is there one order of pivots for these members of a class, so that what is 0 or 1 in one is so in the others? */
 static bool share_pivots(Work *w, const bool *with)
 {
-    double column_scale[w->n];
-    bool row_left[w->n], usable[w->dag->samples];
-    int rank;
-    for (int j = 0; j < w->n; ++j)
-        column_scale[j] = j % 6 < 3 ? w->size : 1;
-    for (int s = 0; s < w->dag->samples; ++s)
-        usable[s] = s % w->configurations == 0 && with[s / w->configurations];
-    return linear_factor(w->dag, w->n, w->J, column_scale, usable, &rank, row_left);
+    const double rounding = 1e-9;
+    const int n = w->n;
+    bool row_done[n], column_done[n];
+    double *J = design_jacobians(w);
+    memset(row_done, 0, sizeof row_done);
+    memset(column_done, 0, sizeof column_done);
+    for (int k = 0; k < n; ++k) {
+        int row = -1, column = -1;
+        double best = rounding;
+        for (int i = 0; i < n * n; ++i) {
+            double least = row_done[i / n] || column_done[i % n] ? 0 : 1;
+            for (int m = 0; m < w->class->members; ++m)
+                least = with[m] ? fmin(least, fabs(J[n * n * m + i])) : least;
+            if (least > best)
+                best = least, row = i / n, column = i % n;
+        }
+        if (row < 0)
+            return false;
+        row_done[row] = column_done[column] = true;
+        for (int m = 0; m < w->class->members; ++m)
+            if (with[m])
+                eliminate(n, J + n * n * m, row, column, row_done);
+    }
+    return true;
 }
 
 static const char *split_name(Pool *pool, const Sequence *sequence, const char *name)

@@ -243,26 +243,24 @@ static void make_jacobian(const Work *w, const Row *row, const int *row_of, Ex *
 
 /* ---- factorization ------------------------------------------------------------------------------------------ */
 
-/* Pivots good at all samples, else at the design: where the others are lost, scan.c has warned. */
+/* Judged at all samples, else at the design: where the others are singular, scan.c has warned. */
 static Factors *factor(Work *w)
 {
-    double column_scale[w->n];
-    bool row_left[w->n], design[w->dag->samples];
-    int rank;
+    double unknown_scale[w->n];
+    bool design[w->dag->samples];
     for (int j = 0; j < w->n; ++j)
-        column_scale[j] = j % 6 < 3 ? w->size : 1;
-    Factors *f = linear_factor(w->dag, w->n, w->J, column_scale, w->alive, &rank, row_left);
+        unknown_scale[j] = j % 6 < 3 ? w->size : 1;
+    Factors *f = linear_factor(w->dag, w->n, w->J, unknown_scale, w->alive);
     if (f)
         return f;
     for (int s = 0; s < w->dag->samples; ++s)
         design[s] = s % w->configurations == 0;
-    f = linear_factor(w->dag, w->n, w->J, column_scale, design, &rank, row_left);
+    f = linear_factor(w->dag, w->n, w->J, unknown_scale, design);
     if (f)
         return f;
     Place at = w->model->body[w->first->body[0]].at;
     diag_fail(at, "move the points or axes of its joints a little",
-              "the equations of body '%s' are too near to singular (%d of %d pivots)",
-              w->model->body[w->first->body[0]].name, rank, w->n);
+              "the equations of body '%s' are too near to singular", w->model->body[w->first->body[0]].name);
 }
 
 /* ---- blocks
@@ -325,30 +323,38 @@ static void make_predict(Work *w, Formula *formula)
     block_store(&formula->predict, relative_square(w, twist), "reach");
 }
 
-/* The factors as inputs f[...] where they vary. stored: what to write there. */
+/* A number of the factors as an input f[...] where it varies. Equal and opposite ones are kept once. */
+static Ex remembered(Work *w, Ex e, Ex *stored, int *count)
+{
+    if (w->dag->node[e].level < LEVEL_VARIABLE)
+        return e;
+    const Ex positive = w->dag->node[e].op == OP_NEG ? w->dag->node[e].arg[0] : e;
+    int slot = 0;
+    while (slot < *count && stored[slot] != positive)
+        ++slot;
+    if (slot == *count)
+        stored[(*count)++] = positive;
+    const Ex input = ex_input(w->dag, pool_print(w->pool, "f[%d]", slot), NULL);
+    return positive == e ? input : ex_neg(w->dag, input);
+}
+
+/* The factors as inputs f[...] where they vary. stored [n (n + 2)]: what to write there. */
 static Factors *factors_from_memory(Work *w, const Factors *factors, Ex *stored, int *count)
 {
     Factors *f = pool_alloc(w->pool, sizeof *f);
-    size_t entries = (size_t)(w->n * w->n);
+    const size_t n = (size_t)w->n;
     *f = *factors;
-    f->entry = pool_alloc(w->pool, entries * sizeof *f->entry);
+    f->entry = pool_alloc(w->pool, n * n * sizeof *f->entry);
+    f->reciprocal = pool_alloc(w->pool, n * sizeof *f->reciprocal);
+    f->beta = pool_alloc(w->pool, n * sizeof *f->beta);
     *count = 0;
-    for (size_t i = 0; i < entries; ++i) {
-        Ex e = factors->entry[i];
-        f->entry[i] = e;
-        if (w->dag->node[e].level < LEVEL_VARIABLE)
-            continue;
-        /* equal and opposite entries are kept once */
-        Ex positive = w->dag->node[e].op == OP_NEG ? w->dag->node[e].arg[0] : e;
-        int slot = 0;
-        while (slot < *count && stored[slot] != positive)
-            ++slot;
-        if (slot == *count)
-            stored[(*count)++] = positive;
-        f->entry[i] = ex_input(w->dag, pool_print(w->pool, "f[%d]", slot), NULL);
-        if (positive != e)
-            f->entry[i] = ex_neg(w->dag, f->entry[i]);
-    }
+    for (size_t i = 0; i < n * n; ++i)
+        f->entry[i] = remembered(w, factors->entry[i], stored, count);
+    for (size_t k = 0; k < n; ++k)
+        if (factors->beta[factors->block[k]]) {
+            f->reciprocal[k] = remembered(w, factors->reciprocal[k], stored, count);
+            f->beta[k] = remembered(w, factors->beta[k], stored, count);
+        }
     return f;
 }
 
@@ -526,7 +532,7 @@ static Motion *copy_motions(const Work *w, const Motion *motion)
 /* What both ways of recovery end with: motions, inertia, factors that are remembered, residual, multipliers. */
 static void finish(Work *w, Formula *formula, Solve solve, const Factors *factors, const Motion *motion)
 {
-    Ex *stored = pool_alloc(w->pool, (size_t)(w->n * w->n) * sizeof *stored);
+    Ex *stored = pool_alloc(w->pool, (size_t)(w->n * (w->n + 2)) * sizeof *stored);
     int count;
     Factors *remembered = factors_from_memory(w, factors, stored, &count);
     Layout *layout = &formula->layout;
@@ -598,7 +604,7 @@ static Formula *formulate_newton(Work *w, Solve solve)
     Factors *factors = factor(&found);
     Ex *q = pool_alloc(w->pool, (size_t)(7 * bodies) * sizeof *q);
     make_predict(&found, formula);
-    Ex determinant = determinant_check(&found, formula, factors, NULL);
+    Ex determinant = determinant_check(&found, formula, factors, false);
     make_step(&found, factors, &formula->solve, q);
     Motion *motion = pool_alloc(w->pool, (size_t)bodies * sizeof *motion);
     make_motion(&found, factors, motion);
@@ -645,15 +651,14 @@ static Formula *formulate_closed(Work *w, Solve solve)
 {
     Formula *formula = formula_new(w, true);
     formula->solve.scheduled = true;
-    Branches branches = {0};
     size_t bodies = (size_t)w->first->bodies;
     Work found = elsewhere(w, pool_alloc(w->pool, bodies * sizeof *found.pose));
-    if (!subset_closed(w, found.pose, &formula->solve, &branches))
+    if (!subset_closed(w, found.pose, &formula->solve))
         return NULL;
     make_rows(&found, found.pose, found.row, found.row_of);
     make_jacobian(&found, found.row, found.row_of, found.J);
     Factors *factors = factor(&found);
-    Ex determinant = determinant_check(&found, formula, factors, &branches);
+    Ex determinant = determinant_check(&found, formula, factors, true);
     Motion *motion = pool_alloc(w->pool, bodies * sizeof *motion);
     make_motion(&found, factors, motion);
     determinant_check_ahead(&found, formula, determinant, motion);

@@ -109,21 +109,13 @@ void subset_find_still(Work *w);
 /* Store no numbers any more that nobody reads because they are settled. formula: [classes] all. */
 void subsets_forget(Pool *pool, const Model *model, const Sequence *sequence, Formula *const *formula);
 
-/* Steps of a closed form with two solutions each: the roots of these squares are 0 where they meet. */
-typedef struct Branches {
-    int count;
-    Ex *square; /* [count] */
-} Branches;
-
 /* closed.c: where geometry gives the poses (c and A) of the unknowns step by step: fill them, with images of the
- * vectors found on the way, checks that they are within reach and branches, and return true. */
-bool subset_closed(Work *w, Motion *pose, Block *block, Branches *branches);
+ * vectors found on the way, checks that they are within reach, and return true. */
+bool subset_closed(Work *w, Motion *pose, Block *block);
 
-/* determinant.c: checks in `solve` of the pivots of w->J and, without branches, where poses may be on a wrong one, of
- * the guards of w->row. Returns the determinant of J relative to that at the design, as the share of it that is relied
- * on; 0: it does not vary. With the branches of a closed form it is the product of their roots where that is so, and
- * the last reciprocal in `factors` follows from it. */
-Ex determinant_check(Work *w, Formula *formula, Factors *factors, const Branches *branches);
+/* determinant.c: checks in `solve`, where poses may be on a wrong branch, of the guards of w->row. Returns
+ * the determinant of J relative to that at the design, as the share of it that is relied on; 0: it does not vary. */
+Ex determinant_check(Work *w, Formula *formula, const Factors *factors, bool closed);
 /* A check that this determinant (0: none) is not lost before `ahead` is over, the bodies moving as given [bodies]. */
 void determinant_check_ahead(Work *w, Formula *formula, Ex determinant, const Motion *motion);
 

@@ -36,6 +36,7 @@ typedef struct TapeEngine {
     TapeClass *class;
     int *member; /* [subsets] */
     bool *keeps; /* [subsets] plan_keeps() */
+    bool follows; /* are there subsets whose poses Newton's iteration finds? */
     const Tape *dynamics, *outputs, *poses, *inverse, *energy;
     const Tape *wrenches;      /* NULL: no reactions to find after the accelerations */
     const Tape *derive, *draw; /* NULL: no parameter is geometric */

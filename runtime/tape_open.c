@@ -166,8 +166,10 @@ TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve, Recovery reco
                            .piece = numbers(pool, f->model->coordinates),
                            .initial = numbers(pool, f->plan->states + f->model->fast_states)};
     engine->code.hash = f->hash;
-    for (int s = 0; s < f->sequence->subsets; ++s)
+    for (int s = 0; s < f->sequence->subsets; ++s) {
         engine->keeps[s] = plan_keeps(f->plan, s);
+        engine->follows = engine->follows || plan_follows(f->plan, s);
+    }
     for (int i = 0; i < f->model->coordinates; ++i)
         engine->piece[i] = coordinate_piece(f, i);
     for (int i = 0; i < f->plan->states + f->model->fast_states; ++i)

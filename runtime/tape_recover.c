@@ -142,12 +142,45 @@ void tape_forget(Instance *self)
     *recovered_from(self) = 0;
 }
 
+/* Follow a change of the coordinates in several pieces; one that fails is halved. *last: the last piece's start. */
+static int recover_way(Instance *self, TapeLinks *links, const double *way, int pieces, int32_t *last)
+{
+    const TapeEngine *engine = tape_of(self);
+    const int coordinates = engine->code.coordinate_count, usual = pieces;
+    const int32_t first = self->head.flip, hold = self->head.hold;
+    const double *from = tape_start(self), *x = tape_array(self, engine->x_offset);
+    int32_t now = first;
+    for (int piece = 1;;) {
+        int32_t next = 0;
+        while (next == first || next == now || next == hold)
+            ++next;
+        double *start = tape_array(self, engine->start_offset[next]);
+        const double share = (double)piece / (double)pieces;
+        for (int i = 0; i < coordinates; ++i)
+            start[i] = piece == pieces ? x[i] : from[i] + share * way[i];
+        const int status = recover_piece(self, links, tape_array(self, engine->start_offset[now]), start);
+        if (status == GIC_OK) {
+            now = *last = next;
+            if (piece == pieces)
+                return GIC_OK;
+            if (piece % 2 == 0 && pieces > usual)
+                piece /= 2, pieces /= 2;
+            ++piece;
+        } else {
+            if (!engine->follows || pieces >= GIC_SPLIT * usual)
+                return status;
+            piece = 2 * piece - 1, pieces *= 2;
+            self->head.subset = -1;
+        }
+    }
+}
+
 int tape_recover(Instance *self, const double turn[3], bool cold)
 {
     const TapeEngine *engine = tape_of(self);
     const int coordinates = engine->code.coordinate_count;
     const double *from = tape_start(self), *x = tape_array(self, engine->x_offset);
-    const int32_t first = self->head.flip, hold = self->head.hold;
+    const int32_t first = self->head.flip;
     int32_t now = first;
     TapeLinks links = engine->links;
     int pieces = 1;
@@ -172,20 +205,9 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
     }
-    for (int piece = 1; piece <= pieces; ++piece) {
-        int32_t next = 0;
-        while (next == first || next == now || next == hold)
-            ++next;
-        double *old = tape_array(self, engine->start_offset[now]);
-        double *start = tape_array(self, engine->start_offset[next]);
-        const double share = (double)piece / (double)pieces;
-        for (int i = 0; i < coordinates; ++i)
-            start[i] = piece == pieces ? x[i] : from[i] + share * way[i];
-        int status = recover_piece(self, &links, old, start);
-        if (status != GIC_OK)
-            return status;
-        now = next;
-    }
+    const int status = recover_way(self, &links, way, pieces, &now);
+    if (status != GIC_OK)
+        return status;
     memcpy(at, x, (size_t)coordinates * sizeof *at);
     memcpy(at_rate, xd, (size_t)coordinates * sizeof *at);
     memcpy(at_turn, turn, sizeof links.turn);
