@@ -163,11 +163,12 @@
 #define GIC_AMPLIFIED (R(GIC_RECOVERY_ERROR) > R(0.0) ? R(1.0) : GIC_AMPLIFICATION)
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
- * pieces in which a change of the coordinates is followed. */
+ * pieces in which a change of the coordinates is followed, into how many parts one of them may be split. */
 #define GIC_CHORDS 6
 #define GIC_PASSES 8
 #define GIC_LEAP_SQUARE R(0.25)
 #define GIC_PIECES 1000
+#define GIC_SPLIT 64
 
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
@@ -1644,31 +1645,39 @@ static int hmmwv14_recover_piece(hmmwv14 *self, hmmwv14_links *links, const gic_
     return GIC_OK;
 }
 
-/* Piece after piece of a way from start `first`, which stays that until the last one is good, for a way that fails is
- * forgotten. Leaves the last one's start in *last. */
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
+ * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
 static int hmmwv14_recover_way(hmmwv14 *self, hmmwv14_links *links, const gic_real *way, int far, int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
     int32_t now = first, next;
-    int i, piece, pieces = 1, status;
+    int i, piece = 1, pieces = 1, usual, status;
     for (i = 0; far && i < HMMWV14_COORDINATES; ++i) {
         const gic_real parts = GIC_FABS(way[i]) / hmmwv14_piece[i];
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
     }
-    for (piece = 1;; ++piece) {
+    for (usual = pieces;;) {
         for (next = 0; next == first || next == now || next == hold;)
             ++next;
         memcpy(self->start[next], self->x, HMMWV14_COORDINATES * sizeof *self->x);
         for (i = 0; piece < pieces && i < HMMWV14_COORDINATES; ++i)
             self->start[next][i] = self->start[first][i] + (gic_real)piece / (gic_real)pieces * way[i];
         status = hmmwv14_recover_piece(self, links, self->start[now], self->start[next]);
-        if (status != GIC_OK)
-            return status;
-        now = *last = next;
-        if (piece >= pieces)
-            return GIC_OK;
+        if (status == GIC_OK) {
+            now = *last = next;
+            if (piece >= pieces)
+                return GIC_OK;
+            if (piece % 2 == 0 && pieces > usual)
+                piece /= 2, pieces /= 2;
+            ++piece;
+        } else {
+            if (HMMWV14_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
+                return status;
+            piece = 2 * piece - 1, pieces *= 2;
+            self->head.subset = -1;
+        }
     }
 }
 

@@ -22,14 +22,14 @@
  * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
- *   subset 'rod' (1 times, closed form)                       16        43       2      1         2
+ *   subset 'rod' (1 times, closed form)                        4        10       0      0         2
  *   forces and equations of motion                             1         2       1      0         0
- *   all together                                              17        45       3      1         2
+ *   all together                                               5        12       1      0         2
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0xd2fc7055
+#if PENDULUM_H != 0x4c99014d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -112,11 +112,12 @@
 #define GIC_AMPLIFIED (R(GIC_RECOVERY_ERROR) > R(0.0) ? R(1.0) : GIC_AMPLIFICATION)
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
- * pieces in which a change of the coordinates is followed. */
+ * pieces in which a change of the coordinates is followed, into how many parts one of them may be split. */
 #define GIC_CHORDS 6
 #define GIC_PASSES 8
 #define GIC_LEAP_SQUARE R(0.25)
 #define GIC_PIECES 1000
+#define GIC_SPLIT 64
 
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
@@ -144,54 +145,29 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
 {
     const gic_real *const x = links->x;
     const gic_real *const rate = links->rate;
-    const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = GIC_COS(x[0]);
+        motion[3] = t1;
+        motion[11] = t1;
         const gic_real t2 = GIC_SIN(x[0]);
-        const gic_real t3 = t1 * t1 + t2 * t2;
-        if (!(t3 > R(0.0)))
-            return GIC_ERROR_NEWTON;
-        if (!(t3 - t3 * R(0.0001) > R(0.0)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t4 = GIC_SQRT(t3);
-        const gic_real t5 = R(1.0) / t3;
-        const gic_real t6 = t5 * (t2 * t4);
-        motion[9] = t6;
-        const gic_real t7 = t5 * (t1 * t4);
-        motion[3] = t7;
-        motion[11] = t7;
-        const gic_real t8 = t6 * R(-0.5);
-        const gic_real t9 = -t6;
-        motion[5] = t9;
-        const gic_real t10 = t2 * t6 + t1 * t7;
-        const gic_real t11 = t7 * R(-0.5);
-        const gic_real t12 = R(1.0) / -t10;
-        const gic_real t13 = t10 * t12;
-        motion[25] = t13;
-        const gic_real t14 = rate[0] * t13;
-        motion[13] = t14;
-        const gic_real t15 = t13 * t8;
-        inertia[15] = t15;
-        const gic_real t16 = t13 * t11;
-        const gic_real t17 = t13 * R(0.25);
-        if (!(R(0.5) * t10 - GIC_FABS(t14) * ahead[0] > R(0.004)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t18 = t6 * t14;
-        const gic_real t19 = t7 * t14;
-        const gic_real t20 = t8 * t15 + (t17 + t11 * t16);
-        inertia[19] = t20;
-        const gic_real t21 = t15 * t15 + (t13 * t17 + t16 * t16);
-        inertia[22] = t21;
-        const gic_real t22 = rate[0] * (t1 * t18 - t2 * t19);
-        const gic_real t23 = -t16;
-        inertia[17] = t23;
-        const gic_real t24 = t22 + t22 + (t1 * (t14 * t18) - t2 * (t14 * t19));
-        const gic_real t25 = t12 * t24;
-        motion[19] = t25;
-        const gic_real t26 = t13 * (R(0.25) * t25) + t16 * (t14 * (t14 * t8) + t11 * t25);
-        const gic_real t27 = t15 * (t8 * t25 - t14 * (t14 * t11)) + t26;
-        inertia[21] = t27;
+        motion[9] = t2;
+        const gic_real t3 = t1 * R(-0.5);
+        inertia[17] = t3;
+        const gic_real t4 = -rate[0];
+        motion[13] = t4;
+        const gic_real t5 = t2 * R(-0.5);
+        const gic_real t6 = -t2;
+        motion[5] = t6;
+        const gic_real t7 = t5 * (rate[0] * (rate[0] * t3)) - t3 * (rate[0] * (rate[0] * t5));
+        inertia[21] = t7;
+        const gic_real t8 = t3 * t3 + t5 * t5;
+        const gic_real t9 = -t5;
+        inertia[15] = t9;
+        const gic_real t10 = R(-0.25) - t8;
+        inertia[19] = t10;
+        const gic_real t11 = R(0.25) + t8;
+        inertia[22] = t11;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -244,31 +220,39 @@ static int pendulum_recover_piece(pendulum *self, pendulum_links *links, const g
     return GIC_OK;
 }
 
-/* Piece after piece of a way from start `first`, which stays that until the last one is good, for a way that fails is
- * forgotten. Leaves the last one's start in *last. */
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
+ * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
 static int pendulum_recover_way(pendulum *self, pendulum_links *links, const gic_real *way, int far, int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
     int32_t now = first, next;
-    int i, piece, pieces = 1, status;
+    int i, piece = 1, pieces = 1, usual, status;
     for (i = 0; far && i < PENDULUM_COORDINATES; ++i) {
         const gic_real parts = GIC_FABS(way[i]) / pendulum_piece[i];
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
     }
-    for (piece = 1;; ++piece) {
+    for (usual = pieces;;) {
         for (next = 0; next == first || next == now || next == hold;)
             ++next;
         memcpy(self->start[next], self->x, PENDULUM_COORDINATES * sizeof *self->x);
         for (i = 0; piece < pieces && i < PENDULUM_COORDINATES; ++i)
             self->start[next][i] = self->start[first][i] + (gic_real)piece / (gic_real)pieces * way[i];
         status = pendulum_recover_piece(self, links, self->start[now], self->start[next]);
-        if (status != GIC_OK)
-            return status;
-        now = *last = next;
-        if (piece >= pieces)
-            return GIC_OK;
+        if (status == GIC_OK) {
+            now = *last = next;
+            if (piece >= pieces)
+                return GIC_OK;
+            if (piece % 2 == 0 && pieces > usual)
+                piece /= 2, pieces /= 2;
+            ++piece;
+        } else {
+            if (PENDULUM_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
+                return status;
+            piece = 2 * piece - 1, pieces *= 2;
+            self->head.subset = -1;
+        }
     }
 }
 
@@ -766,13 +750,12 @@ static GIC_COLD int pendulum_inverse(const pendulum *self, gic_real time, const 
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = m[9] * R(-0.5);
-        const gic_real t2 = m[3] * R(-0.5);
-        const gic_real t3 = m[19] * t1 - m[13] * (m[13] * t2) + acc[0] * (m[25] * t1);
-        const gic_real t4 = R(9.81) - (m[13] * (m[13] * t1) + m[19] * t2) - acc[0] * (m[25] * t2);
-        const gic_real t5 = R(0.25) * (m[19] + m[25] * acc[0]) + (t1 * t3 - t2 * t4);
-        const gic_real t6 = m[25] * t5;
-        tau[0] = t6;
+        const gic_real t1 = m[3] * R(-0.5);
+        const gic_real t2 = m[9] * R(-0.5);
+        const gic_real t3 = t1 * (R(9.81) - m[13] * (m[13] * t2) + acc[0] * t1);
+        const gic_real t4 = t3 + t2 * (m[13] * (m[13] * t1) + acc[0] * t2);
+        const gic_real t5 = acc[0] * R(0.25) + t4;
+        tau[0] = t5;
     }
     return GIC_OK;
 }
@@ -786,21 +769,19 @@ static GIC_COLD int pendulum_energy(const pendulum *self, gic_real time, const g
     const gic_real *const rate = self->rate;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
     {
-        const gic_real t1 = m[9] * R(-0.5);
+        const gic_real t1 = m[3] * R(-0.5);
         const gic_real t2 = m[13] * t1;
-        const gic_real t3 = m[3] * R(-0.5);
+        const gic_real t3 = m[9] * R(-0.5);
         const gic_real t4 = m[13] * t3;
-        const gic_real t5 = m[19] * t1 - m[13] * t4 + rate[1] * (m[25] * t1);
-        const gic_real t6 = R(9.81) - (m[13] * t2 + m[19] * t3) - rate[1] * (m[25] * t3);
-        const gic_real t7 = t2 * t5 - t4 * t6;
-        const gic_real t8 = m[13] * (R(0.25) * (m[19] + m[25] * rate[1]));
-        const gic_real t9 = t7 + t8;
-        const gic_real t10 = GIC_FABS(t8) + GIC_FABS(t7);
-        const gic_real t11 = rate[1];
-        energy[0] = t9;
+        const gic_real t5 = t2 * (R(9.81) - m[13] * t4 + rate[1] * t1) + t4 * (m[13] * t2 + rate[1] * t3);
+        const gic_real t6 = m[13] * (rate[1] * R(0.25));
+        const gic_real t7 = -(t5 + t6);
+        const gic_real t8 = GIC_FABS(-t6) + GIC_FABS(-t5);
+        const gic_real t9 = rate[1];
+        energy[0] = t7;
         energy[1] = R(0.0);
-        energy[2] = t10;
-        acc[0] = t11;
+        energy[2] = t8;
+        acc[0] = t9;
     }
     return GIC_OK;
 }

@@ -40,15 +40,15 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'carriage' (1 times, closed form)                   1         0       0      0         0
- *   subset 'arm' (1 times, closed form)                       42        70       2      1         0
+ *   subset 'arm' (1 times, closed form)                       33        62       1      1         0
  *   subset 'wheel' (1 times, closed form)                    235       343       3      2         0
  *   forces and equations of motion                            39        40       1      0         1
- *   all together                                             317       453       6      3         1
+ *   all together                                             308       445       5      3         1
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #include "quarter_car.h"
 
-#if QUARTER_CAR_H != 0x1e5edebd
+#if QUARTER_CAR_H != 0xcfc11b41
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -131,11 +131,12 @@
 #define GIC_AMPLIFIED (R(GIC_RECOVERY_ERROR) > R(0.0) ? R(1.0) : GIC_AMPLIFICATION)
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
- * pieces in which a change of the coordinates is followed. */
+ * pieces in which a change of the coordinates is followed, into how many parts one of them may be split. */
 #define GIC_CHORDS 6
 #define GIC_PASSES 8
 #define GIC_LEAP_SQUARE R(0.25)
 #define GIC_PIECES 1000
+#define GIC_SPLIT 64
 
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
@@ -206,74 +207,67 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = R(-0.015515000000000057) + m0[2];
+        const gic_real t1 = R(0.5) * (R(0.1582643473416399) - x[0] * x[0]) - R(0.010110666875399996);
         const gic_real t2 = R(-0.21300000000000008) + m0[2];
         motion[2] = t2;
-        const gic_real t3 = rate[1];
+        const gic_real t3 = m0[17];
         motion[17] = t3;
-        const gic_real t4 = t1 - t2;
-        const gic_real t5 = R(0.5) * (t4 * t4 + (R(0.11926402211663992) - x[0] * x[0])) - R(0.010110666875399996);
-        const gic_real t6 = R(-0.04785416235599995) - t4 * R(-0.04660899999999993);
-        const gic_real t7 = R(0.009447271427999983) + t4 * R(0.23609299999999983);
-        const gic_real t8 = t6 * t6 + t7 * t7;
-        const gic_real t9 = t8 - t5 * t5;
-        if (!(t9 > R(0.0)))
+        const gic_real t4 = R(0.004637870464427621) - t1 * t1;
+        if (!(t4 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t9 - t8 * R(0.0001) > R(0.0)))
+        if (!(t4 - R(4.6378704644276215e-07) > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t10 = GIC_SQRT(t9);
-        const gic_real t11 = R(1.0) / t8;
-        const gic_real t12 = t11 * (t6 * t10 + t7 * t5);
-        const gic_real t13 = t11 * (t6 * t5 - t7 * t10);
-        const gic_real t14 = R(0.04660899999999993) * t12 + R(-0.23609299999999983) * t13;
-        const gic_real t15 = R(0.23609299999999983) * t12 + R(0.04660899999999993) * t13;
-        const gic_real t16 = R(0.23920559337529682) * t13 + R(0.9709689408513393) * t12;
-        motion[10] = t16;
-        const gic_real t17 = R(-0.9709689408513391) * t13 + R(0.23920559337529687) * t12;
-        motion[11] = t17;
-        const gic_real t18 = R(-0.9709689408513393) * t13 + R(0.23920559337529682) * t12;
-        motion[7] = t18;
-        const gic_real t19 = R(-0.23920559337529687) * t13 + R(-0.9709689408513391) * t12;
-        motion[8] = t19;
-        const gic_real t20 = R(-0.20269199999999993) + t14;
-        const gic_real t21 = t2 - t1 + t15;
-        const gic_real t22 = R(3.0379110359107786e-06) * t17 + R(0.24689200985615367) * t16;
-        const gic_real t23 = R(3.0379110359107786e-06) * t19 + R(0.24689200985615367) * t18;
-        const gic_real t24 = t14 * t21 - t15 * t20;
-        const gic_real t25 = R(0.307086) + t23;
-        const gic_real t26 = R(1.0) / t24;
-        const gic_real t27 = R(23.965) * t25;
-        inertia[25] = t27;
-        const gic_real t28 = x[0] * t26;
-        motion[24] = t28;
-        const gic_real t29 = rate[0] * t28;
-        motion[12] = t29;
-        const gic_real t30 = t28 * t22;
-        const gic_real t31 = t28 * t23;
-        const gic_real t32 = R(0.4469) * t28;
-        if (!(R(-8.917091066652832) * t24 - ahead[0] * GIC_FABS(t29) > R(0.004)))
+        const gic_real t5 = GIC_SQRT(t4);
+        const gic_real t6 = R(0.05607209753299996) * t5 + R(0.038649583990999964) * t1;
+        const gic_real t7 = R(0.05607209753299996) * t1 - R(0.038649583990999964) * t5;
+        const gic_real t8 = t6 * R(50.90547521989428) + t7 * R(10.049655409199131);
+        const gic_real t9 = t6 * R(-10.049655409199131) + t7 * R(50.90547521989428);
+        const gic_real t10 = t7 * R(51.57660077184113) + t6 * R(209.3566321652691);
+        motion[7] = t10;
+        const gic_real t11 = t7 * R(-209.35663216526908) + t6 * R(51.576600771841136);
+        motion[8] = t11;
+        const gic_real t12 = t7 * R(209.3566321652691) + t6 * R(-51.57660077184113);
+        motion[10] = t12;
+        const gic_real t13 = t7 * R(51.576600771841136) + t6 * R(209.35663216526908);
+        motion[11] = t13;
+        const gic_real t14 = t8 + R(-0.20269199999999993);
+        const gic_real t15 = R(-0.19748500000000002) + t9;
+        const gic_real t16 = t11 * R(3.0379110359107786e-06) + t10 * R(0.24689200985615367);
+        const gic_real t17 = t8 * t15 - t9 * t14;
+        const gic_real t18 = t13 * R(3.0379110359107786e-06) + t12 * R(0.24689200985615367);
+        const gic_real t19 = R(0.307086) + t16;
+        const gic_real t20 = R(1.0) / t17;
+        const gic_real t21 = R(23.965) * t19;
+        inertia[25] = t21;
+        const gic_real t22 = x[0] * t20;
+        motion[24] = t22;
+        const gic_real t23 = rate[0] * t22;
+        motion[12] = t23;
+        const gic_real t24 = t18 * t22;
+        const gic_real t25 = t16 * t22;
+        const gic_real t26 = R(0.4469) * t22;
+        if (!(R(-8.91709106665283) * t17 - ahead[0] * GIC_FABS(t23) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t33 = t15 * t29;
-        const gic_real t34 = t14 * t29;
-        const gic_real t35 = R(23.965) * t30;
-        const gic_real t36 = R(23.965) * t31;
-        inertia[17] = t36;
-        inertia[30] = t36;
-        const gic_real t37 = t3 - m0[17] + t34;
-        const gic_real t38 = t25 * t36 + (t32 + (t2 + t22) * t35);
-        inertia[18] = t38;
-        const gic_real t39 = t30 * t35 + (t28 * t32 + t31 * t36);
-        inertia[29] = t39;
-        const gic_real t40 = -t35;
-        inertia[16] = t40;
-        const gic_real t41 = rate[0] * rate[0] - t33 * t33 - t37 * t37 + (t21 * (t29 * t33) + t20 * (t29 * t34));
-        const gic_real t42 = t26 * t41;
-        motion[18] = t42;
-        const gic_real t43 = R(23.965) * (t42 * t23 - t29 * (t29 * t22));
-        inertia[28] = t43;
-        const gic_real t44 = R(23.965) * (t29 * (t29 * t23) + t42 * t22) * t30;
-        const gic_real t45 = t44 + (t28 * (R(0.4469) * t42) + t43 * t31);
-        inertia[21] = t45;
+        const gic_real t27 = t8 * t23;
+        const gic_real t28 = t9 * t23;
+        const gic_real t29 = R(23.965) * t24;
+        const gic_real t30 = R(23.965) * t25;
+        inertia[17] = t30;
+        inertia[30] = t30;
+        const gic_real t31 = rate[0] * rate[0] - t27 * t27 - t28 * t28 + (t15 * (t23 * t28) + t14 * (t23 * t27));
+        const gic_real t32 = t19 * t30 + (t26 + (t2 + t18) * t29);
+        inertia[18] = t32;
+        const gic_real t33 = t24 * t29 + (t22 * t26 + t25 * t30);
+        inertia[29] = t33;
+        const gic_real t34 = -t29;
+        inertia[16] = t34;
+        const gic_real t35 = t20 * t31;
+        motion[18] = t35;
+        const gic_real t36 = R(23.965) * (t16 * t35 - t23 * (t18 * t23));
+        inertia[28] = t36;
+        const gic_real t37 = R(23.965) * (t23 * (t16 * t23) + t18 * t35) * t24;
+        const gic_real t38 = t37 + (t22 * (R(0.4469) * t35) + t36 * t25);
+        inertia[21] = t38;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -583,7 +577,7 @@ static GIC_COLD gic_real quarter_car_residual_wheel(const gic_real *GIC_RESTRICT
 
 /* Change of each coordinate that is followed in one piece: no body turns by more than about a tenth of a radian. */
 static const gic_real quarter_car_piece[QUARTER_CAR_COORDINATE_ROOM] = {
-    R(0.025954049989094174), /* bounce */
+    R(0.03415212300824065), /* bounce */
     R(0.016206628983775267), /* spring */
 };
 
@@ -643,31 +637,39 @@ static int quarter_car_recover_piece(quarter_car *self, quarter_car_links *links
     return GIC_OK;
 }
 
-/* Piece after piece of a way from start `first`, which stays that until the last one is good, for a way that fails is
- * forgotten. Leaves the last one's start in *last. */
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
+ * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
 static int quarter_car_recover_way(quarter_car *self, quarter_car_links *links, const gic_real *way, int far, int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
     int32_t now = first, next;
-    int i, piece, pieces = 1, status;
+    int i, piece = 1, pieces = 1, usual, status;
     for (i = 0; far && i < QUARTER_CAR_COORDINATES; ++i) {
         const gic_real parts = GIC_FABS(way[i]) / quarter_car_piece[i];
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
     }
-    for (piece = 1;; ++piece) {
+    for (usual = pieces;;) {
         for (next = 0; next == first || next == now || next == hold;)
             ++next;
         memcpy(self->start[next], self->x, QUARTER_CAR_COORDINATES * sizeof *self->x);
         for (i = 0; piece < pieces && i < QUARTER_CAR_COORDINATES; ++i)
             self->start[next][i] = self->start[first][i] + (gic_real)piece / (gic_real)pieces * way[i];
         status = quarter_car_recover_piece(self, links, self->start[now], self->start[next]);
-        if (status != GIC_OK)
-            return status;
-        now = *last = next;
-        if (piece >= pieces)
-            return GIC_OK;
+        if (status == GIC_OK) {
+            now = *last = next;
+            if (piece >= pieces)
+                return GIC_OK;
+            if (piece % 2 == 0 && pieces > usual)
+                piece /= 2, pieces /= 2;
+            ++piece;
+        } else {
+            if (QUARTER_CAR_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
+                return status;
+            piece = 2 * piece - 1, pieces *= 2;
+            self->head.subset = -1;
+        }
     }
 }
 

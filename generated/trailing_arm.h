@@ -61,15 +61,15 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      13        25       0      0         0
- *   subset 'lca_f_l' (2 times, closed form)                   62       118       2      1         2
- *   subset 'wheel_f_l' (2 times, closed form)                306       423       3      2         0
- *   subset 'lca_f_l_2' (2 times, closed form)                 77       123       2      1         2
- *   forces and equations of motion                           760       754      10      4         4
- *   all together                                            1663      2107      24     12        12
+ *   subset 'lca_f_l' (2 times, closed form)                   50        78       0      0         2
+ *   subset 'wheel_f_l' (2 times, closed form)                304       421       3      2         0
+ *   subset 'lca_f_l_2' (2 times, closed form)                 64        83       0      0         2
+ *   forces and equations of motion                           761       750      10      4         4
+ *   all together                                            1610      1939      16      8        12
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H
-#define TRAILING_ARM_H 0x87e86f6b
+#define TRAILING_ARM_H 0x7d73270b
 
 #include "gic_runtime.h"
 

@@ -300,6 +300,32 @@ static void add_triad(const Closed *z, Hold *hold, const Connection *tie, int en
         memcpy(hold->known[1], tie->across, sizeof tie->across);
 }
 
+/* The rotation of a body that a hinge holds and a coordinate turns: e and f are the directions that tell the angle. */
+static void turn_by_angle(Closed *z, Hold *hold, const Connection *angle, int end)
+{
+    Dag *dag = z->dag;
+    const Fixture *fixture = &angle->fixture;
+    const Ex turn = ex_sub(dag, z->w->x[angle->dep], fixture->offset);
+    const Ex c = ex_op(dag, OP_COS, turn, 0, 0), s = ex_op(dag, OP_SIN, turn, 0, 0);
+    Ex axis[2][3], f2[3], e[3][3], f[3][3];
+    for (int i = 0; i < 2; ++i)
+        subset_hinge_axis(z->w, angle, i, axis[i]);
+    ex_cross(dag, axis[1], fixture->side[0][1], f2);
+    const Ex *first[3] = {axis[0], fixture->side[0][0], fixture->side[1][0]};
+    const Ex *second[3] = {axis[1], fixture->side[0][1], f2};
+    Ex(*const known)[3] = end ? e : f;
+    for (int i = 0; i < 3; ++i) {
+        axis_at(z, angle, 1 - end, end ? first[i] : second[i], known[i]);
+        memcpy(hold->own[i], end ? second[i] : first[i], sizeof hold->own[i]);
+    }
+    /* f1 = c e1 + s e2, f2 = c e2 - s e1, and back */
+    const Ex across = end ? s : ex_neg(dag, s);
+    memcpy(hold->known[0], known[0], sizeof hold->known[0]);
+    combine(dag, 2, (Ex[]){c, across}, (const Ex *[]){known[1], known[2]}, hold->known[1]);
+    combine(dag, 2, (Ex[]){c, ex_neg(dag, across)}, (const Ex *[]){known[2], known[1]}, hold->known[2]);
+    hold->triad = hold->turned = true;
+}
+
 /* Everything that joints to resolved bodies say at once. */
 static void find_held(Closed *z, int body, Hold *hold)
 {
@@ -308,7 +334,9 @@ static void find_held(Closed *z, int body, Hold *hold)
         int end = end_at(tie, body), parts = parts_of(z->w, tie);
         if (end < 0 || !is_resolved(z, tie->end[1 - end]))
             continue;
-        if (parts & PART_PARALLEL && (!hold->triad || parts & PART_LOCK))
+        if (tie->is_coordinate && !hold->turned && subset_is_hinged(z->w, tie))
+            turn_by_angle(z, hold, tie, end);
+        if (parts & PART_PARALLEL && !hold->turned && (!hold->triad || parts & PART_LOCK))
             add_triad(z, hold, tie, end);
         hold->turned = hold->turned || parts & PART_LOCK;
         if (!(parts & PART_POINT))

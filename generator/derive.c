@@ -23,28 +23,37 @@ const Block *derive_block(Pool *pool, const Plan *plan)
     return block;
 }
 
-void body_drawn(const Plan *plan, int body, Ex c[3], double p[4])
+/* Where a body's reference point is drawn. */
+static void reference_drawn(const Plan *plan, int body, Ex out[3])
 {
     const Model *model = plan->model;
-    const Body *base = &model->drawn[BODY_BASE], *own = &model->drawn[body];
     Dag *dag = model->tuning->dag;
     double A[9];
     Ex turn[9], origin[3], offset[3];
-    mat_from_euler(own->euler, A);
+    mat_from_euler(model->drawn[body].euler, A);
     for (int i = 0; i < 9; ++i)
         turn[i] = ex_literal(dag, A[i]);
     for (int i = 0; i < 3; ++i)
         origin[i] = tuned_or_fixed(model, &plan->origin[body][i]);
     ex_apply(dag, turn, origin, offset);
-    for (int i = 0; i < 3; ++i) {
-        Ex place = ex_sub(dag, tuned_or_fixed(model, &own->position[i]), tuned_or_fixed(model, &base->position[i]));
-        offset[i] = ex_add(dag, place, offset[i]);
-    }
-    mat_from_euler(base->euler, A);
+    for (int i = 0; i < 3; ++i)
+        out[i] = ex_add(dag, tuned_or_fixed(model, &model->drawn[body].position[i]), offset[i]);
+}
+
+void body_drawn(const Plan *plan, int anchor, int body, Ex c[3], double p[4])
+{
+    const Model *model = plan->model;
+    Dag *dag = model->tuning->dag;
+    double A[9];
+    Ex turn[9], own[3], from[3];
+    reference_drawn(plan, body, own);
+    reference_drawn(plan, anchor, from);
+    ex_sub3(dag, own, from, own);
+    mat_from_euler(model->drawn[anchor].euler, A);
     for (int i = 0; i < 9; ++i)
         turn[i] = ex_literal(dag, A[i]);
-    ex_apply_transposed(dag, turn, offset, c);
-    euler_relative(base->euler, own->euler, p);
+    ex_apply_transposed(dag, turn, own, c);
+    euler_relative(model->drawn[anchor].euler, model->drawn[body].euler, p);
 }
 
 /* Only what follows parameters. */
@@ -73,7 +82,7 @@ const Block *draw_block(Pool *pool, const Plan *plan)
         for (int b = 0; plan_follows(plan, s) && b < subset->bodies; ++b) {
             Ex c[3];
             double p[4];
-            body_drawn(plan, subset->body[b], c, p);
+            body_drawn(plan, subset_anchor(model, plan->sequence, s), subset->body[b], c, p);
             for (int i = 0; i < 3; ++i)
                 store_tuned(block, c[i], "self->start[0]", plan->start_offset[s] + plan->stride[s] * (7 * b + i));
         }

@@ -30,33 +30,6 @@ static Ex relative_determinant(Work *w, const Factors *factors)
     return ex_mul(dag, ex_constant(dag, scale), determinant);
 }
 
-static bool same_bodies(const Connection *a, const Connection *b, bool crossed)
-{
-    return !memcmp(&a->end[0], &b->end[crossed], sizeof a->end[0]) &&
-           !memcmp(&a->end[1], &b->end[!crossed], sizeof a->end[1]);
-}
-
-/* Does a hinge about this angle's own axis join its bodies? Then the direction that tells the angle stays across the
- * axis, the guard never gets smaller than at the design, and a closed form can't have left its branch. */
-static bool angle_is_hinged(const Work *w, const Connection *angle)
-{
-    for (int i = 0; i < w->connections; ++i) {
-        const Connection *tie = &w->connection[i];
-        if (tie->is_coordinate || !(joint_parts[w->model->joint[tie->index].type] & PART_PARALLEL))
-            continue;
-        for (int crossed = 0; crossed < 2; ++crossed)
-            if (same_bodies(angle, tie, crossed)) {
-                Ex opposite[3];
-                const Ex *axis = tie->fixture.axis[crossed];
-                ex_scale3(w->dag, ex_literal(w->dag, -1), axis, opposite);
-                if (!memcmp(angle->fixture.axis[0], axis, sizeof opposite) ||
-                    !memcmp(angle->fixture.axis[0], opposite, sizeof opposite))
-                    return true;
-            }
-    }
-    return false;
-}
-
 /* Is this the only joint of its bodies that keeps axes parallel? Then a closed form takes directions from it. */
 static bool joint_gives_directions(const Work *w, const Connection *tie)
 {
@@ -79,11 +52,22 @@ Ex determinant_check(Work *w, Formula *formula, const Factors *factors, bool clo
     for (int r = 0; r < w->n; ++r) {
         const Connection *tie = &w->connection[w->row_of[r]];
         if (w->row[r].guard &&
-            !(closed && (tie->is_coordinate ? angle_is_hinged : joint_gives_directions)(w, tie)))
+            !(closed && (tie->is_coordinate ? subset_is_hinged : joint_gives_directions)(w, tie)))
             block_check(&formula->solve, w->row[r].guard, false, 0, "GIC_ERROR_SINGULAR");
     }
     const Ex determinant = relative_determinant(w, factors);
     return dag->node[determinant].level == LEVEL_VARIABLE ? ex_mul(dag, ex_literal(dag, reserve), determinant) : 0;
+}
+
+/* A body that carries all others: a rotation that they have in common brings none of them nearer to a singular
+ * configuration. NULL: the base, or the subset's frame. */
+static const Motion *carrier_of(const Work *w)
+{
+    for (int i = 0; i < w->connections; ++i)
+        for (int end = 0; end < 2; ++end)
+            if (w->connection[i].end[end].unknown < 0 && w->connection[i].end[end].known < 0)
+                return NULL;
+    return w->anchored ? NULL : &w->known[0];
 }
 
 /* A step that passes the place would see the coordinates turn back there, and miss that the bodies go on, into the
@@ -94,10 +78,12 @@ void determinant_check_ahead(Work *w, Formula *formula, Ex determinant, const Mo
     Ex speed = 0;
     if (!determinant)
         return;
+    const Motion *carrier = carrier_of(w);
     for (int b = 0; b < w->first->bodies; ++b) {
         Ex turning = 0, gliding = 0;
         for (int i = 0; i < 3; ++i) {
-            turning = ex_add(dag, turning, ex_op(dag, OP_ABS, motion[b].omega[i], 0, 0));
+            const Ex relative = carrier ? ex_sub(dag, motion[b].omega[i], carrier->omega[i]) : motion[b].omega[i];
+            turning = ex_add(dag, turning, ex_op(dag, OP_ABS, relative, 0, 0));
             gliding = ex_add(dag, gliding, ex_op(dag, OP_ABS, motion[b].velocity[i], 0, 0));
         }
         speed = ex_add(dag, speed, turning ? turning : ex_mul(dag, ex_literal(dag, 1 / w->size), gliding));

@@ -265,6 +265,10 @@ Ex *motion_number(Motion *motion, int place);
 /* The same at rest: position and rotation alone. */
 void motion_input_pose(Dag *dag, Motion *motion, const char *array, int offset);
 
+/* The motion of a body known relative to another one, the anchor, whose S has the same coordinates. */
+void motion_compose(Dag *dag, const Motion *anchor, const Motion *relative, Motion *out);
+
+/* A vector that turns with a body: v = A s. */
 void motion_image(Dag *dag, Motion *motion, const Ex s[3], const Ex v[3]);
 /* In place of A s, for a direction s across an axis that never turns, another one across it. No point is there. */
 void motion_side(Dag *dag, Motion *motion, const Ex s[3], const Ex v[3]);
@@ -329,6 +333,8 @@ typedef struct Sampling {
 
 Sampling *sampling_new(Pool *pool, const Model *model, const Sequence *sequence, const double (*origin)[3]);
 double sampling_coordinate(const Sampling *sampling, const Model *model, int step, int configuration, int coordinate);
+/* Design pose of a body's reference point relative to another body's, or to the base: place and Euler parameters. */
+void sampling_design(const Sampling *sampling, const Model *model, int anchor, int body, double q[7]);
 double *sampling_pose(const Sampling *sampling, int step, int configuration, int body);
 
 /* ---- block.c: straight-line code before it is text ------------------------------------------------------------ */

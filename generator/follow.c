@@ -92,22 +92,33 @@ bool subset_converge(Work *w, double *q, int s, const double *slack)
     return false;
 }
 
-/* Design poses of a member's bodies relative to the base, as they stand in the model. */
+/* Design poses of a member's bodies in the subset's frame, as they stand in the model. */
 static void design_poses(const Work *w, const Sampling *sampling, const Subset *member, double *q)
 {
-    for (int b = 0; b < member->bodies; ++b, q += 7) {
-        memcpy(q, sampling_pose(sampling, 0, 0, member->body[b]), 3 * sizeof *q);
-        euler_relative(w->model->body[BODY_BASE].euler, w->model->body[member->body[b]].euler, q + 3);
-    }
+    const int anchor = w->anchored ? member->known[0] : BODY_BASE;
+    for (int b = 0; b < member->bodies; ++b, q += 7)
+        sampling_design(sampling, w->model, anchor, member->body[b], q);
 }
 
 static void store_poses(Work *w, Sampling *sampling, const Subset *member, int s, int step)
 {
     for (int b = 0; b < member->bodies; ++b) {
         double *pose = sampling_pose(sampling, step, s % w->configurations, member->body[b]);
-        for (int i = 0; i < 12; ++i)
-            pose[i] = ex_value(w->dag, i < 3 ? w->pose[b].c[i] : w->pose[b].A[i - 3], s);
+        subset_pose_in_base(w, b, s, pose);
     }
+}
+
+/* The unit velocity that a coordinate of the member gives a known: numbers of `sampling`, or zeros. */
+static const double *unit_velocity(const Work *w, const Sampling *sampling, const Subset *member, int known, int j,
+                                   int s)
+{
+    static const double zero[6];
+    const int body = member->known[known];
+    const Subset *own = &w->sequence->subset[w->sequence->body_subset[body]];
+    for (int k = 0; k < own->deps; ++k)
+        if (own->dep[k] == member->dep[j])
+            return sampling->S[body] + (s % w->configurations * own->deps + k) * 6;
+    return zero;
 }
 
 /* S of sample s, and how far the coordinates swing the bodies. */
@@ -118,15 +129,12 @@ static void store_unit_velocities(Work *w, Sampling *sampling, const Subset *mem
         for (int r = 0; r < w->n; ++r) {
             const Connection *tie = &w->connection[w->row_of[r]];
             b[r] = tie->is_coordinate && tie->dep == j ? -ex_value(w->dag, w->row[r].dual, s) : 0;
-            for (int end = 0; end < 2; ++end) {
+            for (int end = 0; end < 2 && !w->anchored; ++end) {
                 if (tie->end[end].known < 0)
                     continue;
-                int known = member->known[tie->end[end].known];
-                const Subset *own = &w->sequence->subset[w->sequence->body_subset[known]];
-                for (int k = 0; k < own->deps; ++k)
-                    for (int i = 0; own->dep[k] == member->dep[j] && i < 6; ++i)
-                        b[r] -= ex_value(w->dag, w->row[r].J[end][i], s) *
-                                sampling->S[known][(s % w->configurations * own->deps + k) * 6 + i];
+                const double *S = unit_velocity(w, sampling, member, tie->end[end].known, j, s);
+                for (int i = 0; i < 6; ++i)
+                    b[r] -= ex_value(w->dag, w->row[r].J[end][i], s) * S[i];
             }
         }
         if (!solve_sample(w, s, b))
@@ -134,8 +142,13 @@ static void store_unit_velocities(Work *w, Sampling *sampling, const Subset *mem
         double *swing = &sampling->swing[member->dep[j]];
         for (int i = 0; i < w->n; ++i) {
             *swing = fmax(*swing, fabs(b[i]) / w->size);
-            sampling->S[member->body[i / 6]][(s % w->configurations * member->deps + j) * 6 + i % 6] =
-                b[i] / (i % 6 < 3 ? w->size : 1);
+            b[i] /= i % 6 < 3 ? w->size : 1;
+        }
+        for (int body = 0; body < member->bodies; ++body) {
+            if (w->anchored)
+                subset_twist_in_base(w, body, s, unit_velocity(w, sampling, member, 0, j, s), b + 6 * body);
+            memcpy(sampling->S[member->body[body]] + (s % w->configurations * member->deps + j) * 6, b + 6 * body,
+                   6 * sizeof *b);
         }
     }
 }
@@ -152,8 +165,7 @@ void subset_to_design(Work *w, const Sampling *sampling, int subset, double *q)
 void subset_get_poses(const Work *w, const Subset *member, int s, double (*pose)[12])
 {
     for (int b = 0; b < member->bodies; ++b)
-        for (int i = 0; i < 12; ++i)
-            pose[member->body[b]][i] = ex_value(w->dag, i < 3 ? w->pose[b].c[i] : w->pose[b].A[i - 3], s);
+        subset_pose_in_base(w, b, s, pose[member->body[b]]);
 }
 
 double subset_determinant(const Work *w, int s)

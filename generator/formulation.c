@@ -121,17 +121,16 @@ bool coordinate_unwinds(const Formulation *f, int coordinate)
     return f->model->coordinate[coordinate].type == COORDINATE_ANGLE && coordinate_piece(f, coordinate) < 3;
 }
 
-void body_design(const Formulation *f, int body, double q[7])
+void body_design(const Formulation *f, int anchor, int body, double q[7])
 {
     if (f->model->tuning) {
         Ex c[3];
-        body_drawn(f->plan, body, c, q + 3);
+        body_drawn(f->plan, anchor, body, c, q + 3);
         for (int i = 0; i < 3; ++i)
             q[i] = ex_value(f->model->tuning->dag, c[i], 0);
         return;
     }
-    memcpy(q, sampling_pose(f->sampling, 0, 0, body), 3 * sizeof *q);
-    euler_relative(f->model->body[BODY_BASE].euler, f->model->body[body].euler, q + 3);
+    sampling_design(f->sampling, f->model, anchor, body, q);
 }
 
 const char *subset_title(Pool *pool, const Model *model, const Subset *subset)

@@ -243,7 +243,7 @@ void write_design(Generation *g, Text *out, int indent)
         const Subset *subset = &g->sequence->subset[s];
         for (int b = 0; plan_follows(g->plan, s) && b < subset->bodies; ++b) {
             double q[7];
-            body_design(g->formulation, subset->body[b], q);
+            body_design(g->formulation, subset_anchor(g->model, g->sequence, s), subset->body[b], q);
             text_print(out, "%*s{%d, ", indent, "", g->plan->start_offset[s] + 7 * b * g->plan->stride[s]);
             if (g->plan->lanes)
                 text_print(out, "%d, ", g->plan->stride[s]);

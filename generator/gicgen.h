@@ -85,6 +85,8 @@ Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **seq
  * numbers are not in memory. */
 bool formula_settled(const Formula *f, Ex e);
 double formula_value(const Formula *f, Ex e, int member);
+/* anchor.c: the body in whose frame a subset is solved, or BODY_BASE. */
+int subset_anchor(const Model *model, const Sequence *sequence, int subset);
 /* Reference points of all bodies [bodies][3], body frames: where a joint to something known sits. */
 double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3];
 
@@ -344,7 +346,7 @@ const Block *derive_block(Pool *pool, const Plan *plan);
 /* What of state[], input[] and start[0] follows parameters, at the drawing. */
 const Block *draw_block(Pool *pool, const Plan *plan);
 /* Where a body stands in the drawing relative to the base: reference point, as formulas, and Euler parameters. */
-void body_drawn(const Plan *plan, int body, Ex c[3], double p[4]);
+void body_drawn(const Plan *plan, int anchor, int body, Ex c[3], double p[4]);
 
 /* ---- formulation.c: all of the above for one model ----------------------------------------------------------- */
 
@@ -394,7 +396,7 @@ double coordinate_piece(const Formulation *f, int coordinate);
 bool coordinate_unwinds(const Formulation *f, int coordinate);
 /* Design pose of a body relative to the base, as a Newton start has it: reference point, Euler parameters. Of a model
  * with a tuning that in the drawing, from where set-up goes on. */
-void body_design(const Formulation *f, int body, double q[7]);
+void body_design(const Formulation *f, int anchor, int body, double q[7]);
 /* "body" or "body + body". */
 const char *subset_title(Pool *pool, const Model *model, const Subset *subset);
 

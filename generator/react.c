@@ -2,6 +2,7 @@
  * Multipliers of a class of subsets: the transposed system J^T lambda = w of the recovery's own equations, w being the
  * wrenches that the joints of the bodies must add up to. What they put on bodies solved before is then known too, so
  * that going through the subsets against the computational order yields all of them. */
+#include "rows.h"
 #include "subset.h"
 
 #include <string.h>
@@ -32,6 +33,28 @@ static bool is_needed(const Work *w, const bool *needed)
     return any;
 }
 
+/* Wrenches in the base's axes, torque and force, into those of the subset's frame. */
+static void turn_wrenches(Work *w, Ex *wrench)
+{
+    for (int i = 0; w->anchored && i < w->n; i += 3) {
+        const Ex given[3] = {wrench[i], wrench[i + 1], wrench[i + 2]};
+        ex_apply_transposed(w->dag, w->known[0].A, given, wrench + i);
+    }
+}
+
+/* Multipliers of common points are forces with components in the subset's frame; into the base's axes. */
+static void turn_forces(Work *w, Ex *lambda)
+{
+    for (int r = 0; w->anchored && r < w->n; ++r) {
+        const Connection *tie = &w->connection[w->row_of[r]];
+        const bool first = r == 0 || w->row_of[r] != w->row_of[r - 1];
+        if (!first || tie->is_coordinate || !(joint_parts[w->model->joint[tie->index].type] & PART_POINT))
+            continue;
+        const Ex own[3] = {lambda[r], lambda[r + 1], lambda[r + 2]};
+        ex_apply(w->dag, w->known[0].A, own, lambda + r);
+    }
+}
+
 void subset_react(Work *w, const Factors *factors, const Row *row, Block *block)
 {
     Dag *dag = w->dag;
@@ -41,7 +64,9 @@ void subset_react(Work *w, const Factors *factors, const Row *row, Block *block)
     Ex lambda[w->n];
     for (int i = 0; i < w->n; ++i)
         lambda[i] = ex_input(dag, pool_print(w->pool, "w[%d]", i), NULL);
+    turn_wrenches(w, lambda);
     linear_solve_transposed(dag, factors, lambda, lambda);
+    turn_forces(w, lambda);
     for (int r = 0; r < w->n; ++r)
         if (w->row_of[r] < w->first->joints && is_wanted(w, w->row_of[r]))
             block_store(block, lambda[r], "w[%d]", r);

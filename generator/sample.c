@@ -72,3 +72,15 @@ double *sampling_pose(const Sampling *sampling, int step, int configuration, int
     size_t row = (size_t)step * (size_t)sampling->configurations + (size_t)configuration;
     return sampling->pose + (row * (size_t)sampling->bodies + (size_t)body) * 12;
 }
+
+void sampling_design(const Sampling *sampling, const Model *model, int anchor, int body, double q[7])
+{
+    const double *own = sampling_pose(sampling, 0, 0, body), *from = sampling_pose(sampling, 0, 0, anchor);
+    double way[3];
+    for (int i = 0; i < 3; ++i)
+        way[i] = own[i] - from[i];
+    mat_apply_transposed(from + 3, way, q);
+    if (anchor == BODY_BASE)
+        memcpy(q, own, 3 * sizeof *q);
+    euler_relative(model->body[anchor].euler, model->body[body].euler, q + 3);
+}

@@ -17,7 +17,11 @@ typedef struct Scan {
     double **q;          /* [subsets] poses of its bodies at the last good value */
     double (*pose)[12];  /* [bodies] c, A of all bodies at the present value */
     double *determinant; /* [subsets] scaled, at the design */
+    double near;         /* smallest determinant of the present value, relative to that at the design */
 } Scan;
+
+/* The share of its determinant at the design below which generated code refuses a subset: determinant.c. */
+static const double lost_below = 8e-3;
 
 static bool depends(const Subset *subset, int coordinate)
 {
@@ -42,8 +46,9 @@ static bool scan_subset(Scan *scan, int s, double value, double *q)
     if (!subset_converge(w, q, sample, NULL))
         return false;
     subset_get_poses(w, subset, sample, scan->pose);
-    double determinant = subset_determinant(w, sample);
-    return determinant * scan->determinant[s] > 0;
+    const double share = subset_determinant(w, sample) / scan->determinant[s];
+    scan->near = fmin(scan->near, share);
+    return share > lost_below;
 }
 
 /* All subsets that follow the coordinate, at `value`; q is updated where all of them are good. Returns the lost one, or
@@ -52,6 +57,7 @@ static int scan_value(Scan *scan, double value)
 {
     const Sequence *sequence = scan->sequence;
     double *moved[sequence->subsets];
+    scan->near = 1;
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
         moved[s] = NULL;
@@ -100,12 +106,13 @@ static void warn(const Scan *scan, int lost, double value)
 }
 
 /* Towards one end of the range in steps that shrink where a subset is lost: a loss that no step is small enough to pass
- * is real. */
+ * is real. They are short where determinants are small, for these are angles, which steps must not pass over. */
 static void scan_end(Scan *scan, double end)
 {
     const int steps_least = 8, steps_most = 400;
     const double turn = 0.1;   /* of a body in one step, or move relative to the subset's size */
     const double least = 1e-7; /* of the way */
+    const double shrink = 2, least_step = 0.01;
     const Coordinate *c = &scan->model->coordinate[scan->coordinate];
     double way = end - c->design, wanted = fabs(way) * scan->sampling->swing[scan->coordinate] / turn;
     int steps = wanted < steps_least ? steps_least : wanted > steps_most ? steps_most : (int)wanted;
@@ -116,7 +123,7 @@ static void scan_end(Scan *scan, double end)
         int lost = scan_value(scan, c->design + way * next);
         if (lost < 0) {
             share = next;
-            step = fmin(2 * step, usual);
+            step = fmin(2 * step, usual * fmax(least_step, fmin(1, shrink * scan->near)));
         } else if ((step /= 2) < least) {
             warn(scan, lost, c->design + way * share);
             return;

@@ -87,7 +87,7 @@ void subset_find_still(Work *w)
 {
     for (int i = 0; i < w->connections; ++i) {
         Connection *tie = &w->connection[i];
-        if (tie->is_coordinate || tie->end[0].known < 0)
+        if (tie->is_coordinate || tie->end[0].known < 0 || w->anchored)
             continue;
         const int parts = joint_parts[w->model->joint[tie->index].type];
         const Vector axis = vector_axis(w->dag, &w->known[tie->end[0].known], tie->fixture.axis[0]);

@@ -201,7 +201,9 @@ static void make_motions(Work *w)
 
 const Motion *subset_motion(const Work *w, const Motion *unknown, End end)
 {
-    return end.unknown >= 0 ? &unknown[end.unknown] : end.known >= 0 ? &w->known[end.known] : &w->base;
+    return end.unknown >= 0                  ? &unknown[end.unknown]
+           : end.known >= 0 && !w->anchored ? &w->known[end.known]
+                                            : &w->base;
 }
 
 /* All rows of the subset with the unknowns moving as given; row_of tells the link of each. */
@@ -219,12 +221,14 @@ static void make_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
                 motion_side(w->dag, &turned, tie->fixture.side[j][0], tie->across[j]);
             end[0] = &turned;
         }
-        if (tie->is_coordinate)
+        if (tie->is_coordinate) {
             row[rows] = coordinate_row(w->dag, w->model->coordinate[tie->index].type, &tie->fixture, end,
                                        w->x[tie->dep], w->rate[tie->dep]);
-        else
+            subset_hinge_row(w, tie, end, &row[rows]);
+        } else {
             made = joint_rows(w->dag, w->model->joint[tie->index].type, &tie->fixture, end,
                               tie->end[0].unknown >= 0 && tie->end[1].unknown < 0, row + rows);
+        }
         for (int r = 0; r < made; ++r)
             row_of[rows++] = i;
     }
@@ -375,7 +379,7 @@ static void unit_rate(Work *w, int j, Ex *b)
         const Connection *tie = &w->connection[w->row_of[r]];
         Ex sum = tie->is_coordinate && tie->dep == j ? w->row[r].dual : 0;
         for (int end = 0; end < 2; ++end)
-            if (tie->end[end].known >= 0)
+            if (tie->end[end].known >= 0 && !w->anchored)
                 for (int i = 0; i < 6; ++i)
                     sum = ex_add(w->dag, sum,
                                  ex_mul(w->dag, w->row[r].J[end][i], w->known[tie->end[end].known].S[6 * j + i]));
@@ -461,6 +465,7 @@ Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, cons
                 .origin = origin,
                 .dag = dag_new(pool, class->members, class->members * sampling->configurations),
                 .n = 6 * first->bodies,
+                .anchored = subset_anchor(model, sequence, class->member[0]) != BODY_BASE,
                 .configurations = sampling->configurations};
     size_t n = (size_t)w->n;
     w->row = pool_alloc(pool, n * sizeof *w->row);
@@ -506,9 +511,11 @@ static Formula *formula_new(Work *w, bool closed)
     return formula;
 }
 
-/* The equations with the poses that were found, as residual and multipliers need them: [n]. */
-static Row *rows_from_memory(Work *w, const Formula *formula)
+/* The equations in the base's frame with the poses that were found, as residual and multipliers need them: [n]. */
+static Row *rows_from_memory(const Work *w, const Formula *formula)
 {
+    Work in_base = *w;
+    in_base.anchored = false;
     Row *row = pool_alloc(w->pool, (size_t)w->n * sizeof *row);
     Motion *found = pool_alloc(w->pool, (size_t)w->first->bodies * sizeof *found);
     for (int b = 0; b < w->first->bodies; ++b) {
@@ -519,7 +526,7 @@ static Row *rows_from_memory(Work *w, const Formula *formula)
                 *motion_number(&found[b], i) = e;
         }
     }
-    make_rows(w, found, row, w->row_of);
+    make_rows(&in_base, found, row, w->row_of);
     return row;
 }
 
@@ -530,8 +537,10 @@ static Motion *copy_motions(const Work *w, const Motion *motion)
 }
 
 /* What both ways of recovery end with: motions, inertia, factors that are remembered, residual, multipliers. */
-static void finish(Work *w, Formula *formula, Solve solve, const Factors *factors, const Motion *motion)
+static void finish(Work *w, Formula *formula, Solve solve, const Factors *factors, const Motion *relative)
 {
+    Motion *motion = pool_alloc(w->pool, (size_t)w->first->bodies * sizeof *motion);
+    subset_to_base(w, relative, motion);
     Ex *stored = pool_alloc(w->pool, (size_t)(w->n * (w->n + 2)) * sizeof *stored);
     int count;
     Factors *remembered = factors_from_memory(w, factors, stored, &count);
@@ -550,7 +559,7 @@ static void finish(Work *w, Formula *formula, Solve solve, const Factors *factor
     for (int b = 0; b < layout->bodies; ++b) {
         store_motion(&formula->solve, &motion[b], b * layout->motion_size);
         for (int i = 0; !formula->closed && i < 6 * layout->deps; ++i)
-            block_store(&formula->solve, motion[b].S[i], "start[%d]", layout->start_S + 6 * layout->deps * b + i);
+            block_store(&formula->solve, relative[b].S[i], "start[%d]", layout->start_S + 6 * layout->deps * b + i);
     }
     for (int i = 0; i < count; ++i)
         block_store(&formula->solve, stored[i], "start[%d]", layout->start_factors + i);

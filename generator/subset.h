@@ -37,6 +37,7 @@ typedef struct Work {
     Motion *pose; /* of the unknowns: c and A only, at q */
     Motion *known;
     Motion base;
+    bool anchored; /* q, S, pose, row, J and factors are relative to known 0, which is at rest at the origin then */
     Ex *x, *rate, *change;
     double size;    /* see Formula */
     int derived;    /* numbers that follow tunable parameters: d[] */
@@ -91,7 +92,21 @@ Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, cons
 /* Which member of the class a subset is. */
 int subset_index(const Work *w, int subset);
 
-/* How an end of a connection moves, the unknowns moving as given. */
+/* hinge.c: is this angle measured about the axis of a hinge between its bodies? */
+bool subset_is_hinged(const Work *w, const Connection *angle);
+/* That axis in the frame of the angle's first or second body; false: there is no such hinge. */
+bool subset_hinge_axis(const Work *w, const Connection *angle, int end, Ex axis[3]);
+/* Its row's derivatives are those of the angle between the bodies then, ends moving as given. */
+void subset_hinge_row(const Work *w, const Connection *angle, const Motion *const end[2], Row *row);
+
+/* anchor.c: unknowns [bodies] from the subset's frame into the base's. */
+void subset_to_base(const Work *w, const Motion *relative, Motion *out);
+/* The same for the numbers of sample s: pose of unknown b; twist of its reference point for a unit rate of a coordinate,
+ * `carrier` being the anchor's (not read: the base). */
+void subset_pose_in_base(const Work *w, int b, int s, double pose[12]);
+void subset_twist_in_base(const Work *w, int b, int s, const double carrier[6], double twist[6]);
+
+/* How an end of a connection moves in the subset's frame, the unknowns moving as given. */
 const Motion *subset_motion(const Work *w, const Motion *unknown, End end);
 
 /* held.c: put what joints to known bodies say into poses [bodies]: c and A where they follow, with `directions` also

@@ -225,7 +225,8 @@ static int setup_with(void *instance, const double *wanted)
     for (int s = 0; s < plan->sequence->subsets; ++s) {
         const Subset *subset = &plan->sequence->subset[s];
         for (int b = 0; plan_follows(plan, s) && b < subset->bodies; ++b)
-            body_design(engine->formulation, subset->body[b], start + plan->start_offset[s] + 7 * b);
+            body_design(engine->formulation, subset_anchor(plan->model, plan->sequence, s), subset->body[b],
+                        start + plan->start_offset[s] + 7 * b);
     }
     int status = orient(self, state, e, turn);
     if (status == GIC_OK)
