@@ -287,6 +287,8 @@ typedef struct Wheels {
     Block torque; /* torque[2 i]: drive and brake of the i-th wheel with a tire, from link, fast, u, p, time */
     Block drive;  /* of a powertrain, after the wheels: what it changes in rate[] and grip[] of all, and watch[]; from
                    * these, link, fast, gear, u, p, time (powertrain.h) */
+    Block spins;  /* the same of the driven wheels without solving their equations, for proofs: left[], what rates of
+                   * their spins acc[] leave of these; left and acc by place among the fast states */
     Block shift;  /* choice[] after a step, from fast, gear, x, xd, u, p, time */
 } Wheels;
 

@@ -623,6 +623,7 @@ static const Mirror *find_mirror(Narrower *n, Solve solve)
     return *why ? NULL : mirror;
 }
 
+/* NULL: the sides are no images. */
 static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve solve, Recovery recovery)
 {
     n->whole = givens_new(n->pool);
@@ -643,6 +644,8 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
     narrow_subsets(n);
     give_whole(n);
     give_subsets(n);
+    if (n->mirror && narrow_unpaired(n))
+        return NULL;
     if (n->mirror)
         narrow_mirror(n);
     narrow_rest(n);
@@ -664,10 +667,11 @@ const Formulation *formulate_narrow(Pool *pool, const Model *model, const Sequen
     if (n.mirror)
         hold_odd(&n);
     const Formulation *out = narrow(&n, sequence, solve, recovery);
-    if (!n.mirror || narrow_is_even(&n))
+    const char *uneven = !n.mirror ? NULL : out ? narrow_uneven(&n) : narrow_unpaired(&n);
+    if (!uneven)
         return out;
     n.mirror = NULL;
     find_steady(&n);
-    *n.narrowing = (Narrowing){.facts = facts, .asymmetry = "forces are not the same on both sides"};
+    *n.narrowing = (Narrowing){.facts = facts, .asymmetry = uneven};
     return narrow(&n, sequence, solve, recovery);
 }

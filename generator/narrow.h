@@ -4,7 +4,7 @@
 #ifndef NARROW_H
 #define NARROW_H
 
-#include "gicgen.h"
+#include "normal.h"
 
 /* ---- partial.c: blocks with some of their inputs known ---------------------------------------------------------- */
 
@@ -41,8 +41,9 @@ typedef struct Partial {
     const Givens *givens;
     const Plane *plane; /* NULL: the road is looked up */
     bool across;        /* it is looked up once for both sides, and level from one to the other */
-    const Table *table; /* of the model */
-    Ex *made;           /* [nodes of from] 1 + the node of `to`, 0: not yet */
+    const Model *model;
+    Normal *normal; /* of `to`, NULL: not needed yet */
+    Ex *made;       /* [nodes of from] 1 + the node of `to`, 0: not yet */
 } Partial;
 
 Partial partial_new(Pool *pool, const Dag *from, const Givens *givens, const Plane *plane, bool across,

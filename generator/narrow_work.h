@@ -31,11 +31,22 @@ int narrow_target(const char *target, const char *array);
 /* ---- narrow_mirror.c: one side for both ---------------------------------------------------------------------------
  */
 
-/* What is taken for granted, and which numbers are images of which. */
+/* Why subsets and reference points of one side are not the images of the other's; NULL: they are. */
+const char *narrow_unpaired(const Narrower *n);
+/* What is taken for granted, and which numbers are images of which; of paired subsets. */
 void narrow_mirror(Narrower *n);
+/* Let number `at` of an array be sign times number `of`; of itself: 0 where that is negative. */
+void narrow_give(Narrower *n, Givens *givens, const char *array, int at, int of, double sign);
+/* Which accelerations are images of which. */
+Reduction *narrow_reduction(Narrower *n);
 /* The equations of motion in the unknowns of one side and the middle. */
 const Block *narrow_dynamics(Narrower *n);
-/* Do they, and the torques of wheels, treat both sides alike, whatever forces there are? By random numbers. */
-bool narrow_is_even(Narrower *n);
+
+/* ---- narrow_even.c: proof that both sides have the same formulas --------------------------------------------------
+ */
+
+/* Why a symmetric state may not stay one: forces, tires or torques that are not proved to be mirror images at every
+ * symmetric state and time; NULL: they are. */
+const char *narrow_uneven(Narrower *n);
 
 #endif

@@ -80,7 +80,7 @@ Partial partial_new(Pool *pool, const Dag *from, const Givens *givens, const Pla
                      .givens = givens,
                      .plane = plane,
                      .across = across,
-                     .table = model->table,
+                     .model = model,
                      .made = pool_alloc(pool, (size_t)from->nodes * sizeof(Ex))};
 }
 
@@ -131,11 +131,24 @@ static Ex make_road_part(Partial *p, Ex road, Ex part)
     return part ? ex_literal(to, p->plane->slope[part - 1]) : height;
 }
 
-/* Of places at the same x the first one that is asked for stands for all, where the road is the same across. */
+/* Are the places at a and at b across from the plane that a vehicle stays in, y = y[1], mirror images? */
+static bool are_images(Partial *p, Ex a, Ex b)
+{
+    const Ex root[2] = {a, b};
+    Form form[2];
+    if (!p->normal)
+        p->normal = normal_new(p->to->pool, p->model, p->across);
+    normal_forms(p->normal, p->to, 0, NULL, NULL, root, 2, form);
+    const Form middle = normal_middle(p->normal);
+    return normal_sum(p->normal, form[0], -middle) == -normal_sum(p->normal, form[1], -middle);
+}
+
+/* Of places that are mirror images the first one that is asked for stands for both, where the road is the same on both
+ * sides: code compares it at these two places. */
 static Ex make_road(Partial *p, Ex x, Ex y)
 {
-    for (Ex e = 0; p->across && e < (Ex)p->to->nodes; ++e)
-        if (p->to->node[e].op == OP_ROAD && p->to->node[e].arg[0] == x)
+    for (Ex e = 0; p->across && p->to->members == 1 && e < (Ex)p->to->nodes; ++e)
+        if (p->to->node[e].op == OP_ROAD && p->to->node[e].arg[0] == x && are_images(p, p->to->node[e].arg[1], y))
             return e;
     return ex_op(p->to, OP_ROAD, x, y, 0);
 }
@@ -143,7 +156,7 @@ static Ex make_road(Partial *p, Ex x, Ex y)
 static Ex make_table(Partial *p, Ex x, Ex index)
 {
     if (p->to->node[x].op == OP_LITERAL)
-        return ex_literal(p->to, table_value(&p->table[index], ex_value(p->to, x, 0)));
+        return ex_literal(p->to, table_value(&p->model->table[index], ex_value(p->to, x, 0)));
     return ex_op(p->to, OP_TABLE, x, index, 0);
 }
 

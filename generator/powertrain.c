@@ -163,39 +163,75 @@ static void pass(Linking *l, const Shafts *shafts, Ex torque, Ex *onto)
     }
 }
 
-/* Rates of the spins with all that turns with the wheels, and from them the torques of the half shafts. rate: as each
- * wheel has it by itself. */
-static void turn_wheels(Linking *l, const Shafts *shafts, Block *block, Ex torque)
+/* The equations of the wheels' spins with all that turns with them, A s' = b. */
+typedef struct Spins {
+    Ex *A, *b;           /* [wheels][wheels], [wheels] */
+    Ex *inertia, *alone; /* [wheels] of the wheel itself; s' as it has it by itself */
+} Spins;
+
+static Spins spins_new(Linking *l, const Shafts *shafts, Ex torque)
 {
     Dag *dag = shafts->dag;
     const int n = shafts->wheels, differentials = shafts->powertrain->differentials;
-    Ex A[n * n], b[n], onto[n], inertia[n], alone[n];
+    const size_t wheels = (size_t)n;
+    Spins spins = {.A = pool_alloc(dag->pool, (wheels * wheels + 1) * sizeof(Ex)),
+                   .b = pool_alloc(dag->pool, (wheels + 1) * sizeof(Ex)),
+                   .inertia = pool_alloc(dag->pool, (wheels + 1) * sizeof(Ex)),
+                   .alone = pool_alloc(dag->pool, (wheels + 1) * sizeof(Ex))};
+    Ex onto[n];
     Ex turbine = ex_mul(dag, ex_literal(dag, shafts->powertrain->turbine), ex_mul(dag, shafts->ratio, shafts->ratio));
     pass(l, shafts, torque, onto);
     for (int i = 0; i < n; ++i) {
         const Wheel *wheel = &shafts->model->wheel[shafts->wheel[i]];
-        inertia[i] = ex_literal(dag, wheel->spin_inertia);
-        alone[i] = input(dag, "rate", wheel->fast + FAST_SPIN);
-        b[i] = ex_add(dag, ex_mul(dag, inertia[i], alone[i]), onto[i]);
+        spins.inertia[i] = ex_literal(dag, wheel->spin_inertia);
+        spins.alone[i] = input(dag, "rate", wheel->fast + FAST_SPIN);
+        spins.b[i] = ex_add(dag, ex_mul(dag, spins.inertia[i], spins.alone[i]), onto[i]);
         for (int j = 0; j < n; ++j) {
             double sum = i == j ? wheel->spin_inertia : 0;
             for (int k = 0; k < differentials; ++k)
                 sum +=
                     shafts->powertrain->differential[k].inertia * shafts->coefficient[k][i] * shafts->coefficient[k][j];
             const double *root = shafts->coefficient[differentials - 1];
-            A[n * i + j] = ex_add(dag, ex_literal(dag, sum), ex_mul(dag, turbine, ex_literal(dag, root[i] * root[j])));
+            spins.A[n * i + j] =
+                ex_add(dag, ex_literal(dag, sum), ex_mul(dag, turbine, ex_literal(dag, root[i] * root[j])));
         }
     }
-    linear_solve(dag, linear_factor_symmetric(dag, n, A, NULL, 0), b, b);
-    for (int i = 0; i < n; ++i) {
+    return spins;
+}
+
+/* Store rates of the spins, s', and the torques of the half shafts that follow from them. */
+static void store_spins(const Shafts *shafts, const Spins *spins, const Ex *rate, Block *block)
+{
+    Dag *dag = shafts->dag;
+    for (int i = 0; i < shafts->wheels; ++i) {
         const int index = shafts->wheel[i], grip = GRIP_NUMBERS * wheel_rolling(shafts->model, index);
         const Wheel *wheel = &shafts->model->wheel[index];
         Ex drive = wheel->drive ? input(dag, "grip", grip + GRIP_DRIVE) : 0;
-        Ex more = ex_mul(dag, inertia[i], ex_sub(dag, b[i], alone[i]));
-        block_store(block, b[i], "rate[%d]", wheel->fast + FAST_SPIN);
+        Ex more = ex_mul(dag, spins->inertia[i], ex_sub(dag, rate[i], spins->alone[i]));
+        block_store(block, rate[i], "rate[%d]", wheel->fast + FAST_SPIN);
         block_store(block, ex_add(dag, drive, more), "grip[%d]", grip + GRIP_DRIVE);
-        block_store(block, ex_mul(dag, ex_mul(dag, inertia[i], b[i]), shafts->spin[i]), "grip[%d]", grip + GRIP_POWER);
+        Ex power = ex_mul(dag, ex_mul(dag, spins->inertia[i], rate[i]), shafts->spin[i]);
+        block_store(block, power, "grip[%d]", grip + GRIP_POWER);
     }
+}
+
+/* Rates of the spins as numbers acc[], by place of the fast state: what they leave of their equations is left[], and
+ * what follows from them is stored as by the block that solves these. */
+static void store_left(const Shafts *shafts, const Spins *spins, Block *block)
+{
+    Dag *dag = shafts->dag;
+    const int n = shafts->wheels;
+    Ex rate[n];
+    for (int i = 0; i < n; ++i)
+        rate[i] = input(dag, "acc", shafts->model->wheel[shafts->wheel[i]].fast + FAST_SPIN);
+    for (int i = 0; i < n; ++i) {
+        Ex left = 0;
+        for (int j = 0; j < n; ++j)
+            left = ex_add(dag, left, ex_mul(dag, spins->A[n * i + j], rate[j]));
+        left = ex_sub(dag, left, spins->b[i]);
+        block_store(block, left, "left[%d]", shafts->model->wheel[shafts->wheel[i]].fast + FAST_SPIN);
+    }
+    store_spins(shafts, spins, rate, block);
 }
 
 /* ---- the blocks ---------------------------------------------------------------------------------------------------
@@ -210,7 +246,10 @@ static void drive_block(Linking *l, const Powertrain *powertrain, Block *block)
     Ex torque = fast_law(l, powertrain->torque, (const Ex[]){speed, theta});
     torque = ex_op(dag, OP_POSITIVE, speed, torque, positive_part(dag, torque)); /* nothing turns an engine backwards */
     converter(&shafts, speed, &pump, &turbine);
-    turn_wheels(l, &shafts, block, ex_mul(dag, shafts.ratio, turbine));
+    const Spins spins = spins_new(l, &shafts, ex_mul(dag, shafts.ratio, turbine));
+    Ex rates[shafts.wheels];
+    linear_solve(dag, linear_factor_symmetric(dag, shafts.wheels, spins.A, NULL, 0), spins.b, rates);
+    store_spins(&shafts, &spins, rates, block);
     Ex rate = ex_div(dag, ex_sub(dag, torque, pump), ex_literal(dag, powertrain->inertia));
     block_store(block, rate, "rate[%d]", powertrain->fast + POWERTRAIN_SPEED);
     block_store(block, ex_literal(dag, 1), "rate[%d]", powertrain->fast + POWERTRAIN_AGE);
@@ -220,6 +259,8 @@ static void drive_block(Linking *l, const Powertrain *powertrain, Block *block)
                                      [WATCH_TURBINE_TORQUE] = turbine, [WATCH_PUMP_TORQUE] = pump};
     for (int i = 0; i < WATCH_NUMBERS; ++i)
         block_store(block, watch[i], "watch[%d]", i);
+    l->wheels->spins.dag = dag;
+    store_left(&shafts, &spins, &l->wheels->spins);
 }
 
 static void shift_block(Whole *whole, const Powertrain *powertrain, Block *block)
