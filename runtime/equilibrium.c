@@ -14,6 +14,7 @@
 #include <gsl/gsl_linalg.h>
 
 const double equilibrium_limit = 1e-9;
+static const double slowest = 1e-9; /* m/s, rad/s: what is slower stands still */
 
 enum { MOST_STEPS = 500 };
 
@@ -30,7 +31,6 @@ typedef struct Search {
     int unknowns;
     double *step, *move; /* [unknowns], [count] as linear_move() wants it */
     double *f, *A;       /* at the trial */
-    bool locked;         /* nothing turns wheels and engine */
     double h;
     bool settled;      /* is it near enough for tires to be loaded? */
     const char *limit; /* why the last trials since a good step could not be evaluated; NULL: all could */
@@ -190,7 +190,7 @@ static int look(const Search *s, Instance *self, double *f, double *A)
     const Linear *linear = s->found->linear;
     const int count = linear->count;
     const int status = linearize(linear, self, f, A);
-    for (int i = 2 * linear->places; i < count && s->locked; ++i) {
+    for (int i = 2 * linear->places; i < count && s->found->locked; ++i) {
         f[i] = 0;
         memset(A + i * count, 0, (size_t)count * sizeof *A);
         for (int row = 0; row < count && !linear->slips[i]; ++row)
@@ -331,13 +331,18 @@ int equilibrium_force(const Equilibrium *found, int force)
     return at;
 }
 
+static bool is_motion(double velocity)
+{
+    return fabs(velocity) > slowest;
+}
+
 bool equilibrium_stands(const Model *model, const Scene *scene)
 {
-    bool moves = scene->along && scene->speed != 0;
+    bool moves = scene->along && is_motion(scene->speed);
     for (int i = 0; i < 3 && model->free_base; ++i)
-        moves = moves || scene->angular_velocity[i] != 0 || (!scene->along && scene->velocity[i] != 0);
+        moves = moves || is_motion(scene->angular_velocity[i]) || (!scene->along && is_motion(scene->velocity[i]));
     for (int c = 0; c < model->coordinates; ++c)
-        moves = moves || (!model->coordinate[c].driven && scene->rate[c] != 0);
+        moves = moves || (!model->coordinate[c].driven && is_motion(scene->rate[c]));
     return !moves;
 }
 
@@ -393,7 +398,20 @@ static _Noreturn void fail(const Search *s, Place at)
               found->steps, found->f[worst], linear->name[worst]);
 }
 
-const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve, bool moves)
+/* Spins that Newton's method leaves at 1e-25 rad/s are those of wheels that stand still. */
+static void stop_wheels(const Search *s)
+{
+    const Equilibrium *found = s->found;
+    const gic_model *code = &found->linear->engine->code;
+    double *fast = tape_array(found->self, code->state_offset) + code->slow_count;
+    for (int i = 0; i < found->model->wheels; ++i) {
+        double *spin = fast + found->model->wheel[i].fast + FAST_SPIN;
+        if (found->model->wheel[i].tire >= 0 && fabs(*spin) <= slowest)
+            *spin = 0;
+    }
+}
+
+const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve)
 {
     Equilibrium *found = pool_alloc(pool, sizeof *found);
     found->model = watched(pool, model);
@@ -402,8 +420,8 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
     found->self = (Instance *)(void *)instance_new(pool, found->engine);
     const size_t count = (size_t)found->linear->count, square = (count * count + 1) * sizeof(double);
     const Place at = {scene ? scene->source : model->source, 0, 0};
-    Search s = {
-        .pool = pool, .found = found, .unknowns = (int)count - found->linear->places, .locked = moves, .h = first};
+    Search s = {.pool = pool, .found = found, .unknowns = (int)count - found->linear->places, .h = first};
+    found->locked = scene && !equilibrium_stands(model, scene);
     s.settled = !found->linear->of_wheels;
     s.trial = (Instance *)(void *)instance_new(pool, found->engine);
     found->f = pool_alloc(pool, (count + 1) * sizeof(double));
@@ -432,6 +450,12 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
         if (found->steps >= MOST_STEPS || !relax(&s))
             fail(&s, at);
     }
+    stop_wheels(&s);
+    status = look(&s, found->self, found->f, found->A);
+    if (status != GIC_OK)
+        diag_fail(at, NULL, "the equilibrium can't be evaluated: %s",
+                  instance_status(pool, found->engine->code, &found->self->head, status));
+    found->residual = fabs(found->f[largest(&s, found->f)]);
     return found;
 }
 
@@ -449,7 +473,7 @@ const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium
             out->value[c] = state[code->coordinate_state[c]];
             out->given[c] = true;
         }
-    if (equilibrium_stands(found->model, scene)) { /* else wheels roll, unless the scene says how they turn */
+    if (!found->locked) { /* else wheels roll, unless the scene says how they turn */
         out->fast = pool_alloc(pool, ((size_t)code->fast_count + 1) * sizeof *out->fast);
         memcpy(out->fast, state + code->slow_count, (size_t)code->fast_count * sizeof *out->fast);
     }
@@ -466,6 +490,5 @@ const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scen
 {
     if (!scene->equilibrium)
         return scene;
-    const bool moves = !equilibrium_stands(model, scene);
-    return scene_even(pool, model, equilibrium_scene(pool, scene, equilibrium_find(pool, model, scene, solve, moves)));
+    return scene_even(pool, model, equilibrium_scene(pool, scene, equilibrium_find(pool, model, scene, solve)));
 }

@@ -69,7 +69,8 @@ static int wheel_of(Turning *t, const TapeWheel *wheel, int member)
     int status = play(t, wheel->contact, member);
     if (status != GIC_OK)
         return status;
-    if (hub[0][HUB_LOAD] > 0) /* a wheel in the air has no tire forces */
+    /* a wheel in the air has no tire forces; one that is put down begins to have them */
+    if (hub[0][HUB_LOAD] > 0 || (t->slope_frame && hub[1][HUB_LOAD] > 0))
         play(t, wheel->tire, member);
     else if (t->in_air)
         ++*t->in_air;

