@@ -19,7 +19,7 @@ static const double slowest = 1e-9; /* m/s, rad/s: what is slower stands still *
 enum { MOST_STEPS = 500 };
 
 static const double longest = 1e4, shortest = 1e-7, first = 0.02; /* h, s */
-static const double near = 1e-3;       /* of the reach: steps so small need not be asked where they go */
+static const double near = 1e-3;       /* of a piece: steps so small need not be asked where they go */
 static const double rank_limit = 1e-9; /* of singular values, relative to the largest: below, nothing changes */
 
 /* Unknowns are the places, then the fast states but clocks; equations their accelerations, then rates: equation i is
@@ -59,12 +59,13 @@ static int largest(const Search *s, const double *f)
     return worst;
 }
 
-/* The first so many numbers of a step in units of the reach: more than 1 is too far. */
+/* The first so many numbers of a step in units of what may change at once: more than 1 is too far. */
 static double step_size(const Search *s, const double *step, int count)
 {
+    const Linear *linear = s->found->linear;
     double size = 0;
     for (int i = 0; i < count; ++i)
-        size = fmax(size, fabs(step[i]) / s->found->linear->reach[column_of(s->found->linear, i)]);
+        size = fmax(size, fabs(step[i]) / (i < linear->places ? linear->piece[i] : linear->reach[column_of(linear, i)]));
     return size;
 }
 

@@ -335,10 +335,11 @@ void linear_move(const Linear *linear, Instance *self, const double *z)
 
 /* ---- opening -------------------------------------------------------------------------------------------- */
 
-static void add_number(Pool *pool, Linear *linear, const char *name, double reach)
+static void add_number(Pool *pool, Linear *linear, const char *name, double reach, double piece)
 {
-    int same = linear->count;
+    int same = linear->count, also = linear->count;
     *POOL_PUSH(pool, linear->name, same) = name;
+    *POOL_PUSH(pool, linear->piece, also) = piece;
     *POOL_PUSH(pool, linear->reach, linear->count) = reach;
 }
 
@@ -370,21 +371,22 @@ static const char *place_name(Pool *pool, const char *name, const char *const ba
 static void name_numbers(Pool *pool, Linear *linear)
 {
     static const char *const base[BASE_PLACES] = {"x", "y", "z", "roll", "pitch", "yaw"};
+    const double small = 0.1;
     const TapeEngine *engine = linear->engine;
     const gic_model *code = &engine->code;
     linear->clocks = engine->formulation->model->powertrain ? POWERTRAIN_FAST - POWERTRAIN_AGE : 0;
     for (int half = 0; half < 2; ++half) {
         for (int i = 0; code->free_base && i < BASE_PLACES; ++i)
-            add_number(pool, linear, base[i], 0.1);
+            add_number(pool, linear, base[i], small, small);
         for (int c = 0; c < code->coordinate_count; ++c)
             if (code->coordinate_state[c] >= 0)
                 add_number(pool, linear,
                            place_name(pool, code->coordinate[c].name, base, code->free_base ? BASE_PLACES : 0),
-                           engine->piece[c]);
+                           small, engine->piece[c]);
         linear->places = half ? linear->places : linear->count;
     }
     for (int i = 0; i < code->fast_count - linear->clocks; ++i)
-        add_number(pool, linear, code->state[code->slow_count + i].name, 1);
+        add_number(pool, linear, code->state[code->slow_count + i].name, 1, 1);
     linear->slips = pool_alloc(pool, (size_t)linear->count + 1);
     linear->jumps = pool_alloc(pool, (size_t)linear->count + 1);
     describe_wheels(linear);

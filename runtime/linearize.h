@@ -20,9 +20,10 @@ typedef struct Linear {
     int of_wheels;           /* so many of the fast states, which are the first, belong to wheels */
     int clocks;              /* fast states behind them that run on by themselves: the time since a gear was shifted */
     const char **name;       /* [count] */
-    double *reach;           /* [count] change of a place in which little happens: 0.1 m, 0.1 rad, the piece of a
-                                coordinate in which no body turns by more than that; of what spins 1 rad/s, of slips
-                                0.1 */
+    double *reach;           /* [count] units in which numbers compare: 0.1 m, 0.1 rad, 0.1 m/s, 0.1 rad/s; of what
+                                spins 1 rad/s, of slips 0.1. The same left and right, whatever was sampled */
+    double *piece;           /* [places] change in which little happens: 0.1, of a coordinate so much that no body turns
+                                by more than 0.1 rad */
     Instance *value, *slope; /* work: an instance, and its derivatives in an instance's places */
     TapeLinks value_links, slope_links;
     double *frame, *q, *dy, *evaluated, *rate, *drate; /* work */

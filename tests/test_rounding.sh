@@ -80,7 +80,7 @@ sed "s|parts/|$models/parts/|" "$models/hmmwv_tires.veh" >car.veh
 echo 'gravity: [-1.45, 0.4, -9.67]' >>car.veh
 "$gicgen" --dump-model car.veh >dump 2>said
 # scene BRAKE: at rest, up to what `initial` holds
-scene() { printf 'gicscene: 1\nduration: 1\nstep: 0.004\ninputs: {brake: %s}\n' "$1"; }
+scene() { printf 'gicscene: 1\nduration: 0.2\nstep: 0.002\ninputs: {brake: %s}\n' "$1"; }
 # alike A B WITHIN: tables of eigenvalues, relative to their size and 1
 alike() {
     paste -d, "$1" "$2" | awk -F, -v within="$3" 'NR > 1 {
@@ -109,6 +109,59 @@ for brake in 0.7 0.13; do
         check "brake $brake, spins of ($turn) 1e-25 rad/s" alike modes turned 1e-7
     done
 done
+: >said
+
+# ---- one rest for one scene -------------------------------------------------------------------------------------
+
+# starting WAY INITIAL: a scene on the level, its base seen
+starting() {
+    { scene 0; echo "initial: {$2}"; echo 'outputs: [chassis, chassis_orientation, spring_f_l, spring_f_r]'; } >"$1.scene"
+}
+car=$models/hmmwv_tires.veh
+# columns FILE NAME...: of its first row
+columns() {
+    awk -F, -v names="$(shift; echo " $* ")" 'NR == 1 {for (i = 1; i <= NF; ++i) {sub(/ .*/, "", $i); if (index(names, " " $i " ")) n[++k] = i}}
+        NR == 2 {for (i = 1; i <= k; ++i) print $n[i]}' "$1"
+}
+# near A B: numbers, line by line
+near() {
+    paste "$1" "$2" | awk '{d = $1 - $2; if (!(NF == 2 && d * d <= 4e-18)) {print; bad = 1}} END {exit bad || NR != 8}' >said
+}
+for way in 0 1e-25 -1e-25 1 -18 18; do
+    starting still "speed: $way"
+    starting run "speed: $way, equilibrium: true"
+    "$gicrun" --equilibrium "$car" still.scene -o rest >out 2>err
+    "$gicrun" -q "$car" run.scene -o results >out 2>err
+    columns rest r.x r.y r.z e0 e1 e2 e3 spring_f_l >a
+    columns results chassis.x chassis.y chassis.z chassis_orientation.e0 chassis_orientation.e1 chassis_orientation.e2 \
+        chassis_orientation.e3 spring_f_l.value >b
+    check "speed $way: a run starts at the equilibrium that is printed" near a b
+    "$gicrun" -q --engine gic "$car" run.scene -o results >out 2>err
+    columns results chassis.x chassis.y chassis.z chassis_orientation.e0 chassis_orientation.e1 chassis_orientation.e2 \
+        chassis_orientation.e3 spring_f_l.value >b
+    check "speed $way: with gic, too" near a b
+    cp a "rest$way"
+    # an engine that shares no code finds no acceleration there
+    "$gicrun" --engine gic --eval rest "$car" -o evaluated >out 2>err &&
+        awk -F, 'NR == 1 {for (i = 1; i <= NF; ++i) if ($i ~ /^(a|alpha)\.|acceleration|slip.*rate/ && $i !~ /output/) n[++k] = i}
+            NR == 2 {for (i = 1; i <= k; ++i) if (!($n[i]^2 < 1e-18)) bad = 1} END {exit bad || k != 18}' evaluated
+    verdict $? "speed $way: nothing accelerates there"
+    columns rest spring_f_l spring_f_r spring_r_l spring_r_r | awk '{v[NR] = $1}
+        END {exit !((v[1] - v[2])^2 < 1e-24 && (v[3] - v[4])^2 < 1e-24)}'
+    verdict $? "speed $way: left is as right"
+    # what is printed for scenes starts there as well
+    run --equilibrium "$car" still.scene
+    { scene 0; sed -n '/^initial:/,$p' out; echo "  speed: $way"; echo 'outputs: [chassis, chassis_orientation]'; } >printed.scene
+    "$gicrun" -q "$car" printed.scene -o printed >out 2>err
+    cut -d, -f1-8 results | sed -n '$p' | tr , '\n' >a
+    cut -d, -f1-8 printed | sed -n '$p' | tr , '\n' >b
+    [ "$(wc -l <b)" -eq 8 ] && paste a b | awk '{d = $1 - $2; if (!(d * d < 1e-14)) {print; bad = 1}} END {exit bad}' >said
+    verdict $? "speed $way: a run from what is printed ends where that with \`equilibrium: true\` ends"
+done
+check 'a speed of 1e-25 m/s stands' near rest0 rest1e-25
+check 'one of -1e-25, too' near rest0 rest-1e-25
+check 'moving scenes rest on locked wheels at every speed' near rest1 rest18
+check 'forwards and backwards' near rest-18 rest18
 : >said
 
 echo "$passed passed, $failed failed"
