@@ -1,9 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_rounding.sh GICGEN GICRUN QUAD_LINEAR: nothing hangs on the sign of a number that is zero but for rounding, or on
-# the last bit of a time. Eigenvalues at kinks: in closed form, and against central differences in quad precision of the
-# independent solution. Rests of standing and of moving scenes: by two commands, and by another engine. Changes of gear
-# and sleep: after whole numbers of steps, counted by hand.
+# test_rounding.sh GICGEN GICRUN QUAD_LINEAR: nothing hangs on the sign of a number that is zero but for rounding.
+# Eigenvalues at kinks: in closed form, and against central differences in quad precision of the independent solution.
+# Rests of standing and of moving scenes: by two commands, and by another engine.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 quad_linear=$(realpath "$3")
