@@ -5207,6 +5207,20 @@ static int hmmwv_vehicle_any_roll(void *instance)
 
 /* ---- changes of gear ----------------------------------------------------------------------------------------------------- */
 
+/* A limit that a step ends at in exact arithmetic is reached whatever rounding makes of the step: relative to a time; to
+ * 1 + the size of what is compared. */
+#define HMMWV_VEHICLE_ROUNDING (sizeof(gic_real) < sizeof(double) ? R(1e-4) : R(1e-9))
+
+static int hmmwv_vehicle_reached(gic_real time, gic_real limit)
+{
+    return time >= (R(1.0) - HMMWV_VEHICLE_ROUNDING) * limit;
+}
+
+static int hmmwv_vehicle_above(gic_real x, gic_real limit)
+{
+    return x - limit > HMMWV_VEHICLE_ROUNDING * (R(1.0) + GIC_FABS(limit));
+}
+
 /* After a step: 1 where the gear changes. */
 static int hmmwv_vehicle_any_shift(void *instance)
 {
@@ -5220,7 +5234,7 @@ static int hmmwv_vehicle_any_shift(void *instance)
     const gic_real *const up = choice + 2, *const down = up + HMMWV_VEHICLE_FORWARD - 1;
     int32_t wanted, next = gears[0];
     (void)time, (void)x, (void)xd, (void)u, (void)p, (void)up, (void)down;
-    if (!(*age > duration) || hmmwv_vehicle_engage(self, gear) != GIC_OK)
+    if (!hmmwv_vehicle_reached(*age, duration) || hmmwv_vehicle_engage(self, gear) != GIC_OK)
         return 0;
     hmmwv_vehicle_gather(self, self->state);
     {
@@ -5236,13 +5250,13 @@ static int hmmwv_vehicle_any_shift(void *instance)
         choice[3] = R(261.79938779914943);
         choice[5] = R(125.66370614359172);
     }
-    wanted = choice[0] > R(0.5) ? 1 : choice[0] < R(-0.5) && HMMWV_VEHICLE_REVERSE ? -1 : 0;
+    wanted = hmmwv_vehicle_above(choice[0], R(0.5)) ? 1 : hmmwv_vehicle_above(-choice[0], R(0.5)) && HMMWV_VEHICLE_REVERSE ? -1 : 0;
     if (wanted != (next > 0) - (next < 0))
         next = wanted;
-    else if (next > 0 && *age > latency) {
-        if (next < HMMWV_VEHICLE_FORWARD && choice[1] > up[next - 1])
+    else if (next > 0 && hmmwv_vehicle_reached(*age, latency)) {
+        if (next < HMMWV_VEHICLE_FORWARD && hmmwv_vehicle_above(choice[1], up[next - 1]))
             ++next;
-        else if (next > 1 && choice[1] < down[next - 2])
+        else if (next > 1 && hmmwv_vehicle_above(-choice[1], -down[next - 2]))
             --next;
     }
     if (next == gears[0])
