@@ -87,8 +87,8 @@ static void run_engine(const World *world, double speed, Driveline *out)
         throttle *= smooth((p->limit - speed) / (0.05 * p->limit));
     out->throttle = throttle;
     out->engine_torque = world_law(world, p->torque, (const double[]){speed, throttle});
-    if (speed <= 0)
-        out->engine_torque = fmax(0, out->engine_torque);
+    if (out->engine_torque < 0)
+        out->engine_torque *= smooth(speed);
 }
 
 /* What the tree, driven by `torque` at its root, passes to each of its wheels; lists them, and returns how many. */

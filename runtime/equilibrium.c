@@ -109,13 +109,14 @@ static void solve_decomposed(const Search *s, const gsl_matrix *U, const gsl_mat
 static const char *name_flat(const Search *s, const gsl_matrix *V, const gsl_vector *S)
 {
     const Linear *linear = s->found->linear;
+    const double most = 0.51; /* not 0.5: of two places that are flat together neither is named, whatever rounds */
     Text names = {.pool = s->pool};
     for (int j = 0; j < linear->places; ++j) {
         double weight = 0;
         for (size_t k = 0; k < V->size1; ++k)
             if (is_flat(S, k))
                 weight += gsl_matrix_get(V, (size_t)j, k) * gsl_matrix_get(V, (size_t)j, k);
-        if (weight > 0.5)
+        if (weight > most)
             text_print(&names, "%s%s", names.size ? ", " : "", linear->name[j]);
     }
     return names.s;
@@ -399,17 +400,23 @@ static _Noreturn void fail(const Search *s, Place at)
               found->steps, found->f[worst], linear->name[worst]);
 }
 
-/* Spins that Newton's method leaves at 1e-25 rad/s are those of wheels that stand still. */
+static void stop(double *speed)
+{
+    if (fabs(*speed) <= slowest)
+        *speed = 0;
+}
+
+/* Speeds that Newton's method leaves at 1e-25 rad/s are those of wheels and an engine that stand still. */
 static void stop_wheels(const Search *s)
 {
     const Equilibrium *found = s->found;
     const gic_model *code = &found->linear->engine->code;
     double *fast = tape_array(found->self, code->state_offset) + code->slow_count;
-    for (int i = 0; i < found->model->wheels; ++i) {
-        double *spin = fast + found->model->wheel[i].fast + FAST_SPIN;
-        if (found->model->wheel[i].tire >= 0 && fabs(*spin) <= slowest)
-            *spin = 0;
-    }
+    for (int i = 0; i < found->model->wheels; ++i)
+        if (found->model->wheel[i].tire >= 0)
+            stop(fast + found->model->wheel[i].fast + FAST_SPIN);
+    if (found->model->powertrain)
+        stop(fast + found->model->powertrain->fast + POWERTRAIN_SPEED);
 }
 
 const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve)

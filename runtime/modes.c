@@ -13,6 +13,10 @@
 
 static const double pi = 3.141592653589793;
 
+/* Of a double real eigenvalue, at critical damping, rounding makes two real ones or a pair with imaginary parts of some
+ * 1e-8 of it: it is two real ones. */
+static const double critical = 1e-6;
+
 /* ---- what is neutral ------------------------------------------------------------------------------------ */
 
 /* A direction in which nothing happens makes a multiple eigenvalue 0, of a place and of its rate, that rounding would
@@ -198,10 +202,11 @@ static bool list_modes(Pool *pool, const Linear *linear, const gsl_matrix *A, co
     const bool found = found_right && found_left;
     for (size_t k = 0; found && k < d->rest; ++k) {
         const gsl_complex value = gsl_vector_complex_get(right.value, k);
-        if (GSL_IMAG(value) < 0)
+        const bool is_real = fabs(GSL_IMAG(value)) <= critical * fabs(GSL_REAL(value));
+        if (GSL_IMAG(value) < 0 && !is_real)
             continue;
         Mode *mode = POOL_PUSH(pool, modes->mode, modes->count);
-        *mode = (Mode){GSL_REAL(value), GSL_IMAG(value), pool_alloc(pool, A->size1 * sizeof(double))};
+        *mode = (Mode){GSL_REAL(value), is_real ? 0 : GSL_IMAG(value), pool_alloc(pool, A->size1 * sizeof(double))};
         find_shares(linear, A, d, &right, k, &left, mode->share);
     }
     qsort(modes->mode, (size_t)modes->count, sizeof *modes->mode, by_size);

@@ -73,6 +73,18 @@ check 'a jump is told of' says 'warning: an acceleration jumps where the rate of
 run --modes kinks.veh -o modes
 check 'a kink is no jump' [ ! -s err ]
 
+# critical damping, c^2 = 4 k m, is a double eigenvalue: two rows, whichever way it rounds; less is a pair
+for damping in 40 39.999999999999 40.000000000001 39.999; do
+    sed "/^forces:/,\$d" kinks.veh >critical.veh
+    { echo 'forces:'; for slide in $slides; do
+        echo "  $slide: {type: spring_damper, coordinate: $slide, stiffness: 200, damping: $damping}"; done; } >>critical.veh
+    run --modes critical.veh -o modes
+    [ $damping = 39.999 ] && rows=5 || rows=10
+    check "critical damping, $damping N s/m" awk -F, -v rows=$rows 'NR > 1 {if (!(($1 + 10)^2 < 1e-6)) bad = 1
+        if (rows == 10 && $2 $3 $4 != "0") bad = 1; if (rows == 5 && !(($2^2 + $1^2 - 100)^2 < 1e-12)) bad = 1}
+        END {exit bad || NR != rows + 1}' modes
+done
+
 # A vehicle on a slope of 15 percent, made by gravity, for the reference's road is flat. With little brake its windups are
 # above 0.7, where they slip one way.
 sed "s|parts/|$models/parts/|" "$models/hmmwv_tires.veh" >car.veh

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # test_thresholds.sh GICGEN GICRUN: what happens at a time or a threshold happens in the step that exact arithmetic says,
 # however the time adds up and whatever the sign of a zero: changes of gear (POWERTRAIN.md section 4), in every engine and
-# way of generating, and sleep (SCENE.md section 9). The steps are counted by hand.
+# way of generating, and sleep (SCENE.md section 9), where steps are counted by hand; an engine that stops, wheels that
+# begin to roll, and a wheel between two tracks of a road.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -177,6 +178,94 @@ for case in '0.01 0.2 70' '0.01 0.1 80' '0.02 0.2 35' '0.05 0.2 14' '0.01 0.6 30
         run --engine $engine rests.veh rests.scene -o results
         check "asleep $3 steps of $1 s, after $2 s, $engine" says "steps asleep  *$3 "
     done
+done
+
+# ---- an engine that is held back at rest ------------------------------------------------------------------------
+
+# at 0 but for rounding it stays there; from 1/2 rad/s with -40 N m and 0.2 kg m^2 it creeps to 0: with S = w^2 (3 - 2 w)
+# and w' = -200 S, -200 t = integral of dw / S = -1 / (3 w) + 2/9 ln(w / (3 - 2 w)), up to a constant
+line 0.1 0.1
+sed -i 's/torque: 20.*}/torque: -40}/' now.veh
+# last COLUMN: of the last row of results
+last() { awk -F, -v name="$1" 'NR == 1 {for (i = 1; i <= NF; ++i) if ($i ~ "^" name " ") c = i} END {printf "%.17g\n", $c}' results; }
+for speed in 0 1e-25 -1e-25; do
+    printf 'gicscene: 1\nduration: 0.3\nstep: 0.01\ninitial: {gear: 0, states: {engine.speed: %s}}\n' $speed >now.scene
+    for engine in tape tcc gic gcp1; do
+        "$gicrun" -q --engine $engine now.veh now.scene -o results >out 2>err
+        check "an engine of $speed rad/s stands, $engine" awk "BEGIN {exit !(($(last line.engine_speed))^2 < 1e-40)}"
+    done
+done
+printf 'gicscene: 1\nduration: 0.1\nstep: 0.0005\ninputs: {selector: 0}\ninitial: {gear: 0, states: {engine.speed: 0.5}}\n' >now.scene
+for engine in tape tcc gic; do
+    "$gicrun" -q --engine $engine --integrator rk4 now.veh now.scene -o results >out 2>err
+    check "an engine creeps to rest, $engine" awk "BEGIN {w = $(last line.engine_speed)
+        exit !(w > 0 && w < 0.02 && (F(w) - F(0.5) + 200 * 0.1)^2 < 1e-6)}
+        function F(w) {return -1 / (3 * w) + 2 / 9 * log(w / (3 - 2 * w))}"
+done
+
+# ---- wheels that begin to roll ----------------------------------------------------------------------------------
+
+# at 1 m/s, the low speed of their tires, t' = V_y / V_x = 0.1 whatever rounding makes of it, and fades below; alpha is
+# that of t' + tau L t'', and in the air t'' = -(V_x + L V_y / kappa_0) t' / sigma_y
+line 0.1 0.1
+cat >>now.veh <<'END'
+  left: {type: tire, wheel: left}
+END
+sed -i 's/base: ground/base: carriage/; /^joints:/,/^coordinates:/d; /along: /d; /hold: /d; s/^forces:/# &/' now.veh
+for speed in 0.9999999999999 1 1.0000000000001 0.5; do
+    printf 'gicscene: 1\nduration: 0.001\nstep: 0.001\ninitial: {velocity: [%s, 0.1, 0]}\n' $speed >now.scene
+    for engine in tape tcc gic; do
+        "$gicrun" -q --engine $engine now.veh now.scene -o results >out 2>err
+        sed -n 1,2p results | awk -F, -v V="$speed" 'NR == 1 {for (i = 1; i <= NF; ++i) if ($i ~ /^left.alpha /) c = i}
+            NR == 2 {S = V < 1 ? V * V * (3 - 2 * V) : 1
+                t = S * 0.1 / V
+                t -= 0.01 * (1 - S) * (V + (1 - S) * 0.1 / 0.3) * t / 0.31
+                d = $c - atan2(t, 1)
+                exit !(d * d < 1e-20)}'
+        verdict $? "rolling at $speed m/s, $engine"
+    done
+done
+
+# ---- a wheel between two tracks ---------------------------------------------------------------------------------
+
+# it is on the right: 0.02 m high in the middle of the bump there, and 0 with one on the left; a strip has its edges
+cat >single.veh <<'END'
+gicgen: 1
+model: single
+base: ground
+bodies:
+  hub: {mass: 40, com: [0, 0, 0.5], inertia: [1, 1, 1]}
+joints:
+  post: {type: prismatic, bodies: [ground, hub], axis: [0, 0, 1]}
+coordinates:
+  post: {type: translation, bodies: [ground, hub], axis: [0, 0, 1], range: [-0.5, 0.5]}
+forces:
+  post: {type: spring_damper, coordinate: post, stiffness: 2000, damping: 100}
+wheels:
+  wheel: {body: hub, center: [0, PLACE, 0.5], radius: 0.4, stiffness: 20000, damping: 100}
+outputs:
+  wheel: {type: wheel, wheel: wheel}
+END
+# height Y ROAD: under a wheel at y
+height() {
+    sed "s/PLACE/$1/" single.veh >now.veh
+    printf 'gicscene: 1\nduration: 0.01\nstep: 0.01\nroad: %s\noutputs: [wheel.height]\n' "$2" >now.scene
+    "$gicrun" -q --engine "$3" now.veh now.scene -o results >out 2>err && sed -n '2s/.*,//p' results
+}
+bump='x: -1, length: 2, height: 0.02'
+table='type: table, x: [-1, 1]'
+for y in 0 1e-18 -1e-18 1e-13; do
+    for engine in tape gic; do
+        check "right of the middle, y = $y, $engine" [ "$(height $y "{type: bumps, bumps: [{$bump, tracks: right}]}" $engine)" = 0.02 ]
+        check "not left of it, y = $y, $engine" [ "$(height $y "{type: bumps, bumps: [{$bump, tracks: left}]}" $engine)" = 0 ]
+        check "table, y = $y, $engine" [ "$(height $y "{$table, left: [0, 0], right: [0.02, 0.02]}" $engine)" = 0.02 ]
+    done
+done
+check 'the left begins beside it' [ "$(height 1e-8 "{type: bumps, bumps: [{$bump, tracks: left}]}" tape)" = 0.02 ]
+check 'the right ends there' [ "$(height 1e-8 "{type: bumps, bumps: [{$bump, tracks: right}]}" tape)" = 0 ]
+for y in 0.3 0.30000000000000004 0.29999999999999993; do
+    check "a strip to 0.3, y = $y" [ "$(height $y "{type: bumps, bumps: [{$bump, y: [0, 0.3]}]}" tape)" = 0.02 ]
+    check "a strip from 0.3, y = $y" [ "$(height $y "{type: bumps, bumps: [{$bump, y: [0.3, 1]}]}" tape)" = 0.02 ]
 done
 
 echo "$passed passed, $failed failed"
