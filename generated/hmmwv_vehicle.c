@@ -76,14 +76,14 @@
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         1       0      0         0
  *   wheel 'tire_f_l' (4 times)                               194       313      23     12        37
- *   powertrain                                                47        68       6      0         4
- *   a fast step: all of these                                823      1321      98     48       152
- *   all together                                            2687      3623     121     58       152
+ *   powertrain                                                50        71       6      0         4
+ *   a fast step: all of these                                826      1324      98     48       152
+ *   all together                                            2690      3626     121     58       152
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0x753da03b
+#if HMMWV_VEHICLE_H != 0xc487a709
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -1852,45 +1852,47 @@ static int hmmwv_vehicle_drive(hmmwv_vehicle *self, gic_real time, const gic_rea
         const gic_real t37 = t29 * t32 - t34 * t36;
         const gic_real t38 = t20 * t21 - t24 * t37 - t24 * t36;
         const gic_real t39 = t14 * t17 - t19 * t38 - t25 * t37 - t25 * t36;
-        const gic_real t40 = GIC_MIN(GIC_MAX((R(282.7433388230814) - fast[16]) * R(0.07073553026306459), R(0.0)), R(1.0));
-        const gic_real t41 = GIC_MIN(GIC_MAX(GIC_MAX(u[4], (R(83.7758040957278) - fast[16]) * R(0.05968310365946076)), R(0.0)), R(1.0)) * ((R(3.0) - (t40 + t40)) * (t40 * t40));
-        const gic_real t42 = fast[16] * R(9.549296585513721);
-        const gic_real t43 = t41 * gic_table_value(&table[0], t42) + gic_table_value(&table[1], t42);
-        const gic_real t44 = (fast[16] > GIC_R(0) ? t43 : GIC_MAX(t43, R(0.0)));
-        const gic_real t45 = (t6 > GIC_R(0) ? t11 : t10);
-        const gic_real t46 = R(7.78782) * (t39 - rate[0]);
-        const gic_real t47 = fast[0] * (R(7.78782) * t39);
-        const gic_real t48 = R(7.78782) * (t38 - rate[4]);
-        const gic_real t49 = fast[4] * (R(7.78782) * t38);
-        const gic_real t50 = R(7.78782) * (t37 - rate[8]);
-        const gic_real t51 = fast[8] * (R(7.78782) * t37);
-        const gic_real t52 = R(7.78782) * (t36 - rate[12]);
-        const gic_real t53 = fast[12] * (R(7.78782) * t36);
-        const gic_real t54 = (t44 - t45) * R(0.625);
-        const gic_real t55 = fast[16];
-        const gic_real t56 = gear[0];
+        const gic_real t40 = GIC_MIN(GIC_MAX(fast[16], R(0.0)), R(1.0));
+        const gic_real t41 = GIC_MIN(GIC_MAX((R(282.7433388230814) - fast[16]) * R(0.07073553026306459), R(0.0)), R(1.0));
+        const gic_real t42 = GIC_MIN(GIC_MAX(GIC_MAX(u[4], (R(83.7758040957278) - fast[16]) * R(0.05968310365946076)), R(0.0)), R(1.0)) * ((R(3.0) - (t41 + t41)) * (t41 * t41));
+        const gic_real t43 = fast[16] * R(9.549296585513721);
+        const gic_real t44 = t42 * gic_table_value(&table[0], t43) + gic_table_value(&table[1], t43);
+        const gic_real t45 = (R(3.0) - (t40 + t40)) * (t40 * t40) * GIC_MIN(t44, R(0.0));
+        const gic_real t46 = t45 + GIC_MAX(t44, R(0.0));
+        const gic_real t47 = (t6 > GIC_R(0) ? t11 : t10);
+        const gic_real t48 = R(7.78782) * (t39 - rate[0]);
+        const gic_real t49 = fast[0] * (R(7.78782) * t39);
+        const gic_real t50 = R(7.78782) * (t38 - rate[4]);
+        const gic_real t51 = fast[4] * (R(7.78782) * t38);
+        const gic_real t52 = R(7.78782) * (t37 - rate[8]);
+        const gic_real t53 = fast[8] * (R(7.78782) * t37);
+        const gic_real t54 = R(7.78782) * (t36 - rate[12]);
+        const gic_real t55 = fast[12] * (R(7.78782) * t36);
+        const gic_real t56 = (t46 - t47) * R(0.625);
+        const gic_real t57 = fast[16];
+        const gic_real t58 = gear[0];
         rate[0] = t39;
-        grip[6] = t46;
-        grip[26] = t47;
+        grip[6] = t48;
+        grip[26] = t49;
         rate[4] = t38;
-        grip[33] = t48;
-        grip[53] = t49;
+        grip[33] = t50;
+        grip[53] = t51;
         rate[8] = t37;
-        grip[60] = t50;
-        grip[80] = t51;
+        grip[60] = t52;
+        grip[80] = t53;
         rate[12] = t36;
-        grip[87] = t52;
-        grip[107] = t53;
-        rate[16] = t54;
+        grip[87] = t54;
+        grip[107] = t55;
+        rate[16] = t56;
         rate[17] = R(1.0);
-        watch[0] = t55;
-        watch[1] = t44;
-        watch[2] = t41;
-        watch[3] = t56;
+        watch[0] = t57;
+        watch[1] = t46;
+        watch[2] = t42;
+        watch[3] = t58;
         watch[4] = t3;
         watch[5] = t5;
         watch[6] = t12;
-        watch[7] = t45;
+        watch[7] = t47;
     }
     return GIC_OK;
 }
@@ -5181,6 +5183,12 @@ static const struct {
     {12, 4, R(1.0)}, /* tire_r_r */
 };
 
+/* S(s) / s of a speed relative to the low one: the slip of rolling begins with the speed. */
+static gic_real hmmwv_vehicle_rolling_share(gic_real s)
+{
+    return s < R(1.0) ? s * (R(3.0) - R(2.0) * s) : R(1.0) / s;
+}
+
 /* Fast states with which no wheel slips; the integrator's history is forgotten. */
 static int hmmwv_vehicle_any_roll(void *instance)
 {
@@ -5197,8 +5205,7 @@ static int hmmwv_vehicle_any_roll(void *instance)
         for (j = 0; j < hmmwv_vehicle_rolling[i].states; ++j)
             own[j] = R(0.0);
         own[0] = v_x / radius;
-        if (speed > hmmwv_vehicle_rolling[i].low_speed)
-            own[2] = v_y / speed;
+        own[2] = v_y * hmmwv_vehicle_rolling_share(speed / hmmwv_vehicle_rolling[i].low_speed) / hmmwv_vehicle_rolling[i].low_speed;
     }
     if (status == GIC_OK)
         gic_restart(self, time);

@@ -76,13 +76,13 @@
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         1       0      0         0
  *   wheel 'tire_f_l' (4 times)                               194       313      23     12        37
- *   powertrain                                                47        68       6      0         4
- *   a fast step: all of these                                823      1321      98     48       152
- *   all together                                            2687      3623     121     58       152
+ *   powertrain                                                50        71       6      0         4
+ *   a fast step: all of these                                826      1324      98     48       152
+ *   all together                                            2690      3626     121     58       152
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0x753da03b
+#define HMMWV_VEHICLE_H 0xc487a709
 
 #include "gic_runtime.h"
 
