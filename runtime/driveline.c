@@ -185,7 +185,7 @@ void world_drive(World *world, const double *fast, double *rate)
 
 /* ---- shifting -------------------------------------------------------------------------------------------- */
 
-/* Rounding does not decide: times count as up by a share of themselves early, numbers that are as near count as equal. */
+/* Rounding does not decide: a time is up by this share of itself early, numbers that are as near are equal. */
 static const double tolerance = 1e-9;
 
 static bool is_up(double age, double time)

@@ -65,7 +65,8 @@ static double step_size(const Search *s, const double *step, int count)
     const Linear *linear = s->found->linear;
     double size = 0;
     for (int i = 0; i < count; ++i)
-        size = fmax(size, fabs(step[i]) / (i < linear->places ? linear->piece[i] : linear->reach[column_of(linear, i)]));
+        size =
+            fmax(size, fabs(step[i]) / (i < linear->places ? linear->piece[i] : linear->reach[column_of(linear, i)]));
     return size;
 }
 

@@ -41,7 +41,11 @@ typedef struct gic_road_sine {
 void gic_sine_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
 
 /* To this, m, a place at an edge between tracks is on it: at y = 0 but for rounding a wheel is on the right. */
+#ifdef GIC_FLOAT
+#define GIC_ROAD_EDGE GIC_R(1e-5)
+#else
 #define GIC_ROAD_EDGE GIC_R(1e-9)
+#endif
 
 /* A bump of height `height` between x and x + length, h (1 - cos)/2, on tracks y in [y_low, y_high], with the edges. */
 typedef struct gic_bump {

@@ -114,8 +114,8 @@ static void scatter(const Linear *linear, const double *dy)
     }
 }
 
-/* drate: derivative of the state's rate along dy, both [states], one-sided where `kinks` are met; linear->rate: the rate
- * on that side. `self` has just been evaluated at its state. near: share of dy within which kinks are met. */
+/* drate: derivative of the state's rate along dy, both [states], one-sided where `kinks` are met; linear->rate: the
+ * rate on that side. `self` has just been evaluated at its state. near: share of dy within which kinks are met. */
 static int rate_to_side(const Linear *linear, const Instance *self, const double *dy, double near, double *drate,
                         int *kinks)
 {
@@ -381,8 +381,8 @@ static void name_numbers(Pool *pool, Linear *linear)
         for (int c = 0; c < code->coordinate_count; ++c)
             if (code->coordinate_state[c] >= 0)
                 add_number(pool, linear,
-                           place_name(pool, code->coordinate[c].name, base, code->free_base ? BASE_PLACES : 0),
-                           small, engine->piece[c]);
+                           place_name(pool, code->coordinate[c].name, base, code->free_base ? BASE_PLACES : 0), small,
+                           engine->piece[c]);
         linear->places = half ? linear->places : linear->count;
     }
     for (int i = 0; i < code->fast_count - linear->clocks; ++i)
