@@ -4858,6 +4858,12 @@ static const struct {
     {12, 4, R(1.0)}, /* tire_r_r */
 };
 
+/* S(s) / s of a speed relative to the low one: the slip of rolling begins with the speed. */
+static gic_real hmmwv_tmeasy_rolling_share(gic_real s)
+{
+    return s < R(1.0) ? s * (R(3.0) - R(2.0) * s) : R(1.0) / s;
+}
+
 /* Fast states with which no wheel slips; the integrator's history is forgotten. */
 static int hmmwv_tmeasy_any_roll(void *instance)
 {
@@ -4874,8 +4880,7 @@ static int hmmwv_tmeasy_any_roll(void *instance)
         for (j = 0; j < hmmwv_tmeasy_rolling[i].states; ++j)
             own[j] = R(0.0);
         own[0] = v_x / radius;
-        if (speed > hmmwv_tmeasy_rolling[i].low_speed)
-            own[2] = v_y / speed;
+        own[2] = v_y * hmmwv_tmeasy_rolling_share(speed / hmmwv_tmeasy_rolling[i].low_speed) / hmmwv_tmeasy_rolling[i].low_speed;
     }
     if (status == GIC_OK)
         gic_restart(self, time);

@@ -244,7 +244,9 @@ static void drive_block(Linking *l, const Powertrain *powertrain, Block *block)
     Ex pump, turbine, speed = input(dag, "fast", powertrain->fast + POWERTRAIN_SPEED);
     Ex theta = throttle(l, powertrain, fast_law(l, powertrain->throttle, NULL), speed);
     Ex torque = fast_law(l, powertrain->torque, (const Ex[]){speed, theta});
-    torque = ex_op(dag, OP_POSITIVE, speed, torque, positive_part(dag, torque)); /* nothing turns an engine backwards */
+    /* nothing turns an engine backwards: what holds it back fades as it stops */
+    Ex holds = ex_mul(dag, ex_op(dag, OP_MIN, torque, 0, 0), smooth_step(dag, speed));
+    torque = ex_add(dag, positive_part(dag, torque), holds);
     converter(&shafts, speed, &pump, &turbine);
     const Spins spins = spins_new(l, &shafts, ex_mul(dag, shafts.ratio, turbine));
     Ex rates[shafts.wheels];

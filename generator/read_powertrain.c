@@ -207,8 +207,9 @@ static const Law **shifts_read(Reader *reader, const Item *map, const Value *val
 
 static int start_gear(const Model *model, const Powertrain *powertrain)
 {
+    const double engages = 0.5 + 1.5e-9; /* more than rounding makes of 0.5, as where gears change */
     double selector = powertrain->selector ? law_number(powertrain->selector, model) : 1;
-    return selector > 0.5 ? 1 : selector < -0.5 && powertrain->reverse ? -1 : 0;
+    return selector > engages ? 1 : selector < -engages && powertrain->reverse ? -1 : 0;
 }
 
 static void transmission_read(Reader *reader, const Item *item, Powertrain *powertrain)

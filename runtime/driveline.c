@@ -87,8 +87,8 @@ static void run_engine(const World *world, double speed, Driveline *out)
         throttle *= smooth((p->limit - speed) / (0.05 * p->limit));
     out->throttle = throttle;
     out->engine_torque = world_law(world, p->torque, (const double[]){speed, throttle});
-    if (speed <= 0)
-        out->engine_torque = fmax(0, out->engine_torque);
+    if (out->engine_torque < 0)
+        out->engine_torque *= smooth(speed);
 }
 
 /* What the tree, driven by `torque` at its root, passes to each of its wheels; lists them, and returns how many. */
@@ -185,9 +185,27 @@ void world_drive(World *world, const double *fast, double *rate)
 
 /* ---- shifting -------------------------------------------------------------------------------------------- */
 
-static int sign_of(double x, double threshold)
+/* Rounding does not decide: a time is up by this share of itself early, numbers that are as near are equal. */
+static const double tolerance = 1e-9;
+
+static bool is_up(double age, double time)
 {
-    return (x > threshold) - (x < -threshold);
+    return time - age <= tolerance * time;
+}
+
+/* 1, -1: more or less than the limit; 0: equal. */
+static int compare(double x, double limit)
+{
+    const double apart = (x - limit) / (1 + fabs(limit));
+    return (apart > tolerance) - (apart < -tolerance);
+}
+
+/* The direction that the selector asks for. */
+static int wanted_direction(const World *world)
+{
+    const Powertrain *p = world->model->powertrain;
+    const double selector = p->selector ? world_law(world, p->selector, NULL) : 1;
+    return (compare(selector, 0.5) > 0) - (p->reverse && compare(selector, -0.5) < 0);
 }
 
 bool world_shift(const World *world, const double *fast, int32_t gear[POWERTRAIN_DISCRETE])
@@ -197,17 +215,17 @@ bool world_shift(const World *world, const double *fast, int32_t gear[POWERTRAIN
     const int32_t now = gear[POWERTRAIN_GEAR];
     int32_t next = now;
     double speed[p->differentials], difference[p->differentials], engaged;
-    if (!(age > p->duration))
+    if (!is_up(age, p->duration))
         return false;
-    const int wanted = p->selector ? sign_of(world_law(world, p->selector, NULL), 0.5) : 1;
-    if (wanted != sign_of(now, 0)) {
+    const int wanted = wanted_direction(world);
+    if (wanted != (now > 0) - (now < 0)) {
         next = wanted;
-    } else if (age > p->latency && now >= 1) {
+    } else if (is_up(age, p->latency) && now >= 1) {
         tree_speeds(world, fast, speed, difference);
         const double turbine = ratio_of(world, age, &engaged) * speed[p->differentials - 1];
-        if (now < p->forward && turbine > world_law(world, p->up[now - 1], NULL))
+        if (now < p->forward && compare(turbine, world_law(world, p->up[now - 1], NULL)) > 0)
             next = now + 1;
-        else if (now > 1 && turbine < world_law(world, p->down[now - 2], NULL))
+        else if (now > 1 && compare(turbine, world_law(world, p->down[now - 2], NULL)) < 0)
             next = now - 1;
     }
     if (next == now)

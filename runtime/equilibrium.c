@@ -14,11 +14,12 @@
 #include <gsl/gsl_linalg.h>
 
 const double equilibrium_limit = 1e-9;
+static const double slowest = 1e-9; /* m/s, rad/s: what is slower stands still */
 
 enum { MOST_STEPS = 500 };
 
 static const double longest = 1e4, shortest = 1e-7, first = 0.02; /* h, s */
-static const double near = 1e-3;       /* of the reach: steps so small need not be asked where they go */
+static const double near = 1e-3;       /* of a piece: steps so small need not be asked where they go */
 static const double rank_limit = 1e-9; /* of singular values, relative to the largest: below, nothing changes */
 
 /* Unknowns are the places, then the fast states but clocks; equations their accelerations, then rates: equation i is
@@ -30,7 +31,6 @@ typedef struct Search {
     int unknowns;
     double *step, *move; /* [unknowns], [count] as linear_move() wants it */
     double *f, *A;       /* at the trial */
-    bool locked;         /* nothing turns wheels and engine */
     double h;
     bool settled;      /* is it near enough for tires to be loaded? */
     const char *limit; /* why the last trials since a good step could not be evaluated; NULL: all could */
@@ -59,12 +59,14 @@ static int largest(const Search *s, const double *f)
     return worst;
 }
 
-/* The first so many numbers of a step in units of the reach: more than 1 is too far. */
+/* The first so many numbers of a step in units of what may change at once: more than 1 is too far. */
 static double step_size(const Search *s, const double *step, int count)
 {
+    const Linear *linear = s->found->linear;
     double size = 0;
     for (int i = 0; i < count; ++i)
-        size = fmax(size, fabs(step[i]) / s->found->linear->reach[column_of(s->found->linear, i)]);
+        size =
+            fmax(size, fabs(step[i]) / (i < linear->places ? linear->piece[i] : linear->reach[column_of(linear, i)]));
     return size;
 }
 
@@ -108,13 +110,14 @@ static void solve_decomposed(const Search *s, const gsl_matrix *U, const gsl_mat
 static const char *name_flat(const Search *s, const gsl_matrix *V, const gsl_vector *S)
 {
     const Linear *linear = s->found->linear;
+    const double most = 0.51; /* not 0.5: of two places that are flat together neither is named, whatever rounds */
     Text names = {.pool = s->pool};
     for (int j = 0; j < linear->places; ++j) {
         double weight = 0;
         for (size_t k = 0; k < V->size1; ++k)
             if (is_flat(S, k))
                 weight += gsl_matrix_get(V, (size_t)j, k) * gsl_matrix_get(V, (size_t)j, k);
-        if (weight > 0.5)
+        if (weight > most)
             text_print(&names, "%s%s", names.size ? ", " : "", linear->name[j]);
     }
     return names.s;
@@ -190,7 +193,7 @@ static int look(const Search *s, Instance *self, double *f, double *A)
     const Linear *linear = s->found->linear;
     const int count = linear->count;
     const int status = linearize(linear, self, f, A);
-    for (int i = 2 * linear->places; i < count && s->locked; ++i) {
+    for (int i = 2 * linear->places; i < count && s->found->locked; ++i) {
         f[i] = 0;
         memset(A + i * count, 0, (size_t)count * sizeof *A);
         for (int row = 0; row < count && !linear->slips[i]; ++row)
@@ -331,13 +334,18 @@ int equilibrium_force(const Equilibrium *found, int force)
     return at;
 }
 
+static bool is_motion(double velocity)
+{
+    return fabs(velocity) > slowest;
+}
+
 bool equilibrium_stands(const Model *model, const Scene *scene)
 {
-    bool moves = scene->along && scene->speed != 0;
+    bool moves = scene->along && is_motion(scene->speed);
     for (int i = 0; i < 3 && model->free_base; ++i)
-        moves = moves || scene->angular_velocity[i] != 0 || (!scene->along && scene->velocity[i] != 0);
+        moves = moves || is_motion(scene->angular_velocity[i]) || (!scene->along && is_motion(scene->velocity[i]));
     for (int c = 0; c < model->coordinates; ++c)
-        moves = moves || (!model->coordinate[c].driven && scene->rate[c] != 0);
+        moves = moves || (!model->coordinate[c].driven && is_motion(scene->rate[c]));
     return !moves;
 }
 
@@ -393,7 +401,26 @@ static _Noreturn void fail(const Search *s, Place at)
               found->steps, found->f[worst], linear->name[worst]);
 }
 
-const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve, bool moves)
+static void stop(double *speed)
+{
+    if (fabs(*speed) <= slowest)
+        *speed = 0;
+}
+
+/* Speeds that Newton's method leaves at 1e-25 rad/s are those of wheels and an engine that stand still. */
+static void stop_wheels(const Search *s)
+{
+    const Equilibrium *found = s->found;
+    const gic_model *code = &found->linear->engine->code;
+    double *fast = tape_array(found->self, code->state_offset) + code->slow_count;
+    for (int i = 0; i < found->model->wheels; ++i)
+        if (found->model->wheel[i].tire >= 0)
+            stop(fast + found->model->wheel[i].fast + FAST_SPIN);
+    if (found->model->powertrain)
+        stop(fast + found->model->powertrain->fast + POWERTRAIN_SPEED);
+}
+
+const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve)
 {
     Equilibrium *found = pool_alloc(pool, sizeof *found);
     found->model = watched(pool, model);
@@ -402,8 +429,8 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
     found->self = (Instance *)(void *)instance_new(pool, found->engine);
     const size_t count = (size_t)found->linear->count, square = (count * count + 1) * sizeof(double);
     const Place at = {scene ? scene->source : model->source, 0, 0};
-    Search s = {
-        .pool = pool, .found = found, .unknowns = (int)count - found->linear->places, .locked = moves, .h = first};
+    Search s = {.pool = pool, .found = found, .unknowns = (int)count - found->linear->places, .h = first};
+    found->locked = scene && !equilibrium_stands(model, scene);
     s.settled = !found->linear->of_wheels;
     s.trial = (Instance *)(void *)instance_new(pool, found->engine);
     found->f = pool_alloc(pool, (count + 1) * sizeof(double));
@@ -432,6 +459,12 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
         if (found->steps >= MOST_STEPS || !relax(&s))
             fail(&s, at);
     }
+    stop_wheels(&s);
+    status = look(&s, found->self, found->f, found->A);
+    if (status != GIC_OK)
+        diag_fail(at, NULL, "the equilibrium can't be evaluated: %s",
+                  instance_status(pool, found->engine->code, &found->self->head, status));
+    found->residual = fabs(found->f[largest(&s, found->f)]);
     return found;
 }
 
@@ -449,7 +482,7 @@ const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium
             out->value[c] = state[code->coordinate_state[c]];
             out->given[c] = true;
         }
-    if (equilibrium_stands(found->model, scene)) { /* else wheels roll, unless the scene says how they turn */
+    if (!found->locked) { /* else wheels roll, unless the scene says how they turn */
         out->fast = pool_alloc(pool, ((size_t)code->fast_count + 1) * sizeof *out->fast);
         memcpy(out->fast, state + code->slow_count, (size_t)code->fast_count * sizeof *out->fast);
     }
@@ -466,6 +499,5 @@ const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scen
 {
     if (!scene->equilibrium)
         return scene;
-    const bool moves = !equilibrium_stands(model, scene);
-    return scene_even(pool, model, equilibrium_scene(pool, scene, equilibrium_find(pool, model, scene, solve, moves)));
+    return scene_even(pool, model, equilibrium_scene(pool, scene, equilibrium_find(pool, model, scene, solve)));
 }

@@ -10,6 +10,14 @@ static int32_t *discrete_states(gic_head *self, const gic_model *code)
     return (int32_t *)(void *)instance_array(self, code->discrete_offset);
 }
 
+/* Does the rate of a number of the state vanish in the equilibrium? Of locked wheels those of slips alone do. */
+static bool rests(const Equilibrium *found, int number)
+{
+    const Linear *linear = found->linear;
+    const int i = number - found->engine->code->free_base;
+    return i < 2 * linear->places || !found->locked || linear->slips[i];
+}
+
 /* Largest acceleration that an engine finds there. */
 static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, const Equilibrium *found)
 {
@@ -31,7 +39,8 @@ static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, 
                   "engine %s can't evaluate the equilibrium: %s", engine->name,
                   instance_status(pool, code, self, status));
     for (int i = found->linear->places + code->free_base; i < engine->standard_count - found->linear->clocks; ++i)
-        worst = fmax(worst, fabs(rate[i]));
+        if (rests(found, i))
+            worst = fmax(worst, fabs(rate[i]));
     return worst;
 }
 
@@ -173,7 +182,7 @@ static void print_initial(Pool *pool, const Equilibrium *found, const double *st
     }
     if (code->discrete_count > code->free_base)
         printf("  gear: %d\n", discrete_states(&found->self->head, code)[code->free_base]);
-    for (int i = 0; i < code->fast_count; ++i)
+    for (int i = 0; i < code->fast_count && !found->locked; ++i) /* else they roll with the scene's velocities */
         printf("%s    %s: %.17g\n", i ? "" : "  states:\n", code->state[code->slow_count + i].name,
                state[code->slow_count + i]);
 }
@@ -266,6 +275,8 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
         return;
     printf("%s: static equilibrium, found in %d steps\n", found->model->name, found->steps);
     printf("%-24s  %.2g m/s^2 or rad/s^2 (engine %s)\n", "largest acceleration", residual, engine->name);
+    if (found->locked && found->linear->of_wheels)
+        printf("%-24s  locked, for the scene starts in motion; they roll from there\n", "wheels");
     if (found->neutral)
         printf("%-24s  %s: moved along these it rests as well\n", "neutral", found->neutral);
     if (code->free_base)

@@ -58,7 +58,7 @@ void gic_bumps_height(const gic_road *road, int32_t lane, gic_real time, gic_rea
     for (int32_t i = first; i < bumps->count && !(bumps->bump[i].x >= x); ++i) {
         const gic_bump *bump = &bumps->bump[i];
         const gic_real along = x - bump->x;
-        if (along >= bump->length || y < bump->y_low || y > bump->y_high)
+        if (along >= bump->length || y < bump->y_low - GIC_ROAD_EDGE || y > bump->y_high + GIC_ROAD_EDGE)
             continue;
         const gic_real wave = TWO_PI / bump->length;
         out[0] += GIC_R(0.5) * bump->height * (GIC_R(1.0) - MATH(cos)(wave * along));
@@ -86,8 +86,8 @@ void gic_table_height(const gic_road *road, int32_t lane, gic_real time, gic_rea
 {
     const gic_road_table *table = (const gic_road_table *)(const void *)road;
     const gic_real *at = table->x;
-    const gic_real *height = y > GIC_R(0.0) ? table->left : table->right;
-    const gic_real *slope = y > GIC_R(0.0) ? table->slope_left : table->slope_right;
+    const gic_real *height = y > GIC_ROAD_EDGE ? table->left : table->right;
+    const gic_real *slope = y > GIC_ROAD_EDGE ? table->slope_left : table->slope_right;
     int32_t low = 0, high = table->count - 1;
     (void)lane;
     (void)time;

@@ -40,7 +40,14 @@ typedef struct gic_road_sine {
 #define gic_sine_height GIC_NAME(gic_sine_height)
 void gic_sine_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
 
-/* A bump of height `height` between x and x + length, h (1 - cos)/2, on tracks y in [y_low, y_high]. */
+/* To this, m, a place at an edge between tracks is on it: at y = 0 but for rounding a wheel is on the right. */
+#ifdef GIC_FLOAT
+#define GIC_ROAD_EDGE GIC_R(1e-5)
+#else
+#define GIC_ROAD_EDGE GIC_R(1e-9)
+#endif
+
+/* A bump of height `height` between x and x + length, h (1 - cos)/2, on tracks y in [y_low, y_high], with the edges. */
 typedef struct gic_bump {
     gic_real x, length, height, y_low, y_high;
 } gic_bump;
@@ -62,7 +69,7 @@ int gic_road_bumps_setup(gic_road_bumps *road);
 
 /* ---- measured and random ones --------------------------------------------------------------------------- */
 
-/* Heights left (y > 0) and right (y <= 0) of the middle at rising x, monotone cubic (Fritsch-Carlson) between,
+/* Heights left (y > GIC_ROAD_EDGE) and right of the middle at rising x, monotone cubic (Fritsch-Carlson) between,
  * constant outside; level at both ends, so that the slope has no jump. slope_left, slope_right: `count` numbers, filled
  * by gic_road_table_setup. */
 typedef struct gic_road_table {

@@ -190,8 +190,7 @@ static Request read_command_line(int count, char **word)
 /* All that is about the static equilibrium. */
 static void analyse(Pool *pool, const Model *model, const Scene *scene, const Engine *engine, const Request *request)
 {
-    const bool moves = request->modes && scene && !equilibrium_stands(model, scene);
-    const Equilibrium *found = equilibrium_find(pool, model, scene, request->solve, moves);
+    const Equilibrium *found = equilibrium_find(pool, model, scene, request->solve);
     if (request->rests)
         equilibrium_report(pool, engine, scene, request, found);
     else

@@ -5,11 +5,19 @@
  * one correction in dual numbers has the exact derivative, whatever derivative q0 came with, for
  * dq1 = dq0 - J^-1 (J dq0 + Phi_x dx) = -J^-1 Phi_x dx (implicit function theorem). A second one then finds that of the
  * velocity Jacobian S, which depends on q. So a recovered configuration takes two corrections, and nothing is
- * iterated. Where q has a closed form, that is all it takes. */
+ * iterated. Where q has a closed form, that is all it takes.
+ *
+ * A parked vehicle stands on kinks: |V| of a tire's slip at V = 0. There the derivative is the mean of both sides, the
+ * limit of central differences, so that it does not depend on the sign of what is zero but for rounding. One-sided
+ * derivatives obey the chain rule through kinks, means do not (|V| times a condition on V); so both are played. */
 #include "linearize.h"
 
 #include <math.h>
 #include <string.h>
+
+/* A state is at a kink where so much of a number's reach takes it there. Rounding leaves 1e-15 of that, an equilibrium
+ * 1e-12. */
+static const double at_kink = 1e-9;
 
 /* ---- in Euler parameters: the right-hand side along dy -------------------------------------------------- */
 
@@ -63,11 +71,11 @@ static void link_subset(Instance *self, TapeLinks *links, int s, double *q, doub
 }
 
 /* All subsets, where the configuration in `value` is good already. y, dy: the state, and its change. */
-static int recover(const Linear *linear, const double *y, const double *dy)
+static int recover(const Linear *linear, const double *y, const double *dy, double near, int *kinks)
 {
     const TapeEngine *engine = linear->engine;
     const Sequence *sequence = engine->formulation->sequence;
-    const TapeWorld none = {.table = NULL};
+    const TapeWorld none = {.near = near, .kinks = kinks};
     TapeLinks value = linear->value_links, slope = linear->slope_links;
     double step[2], dstep[2];
     if (engine->code.free_base) {
@@ -106,8 +114,10 @@ static void scatter(const Linear *linear, const double *dy)
     }
 }
 
-/* drate: derivative of the state's rate along dy, both [states]. `self` has just been evaluated at its state. */
-static int rate_along(const Linear *linear, const Instance *self, const double *dy, double *drate)
+/* drate: derivative of the state's rate along dy, both [states], one-sided where `kinks` are met; linear->rate: the
+ * rate on that side. `self` has just been evaluated at its state. near: share of dy within which kinks are met. */
+static int rate_to_side(const Linear *linear, const Instance *self, const double *dy, double near, double *drate,
+                        int *kinks)
 {
     const TapeEngine *engine = linear->engine;
     const gic_model *code = &engine->code;
@@ -122,16 +132,49 @@ static int rate_along(const Linear *linear, const Instance *self, const double *
     if (status != GIC_OK)
         return status;
     scatter(linear, dy);
-    status = recover(linear, y, dy);
+    status = recover(linear, y, dy, near, kinks);
     if (status != GIC_OK)
         return status;
-    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, &linear->value->head};
+    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, &linear->value->head, near, kinks};
     tape_arrays(linear->value, &time, y, e, linear->rate, NULL, NULL, array);
     tape_arrays(linear->slope, &dtime, dy, de, drate, NULL, NULL, slope);
     if (engine->wheel)
         status = tape_turn_wheels_dual(engine, &world, array, slope, linear->frame);
     if (status == GIC_OK)
         status = tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
+    return status;
+}
+
+/* Does the rate jump, so that the difference between both sides is more than slopes make of what lies between them? */
+static bool is_jump(int states, double near, const double *const rate[2], const double *const drate[2])
+{
+    for (int i = 0; i < states; ++i) {
+        const double between = near * (fabs(drate[0][i]) + fabs(drate[1][i]));
+        if (fabs(rate[0][i] - rate[1][i]) > equilibrium_limit * (1 + fabs(rate[0][i])) + 2 * between)
+            return true;
+    }
+    return false;
+}
+
+/* linear->drate: derivative of the state's rate along linear->dy; at kinks the mean of both sides. *jump: set where the
+ * rate itself is another one on the other side. */
+static int rate_along(const Linear *linear, const Instance *self, double near, bool *jump)
+{
+    const int states = linear->engine->code.slow_count + linear->engine->code.fast_count;
+    double other_rate[states + 1], other[states + 1];
+    int kinks = 0;
+    int status = rate_to_side(linear, self, linear->dy, near, linear->drate, &kinks);
+    if (status != GIC_OK || !kinks)
+        return status;
+    memcpy(other_rate, linear->rate, (size_t)states * sizeof *other);
+    memcpy(other, linear->drate, (size_t)states * sizeof *other);
+    for (int i = 0; i < states; ++i)
+        linear->dy[i] = -linear->dy[i];
+    status = rate_to_side(linear, self, linear->dy, near, linear->drate, &kinks);
+    *jump = *jump || is_jump(states, near, (const double *const[]){linear->rate, other_rate},
+                             (const double *const[]){linear->drate, other});
+    for (int i = 0; i < states; ++i)
+        linear->drate[i] = (other[i] - linear->drate[i]) / 2;
     return status;
 }
 
@@ -249,9 +292,10 @@ int linearize(const Linear *linear, Instance *self, double *f, double *A)
     motion_rate(linear, y, linear->evaluated, f);
     memset(z, 0, sizeof z);
     for (int j = 0; j < count; ++j) {
+        linear->jumps[j] = false;
         z[j] = 1;
         state_change(linear, y, z, linear->dy);
-        status = rate_along(linear, self, linear->dy, linear->drate);
+        status = rate_along(linear, self, at_kink * linear->reach[j], &linear->jumps[j]);
         if (status != GIC_OK)
             return self->head.status = status;
         motion_rate_change(linear, y, linear->evaluated, z, linear->drate, column);
@@ -291,10 +335,11 @@ void linear_move(const Linear *linear, Instance *self, const double *z)
 
 /* ---- opening -------------------------------------------------------------------------------------------- */
 
-static void add_number(Pool *pool, Linear *linear, const char *name, double reach)
+static void add_number(Pool *pool, Linear *linear, const char *name, double reach, double piece)
 {
-    int same = linear->count;
+    int same = linear->count, also = linear->count;
     *POOL_PUSH(pool, linear->name, same) = name;
+    *POOL_PUSH(pool, linear->piece, also) = piece;
     *POOL_PUSH(pool, linear->reach, linear->count) = reach;
 }
 
@@ -326,22 +371,24 @@ static const char *place_name(Pool *pool, const char *name, const char *const ba
 static void name_numbers(Pool *pool, Linear *linear)
 {
     static const char *const base[BASE_PLACES] = {"x", "y", "z", "roll", "pitch", "yaw"};
+    const double small = 0.1;
     const TapeEngine *engine = linear->engine;
     const gic_model *code = &engine->code;
     linear->clocks = engine->formulation->model->powertrain ? POWERTRAIN_FAST - POWERTRAIN_AGE : 0;
     for (int half = 0; half < 2; ++half) {
         for (int i = 0; code->free_base && i < BASE_PLACES; ++i)
-            add_number(pool, linear, base[i], 0.1);
+            add_number(pool, linear, base[i], small, small);
         for (int c = 0; c < code->coordinate_count; ++c)
             if (code->coordinate_state[c] >= 0)
                 add_number(pool, linear,
-                           place_name(pool, code->coordinate[c].name, base, code->free_base ? BASE_PLACES : 0),
+                           place_name(pool, code->coordinate[c].name, base, code->free_base ? BASE_PLACES : 0), small,
                            engine->piece[c]);
         linear->places = half ? linear->places : linear->count;
     }
     for (int i = 0; i < code->fast_count - linear->clocks; ++i)
-        add_number(pool, linear, code->state[code->slow_count + i].name, 1);
+        add_number(pool, linear, code->state[code->slow_count + i].name, 1, 1);
     linear->slips = pool_alloc(pool, (size_t)linear->count + 1);
+    linear->jumps = pool_alloc(pool, (size_t)linear->count + 1);
     describe_wheels(linear);
 }
 

@@ -16,12 +16,14 @@ typedef struct Linear {
     const TapeEngine *engine;
     int places, count;       /* count: 2 places and fast states */
     bool *slips;             /* [count] is it the slip of a tire? */
+    bool *jumps;             /* [count] of the last linearize(): does a rate jump where this passes its value? */
     int of_wheels;           /* so many of the fast states, which are the first, belong to wheels */
     int clocks;              /* fast states behind them that run on by themselves: the time since a gear was shifted */
     const char **name;       /* [count] */
-    double *reach;           /* [count] change of a place in which little happens: 0.1 m, 0.1 rad, the piece of a
-                                coordinate in which no body turns by more than that; of what spins 1 rad/s, of slips
-                                0.1 */
+    double *reach;           /* [count] units in which numbers compare: 0.1 m, 0.1 rad, 0.1 m/s, 0.1 rad/s; of what
+                                spins 1 rad/s, of slips 0.1. The same left and right, whatever was sampled */
+    double *piece;           /* [places] change in which little happens: 0.1, of a coordinate so much that no body turns
+                                by more than 0.1 rad */
     Instance *value, *slope; /* work: an instance, and its derivatives in an instance's places */
     TapeLinks value_links, slope_links;
     double *frame, *q, *dy, *evaluated, *rate, *drate; /* work */
@@ -30,7 +32,7 @@ typedef struct Linear {
 /* linearize.c: `engine` is the engine tape. */
 Linear *linear_open(Pool *pool, const Engine *engine);
 /* dz/dt = f + A z about the state of an instance at its time, with its inputs, parameters and road. f: [count]; A:
- * [count][count]. Returns a status, which the instance then has. */
+ * [count][count]; where the state is at a kink but for 1e-9 of the reach, the mean of both sides. Returns a status, which the instance then has. */
 int linearize(const Linear *linear, Instance *self, double *f, double *A);
 /* The instance's state moved by places and fast states of z [count], exactly also where they are not small; velocities
  * stay. */
@@ -49,14 +51,15 @@ typedef struct Equilibrium {
     double *f, *A;   /* linearize() there */
     double residual; /* largest of the accelerations */
     int steps;
+    bool locked;     /* wheels are: nothing turns them and the engine, for the scene starts in motion */
     const char *neutral; /* places along which it may be moved and rests as well: "x, y, yaw"; NULL: none */
 } Equilibrium;
 
 /* The equilibrium that is reached from a scene's initial state, or without a scene from the model's, with inputs and
- * road of the scene at time 0. moves: for a scene that starts in motion, so that wheels are locked, for what holds them
- * at rest does not matter. Ends in diag_fail where there is none. */
-const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve, bool moves);
-/* Does a scene start at rest? */
+ * road of the scene at time 0. Wheels are locked where the scene starts in motion, for what holds them at rest does not
+ * matter then. Ends in diag_fail where there is none. */
+const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve);
+/* Does a scene start at rest, all velocities at most 1e-9 m/s or rad/s? */
 bool equilibrium_stands(const Model *model, const Scene *scene);
 /* Output components of force elements (loads: -1) and of wheels (fz first) of Equilibrium.model. */
 int equilibrium_force(const Equilibrium *found, int force);
@@ -89,6 +92,8 @@ typedef struct Modes {
 const Modes *modes_try(Pool *pool, const Linear *linear, const double *A);
 /* The same, which ends in diag_fail then. */
 const Modes *modes_find(Pool *pool, const Linear *linear, const double *A);
+/* Warns where a rate jumps as a number passes its value: the modes are not those of either side then. */
+void modes_warn_jumps(const Linear *linear, Place at);
 /* --modes: a table; or CSV with -o. About the equilibrium, with the scene's velocity. */
 void modes_report(Pool *pool, const Scene *scene, const Request *request, const Equilibrium *found);
 

@@ -13,6 +13,10 @@
 
 static const double pi = 3.141592653589793;
 
+/* Of a double real eigenvalue, at critical damping, rounding makes two real ones or a pair with imaginary parts of some
+ * 1e-8 of it: it is two real ones. */
+static const double critical = 1e-6;
+
 /* ---- what is neutral ------------------------------------------------------------------------------------ */
 
 /* A direction in which nothing happens makes a multiple eigenvalue 0, of a place and of its rate, that rounding would
@@ -198,10 +202,11 @@ static bool list_modes(Pool *pool, const Linear *linear, const gsl_matrix *A, co
     const bool found = found_right && found_left;
     for (size_t k = 0; found && k < d->rest; ++k) {
         const gsl_complex value = gsl_vector_complex_get(right.value, k);
-        if (GSL_IMAG(value) < 0)
+        const bool is_real = fabs(GSL_IMAG(value)) <= critical * fabs(GSL_REAL(value));
+        if (GSL_IMAG(value) < 0 && !is_real)
             continue;
         Mode *mode = POOL_PUSH(pool, modes->mode, modes->count);
-        *mode = (Mode){GSL_REAL(value), GSL_IMAG(value), pool_alloc(pool, A->size1 * sizeof(double))};
+        *mode = (Mode){GSL_REAL(value), is_real ? 0 : GSL_IMAG(value), pool_alloc(pool, A->size1 * sizeof(double))};
         find_shares(linear, A, d, &right, k, &left, mode->share);
     }
     qsort(modes->mode, (size_t)modes->count, sizeof *modes->mode, by_size);
@@ -340,7 +345,8 @@ static bool set_in_motion(Pool *pool, const Scene *scene, const Equilibrium *fou
     const Linear *linear = found->linear;
     const Scene *moving = equilibrium_scene(pool, scene, found);
     double *state = tape_array(found->self, code->state_offset);
-    bool moves = false;
+    if (!found->locked)
+        return false;
     if (code->free_base) {
         memcpy(state + linear->places + 1, moving->velocity, sizeof moving->velocity);
         memcpy(state + linear->places + 4, moving->angular_velocity, sizeof moving->angular_velocity);
@@ -348,16 +354,14 @@ static bool set_in_motion(Pool *pool, const Scene *scene, const Equilibrium *fou
     for (int c = 0; c < code->coordinate_count; ++c)
         if (code->coordinate_state[c] >= 0)
             state[code->coordinate_state[c] + code->slow_count / 2] = moving->rate[c];
-    for (int i = 0; i < linear->places; ++i)
-        moves = moves || state[linear->places + code->free_base + i] != 0;
-    int status = moves ? scene_set_fast(code, moving, &found->self->head) : GIC_OK;
-    if (status == GIC_OK && moves)
+    int status = scene_set_fast(code, moving, &found->self->head);
+    if (status == GIC_OK)
         status = linearize(linear, found->self, f, A);
     if (status != GIC_OK)
         diag_fail((Place){scene->source, 0, 0}, "check the velocities of `initial`",
                   "no small motions about the state in motion: %s",
                   instance_status(pool, code, &found->self->head, status));
-    return moves;
+    return true;
 }
 
 /* Is rate number i one of a velocity? */
@@ -389,11 +393,26 @@ static void print_motion(const Equilibrium *found)
     printf("\n");
 }
 
+void modes_warn_jumps(const Linear *linear, Place at)
+{
+    for (int j = 0; j < linear->count; ++j)
+        if (linear->jumps[j]) {
+            const bool rate = j >= linear->places && j < 2 * linear->places;
+            diag_warn(at, "make the formula that jumps there continuous: tanh instead of a sign",
+                      "an acceleration jumps where %s%s passes the value that it has there; small motions are the mean "
+                      "of both sides",
+                      rate ? "the rate of " : "", linear->name[j]);
+            return;
+        }
+}
+
 void modes_report(Pool *pool, const Scene *scene, const Request *request, const Equilibrium *found)
 {
     const Linear *linear = found->linear;
     const bool moves = scene && set_in_motion(pool, scene, found, found->f, found->A);
     const Modes *modes = modes_find(pool, linear, found->A);
+    if (!request->quiet)
+        modes_warn_jumps(linear, (Place){scene ? scene->source : found->model->source, 0, 0});
     if (request->results && strcmp(request->results, "-")) {
         write_csv(pool, linear, modes, request->results);
     } else if (request->results) {

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double rounding = 1e-9; /* of a time: differences of times are as near to what they stand for */
+
 /* ---- what is compared ------------------------------------------------------------------------------------------- */
 
 /* Everything but the state that a rate can depend on. */
@@ -123,7 +125,7 @@ void rest_watch(Rest *rest, const gic_model *model, gic_head *self)
         note_state(rest, model, self);
     } else if (!state_stays(rest, model, self)) {
         note_state(rest, model, self);
-    } else if (gic_time(self) - rest->since >= rest->after) {
+    } else if (gic_time(self) - rest->since >= (1 - rounding) * rest->after) {
         rest->asleep = true;
         ++rest->slumbers;
         rest->quiet = -INFINITY;

@@ -200,6 +200,6 @@ void wheel_roll(const Wheel *wheel, const Tire *tire, const Rolling *rolling, do
     const double *speed = rolling->speed;
     memset(fast, 0, sizeof *fast * (size_t)wheel_fast_states(wheel));
     fast[FAST_SPIN] = speed[0] / rolling->rolling_radius;
-    if (fabs(speed[0]) > tire->low_speed)
-        fast[FAST_SLIP_Y] = speed[1] / fabs(speed[0]);
+    if (speed[0] != 0)
+        fast[FAST_SLIP_Y] = smooth(fabs(speed[0]) / tire->low_speed) * speed[1] / fabs(speed[0]);
 }

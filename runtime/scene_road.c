@@ -62,7 +62,7 @@ static void bump_tracks(const Item *item, gic_bump *bump)
         return;
     const char *word = doc_word(tracks, "tracks of a bump");
     if (!strcmp(word, "left"))
-        bump->y_low = 1e-12; /* y = 0 itself belongs to the right, as in a table */
+        bump->y_low = nextafter(2 * GIC_ROAD_EDGE, far); /* where the right, which has its edge, ends, as in a table */
     else if (!strcmp(word, "right"))
         bump->y_high = 0;
     else if (strcmp(word, "both"))

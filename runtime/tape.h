@@ -48,6 +48,8 @@ typedef struct TapeWorld {
     int32_t lane;
     double time;
     gic_head *head; /* where checks that are about something say of what; NULL: the block has none of them */
+    double near;    /* of tape_play_dual(): a kink counts as met where this share of the direction reaches it */
+    int *kinks;     /* counts kinks that were met; NULL: nobody does */
 } TapeWorld;
 
 /* tape.c. `array` names what the block reads and writes as in `array[i]`, or `array` alone; tape_play() takes their
@@ -67,8 +69,10 @@ bool tape_road(const TapeWorld *world, double x, double y, double out[3]);
 double tape_friction(const TapeWorld *world, double x, double y);
 
 /* tape_dual.c: the same with derivatives along one direction: `slope` has an array of derivatives for each array of
- * values, `rate` as many numbers as `frame`. Values are those of tape_play() to the bit. min, max and conditions
- * have the derivative of the branch that is taken, abs at 0 has none; constants and what no array holds have none. */
+ * values, `rate` as many numbers as `frame`. Values are those of tape_play() to the bit where
+ * no kink is met. A kink (of abs, min, max, conditions, linear tables) is met where the state is at it but for
+ * world->near: the derivative is then the one-sided one along the direction, and a condition has the value of that side.
+ * Elsewhere it is that of the branch that is taken. Constants and what no array holds have none. */
 int tape_play_dual(const Tape *tape, int member, double *const *array, double *const *slope, const TapeWorld *world,
                    double *frame, double *rate);
 

@@ -11,22 +11,53 @@ static double chain(double factor, double change)
     return change == 0 ? 0 : factor * change;
 }
 
-/* At 0 the mean of both sides. */
-static double sign(double x)
+/* Is x, which changes by dx, at 0 but for what rounding and an equilibrium's accuracy leave? */
+static bool meets(const TapeWorld *world, double x, double dx)
 {
-    return (x > 0) - (x < 0);
+    const bool met = dx != 0 && fabs(x) <= world->near * fabs(dx);
+    if (met && world->kinks)
+        ++*world->kinks;
+    return met;
 }
 
-/* Slope of the piece of a table at x; at a point of it, that of the piece that the value is taken from. */
-static double table_slope(const gic_table *table, double x)
+static double abs_change(const TapeWorld *world, double a, double da)
+{
+    if (meets(world, a, da))
+        return fabs(da);
+    return a > 0 ? da : a < 0 ? -da : 0;
+}
+
+/* The root of a square is an absolute value. */
+static double sqrt_change(const TapeWorld *world, double root, double da)
+{
+    const double change = chain(0.5 / root, da);
+    return isfinite(change) && meets(world, root, change) ? fabs(change) : change;
+}
+
+static double min_change(const TapeWorld *world, double a, double b, double da, double db)
+{
+    if (meets(world, a - b, da - db))
+        return fmin(da, db);
+    return a < b ? da : db;
+}
+
+/* Is the first of two branches the one that holds where x, which changes by dx, is positive? */
+static bool is_positive(const TapeWorld *world, double x, double dx)
+{
+    return meets(world, x, dx) ? dx > 0 : x > 0;
+}
+
+/* Slope of the piece of a table at x; at a point of it, that of the piece towards which x changes. */
+static double table_slope(const TapeWorld *world, const gic_table *table, double x, double dx)
 {
     const double *at = table->x, *y = table->y;
     int low = 0, high = table->count - 1;
-    if (x <= at[0] || x >= at[high])
-        return table->onward ? table->slope[x <= at[0] ? 0 : high] : 0;
+    const bool after = is_positive(world, x - at[0], dx), before = is_positive(world, at[high] - x, -dx);
+    if (!after || !before)
+        return table->onward ? table->slope[after ? high : 0] : 0;
     while (high - low > 1) {
         const int middle = low + (high - low) / 2;
-        if (x < at[middle])
+        if (is_positive(world, at[middle] - x, -dx))
             high = middle;
         else
             low = middle;
@@ -119,8 +150,8 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f, doubl
         case OP_SUB: RUN_2(a - b, da - db);
         case OP_MUL: RUN_2(a * b, a * db + da * b);
         case OP_DIV: RUN_2(a / b, (da - r * db) / b);
-        case OP_SQRT: RUN_1(sqrt(a), chain(0.5 / r, da));
-        case OP_ABS: RUN_1(fabs(a), sign(a) * da);
+        case OP_SQRT: RUN_1(sqrt(a), sqrt_change(world, r, da));
+        case OP_ABS: RUN_1(fabs(a), abs_change(world, a, da));
         case OP_SIN: RUN_1(sin(a), cos(a) * da);
         case OP_COS: RUN_1(cos(a), -sin(a) * da);
         case OP_TAN: RUN_1(tan(a), (1 + r * r) * da);
@@ -132,11 +163,11 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f, doubl
         case OP_TANH: RUN_1(tanh(a), (1 - r * r) * da);
         case OP_POW: RUN_2(pow(a, b), power_change(a, b, da, db));
         case OP_ATAN2: RUN_2(atan2(a, b), (b * da - a * db) / (a * a + b * b));
-        case OP_MIN: RUN_2(a < b ? a : b, a < b ? da : db);
-        case OP_MAX: RUN_2(a > b ? a : b, a > b ? da : db);
+        case OP_MIN: RUN_2(a < b ? a : b, min_change(world, a, b, da, db));
+        case OP_MAX: RUN_2(a > b ? a : b, -min_change(world, -a, -b, -da, -db));
         case OP_POSITIVE:
             for (; left; --left, at += 4) {
-                const uint32_t taken = f[at[1]] > 0 ? at[2] : at[3];
+                const uint32_t taken = is_positive(world, f[at[1]], d[at[1]]) ? at[2] : at[3];
                 d[at[0]] = d[taken];
                 f[at[0]] = f[taken];
             }
@@ -146,7 +177,7 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f, doubl
             for (; left; --left, at += 3) {
                 const gic_table *table = &world->table[at[2]];
                 const double a = f[at[1]];
-                d[at[0]] = chain(table_slope(table, a), d[at[1]]);
+                d[at[0]] = chain(table_slope(world, table, a, d[at[1]]), d[at[1]]);
                 f[at[0]] = gic_table_value(table, a);
             }
             break;

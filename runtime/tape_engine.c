@@ -78,7 +78,7 @@ int tape_whole(Instance *self, const Tape *tape, double time, const double *y, c
                double *acc, double *out)
 {
     const TapeEngine *engine = tape_of(self);
-    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, &self->head};
+    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, &self->head, 0, NULL};
     double *array[WHOLE_COUNT];
     tape_arrays(self, &time, y, e, rate, acc, out, array);
     return tape_play(tape, 0, array, &world, engine->frame);

@@ -4,6 +4,8 @@
 
 #include "../generator/powertrain.h"
 
+#include <math.h>
+
 static int32_t *gears_of(Instance *self)
 {
     const gic_model *code = &tape_of(self)->code;
@@ -24,6 +26,19 @@ int tape_engage(Instance *self)
     }
     gear[GEAR_NUMBER] = gears[0];
     return GIC_OK;
+}
+
+/* As in shift.c.in. */
+static const double rounding = 1e-9;
+
+static bool is_reached(double time, double limit)
+{
+    return time >= (1 - rounding) * limit;
+}
+
+static bool is_above(double x, double limit)
+{
+    return x - limit > rounding * (1 + fabs(limit));
 }
 
 int tape_shift(void *instance)
@@ -47,20 +62,19 @@ int tape_shift(void *instance)
         [WHOLE_gear] = tape_array(self, engine->gear_offset),
         [WHOLE_choice] = choice,
     };
-    if (!(*age > powertrain->duration) || tape_engage(self) != GIC_OK)
+    if (!is_reached(*age, powertrain->duration) || tape_engage(self) != GIC_OK)
         return 0;
     tape_gather(self, state);
     tape_play(engine->shift, 0, array, &world, engine->frame);
     const double *up = choice + CHOICE_UP, *down = up + powertrain->forward - 1;
-    const int32_t wanted = choice[CHOICE_SELECTOR] > 0.5                           ? 1
-                           : choice[CHOICE_SELECTOR] < -0.5 && powertrain->reverse ? -1
-                                                                                   : 0;
+    const double selector = choice[CHOICE_SELECTOR];
+    const int32_t wanted = is_above(selector, 0.5) ? 1 : is_above(-selector, 0.5) && powertrain->reverse ? -1 : 0;
     if (wanted != (next > 0) - (next < 0)) {
         next = wanted;
-    } else if (next > 0 && *age > powertrain->latency) {
-        if (next < powertrain->forward && choice[CHOICE_TURBINE] > up[next - 1])
+    } else if (next > 0 && is_reached(*age, powertrain->latency)) {
+        if (next < powertrain->forward && is_above(choice[CHOICE_TURBINE], up[next - 1]))
             ++next;
-        else if (next > 1 && choice[CHOICE_TURBINE] < down[next - 2])
+        else if (next > 1 && is_above(-choice[CHOICE_TURBINE], -down[next - 2]))
             --next;
     }
     if (next == gears[0])

@@ -69,7 +69,8 @@ static int wheel_of(Turning *t, const TapeWheel *wheel, int member)
     int status = play(t, wheel->contact, member);
     if (status != GIC_OK)
         return status;
-    if (hub[0][HUB_LOAD] > 0) /* a wheel in the air has no tire forces */
+    /* a wheel in the air has no tire forces; one that is put down begins to have them */
+    if (hub[0][HUB_LOAD] > 0 || (t->slope_frame && hub[1][HUB_LOAD] > 0))
         play(t, wheel->tire, member);
     else if (t->in_air)
         ++*t->in_air;
@@ -208,6 +209,12 @@ int tape_fast(void *instance, double time, const double *link, const double *fas
     return self->head.status = status;
 }
 
+/* As in dual_rate.c.in. */
+static double rolling_share(double s)
+{
+    return s < 1 ? s * (3 - 2 * s) : 1 / s;
+}
+
 int tape_roll(void *instance)
 {
     Instance *self = instance;
@@ -225,10 +232,10 @@ int tape_roll(void *instance)
         if (wheel->tire < 0)
             continue;
         double *own = state + code->slow_count + wheel->fast, speed = fabs(number[GRIP_SPEED_X]);
+        const double low = model->tire[wheel->tire].low_speed;
         memset(own, 0, (size_t)wheel_fast_states(wheel) * sizeof *own);
         own[FAST_SPIN] = number[GRIP_SPEED_X] / number[GRIP_RADIUS];
-        if (speed > model->tire[wheel->tire].low_speed)
-            own[FAST_SLIP_Y] = number[GRIP_SPEED_Y] / speed;
+        own[FAST_SLIP_Y] = number[GRIP_SPEED_Y] * rolling_share(speed / low) / low;
         number += GRIP_NUMBERS;
     }
     if (status == GIC_OK)

@@ -107,10 +107,10 @@ shifts() {
             selector = '"$6"'
             wanted = selector > 0.5 ? 1 : selector < -0.5 ? -'"$3"' : 0
             now = gear
-            if (NR > 2 && age > '"$4"') {
+            if (NR > 2 && age > '"$4"' - 1e-9) {
                 if (wanted != (gear > 0) - (gear < 0))
                     now = wanted
-                else if (age > '"$5"' && gear > 0) {
+                else if (age > '"$5"' - 1e-9 && gear > 0) {
                     g = gear - 1
                     if (g > 0 && c["line.turbine_speed"] < ('"$8"'))
                         now = gear - 1

@@ -80,7 +80,7 @@ static void find_engine(Drive *of)
         theta *= smooth(20 * (p->limit - omega) / p->limit);
     quad torque = law_value(of->model, of->configuration, p->torque, (Locals){.speed = omega, .throttle = theta});
     of->out[THROTTLE] = theta;
-    of->out[ENGINE_TORQUE] = omega <= 0 && torque < 0 ? 0 : torque;
+    of->out[ENGINE_TORQUE] = torque < 0 ? torque * smooth(omega) : torque;
 }
 
 /* i; e by itself */

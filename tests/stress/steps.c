@@ -178,7 +178,7 @@ static bool find_theory(Pool *pool, const Equilibrium *equilibrium, const char *
     theory->kinked = sides != NULL;
     for (int i = 0; i < 2 && good && sides; ++i) {
         double limit[GIC_RK4 + 1];
-        good = find_longest(equilibrium_find(pool, model_read(pool, sides[i]), NULL, SOLVE_REDUCED, false), limit);
+        good = find_longest(equilibrium_find(pool, model_read(pool, sides[i]), NULL, SOLVE_REDUCED), limit);
         for (int32_t method = GIC_AB3; method <= GIC_RK4; ++method) {
             theory->least[method] = i ? fmin(theory->least[method], limit[method]) : limit[method];
             theory->most[method] = i ? fmax(theory->most[method], limit[method]) : limit[method];
@@ -193,7 +193,7 @@ static int attack_model(const char *path, const char *name, const char *const *s
     static const char *const method_name[] = {[GIC_AB3] = "ab3", [GIC_RK4] = "rk4"};
     Pool *pool = pool_new();
     const Model *model = model_read(pool, path);
-    const Equilibrium *equilibrium = equilibrium_find(pool, model, NULL, SOLVE_REDUCED, false);
+    const Equilibrium *equilibrium = equilibrium_find(pool, model, NULL, SOLVE_REDUCED);
     const EngineOptions options = {.quiet = true, .flags = "", .compiler = compiler_default()};
     const Engine *engine = engine_open(pool, "tcc", model, &options);
     const gic_model *code = engine->code;
