@@ -117,12 +117,34 @@ static Ex intern(Dag *dag, const Node *node, const double *value)
     return e;
 }
 
-/* sin and cos by their Taylor series after reduction to [-pi/4, pi/4]: only exactly rounded operations. */
+/* x less `turns` quarter turns, where that many times the first part of pi / 2 is more than a double holds: products are
+ * exact as two numbers, and three parts have 160 bits, so that 2^50 quarter turns leave an error of 1e-33. */
+static double reduced_far(double x, double turns)
+{
+    const double half_pi[3] = {0x1.921fb54442d18p0, 0x1.1a62633145c07p-54, -0x1.f1976b7ed8fbcp-110};
+    double rest = 0, high[3], low[3];
+    for (int i = 0; i < 3; ++i) {
+        high[i] = turns * half_pi[i];
+        low[i] = fma(turns, half_pi[i], -high[i]);
+    }
+    for (int i = 2; i > 0; --i)
+        rest += low[i] + high[i];
+    return ((x - high[0]) - low[0]) - rest;
+}
+
+/* sin and cos by their Taylor series after reduction to [-pi/4, pi/4]: only exactly rounded operations. Beyond 2^50
+ * neighbours are whole angles apart, and the C library's serve. */
 void portable_sincos(double x, double *sine, double *cosine)
 {
+    const double near = 0x1p22, far = 0x1p50;
     const double half_pi_high = 0x1.921fb54400000p0, half_pi_low = 0x1.0b4611a626331p-34;
+    if (!(fabs(x) <= far)) {
+        *sine = sin(x);
+        *cosine = cos(x);
+        return;
+    }
     double turns = floor(x / (half_pi_high + half_pi_low) + 0.5);
-    double y = (x - turns * half_pi_high) - turns * half_pi_low, y2 = y * y;
+    double y = fabs(x) <= near ? (x - turns * half_pi_high) - turns * half_pi_low : reduced_far(x, turns), y2 = y * y;
     double s = 0, c = 0;
     for (int n = 23; n >= 3; n -= 2)
         s = (1 - s) * y2 / ((double)n * (n - 1)); /* y (1 - s) = sin y */
