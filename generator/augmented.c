@@ -372,9 +372,11 @@ static int equation_subset(const Whole *whole, const Equation *equation)
 
 /* Multipliers hold heavy bodies together, and their rounding is felt by light ones: beyond this ratio of masses more
  * than the 1e-8 of FORMAT.md section 14, and no pivot shows it. */
+const double augmented_most_mass = 1e9;
+
 static void refuse_unequal_masses(const Model *model)
 {
-    const double most = 1e9;
+    const double most = augmented_most_mass;
     const Body *light = NULL, *heavy = NULL;
     for (int b = model->free_base ? 0 : 1; b < model->bodies; ++b) {
         const Body *body = &model->body[b];

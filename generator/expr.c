@@ -117,12 +117,34 @@ static Ex intern(Dag *dag, const Node *node, const double *value)
     return e;
 }
 
-/* sin and cos by their Taylor series after reduction to [-pi/4, pi/4]: only exactly rounded operations. */
+/* x less `turns` quarter turns, where that many times the first part of pi / 2 is more than a double holds: products
+ * are exact as two numbers, and three parts have 160 bits, so that 2^50 quarter turns leave an error of 1e-33. */
+static double reduced_far(double x, double turns)
+{
+    const double half_pi[3] = {0x1.921fb54442d18p0, 0x1.1a62633145c07p-54, -0x1.f1976b7ed8fbcp-110};
+    double rest = 0, high[3], low[3];
+    for (int i = 0; i < 3; ++i) {
+        high[i] = turns * half_pi[i];
+        low[i] = fma(turns, half_pi[i], -high[i]);
+    }
+    for (int i = 2; i > 0; --i)
+        rest += low[i] + high[i];
+    return ((x - high[0]) - low[0]) - rest;
+}
+
+/* sin and cos by their Taylor series after reduction to [-pi/4, pi/4]: only exactly rounded operations. Beyond 2^50,
+ * where neighbouring numbers are a quarter of a radian apart, these are the C library's. */
 void portable_sincos(double x, double *sine, double *cosine)
 {
+    const double near = 0x1p22, far = 0x1p50;
     const double half_pi_high = 0x1.921fb54400000p0, half_pi_low = 0x1.0b4611a626331p-34;
+    if (!(fabs(x) <= far)) {
+        *sine = sin(x);
+        *cosine = cos(x);
+        return;
+    }
     double turns = floor(x / (half_pi_high + half_pi_low) + 0.5);
-    double y = (x - turns * half_pi_high) - turns * half_pi_low, y2 = y * y;
+    double y = fabs(x) <= near ? (x - turns * half_pi_high) - turns * half_pi_low : reduced_far(x, turns), y2 = y * y;
     double s = 0, c = 0;
     for (int n = 23; n >= 3; n -= 2)
         s = (1 - s) * y2 / ((double)n * (n - 1)); /* y (1 - s) = sin y */
@@ -172,10 +194,12 @@ double op_value(Op op, double a, double b, double c)
 static void node_evaluate(const Dag *dag, const Node *node, double *out, int first, int count)
 {
     size_t samples = (size_t)dag->samples;
-    const double *a = dag->value + node->arg[0] * samples, *b = dag->value + node->arg[1] * samples,
-                 *c = dag->value + node->arg[2] * samples;
+    const int last = op_arity[node->op] - 1; /* what is no node stands behind the arguments */
+    const double *a = dag->value + node->arg[0] * samples, *b = dag->value + node->arg[last > 0 ? 1 : 0] * samples,
+                 *c = dag->value + node->arg[last > 1 ? 2 : 0] * samples;
     for (int s = first; s < first + count; ++s)
-        out[s] = op_value((Op)node->op, a[s], b[s], c[s]);
+        out[s] = node->op == OP_TABLE ? table_value(&dag->tables[node->arg[1]], a[s])
+                                      : op_value((Op)node->op, a[s], b[s], c[s]);
 }
 
 Ex ex_literal(Dag *dag, double value)
@@ -297,7 +321,7 @@ Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c)
     if (op == OP_ROAD || op == OP_ROAD_PART || op == OP_FRICTION || op == OP_TABLE)
         node.level = LEVEL_VARIABLE;
     double sample[dag->samples];
-    if (op == OP_ROAD_PART || op == OP_TABLE) {
+    if (op == OP_ROAD_PART || (op == OP_TABLE && !dag->tables)) {
         memset(sample, 0, sizeof sample);
         return intern(dag, &node, sample);
     }
@@ -489,7 +513,8 @@ void dag_evaluate(Dag *dag, int first, int count)
 {
     for (Ex e = 0; e < (Ex)dag->nodes; ++e) {
         const Node *node = &dag->node[e];
-        if (node->level == LEVEL_VARIABLE && node->op != OP_INPUT && node->op != OP_ROAD_PART && node->op != OP_TABLE)
+        if (node->level == LEVEL_VARIABLE && node->op != OP_INPUT && node->op != OP_ROAD_PART &&
+            (node->op != OP_TABLE || dag->tables))
             node_evaluate(dag, node, dag->value + (size_t)e * (size_t)dag->samples, first, count);
     }
 }

@@ -73,8 +73,9 @@ typedef struct Dag {
     int lanes; /* of vectors, one a member: constants are such; 0: there are none */
     int nodes, room;
     Node *node;
-    double *value; /* [nodes][samples] */
-    Ex *table;     /* hash table */
+    double *value;       /* [nodes][samples] */
+    Ex *table;           /* hash table */
+    const Table *tables; /* what OP_TABLE looks up in, as far as samples go; NULL: they are 0 */
     uint32_t mask;
 } Dag;
 
@@ -157,6 +158,7 @@ typedef struct Condition {
 typedef struct Tuning {
     Dag *dag;
     int numbers, conditions;
+    int late; /* the first of the conditions that blocks of emitted code check: on masses, on the assembly mode */
     struct TunedNumber {
         const double *at;
         Ex formula;
@@ -164,6 +166,9 @@ typedef struct Tuning {
     Condition *condition;
     bool assembles; /* lengths other than the drawing's: formulas depend on `rest` */
 } Tuning;
+
+/* Conditions from Tuning.late on. Their values are the literal 1: formulas of numbers alone do not tell. */
+enum { LATE_MASSES, LATE_MODE, LATE_CONDITIONS };
 
 Tuning *tuning_new(Pool *pool);
 /* The formula of a number of the model, 0: it follows no parameter; and the same with a literal instead of 0. */

@@ -475,7 +475,13 @@ static void insert_derive(void *context, const char *name, Text *out, int indent
 {
     Generation *g = context;
     Constants none = {0};
-    const Block *block = !strcmp(name, "derive") ? derive_block(g->pool, g->plan) : draw_block(g->pool, g->plan);
+    if (!strcmp(name, "first piece")) {
+        line(out, indent, "const int first = %d;", design_first_piece(g->pool, g->plan));
+        return;
+    }
+    const Block *block = (!strcmp(name, "derive")   ? derive_block
+                          : !strcmp(name, "design") ? design_block
+                                                    : draw_block)(g->pool, g->plan);
     block_emit(out, block, g->style, &none, indent);
 }
 

@@ -306,7 +306,9 @@ Block *dynamics_block(Whole *whole);
 Ex *whole_driven_accelerations(Whole *whole);
 /* rate[] from the accelerations z [unknowns]. */
 void whole_store_rates(Whole *whole, Block *block, const Ex *z);
-/* augmented.c: the same in the augmented form, and lambda[] as far as outputs need them. */
+/* augmented.c: the same in the augmented form, and lambda[] as far as outputs need them. Refuses models with bodies
+ * that have more than augmented_most_mass times the mass of others. */
+extern const double augmented_most_mass;
 Block *augmented_block(Whole *whole);
 /* out[] of all outputs, from a Whole and rate[]. */
 Block *outputs_block(Whole *whole);
@@ -347,6 +349,12 @@ enum { ASSEMBLY_PIECES = 64 };
 const Block *derive_block(Pool *pool, const Plan *plan);
 /* What of state[], input[] and start[0] follows parameters, at the drawing. */
 const Block *draw_block(Pool *pool, const Plan *plan);
+/* Refuses parameters with which closed forms, whose branches are those of the file's design, recover other poses at the
+ * drawing than it has: checks alone, of self->motion[] there. */
+const Block *design_block(Pool *pool, const Plan *plan);
+/* The first of the pieces in which set-up goes from the drawing (piece 0) to given lengths: 0 where design_block() has
+ * something to check and the drawing's lengths are not the given ones, else 1. */
+int design_first_piece(Pool *pool, const Plan *plan);
 /* Where a body stands in the drawing relative to the base: reference point, as formulas, and Euler parameters. */
 void body_drawn(const Plan *plan, int anchor, int body, Ex c[3], double p[4]);
 

@@ -199,7 +199,8 @@ static Givens *class_givens(Narrower *n, const Class *class, const Formula *form
         givens_number(givens, 0, "turn[%d]", i);
     for (int j = 0; j < first->deps; ++j) {
         give_members(n, givens, class, steady_rate, j, 0, pool_print(n->pool, "rate[%d]", j));
-        if (formula->closed) /* others follow the coordinate from the design */
+        /* others follow the coordinate from the design, as set-up does with other geometry than the file's */
+        if (formula->closed && !n->model->tuning)
             give_members(n, givens, class, steady_value, j, 0, pool_print(n->pool, "x[%d]", j));
     }
     for (int i = 0; i < first->knowns; ++i) {
@@ -533,7 +534,7 @@ static void drop_inertia(Narrower *n)
 }
 
 /* What functions and tables emitted code still needs. */
-static void find_uses(const Formulation *f, Narrowing *narrowing)
+static void find_uses(Pool *pool, const Formulation *f, Narrowing *narrowing)
 {
     const Wheels none = {0}, *wheels = f->wheels ? f->wheels : &none;
     const Block *const block[] = {f->dynamics, f->outputs,    f->poses,        f->inverse,     f->energy,
@@ -544,6 +545,10 @@ static void find_uses(const Formulation *f, Narrowing *narrowing)
         narrowing->road = narrowing->road || block_uses(block[i], OP_ROAD);
         narrowing->tables = narrowing->tables || block_uses(block[i], OP_TABLE);
     }
+    if (f->plan->model->tuning)
+        narrowing->tables = narrowing->tables || block_uses(derive_block(pool, f->plan), OP_TABLE) ||
+                            block_uses(draw_block(pool, f->plan), OP_TABLE) ||
+                            block_uses(design_block(pool, f->plan), OP_TABLE);
     for (int c = 0; c < wheels->classes; ++c) {
         narrowing->road = narrowing->road || block_uses(&wheels->class[c].contact, OP_ROAD);
         narrowing->friction = narrowing->friction || block_uses(&wheels->class[c].contact, OP_FRICTION);
@@ -650,7 +655,7 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
         narrow_mirror(n);
     narrow_rest(n);
     drop_inertia(n);
-    find_uses(n->out, n->narrowing);
+    find_uses(n->pool, n->out, n->narrowing);
     return n->out;
 }
 

@@ -64,12 +64,20 @@ void tuning_require(Tuning *tuning, Ex value, bool zero, const char *text)
         *POOL_PUSH(tuning->dag->pool, tuning->condition, tuning->conditions) = (Condition){value, zero, text};
 }
 
+static const char *const late_text[LATE_CONDITIONS] = {
+    [LATE_MASSES] = "in the augmented form of the equations of motion no body may have more than 1e9 times the mass of "
+                    "another",
+    [LATE_MODE] = "closed forms find the mechanism in another assembly mode than the drawing with these values; write "
+                  "the values into the file",
+};
+
 void tuning_close(Model *model)
 {
     Tuning *tuning = model->tuning;
     Dag *dag = tuning->dag;
     bool any = false;
     int roots = 0;
+    dag->tables = model->table;
     Ex *root = pool_alloc(dag->pool, (size_t)(tuning->numbers + tuning->conditions + 1) * sizeof *root);
     for (int i = 0; i < tuning->numbers; ++i)
         root[roots++] = tuning->number[i].formula;
@@ -87,6 +95,10 @@ void tuning_close(Model *model)
             if (model->parameter[i].tunable && atoi(dag->node[e].name + 2) == model->parameter[i].index)
                 any = model->parameter[i].geometric = true;
     }
+    tuning->late = tuning->conditions;
+    for (int i = 0; i < LATE_CONDITIONS; ++i)
+        *POOL_PUSH(dag->pool, tuning->condition, tuning->conditions) =
+            (Condition){ex_literal(dag, 1), false, late_text[i]};
     if (!any)
         model->tuning = NULL;
 }

@@ -138,7 +138,7 @@ static const Plane *plane_of(Pool *pool, const gic_road *road)
 /* Does nothing of it depend on y? */
 static bool is_across(const gic_road *road)
 {
-    const double far = 1e9; /* m: as far as anybody drives */
+    const double far = 1e30; /* m, of scene_road.c: states are refused long before */
     if (!road || road->height == gic_plane_height)
         return !road || (!road->friction && ((const gic_road_plane *)road)->sy == 0);
     if (road->height == gic_patched_height) {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double far = 1e9; /* m; beyond any road */
+static const double far = 1e30; /* m; beyond any place: states end at 2^30 */
 
 static const gic_road *plane_read(Pool *pool, const Item *item)
 {

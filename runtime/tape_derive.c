@@ -4,16 +4,18 @@
 
 #include <string.h>
 
-/* Arrays of these two blocks, as derive.c names them. */
-enum { TUNED_PARAMETER, TUNED_REST, TUNED_DERIVED, TUNED_START, TUNED_STATE, TUNED_INPUT, TUNED_COUNT };
+/* Arrays of these blocks, as derive.c names them. */
+enum { TUNED_PARAMETER, TUNED_REST, TUNED_DERIVED, TUNED_START, TUNED_STATE, TUNED_INPUT, TUNED_MOTION, TUNED_COUNT };
 
 void tape_record_derived(Pool *pool, TapeEngine *engine)
 {
-    static const char *const array[TUNED_COUNT] = {"p",           "rest",       "self->derived", "self->start[0]",
-                                                   "self->state", "self->input"};
+    static const char *const array[TUNED_COUNT] = {"p",           "rest",        "self->derived", "self->start[0]",
+                                                   "self->state", "self->input", "self->motion"};
     const Plan *plan = engine->formulation->plan;
     engine->derive = tape_record(pool, derive_block(pool, plan), array, TUNED_COUNT);
     engine->draw = tape_record(pool, draw_block(pool, plan), array, TUNED_COUNT);
+    engine->design = tape_record(pool, design_block(pool, plan), array, TUNED_COUNT);
+    engine->first_piece = design_first_piece(pool, plan);
 }
 
 static int play(Instance *self, const Tape *tape, double rest)
@@ -28,6 +30,7 @@ static int play(Instance *self, const Tape *tape, double rest)
         [TUNED_START] = tape_array(self, engine->start_offset[0]),
         [TUNED_STATE] = tape_array(self, code->state_offset),
         [TUNED_INPUT] = tape_array(self, code->input_offset),
+        [TUNED_MOTION] = tape_array(self, engine->motion_offset),
     };
     return tape_play(tape, 0, array, &world, engine->frame);
 }
@@ -55,10 +58,12 @@ int tape_assemble(Instance *self, const double turn[3])
     int status = play(self, engine->draw, 1);
     memcpy(tape_array(self, engine->x_offset), tape_array(self, engine->start_offset[0]),
            (size_t)engine->code.coordinate_count * sizeof(double));
-    for (int piece = 1; status == GIC_OK && piece <= pieces; ++piece) {
+    for (int piece = engine->first_piece; status == GIC_OK && piece <= pieces; ++piece) {
         status = derive(self, (double)(pieces - piece) / (double)pieces);
         if (status == GIC_OK)
             status = tape_recover(self, turn, true);
+        if (status == GIC_OK && piece == engine->first_piece)
+            status = play(self, engine->design, 0);
     }
     /* what does not fit shall not run: it passes for changed since set-up */
     for (int i = 0; status != GIC_OK && i < derived; ++i)

@@ -38,12 +38,13 @@ typedef struct TapeEngine {
     bool *keeps; /* [subsets] plan_keeps() */
     bool follows; /* are there subsets whose poses Newton's iteration finds? */
     const Tape *dynamics, *outputs, *poses, *inverse, *energy;
-    const Tape *wrenches;      /* NULL: no reactions to find after the accelerations */
-    const Tape *derive, *draw; /* NULL: no parameter is geometric */
-    const bool *reacts;        /* [subsets] whose multipliers outputs need */
-    const Tape *link, *torque; /* NULL: no wheel has a tire */
-    const Tape *drive, *shift; /* NULL: no powertrain */
-    TapeWheel *wheel;          /* [classes of wheels] */
+    const Tape *wrenches;               /* NULL: no reactions to find after the accelerations */
+    const Tape *derive, *draw, *design; /* NULL: no parameter is geometric */
+    int first_piece;                    /* of set-up with those */
+    const bool *reacts;                 /* [subsets] whose multipliers outputs need */
+    const Tape *link, *torque;          /* NULL: no wheel has a tire */
+    const Tape *drive, *shift;          /* NULL: no powertrain */
+    TapeWheel *wheel;                   /* [classes of wheels] */
     gic_table *table;
     double *piece, *initial; /* [coordinates], [states] */
     size_t x_offset, xd_offset, start_offset[GIC_STARTS], motion_offset, inertia_offset, multiplier_offset,
@@ -80,8 +81,7 @@ static inline double *tape_start(Instance *self)
  * mechanism; names as in Formula and Whole of gicgen.h. */
 #define CLASS_ARRAYS(X) \
     X(q) \
-    X(x) X(rate) X(change) X(turn) X(ahead) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst) X(w) \
-        X(d)
+    X(x) X(rate) X(change) X(turn) X(ahead) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst) X(w) X(d)
 #define WHOLE_ARRAYS(X) \
     X(time) \
     X(y) \
@@ -90,8 +90,9 @@ static inline double *tape_start(Instance *self)
     X(xd) \
     X(u) \
     X(m) \
-    X(n) X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) X(torque) X(hub) \
-        X(force) X(grip) X(gear) X(watch) X(choice)
+    X(n) \
+    X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) X(torque) X(hub) X(force) \
+        X(grip) X(gear) X(watch) X(choice)
 #define CLASS_ENUM(name) CLASS_##name,
 #define WHOLE_ENUM(name) WHOLE_##name,
 enum { CLASS_ARRAYS(CLASS_ENUM) CLASS_KNOWN };

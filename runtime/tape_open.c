@@ -90,7 +90,7 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
     const Tape *const whole[] = {engine->dynamics, engine->outputs, engine->poses, engine->inverse, engine->energy};
     int slots = engine->wrenches ? engine->wrenches->slots : 0, bodies = 0, unknowns = f->plan->unknowns;
     if (engine->derive)
-        slots = GIC_MAX(slots, GIC_MAX(engine->derive->slots, engine->draw->slots));
+        slots = GIC_MAX(slots, GIC_MAX(engine->derive->slots, GIC_MAX(engine->draw->slots, engine->design->slots)));
     for (size_t i = 0; i < sizeof whole / sizeof *whole; ++i)
         slots = GIC_MAX(slots, whole[i]->slots);
     for (int c = 0; c < f->sequence->classes; ++c) {

@@ -470,8 +470,9 @@ static void test_sincos(void **state)
     long double worst = 0;
     for (int i = 0; i < 200000; ++i) {
         double x;
-        switch (i % 4) {
+        switch (i % 5) {
         case 0: x = random_uniform(&random, -1e6, 1e6); break;
+        case 4: x = ldexp(random_uniform(&random, -1, 1), i / 5 % 70); break; /* many turns */
         case 1: x = random_uniform(&random, -10, 10); break;
         case 2: x = (double)(i % 1000 - 500) * 1.5707963267948966; break; /* where one of them vanishes */
         default: x = nextafter((double)(i % 400000 - 200000) * 0.78539816339744831, 0); break; /* where octants meet */
