@@ -130,7 +130,7 @@ static Ex strayed(const Plan *plan, int s)
             continue;
         Ex drawn[12];
         double p[4], A[9];
-        body_drawn(plan, subset->body[at / size], drawn, p);
+        body_drawn(plan, BODY_BASE, subset->body[at / size], drawn, p);
         mat_from_euler(p, A);
         for (int k = 0; k < 9; ++k)
             drawn[MOTION_A + k] = ex_literal(dag, A[k]);
