@@ -90,17 +90,27 @@ static void combine(Dag *dag, int count, const Ex *s, const Ex *const *a, Ex out
  * stop being independent, and a step can not tell whether a motion passes on or turns back. */
 static const double meeting = 0.01;
 
+/* The sign of an expression at the design; where geometry is tuned, at the drawing with the values of the parameters. */
+static double sign_at_design(const Work *w, int member, int e, int unused, Ex *formula)
+{
+    (void)unused;
+    if (w->model->tuning) {
+        Dag *dag = w->model->tuning->dag;
+        const Ex opposite = ex_neg(dag, subset_at_drawing(w, member, (Ex)e));
+        if (dag->node[opposite].level == LEVEL_VARIABLE)
+            *formula = ex_op(dag, OP_POSITIVE, opposite, ex_literal(dag, -1), ex_literal(dag, 1));
+    }
+    return ex_value(w->dag, (Ex)e, member * w->configurations) < 0 ? -1 : 1;
+}
+
 /* The root of `square` with the sign that `probe` has at the design; beyond reach the square is negative. whole: what
  * the square is where the two solutions are opposite. */
 static Ex branch_root(Closed *z, Ex square, Ex whole, Ex probe)
 {
-    double sign[z->w->class->members];
-    for (int i = 0; i < z->w->class->members; ++i)
-        sign[i] = ex_value(z->dag, probe, i * z->w->configurations) < 0 ? -1 : 1;
     block_check(z->block, square, false, 0, "GIC_ERROR_NEWTON");
     Ex least = ex_mul(z->dag, ex_literal(z->dag, meeting * meeting), whole);
     block_check(z->block, ex_sub(z->dag, square, least), false, 0, "GIC_ERROR_SINGULAR");
-    return ex_mul(z->dag, ex_constant(z->dag, sign), ex_sqrt(z->dag, square));
+    return ex_mul(z->dag, subset_constant(z->w, sign_at_design, (int)probe, 0), ex_sqrt(z->dag, square));
 }
 
 /* A b, or a place, as it was found when samples were followed. */

@@ -48,9 +48,8 @@ const Block *derive_block(Pool *pool, const Plan *plan)
 }
 
 /* Where a body's reference point is drawn. */
-static void reference_drawn(const Plan *plan, int body, Ex out[3])
+static void reference_drawn(const Model *model, const double (*from)[3], int body, Ex out[3])
 {
-    const Model *model = plan->model;
     Dag *dag = model->tuning->dag;
     double A[9];
     Ex turn[9], origin[3], offset[3];
@@ -58,20 +57,19 @@ static void reference_drawn(const Plan *plan, int body, Ex out[3])
     for (int i = 0; i < 9; ++i)
         turn[i] = ex_literal(dag, A[i]);
     for (int i = 0; i < 3; ++i)
-        origin[i] = tuned_or_fixed(model, &plan->origin[body][i]);
+        origin[i] = tuned_or_fixed(model, &from[body][i]);
     ex_apply(dag, turn, origin, offset);
     for (int i = 0; i < 3; ++i)
         out[i] = ex_add(dag, tuned_or_fixed(model, &model->drawn[body].position[i]), offset[i]);
 }
 
-void body_drawn(const Plan *plan, int anchor, int body, Ex c[3], double p[4])
+void body_drawn(const Model *model, const double (*origin)[3], int anchor, int body, Ex c[3], double p[4])
 {
-    const Model *model = plan->model;
     Dag *dag = model->tuning->dag;
     double A[9];
     Ex turn[9], own[3], from[3];
-    reference_drawn(plan, body, own);
-    reference_drawn(plan, anchor, from);
+    reference_drawn(model, origin, body, own);
+    reference_drawn(model, origin, anchor, from);
     ex_sub3(dag, own, from, own);
     mat_from_euler(model->drawn[anchor].euler, A);
     for (int i = 0; i < 9; ++i)
@@ -106,7 +104,7 @@ const Block *draw_block(Pool *pool, const Plan *plan)
         for (int b = 0; plan_follows(plan, s) && b < subset->bodies; ++b) {
             Ex c[3];
             double p[4];
-            body_drawn(plan, subset_anchor(model, plan->sequence, s), subset->body[b], c, p);
+            body_drawn(model, plan->origin, subset_anchor(model, plan->sequence, s), subset->body[b], c, p);
             for (int i = 0; i < 3; ++i)
                 store_tuned(block, c[i], "self->start[0]", plan->start_offset[s] + plan->stride[s] * (7 * b + i));
         }
@@ -130,7 +128,7 @@ static Ex strayed(const Plan *plan, int s)
             continue;
         Ex drawn[12];
         double p[4], A[9];
-        body_drawn(plan, BODY_BASE, subset->body[at / size], drawn, p);
+        body_drawn(plan->model, plan->origin, BODY_BASE, subset->body[at / size], drawn, p);
         mat_from_euler(p, A);
         for (int k = 0; k < 9; ++k)
             drawn[MOTION_A + k] = ex_literal(dag, A[k]);

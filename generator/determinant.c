@@ -16,18 +16,28 @@ static const double determinant_loss = 8e-3;
  * may become faster. */
 static const double reserve = 0.5;
 
-/* The determinant of J, but for constant factors, as a share of that at the design. */
-static Ex relative_determinant(Work *w, const Factors *factors)
+/* What makes a determinant relative to that at the design; where geometry is tuned, at the drawing with the values of
+ * the parameters. */
+static double scale_of_design(const Work *w, int member, int determinant, int unused, Ex *formula)
 {
-    Dag *dag = w->dag;
+    (void)unused;
+    if (w->model->tuning) {
+        Dag *dag = w->model->tuning->dag;
+        const Ex drawn = subset_at_drawing(w, member, (Ex)determinant);
+        if (dag->node[drawn].level == LEVEL_VARIABLE)
+            *formula = ex_div(dag, ex_literal(dag, reserve), drawn);
+    }
+    return reserve / ex_value(w->dag, (Ex)determinant, member * w->configurations);
+}
+
+/* The determinant of J, but for constant factors; a constant where all of them are. */
+static Ex varying_determinant(Dag *dag, const Factors *factors)
+{
     Ex determinant = ex_literal(dag, 1);
-    double scale[w->class->members];
     for (int first = 0; first < factors->n; first = factors_block_end(factors, first))
         if (dag->node[factors->determinant[first]].level == LEVEL_VARIABLE)
             determinant = ex_mul(dag, determinant, factors->determinant[first]);
-    for (int i = 0; i < w->class->members; ++i)
-        scale[i] = 1 / ex_value(dag, determinant, i * w->configurations);
-    return ex_mul(dag, ex_constant(dag, scale), determinant);
+    return determinant;
 }
 
 /* Is this the only joint of its bodies that keeps axes parallel? Then a closed form takes directions from it. */
@@ -55,8 +65,10 @@ Ex determinant_check(Work *w, Formula *formula, const Factors *factors, bool clo
             !(closed && (tie->is_coordinate ? subset_is_hinged : joint_gives_directions)(w, tie)))
             block_check(&formula->solve, w->row[r].guard, false, 0, "GIC_ERROR_SINGULAR");
     }
-    const Ex determinant = relative_determinant(w, factors);
-    return dag->node[determinant].level == LEVEL_VARIABLE ? ex_mul(dag, ex_literal(dag, reserve), determinant) : 0;
+    const Ex determinant = varying_determinant(dag, factors);
+    if (dag->node[determinant].level < LEVEL_VARIABLE)
+        return 0;
+    return ex_mul(dag, subset_constant(w, scale_of_design, (int)determinant, 0), determinant);
 }
 
 /* A body that carries all others: a rotation that they have in common brings none of them nearer to a singular

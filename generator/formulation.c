@@ -125,7 +125,7 @@ void body_design(const Formulation *f, int anchor, int body, double q[7])
 {
     if (f->model->tuning) {
         Ex c[3];
-        body_drawn(f->plan, anchor, body, c, q + 3);
+        body_drawn(f->model, f->plan->origin, anchor, body, c, q + 3);
         for (int i = 0; i < 3; ++i)
             q[i] = ex_value(f->model->tuning->dag, c[i], 0);
         return;

@@ -355,8 +355,9 @@ const Block *design_block(Pool *pool, const Plan *plan);
 /* The first of the pieces in which set-up goes from the drawing (piece 0) to given lengths: 0 where design_block() has
  * something to check and the drawing's lengths are not the given ones, else 1. */
 int design_first_piece(Pool *pool, const Plan *plan);
-/* Where a body stands in the drawing relative to the base: reference point, as formulas, and Euler parameters. */
-void body_drawn(const Plan *plan, int anchor, int body, Ex c[3], double p[4]);
+/* Where a body stands in the drawing relative to another one, or to the base: reference point, as formulas, and Euler
+ * parameters. origin: reference points [bodies][3], body frames. */
+void body_drawn(const Model *model, const double (*origin)[3], int anchor, int body, Ex c[3], double p[4]);
 
 /* ---- formulation.c: all of the above for one model ----------------------------------------------------------- */
 

@@ -664,6 +664,8 @@ static Formula *formulate_closed(Work *w, Solve solve)
     Work found = elsewhere(w, pool_alloc(w->pool, bodies * sizeof *found.pose));
     if (!subset_closed(w, found.pose, &formula->solve))
         return NULL;
+    found.derived = w->derived;
+    found.derived_of = w->derived_of;
     make_rows(&found, found.pose, found.row, found.row_of);
     make_jacobian(&found, found.row, found.row_of, found.J);
     Factors *factors = factor(&found);

@@ -55,6 +55,10 @@ const Subset *subset_member(const Work *w, int i);
 typedef double SubsetNumber(const Work *w, int member, int a, int b, Ex *formula);
 Ex subset_constant(Work *w, SubsetNumber *get, int a, int b);
 
+/* drawing.c: an expression of the class's graph for a member, where the mechanism is as drawn and at rest, as a formula of
+ * the model's tuning, which it must have. */
+Ex subset_at_drawing(const Work *w, int member, Ex e);
+
 /* follow.c: take one member through its sample paths. Sets the graph's samples of that member to the ends of the paths,
  * w->alive, and what later subsets need of it in `sampling`. */
 void subset_follow(Work *w, Sampling *sampling, int member);

@@ -65,7 +65,7 @@ sweep() {
 }
 
 # an arm that hangs on a strut from above or from below
-sweep strut strut,strut.rate 0.32,0.1 "assembly mode|singular" 0.3 0.25 -0.3 -0.25 <<'XXX'
+sweep strut strut,strut.rate 0.32,0.1 "" 0.3 0.25 -0.3 -0.25 <<'XXX'
 gicgen: 1
 model: strut
 base: ground
@@ -82,7 +82,7 @@ outputs:
 XXX
 
 # a rocker at a crank, drawn above or below its hinge, with a rod of another length than in the drawing
-sweep rocker crank,crank.rate 0.1,0.2 "assembly mode|singular" 0.5 0.4 -0.5 -0.4 <<'XXX'
+sweep rocker crank,crank.rate 0.1,0.2 "" 0.5 0.4 -0.5 -0.4 <<'XXX'
 gicgen: 1
 model: rocker
 base: ground
