@@ -8,6 +8,8 @@
  * augmenting paths along them). What stays in excess or in want spans the over- and the under-determined part. */
 #include "graph.h"
 
+#include "relax.h"
+
 #include <string.h>
 
 static int moving(int body)
@@ -263,39 +265,6 @@ static int relaxable_joint(const Graph *graph, const Part *part, int most)
     return -1;
 }
 
-/* Are both joints hinges, with parallel axes at design? */
-static bool hinges_parallel(const Model *model, const Joint *a, const Joint *b)
-{
-    const Joint *const joint[2] = {a, b};
-    double axis[2][3], A[9], cross[3];
-    for (int i = 0; i < 2; ++i) {
-        if (joint[i]->type != JOINT_REVOLUTE)
-            return false;
-        memcpy(axis[i], joint[i]->axis[0], sizeof axis[i]);
-        if (joint[i]->body[0] == BODY_GROUND)
-            continue;
-        mat_from_euler(model->body[joint[i]->body[0]].euler, A);
-        mat_apply(A, joint[i]->axis[0], axis[i]);
-    }
-    vec_cross(axis[0], axis[1], cross);
-    return vec_norm(cross) < 1e-6;
-}
-
-/* The last hinge of the part that closes a plane loop, where two others with parallel axes have already said that it is
- * plane; -1: there is none. */
-static int plane_loop_joint(const Graph *graph, const Part *part)
-{
-    const Model *model = graph->model;
-    for (int last = model->joints - 1; last >= 0; --last) {
-        int others = 0;
-        for (int i = 0; i < last; ++i)
-            others += part->edge[last] && part->edge[i] && hinges_parallel(model, &model->joint[i], &model->joint[last]);
-        if (others >= 2)
-            return last;
-    }
-    return -1;
-}
-
 /* Suggest how to get rid of `excess` equations of the part; returns the place of the first thing to change. */
 static Place suggest_relaxing(const Graph *graph, const Part *part, int excess, Text *text)
 {
@@ -308,15 +277,11 @@ static Place suggest_relaxing(const Graph *graph, const Part *part, int excess, 
     while (coordinate < model->coordinates && !part->edge[model->joints + coordinate])
         ++coordinate;
     text_print(text, "take away %d equation%s; for example, ", excess, plural(excess));
-    const int plane = excess >= joint_equations[JOINT_REVOLUTE] - joint_equations[JOINT_POINT_ON_LINE]
-                          ? plane_loop_joint(graph, part)
-                          : -1;
-    if (plane >= 0) {
-        text_print(text,
-                   "make joint '%s' (revolute, %d) a point_on_line (%d): hinges with parallel axes have already said that "
-                   "their loop is plane",
-                   model->joint[plane].name, joint_equations[JOINT_REVOLUTE], joint_equations[JOINT_POINT_ON_LINE]);
-        return model->joint[plane].at;
+    Place at;
+    const char *relaxed = relax_suggest(graph->pool, model, part->body, part->edge, &at);
+    if (relaxed) {
+        text_print(text, "%s", relaxed);
+        return at;
     }
     if (coordinates_suffice)
         text_print(text, "remove dual coordinate '%s'%s", model->coordinate[coordinate].name,
