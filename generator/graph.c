@@ -278,7 +278,7 @@ static Place suggest_relaxing(const Graph *graph, const Part *part, int excess, 
         ++coordinate;
     text_print(text, "take away %d equation%s; for example, ", excess, plural(excess));
     Place at;
-    const char *relaxed = relax_suggest(graph->pool, model, part->body, part->edge, &at);
+    const char *relaxed = relax_suggest(graph->pool, model, part->body, part->edge, false, &at);
     if (relaxed) {
         text_print(text, "%s", relaxed);
         return at;

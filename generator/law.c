@@ -219,7 +219,9 @@ static const Law *parse_call(Parser *p, const char *where, const char *name)
             /* min and max of three are two of two */
             bool three = count == 3 && (function[i].op == OP_MIN || function[i].op == OP_MAX);
             if (count != function[i].arguments && !three)
-                fail(p, where, "separate arguments by commas", "'%s' takes %d argument%s, not %d", name,
+                fail(p, where,
+                     pool_print(p->pool, "write %s(%s)", name,
+                                function[i].arguments > 1 ? "number, number" : "number"), "'%s' takes %d argument%s, not %d", name,
                      function[i].arguments, function[i].arguments > 1 ? "s" : "", count);
             const Law *two = call(p, function[i].op, function[i].name, arg[0], arg[1], NULL);
             return three ? call(p, function[i].op, function[i].name, two, arg[2], NULL) : two;

@@ -19,7 +19,8 @@ enum {
 
 static const double stride = 0.1;        /* rad, or relative to the size */
 static const double rank_zero = 1e-6;    /* relative size of a pivot that is rounding */
-static const double clearly_better = 4;  /* times as far from singular as another one */
+static const double clearly_better = 4;  /* times as far from singular as another joint */
+static const double better = 1.05;       /* the same of a coordinate: the axis of the motion itself is best */
 
 /* A joint or a coordinate as it is drawn, in the model frame. */
 typedef struct Link {
@@ -44,6 +45,7 @@ typedef struct Relax {
     Link *link;                         /* the same; joints first */
     bool *gone;                         /* [joints] to be removed */
     bool *changed;                      /* [joints] */
+    int counted;                        /* links whose rank counts: joints, or coordinates too where these must stay */
     double centre[3], size;
     int configurations;
     Place3 *place; /* [configurations][bodies] */
@@ -456,8 +458,11 @@ static void add_direction(double (*direction)[3], int *count, const double way[3
         if (vec_norm(cross) < 1e-6 * norm)
             return;
     }
+    int first = 0;
+    while (fabs(way[first]) < 1e-6 * norm)
+        ++first;
     for (int i = 0; i < 3; ++i)
-        direction[*count][i] = way[i] / norm;
+        direction[*count][i] = way[i] / (way[first] < 0 ? -norm : norm);
     ++*count;
 }
 
@@ -487,6 +492,17 @@ static int directions(const Relax *relax, const Link *link, double (*direction)[
     return count;
 }
 
+/* Do the rows of `other` say only what the joints say already? Then it holds nothing that they don't; where motions are
+ * to be freed, whatever it says is good. */
+static bool implied(const Relax *relax, const Link *other, const int *rank)
+{
+    double least;
+    for (int c = 0; c < relax->configurations && relax->counted == relax->joints; ++c)
+        if (rank_at(relax, c, relax->joints, -1, other, &least) != rank[c])
+            return false;
+    return true;
+}
+
 /* How far from singular the rows stay with `other` in place of link `without`, where they must have rank[]; 0: not
  * everywhere. */
 static double quality(const Relax *relax, int count, int without, const Link *other, const int *rank)
@@ -500,9 +516,9 @@ static double quality(const Relax *relax, int count, int without, const Link *ot
     return worst;
 }
 
-static void take_better(Link *best, double *best_quality, const Link *candidate, double its_quality)
+static void take_better(Link *best, double *best_quality, const Link *candidate, double its_quality, double factor)
 {
-    if (its_quality > (*best_quality > 0 ? clearly_better * *best_quality : 0)) {
+    if (its_quality > factor * *best_quality) {
         *best = *candidate;
         *best_quality = its_quality;
     }
@@ -529,9 +545,10 @@ static bool replace(Relax *relax, int k, int needed, const int *rank)
                 candidate.type = order[t];
                 memcpy(candidate.axis[0], direction[i], sizeof direction[i]);
                 memcpy(candidate.axis[1], direction[two ? j : i], sizeof direction[i]);
-                if (two && fabs(vec_dot(direction[i], direction[j])) > 1e-9)
+                if ((two && fabs(vec_dot(direction[i], direction[j])) > 1e-9) || !implied(relax, &candidate, rank))
                     continue;
-                take_better(&best, &best_quality, &candidate, quality(relax, relax->joints, k, &candidate, rank));
+                take_better(&best, &best_quality, &candidate, quality(relax, relax->counted, k, &candidate, rank),
+                            clearly_better);
             }
     }
     if (!(best_quality > 0))
@@ -554,13 +571,22 @@ static int needed_of(const Relax *relax, int k, const int *rank)
     int needed = 0;
     double least;
     for (int c = 0; c < relax->configurations; ++c) {
-        const int missing = rank[c] - rank_at(relax, c, relax->joints, k, NULL, &least);
+        const int missing = rank[c] - rank_at(relax, c, relax->counted, k, NULL, &least);
         needed = missing > needed ? missing : needed;
     }
     return needed;
 }
 
-/* The joint that can give up most, the last of those, and better one that stays than one that goes. */
+/* Is joint k rather the one to change than the best so far, which gives up as much? One of a single equation is likely to
+ * be misplaced; else one that stays is better than one that goes. */
+static bool preferred(const Relax *relax, int k, int needed, int best, int best_needed)
+{
+    if (joint_equations[relax->link[best].type] == 1 || relax->counted > relax->joints)
+        return false;
+    return joint_equations[relax->link[k].type] == 1 || (!best_needed && needed);
+}
+
+/* The joint that can give up most, the last of those. */
 static bool relax_once(Relax *relax, const int *rank)
 {
     bool tried[relax->joints + 1];
@@ -571,13 +597,12 @@ static bool relax_once(Relax *relax, const int *rank)
             if (tried[k] || relax->gone[k])
                 continue;
             const int needed = needed_of(relax, k, rank), drop = joint_equations[relax->link[k].type] - needed;
-            if (drop > best_drop || (drop && drop == best_drop && !best_needed && needed))
+            if (drop > best_drop || (drop && drop == best_drop && preferred(relax, k, needed, best, best_needed)))
                 best = k, best_drop = drop, best_needed = needed;
         }
         if (best < 0)
             return false;
-        if (!best_needed)
-            relax->gone[best] = true;
+        relax->gone[best] = !best_needed;
         if (!best_needed || replace(relax, best, best_needed, rank))
             return relax->changed[best] = true;
         tried[best] = true;
@@ -607,7 +632,7 @@ static bool find_coordinate(const Relax *relax, int count, const int *rank, Link
                 /* an angle is meant for bodies whose joint keeps its axis */
                 const bool fits = kind ? has(joint->type, "cd") && i == 0 : !has(joint->type, "ad") || i == 0;
                 if (fits)
-                    take_better(found, &best_quality, &candidate, quality(relax, count, -1, &candidate, wanted));
+                    take_better(found, &best_quality, &candidate, quality(relax, count, -1, &candidate, wanted), better);
             }
     }
     return best_quality > 0;
@@ -670,10 +695,13 @@ static void print_entry(const Relax *relax, const Link *link, const char *name, 
 static void print_joint(const Relax *relax, int k, Text *text)
 {
     const Joint *joint = &relax->model->joint[relax->index[k]];
-    text_print(text, text->size ? ", " : "");
+    text_print(text, "%s", text->size                          ? ", "
+                           : relax->counted == relax->joints ? ""
+                                                             : "the joints leave no motion for a coordinate: ");
     if (relax->gone[k]) {
-        text_print(text, "remove joint '%s' (%s, %d): the others say all that it says", joint->name,
-                   joint_type_name[joint->type], joint_equations[joint->type]);
+        text_print(text, "remove joint '%s' (%s, %d)%s", joint->name, joint_type_name[joint->type],
+                   joint_equations[joint->type],
+                   relax->counted == relax->joints ? ": the others say all that it says" : "");
         return;
     }
     text_print(text, "make joint '%s' (%s, %d) a %s (%d): ", joint->name, joint_type_name[joint->type],
@@ -728,7 +756,8 @@ static bool settle_coordinates(Relax *relax, int *rank, Text *text, Place *at)
     return true;
 }
 
-const char *relax_suggest(Pool *pool, const Model *model, const bool *body, const bool *edge, Place *at)
+const char *relax_suggest(Pool *pool, const Model *model, const bool *body, const bool *edge, bool joints_stay,
+                          Place *at)
 {
     Relax relax = {.pool = pool, .model = model};
     Text text = {.pool = pool};
@@ -742,8 +771,13 @@ const char *relax_suggest(Pool *pool, const Model *model, const bool *body, cons
     int rank[2 * WALK + 1];
     for (int c = 0; c < relax.configurations; ++c)
         rank[c] = rank_at(&relax, c, relax.joints, -1, NULL, &least);
-    while (equations_left(&relax) > rank[0])
-        if (!relax_once(&relax, rank))
+    relax.counted = relax.joints;
+    if (rank[0] == relax.n && relax.coordinates) { /* the joints leave no motion: one of them is stronger than was meant */
+        relax.counted += relax.coordinates;
+        relax.configurations = 1;
+    }
+    while (equations_left(&relax) + relax.counted - relax.joints > rank[0])
+        if (joints_stay || !relax_once(&relax, rank))
             return NULL;
     Place place = {0};
     for (int k = 0; k < relax.joints; ++k)
@@ -752,7 +786,7 @@ const char *relax_suggest(Pool *pool, const Model *model, const bool *body, cons
                 place = model->joint[relax.index[k]].at;
             print_joint(&relax, k, &text);
         }
-    if (!settle_coordinates(&relax, rank, &text, &place) || !text.size)
+    if ((relax.counted == relax.joints && !settle_coordinates(&relax, rank, &text, &place)) || !text.size)
         return NULL;
     *at = place;
     return text.s;

@@ -239,7 +239,7 @@ coordinates:
   swing: {type: angle, bodies: [ground, rod], axis: [0, 1, 0]}
   strut: {type: length, bodies: [ground, rod], points: [[0, 0.5, -2], [1, 0, 0]]}
 END
-refused swing "'pivot'" "'swing'" "'strut'" "7 conditions" "'rod', 1 more"
+refused strut "'pivot'" "'swing'" "'strut'" "7 conditions" "'rod', 1 more"
 
 # as many equations as unknowns, but not where they are needed
 model misplaced <<'END'
@@ -253,7 +253,7 @@ coordinates:
   swing: {type: angle, bodies: [ground, one], axis: [0, 1, 0]}
   strut: {type: length, bodies: [ground, one], points: [[0, 0.5, -2], [1, 0, 0]]}
 END
-refused swing "'first'" "'swing'" "'strut'" "'one', 1 more" "'two' is under-determined"
+refused strut "'first'" "'swing'" "'strut'" "'one', 1 more" "'two' is under-determined"
 silent second
 
 # a plane loop of four revolutes says three times that it is plane
