@@ -267,7 +267,8 @@ const Item *doc_read(Pool *pool, const char *path)
     do {
         next(&loader, &event);
         if (event.type == YAML_STREAM_END_EVENT)
-            diag_fail((Place){source, 1, 1}, "begin a model with `gicgen: 1` (models/FORMAT.md), a scene with `gicscene: 1` (models/SCENE.md)",
+            diag_fail((Place){source, 1, 1},
+                      "begin a model with `gicgen: 1` (models/FORMAT.md), a scene with `gicscene: 1` (models/SCENE.md)",
                       "the file is empty");
         yaml_event_type_t type = event.type;
         yaml_event_delete(&event);

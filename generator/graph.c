@@ -348,14 +348,27 @@ static _Noreturn void fail_over(const Graph *graph, const Part *part, const char
               edge_names(graph, part), part->weight, body_names(graph, part), excess, unknowns);
 }
 
+/* ` (point_on_line, parallel, ...)`: the joints with so many equations; "" where there are none. */
+static const char *joints_with(const Graph *graph, int equations)
+{
+    Text text = {.pool = graph->pool};
+    text_add(&text, "", 0);
+    for (int i = 0; i < JOINT_TYPES; ++i)
+        if (joint_equations[i] == equations)
+            text_print(&text, "%s%s", text.size ? ", " : " (", joint_type_name[i]);
+    return text.size ? pool_print(graph->pool, "%s)", text.s) : text.s;
+}
+
 static _Noreturn void fail_under(const Graph *graph, const Part *part, const char *more)
 {
     int want = BODY_UNKNOWNS * part->bodies - part->weight;
+    Place at;
+    const char *example = relax_suggest(graph->pool, graph->model, part->body, part->edge, false, &at);
     const char *remedy = pool_print(
-        graph->pool, "add %s (a spring length, an angle) or a joint with %s here; what determines %s now: %s%s",
+        graph->pool, "add %s (a spring length, an angle) or a joint with %s%s here%s%s; what determines %s now: %s%s",
         want == 1 ? "a dual coordinate" : pool_print(graph->pool, "%d dual coordinates", want),
-        want == 1 ? "one equation" : "as many equations", part->bodies > 1 ? "them" : "it", edge_names(graph, part),
-        more);
+        want == 1 ? "one equation" : "as many equations", joints_with(graph, want), example ? "; for example, " : "",
+        example ? example : "", part->bodies > 1 ? "them" : "it", edge_names(graph, part), more);
     diag_fail(graph->model->body[part->first].at, remedy,
               "%s %s %d degree%s of freedom more than joints and dual coordinates determine", body_names(graph, part),
               part->bodies > 1 ? "have" : "has", want, plural(want));

@@ -7,9 +7,9 @@
 #include "gicgen.h"
 
 /* A remedy for bodies whose joints and dual coordinates are too many, or repeat each other: joints with fewer equations
- * that leave the same motions, and what coordinates these motions then need, each as an entry of the file. body [bodies]:
- * those that are to be determined, all others stand still; edge [joints + coordinates]: what determines them. NULL: none
- * is found. joints_stay: only coordinates may change. *at: the place of the first thing to change. */
+ * that leave the same motions, and what coordinates these motions then need, each as an entry of the file. body
+ * [bodies]: those that are to be determined, all others stand still; edge [joints + coordinates]: what determines them.
+ * NULL: none is found. joints_stay: only coordinates may change. *at: the place of the first thing to change. */
 const char *relax_suggest(Pool *pool, const Model *model, const bool *body, const bool *edge, bool joints_stay,
                           Place *at);
 

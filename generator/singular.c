@@ -255,9 +255,10 @@ void subset_explain_singular(Work *w, const Sampling *sampling, int subset)
                   "independent), and the pose of %s is not determined",
                   equations.s, rank, w->n, bodies.s);
     /* the one equation of a link is likelier to be misplaced than to be of the wrong kind */
-    const char *place_it = fewest == 1 && !tie->is_coordinate ? "move its points or axes so that it acts on what is free; or " : "";
+    const char *place_it =
+        fewest == 1 && !tie->is_coordinate ? "move its points or axes so that it acts on what is free; or " : "";
     diag_fail(at,
-              suggested    ? pool_print(w->pool, "%s%s", place_it, suggested)
+              suggested ? pool_print(w->pool, "%s%s", place_it, suggested)
               : joints > 1
                   ? "move its points or axes out of line with the others; or, where these joints close a loop that "
                     "fixes a motion "

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Dead centres: from the last good state the bodies of the lost subset go on along the motion that their joints leave
- * when one coordinate is let go. Where this coordinate turns back, it stops being independent, and any joint that goes on
- * turning there offers a coordinate in its place. Where the joints themselves lose a rank, two motions cross, and no
+ * when one coordinate is let go. Where this coordinate turns back, it stops being independent, and any joint that goes
+ * on turning there offers a coordinate in its place. Where the joints themselves lose a rank, two motions cross, and no
  * coordinate tells them apart. */
 #include "dead_centre.h"
 
@@ -12,15 +12,15 @@
 #include <string.h>
 
 enum {
-    NEAR = 60,    /* steps in which the dead centre has to be found */
-    ROUND = 800,  /* steps from there in which other coordinates are watched */
+    NEAR = 60,   /* steps in which the dead centre has to be found */
+    ROUND = 800, /* steps from there in which other coordinates are watched */
     CORRECTIONS = 12,
     UNKNOWNS_MOST = 280 /* larger mechanisms would keep people waiting */
 };
 
 static const double usual_step = 0.02;   /* rad, or relative to the size of the mechanism */
 static const double close_enough = 1e-7; /* the same, from a dead centre */
-static const double crossing = 1e-4;     /* smallest pivot there below which it is not only the coordinate that is lost */
+static const double crossing = 1e-4; /* smallest pivot there below which it is not only the coordinate that is lost */
 
 /* How the relative motion in a joint goes on behind the dead centre. */
 typedef struct Candidate {
@@ -33,11 +33,11 @@ typedef struct Search {
     World *world;
     const Subset *subset; /* what moves: the lost subset with all that it hangs on */
     const Subset *lost;
-    int n;             /* unknowns: BODY_Q a body */
-    int released;      /* the coordinate that is let go */
-    double *A, *t, *b; /* [n][n], motion that is left [n], scratch [n] */
-    int sign;          /* of the determinant of all rows but the released one's, and t */
-    double least;      /* smallest pivot of the same, of rows of size 1 */
+    int n;                /* unknowns: BODY_Q a body */
+    int released;         /* the coordinate that is let go */
+    double *A, *t, *b;    /* [n][n], motion that is left [n], scratch [n] */
+    int sign;             /* of the determinant of all rows but the released one's, and t */
+    double least;         /* smallest pivot of the same, of rows of size 1 */
     Candidate *candidate; /* [joints of the subset] */
 } Search;
 
@@ -104,8 +104,8 @@ static double row_of(const Search *search, const Tie *tie, int r, double *row)
     return largest > 0 ? world->value[tie->first + r] / largest : 0;
 }
 
-/* A: all rows of the subset but the released coordinate's, normalizations, and t at last; b: what corrects them. Returns
- * the largest residual. */
+/* A: all rows of the subset but the released coordinate's, normalizations, and t at last; b: what corrects them.
+ * Returns the largest residual. */
 static double fill(const Search *search)
 {
     World *world = search->world;
@@ -143,7 +143,8 @@ static void move(const Search *search, const double *change, double factor)
     }
 }
 
-/* t anew, of length 1, on the side of the present one. Returns the sign of the determinant, 0: no single motion is left.
+/* t anew, of length 1, on the side of the present one. Returns the sign of the determinant, 0: no single motion is
+ * left.
  */
 static int tangent(Search *search)
 {
@@ -269,17 +270,31 @@ static void watch_joints(Search *search, double value)
     }
 }
 
-/* The joint that turns back least often, and among those the one that moves fastest at the dead centre; -1: none. */
+/* Does the joint hang on a body that stands still here? Its coordinate then determines one body alone. */
+static bool outermost(const Search *search, int i)
+{
+    const int *body = search->world->model->joint[search->subset->joint[i]].body;
+    return local_of(search->subset, body[0]) < 0 || local_of(search->subset, body[1]) < 0;
+}
+
+static bool better(const Search *search, int i, int j)
+{
+    const Candidate *one = &search->candidate[i], *other = &search->candidate[j];
+    if (one->turns != other->turns)
+        return one->turns < other->turns;
+    if (outermost(search, i) != outermost(search, j))
+        return outermost(search, i);
+    return fabs(one->rate) > fabs(other->rate);
+}
+
+/* The joint to go on with; -1: none. */
 static int best_joint(const Search *search)
 {
-    const double least = 1e-3;
+    const double least = 0.02;
     int best = -1;
-    for (int i = 0; i < search->subset->joints; ++i) {
-        const Candidate *one = &search->candidate[i], *other = best < 0 ? NULL : &search->candidate[best];
-        if (fabs(one->rate) > least &&
-            (!other || one->turns < other->turns || (one->turns == other->turns && fabs(one->rate) > fabs(other->rate))))
+    for (int i = 0; i < search->subset->joints; ++i)
+        if (fabs(search->candidate[i].rate) > least && (best < 0 || better(search, i, best)))
             best = i;
-    }
     return best;
 }
 
@@ -317,17 +332,19 @@ static DeadCentre turned_back(Search *search, double value)
     watch_joints(search, value);
     const int best = best_joint(search);
     DeadCentre found = {
-        .finding = pool_print(pool,
-                              "a dead centre at '%s' = %.6g %s, which it does not pass: two assemblies meet there, and the "
-                              "coordinate stops determining %s",
-                              c->name, value, c->type == COORDINATE_ANGLE ? "rad" : "m", names(search)),
+        .finding =
+            pool_print(pool,
+                       "a dead centre at '%s' = %.6g %s, which it does not pass: two assemblies meet there, and the "
+                       "coordinate stops determining %s",
+                       c->name, value, c->type == COORDINATE_ANGLE ? "rad" : "m", names(search)),
         .remedy = pool_print(pool, "keep '%s' on this side of %.6g", c->name, value)};
     if (best >= 0 && !c->driven)
-        found.remedy = pool_print(pool,
-                                  "to go on there, make '%s' a coordinate that %s: `%s: %s`; else keep it on this side "
-                                  "of %.6g",
-                                  c->name, search->candidate[best].turns ? "does not turn back there" : "never turns back",
-                                  c->name, replacement(search, search->subset->joint[best]), value);
+        found.remedy =
+            pool_print(pool,
+                       "to go on there, make '%s' a coordinate that %s: `%s: %s`; else keep it on this side "
+                       "of %.6g",
+                       c->name, search->candidate[best].turns ? "does not turn back there" : "never turns back",
+                       c->name, replacement(search, search->subset->joint[best]), value);
     return found;
 }
 
@@ -335,13 +352,14 @@ static DeadCentre crossed(const Search *search, double value)
 {
     const Coordinate *c = &search->world->model->coordinate[search->released];
     return (DeadCentre){
-        .finding = pool_print(search->pool,
-                              "a change point at '%s' = %.6g %s: two motions of %s cross there, and no coordinate tells "
-                              "which of them goes on",
-                              c->name, value, c->type == COORDINATE_ANGLE ? "rad" : "m", names(search)),
-        .remedy = pool_print(search->pool,
-                             "make one link a little longer, so that the motions part, or keep '%s' on this side of %.6g",
-                             c->name, value)};
+        .finding =
+            pool_print(search->pool,
+                       "a change point at '%s' = %.6g %s: two motions of %s cross there, and no coordinate tells "
+                       "which of them goes on",
+                       c->name, value, c->type == COORDINATE_ANGLE ? "rad" : "m", names(search)),
+        .remedy = pool_print(
+            search->pool, "make one link a little longer, so that the motions part, or keep '%s' on this side of %.6g",
+            c->name, value)};
 }
 
 /* Look ahead along one coordinate. direction: of its rate, 0: both. */

@@ -243,10 +243,12 @@ static const char *remedy_of(int status)
     switch (status) {
     case GIC_ERROR_REACH:
     case GIC_ERROR_NEWTON:
-        return "a step led to where the bodies don't reach, from the state in the last row of the results: try a shorter "
+        return "a step led to where the bodies don't reach, from the state in the last row of the results: try a "
+               "shorter "
                "step, and check springs, stops and driven coordinates that allow such a motion";
     case GIC_ERROR_SINGULAR:
-        return "the last row of the results is the last state that the coordinates determine: choose others that do, or "
+        return "the last row of the results is the last state that the coordinates determine: choose others that do, "
+               "or "
                "stops that end the motion before";
     case GIC_ERROR_RESULT:
     case GIC_ERROR_INPUT: return "the run has probably become unstable: try a shorter step";
@@ -462,8 +464,8 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
         diag_fail(program_place(), NULL, "no memory for the integrator");
     status = compute_outputs(&run);
     if (status != GIC_OK)
-        diag_fail(at, remedy_at_start(status),
-                  "the run can't start: %s", instance_status(pool, model, run.copy, status));
+        diag_fail(at, remedy_at_start(status), "the run can't start: %s",
+                  instance_status(pool, model, run.copy, status));
     prepare_plot(&run);
     interrupt_hold(); /* or the temporary file of the results would stay */
     if (request->results) {

@@ -1,0 +1,9 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_remedies.sh GICGEN GICRUN: each remedy of a message, applied as it is printed, leads to a model that is accepted:
+# of each file of tests/bad (remedies.py), and of mechanisms whose joints repeat each other (mechanisms.py).
+tests=$(dirname "$0")
+export PYTHONDONTWRITEBYTECODE=1
+python3 "$tests/remedies.py" "$1" || failed=1
+python3 "$tests/mechanisms.py" "$1" "$2" || failed=1
+[ -z "$failed" ]
