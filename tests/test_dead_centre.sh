@@ -21,6 +21,56 @@ direction() { case $axis in x) echo "[1, 0, 0]" ;; y) echo "[0, 1, 0]" ;; z) ech
 body() { echo "  $1: {mass: 1, com: $(point "$2" "$3"), inertia: [0.1, 0.1, 0.1]}"; }
 hinge() { echo "  $1: {type: $2, bodies: [$3], point: $(point "$4" "$5"), axis: $(direction)}"; }
 
+# The end of a file; stands for the coordinate too.
+outputs() {
+    echo "outputs:
+  turn: {type: coordinate, coordinate: turn}
+  energy: {type: energy}"
+}
+
+# rhombus GROUND: crank, coupler and rocker 1 m long on a ground of GROUND, but for a rocker that is longer with it
+rhombus() {
+    printf '%s\n' "gicgen: 1" "model: rhombus" "gravity: [0, 0, 0]" "base: ground" "bodies:"
+    body crank 0 0.5
+    body coupler 0.5 1
+    body rocker 1 0.5
+    echo "joints:"
+    hinge first revolute "ground, crank" 0 0
+    hinge second revolute "crank, coupler" 0 1
+    hinge third revolute "ground, rocker" "$1" 0
+    hinge last point_on_line "coupler, rocker" 1 1
+    echo "coordinates:
+  turn: {type: angle, bodies: [ground, crank], axis: $(direction), range: [-9, 9]}"
+    outputs
+}
+
+# strut: a rod of 1 m with a strut of sqrt(5) m to its end from 2 m behind its hinge
+strut() {
+    printf '%s\n' "gicgen: 1" "model: strut" "gravity: [0, 0, 0]" "base: ground" "bodies:"
+    body rod 0 1
+    echo "joints:"
+    hinge first revolute "ground, rod" 0 0
+    echo "coordinates:
+  turn: {type: length, bodies: [ground, rod], points: [$(point -2 0), $(point 0 1)], range: [0.5, 4]}"
+    outputs
+}
+
+# slider: crank 1 m, upright, rod of sqrt(5) m, slider 2 m from the crank's hinge
+slider() {
+    printf '%s\n' "gicgen: 1" "model: slider" "gravity: [0, 0, 0]" "base: ground" "bodies:"
+    body crank 0 0.5
+    body rod 1 0.5
+    body slider 2 0
+    echo "joints:"
+    hinge first revolute "ground, crank" 0 0
+    hinge second revolute "crank, rod" 0 1
+    echo "  guide: {type: prismatic, bodies: [ground, slider], point: $(point 2 0), axis: $(point 1 0)}"
+    hinge last point_on_line "rod, slider" 2 0
+    echo "coordinates:
+  turn: {type: translation, bodies: [ground, slider], axis: $(point 1 0), range: [-9, 9]}"
+    outputs
+}
+
 # linkage CRANK GROUND COORDINATE_BODIES: a crank upright at the origin, a rocker of 2 m upright at GROUND, a coupler
 # between their ends
 linkage() {
@@ -37,10 +87,8 @@ bodies:"
     hinge third revolute "ground, rocker" "$2" 0
     hinge last point_on_line "coupler, rocker" "$2" 2
     echo "coordinates:
-  turn: {type: angle, bodies: [$3], axis: $(direction), range: [-9, 9]}
-outputs:
-  turn: {type: coordinate, coordinate: turn}
-  energy: {type: energy}"
+  turn: {type: angle, bodies: [$3], axis: $(direction), range: [-9, 9]}"
+    outputs
 }
 
 # scene RATE: of the coordinate, 4 s, without gravity
@@ -66,7 +114,7 @@ ended() {
 remedied() {
     entry=$(sed -n 's/^  remedy: .*`\(turn: {.*}\)`.*/\1/p' err)
     check "$1: a coordinate instead" [ -n "$entry" ]
-    sed "s/^  turn: {type: \(angle\|translation\).*/  $(echo "$entry" | sed 's/}$/, range: [-99, 99]}/')/" m.veh >r.veh
+    sed "s/^  turn: {type: \(angle\|translation\|length\).*/  $(echo "$entry" | sed 's/}$/, range: [-99, 99]}/')/" m.veh >r.veh
     for engine in tcc gic; do
         run --quiet --engine $engine r.veh scene -o $engine.csv
         check "$1: the remedy runs through ($engine)" exits 0
@@ -96,7 +144,33 @@ for axis in x y z; do
         check "rocker $axis $rate: it goes round" says 'never turns back'
         remedied "rocker $axis $rate"
     done
-    # Crank 1, coupler and ground 1, rocker 1: at a quarter turn the rhombus is folded, and two motions cross.
+    # strut and rod on one line, of 2 + 1 and 2 - 1
+    strut >m.veh
+    for rate in 1 -1; do
+        scene $rate
+        run --quiet m.veh scene -o csv
+        ended "dead centre" $((2 + rate)) "strut $axis $rate"
+        remedied "strut $axis $rate"
+    done
+    # crank and rod on one line: the slider at 1 + sqrt(5) and at sqrt(5) - 1 from the hinge, 2 as drawn
+    slider >m.veh
+    for rate in 1 -1; do
+        scene $rate
+        run --quiet m.veh scene -o csv
+        ended "dead centre" "$([ $rate = 1 ] && echo 1.2360680 || echo -0.7639320)" "slider $axis $rate"
+        remedied "slider $axis $rate"
+    done
+    # at a quarter turn the rhombus is folded, and two motions cross
+    rhombus 1 >m.veh
+    scene 1
+    run --quiet m.veh scene -o csv
+    ended "change point" 1.5707963 "rhombus $axis"
+    check "rhombus $axis: remedy" says 'remedy: make one link a little longer'
+    # a ground longer by 0.02: then the crank turns back where coupler and rocker are on one line, or goes through
+    rhombus 1.02 >m.veh
+    run --quiet m.veh scene -o csv
+    [ "$status" -eq 0 ] || ! says 'change point'
+    verdict $? "rhombus $axis: motions part"
 done
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
