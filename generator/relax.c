@@ -453,3 +453,118 @@ const char *relax_suggest(Pool *pool, const Model *model, const bool *body, cons
     *at = place;
     return text.s;
 }
+
+/* ---- dead centres ---------------------------------------------------------------------------------------- */
+
+enum {
+    STEPS_TO = 200,   /* to the dead centre */
+    STEPS_ROUND = 200 /* from there on, in which other joints are watched */
+};
+
+/* A joint's own coordinate, and what it does from the dead centre on. */
+typedef struct Serving {
+    Link link;
+    double rate, last;
+    int turns;
+    bool outermost; /* it hangs on a body that stands still, and determines one body alone */
+} Serving;
+
+static int find_serving(const Relax *relax, int joints, Serving *serving)
+{
+    int count = 0;
+    for (int i = 0; i < joints; ++i) {
+        const Link *joint = &relax->link[i];
+        if (joint->type != JOINT_REVOLUTE && joint->type != JOINT_PRISMATIC)
+            continue;
+        Serving one = {.link = *joint, .outermost = joint->body[0] < 0 || joint->body[1] < 0};
+        one.link.coordinate = true;
+        one.link.kind = joint->type == JOINT_REVOLUTE ? COORDINATE_ANGLE : COORDINATE_TRANSLATION;
+        serving[count++] = one;
+    }
+    return count;
+}
+
+/* Walk on from the dead centre and watch. */
+static void watch(Relax *relax, Pose3 *place, double *way, Serving *serving, int count)
+{
+    for (int k = 0; k < STEPS_ROUND; ++k) {
+        for (int i = 0; i < count; ++i) {
+            const double rate = screws_speed(relax, &serving[i].link, place, way);
+            if (k == 0)
+                serving[i].rate = rate;
+            serving[i].turns += k > 0 && rate * serving[i].last < 0;
+            serving[i].last = rate;
+        }
+        if (!screws_step(relax, place, way))
+            return;
+    }
+}
+
+static bool serves_better(const Serving *one, const Serving *other)
+{
+    if (one->turns != other->turns)
+        return one->turns < other->turns;
+    if (one->outermost != other->outermost)
+        return one->outermost;
+    return fabs(one->rate) > fabs(other->rate);
+}
+
+/* The coordinate becomes the last link, and all others stand still as joints do. */
+static bool release(Relax *relax, int coordinate)
+{
+    const int count = relax->joints + relax->coordinates;
+    for (int i = relax->joints; i < count; ++i)
+        if (relax->index[i] == relax->model->joints + coordinate) {
+            const Link released = relax->link[i];
+            memmove(relax->link + i, relax->link + i + 1, (size_t)(count - 1 - i) * sizeof released);
+            relax->link[count - 1] = released;
+            relax->joints = count - 1;
+            return true;
+        }
+    return false;
+}
+
+const char *relax_instead(Pool *pool, const Model *model, const bool *body, const bool *edge, int coordinate,
+                          double value, bool *always)
+{
+    Relax relax = {.pool = pool, .model = model};
+    int bodies = 0;
+    for (int i = 0; i < model->bodies; ++i)
+        bodies += body[i];
+    if (bodies > BODIES_MOST || !make_links(&relax, body, edge))
+        return NULL;
+    const int joints = relax.joints;
+    if (!release(&relax, coordinate))
+        return NULL;
+    Serving serving[joints + 1];
+    const int count = find_serving(&relax, joints, serving);
+    const Link *released = &relax.link[relax.joints];
+    Pose3 place[bodies + 1];
+    double way[relax.n + 1], before = 0;
+    for (int b = 0; b < bodies; ++b)
+        place[b] = (Pose3){.A = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    memset(way, 0, sizeof way);
+    screws_speed(&relax, released, place, way); /* leaves the row of the coordinate in A */
+    const double side = value < model->coordinate[coordinate].design ? -1 : 1;
+    for (int i = 0; i < relax.n; ++i)
+        way[i] = side * relax.A[i];
+    for (int k = 0;; ++k) {
+        if (k == STEPS_TO || !screws_step(&relax, place, way))
+            return NULL;
+        const double speed = screws_speed(&relax, released, place, way);
+        if (speed * before < 0)
+            break;
+        before = speed;
+    }
+    watch(&relax, place, way, serving, count);
+    const Serving *best = NULL;
+    for (int i = 0; i < count; ++i)
+        if (fabs(serving[i].rate) > 0.05 && (!best || serves_better(&serving[i], best)))
+            best = &serving[i];
+    if (!best)
+        return NULL;
+    Text text = {.pool = pool};
+    print_entry(&relax, &best->link, model->coordinate[coordinate].name, &text);
+    *always = !best->turns;
+    return text.s;
+}

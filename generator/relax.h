@@ -13,4 +13,10 @@
 const char *relax_suggest(Pool *pool, const Model *model, const bool *body, const bool *edge, bool joints_stay,
                           Place *at);
 
+/* An entry for coordinate `coordinate` that goes on where it turns back, on the way from the drawing towards `value`;
+ * NULL: it is not found to turn back there, or nothing else goes on. body, edge: as above; all other coordinates stand
+ * still. *always: it turns back nowhere. */
+const char *relax_instead(Pool *pool, const Model *model, const bool *body, const bool *edge, int coordinate,
+                          double value, bool *always);
+
 #endif

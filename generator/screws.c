@@ -94,7 +94,7 @@ static Rows rows_of(const Relax *relax, const Link *link, const Pose3 *place)
         d[i] = x[1][i] - x[0][i];
     if (link->coordinate) {
         if (link->kind == COORDINATE_ANGLE)
-            add_couple(&rows, na[0], nb);
+            memcpy(rows.screw[rows.count++] + 3, u[0], sizeof u[0]);
         else if (link->kind == COORDINATE_TRANSLATION)
             add_force(&rows, u[0], x[1], 0);
         else {
@@ -261,8 +261,7 @@ static double least_twist(Relax *relax, const Pose3 *place, const double *wanted
     return worst;
 }
 
-/* One step along the motion nearest to `way`, which becomes that motion. */
-static bool walk(Relax *relax, Pose3 *place, double *way)
+bool screws_step(Relax *relax, Pose3 *place, double *way)
 {
     const int n = relax->n;
     for (int pass = 0; pass < 2; ++pass) {
@@ -310,9 +309,18 @@ void screws_walk(Relax *relax)
             way[i] = side ? -first[i] : first[i];
         for (int k = 0; k < WALK && good; ++k) {
             for (int i = 0; i < STRIDES && good; ++i)
-                good = walk(relax, place, way);
+                good = screws_step(relax, place, way);
             if (good)
                 memcpy(relax->place + relax->bodies * relax->configurations++, place, size);
         }
     }
+}
+
+double screws_speed(const Relax *relax, const Link *link, const Pose3 *place, const double *way)
+{
+    double sum = 0;
+    put_rows(relax, link, place, relax->A, NULL);
+    for (int i = 0; i < relax->n; ++i)
+        sum += relax->A[i] * way[i];
+    return sum;
 }

@@ -50,6 +50,11 @@ bool screws_have(JointType type, const char *letters);
 /* Rank of the first `count` links but `without` (-1: none) and those that are gone, with `other` (NULL: none), at a
  * configuration; *least: the smallest pivot. */
 int screws_rank(const Relax *relax, int configuration, int count, int without, const Link *other, double *least);
+/* One step from a configuration [bodies] along the motion nearest to `way` [n] that the joints leave, which becomes
+ * that motion. False: it ends there. */
+bool screws_step(Relax *relax, Pose3 *place, double *way);
+/* How fast a coordinate changes along `way`. */
+double screws_speed(const Relax *relax, const Link *link, const Pose3 *place, const double *way);
 /* Fill place[]: the drawing, and configurations on a motion that the joints leave, in both directions as far as they
  * go. */
 void screws_walk(Relax *relax);
