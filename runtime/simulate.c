@@ -413,18 +413,18 @@ static int run_all(Run *run, const gic_head **failed)
     return GIC_OK;
 }
 
-/* The last good state, where that is not an output time. False: it has no outputs. */
-static bool record_last(Run *run)
+/* The last good state, where that is not an output time; it stays in the copy. Inputs may have moved on so far that it
+ * has no outputs: then the copy stays at the last output time. */
+static void record_last(Run *run)
 {
-    if (run->scene->rest)
-        return false;
+    gic_head *before = instance_new(run->pool, run->engine);
+    memcpy(before, run->copy, run->model->size);
     memcpy(run->copy, run->self, run->model->size);
     run->copy->grown = -1;
     if (run->model->outputs(run->copy) != GIC_OK)
-        return false;
-    if (gic_time(run->self) > run->recorded)
+        memcpy(run->copy, before, run->model->size);
+    else if (gic_time(run->copy) > run->recorded)
         record(run);
-    return true;
 }
 
 /* What ended the run, and the remedy. */
@@ -432,9 +432,10 @@ static const char *explain(Run *run, const Model *mechanism, const gic_head *fai
 {
     const char *said = instance_status(run->pool, run->engine->code, failed, status);
     const int subset = failed->subset;
-    const bool lost = status == GIC_ERROR_REACH || status == GIC_ERROR_NEWTON || status == GIC_ERROR_SINGULAR;
     *remedy = remedy_of(status);
-    if (!record_last(run) || !lost)
+    if (!run->scene->rest)
+        record_last(run);
+    if (status != GIC_ERROR_REACH && status != GIC_ERROR_NEWTON && status != GIC_ERROR_SINGULAR)
         return said;
     const DeadCentre found = dead_centre_find(run->pool, mechanism, run->model, run->copy, subset);
     if (!found.finding)
