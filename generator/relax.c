@@ -288,7 +288,7 @@ static bool find_coordinate(const Relax *relax, int count, const int *rank, Link
                 memcpy(candidate.axis[1], direction[i], sizeof direction[i]);
                 /* an angle is meant for bodies whose joint keeps its axis */
                 const bool fits =
-                    kind ? screws_have(joint->type, "cd") && i == 0 : !screws_have(joint->type, "ad") || i == 0;
+                    kind ? screws_have(joint->type, "cdghijkl") : !screws_have(joint->type, "ad") || i == 0;
                 if (fits)
                     take_better(found, &best_quality, &candidate, quality(relax, count, -1, &candidate, wanted),
                                 better);
@@ -357,7 +357,7 @@ static void print_joint(const Relax *relax, int k, Text *text)
     text_print(text, "%s",
                text->size                        ? ", "
                : relax->counted == relax->joints ? ""
-                                                 : "the joints leave no motion for a coordinate: ");
+                                                 : "the joints leave less motion than the coordinates need: ");
     if (relax->gone[k]) {
         text_print(text, "remove joint '%s' (%s, %d)%s", joint->name, joint_type_name[joint->type],
                    joint_equations[joint->type],
@@ -370,13 +370,54 @@ static void print_joint(const Relax *relax, int k, Text *text)
     print_entry(relax, &relax->link[k], joint->name, text);
 }
 
+/* Is it driven, does a force act along it, or an output show it? Then it was hardly written by mistake. */
+static bool used(const Model *model, int coordinate)
+{
+    bool any = model->coordinate[coordinate].driven;
+    for (int i = 0; i < model->forces; ++i)
+        any = any || model->force[i].coordinate == coordinate;
+    for (int i = 0; i < model->outputs; ++i)
+        any = any || (model->output[i].type == OUTPUT_COORDINATE && model->output[i].index == coordinate);
+    return any;
+}
+
+/* Coordinates that are more than the motions at the design, but none that can be spared? Or no motion for any? Then a
+ * joint is stronger than was meant. */
+static bool joint_too_strong(const Relax *relax, int rank)
+{
+    const Model *model = relax->model;
+    int spare = 0;
+    for (int k = 0; k < relax->coordinates; ++k)
+        spare += !used(model, relax->index[relax->joints + k] - model->joints);
+    return relax->coordinates && (rank == relax->n || relax->coordinates - (relax->n - rank) > spare);
+}
+
+/* A name for the i-th coordinate more. */
+static const char *free_name(const Relax *relax, int i)
+{
+    const Model *model = relax->model;
+    for (int number = i + 1;; ++number) {
+        const char *name = pool_print(relax->pool, "added%d", number);
+        bool taken = false;
+        for (int c = 0; c < model->coordinates; ++c)
+            taken = taken || !strcmp(model->coordinate[c].name, name);
+        if (!taken)
+            return name;
+    }
+}
+
 /* Coordinates that determine nothing new go, or change; motions that none determines get one. */
 static bool settle_coordinates(Relax *relax, int *rank, Text *text, Place *at)
 {
     const Model *model = relax->model;
     int count = relax->joints, spare[relax->coordinates + 1], spares = 0, added = 0;
-    for (int k = 0; k < relax->coordinates; ++k) {
-        relax->link[count] = relax->link[relax->joints + k];
+    Link own[relax->coordinates + 1];
+    memcpy(own, relax->link + relax->joints, (size_t)relax->coordinates * sizeof *own);
+    for (int i = 0; i < 2 * relax->coordinates; ++i) { /* first those that something refers to */
+        const int k = i % relax->coordinates;
+        if (used(model, relax->index[relax->joints + k] - model->joints) != (i < relax->coordinates))
+            continue;
+        relax->link[count] = own[k];
         int grown[relax->configurations];
         double least;
         bool good = true;
@@ -396,13 +437,15 @@ static bool settle_coordinates(Relax *relax, int *rank, Text *text, Place *at)
     }
     for (; rank[0] < relax->n; ++added) {
         Link found;
-        if (!find_coordinate(relax, count, rank, &found))
-            return false;
+        if (!find_coordinate(relax, count, rank, &found)) {
+            relax->configurations = 1; /* none serves all the way, but perhaps here */
+            if (!find_coordinate(relax, count, rank, &found))
+                return false;
+        }
         relax->link[count++] = found;
         for (int c = 0; c < relax->configurations; ++c)
             ++rank[c];
-        const char *name =
-            added < spares ? model->coordinate[spare[added]].name : pool_print(relax->pool, "added%d", added + 1);
+        const char *name = added < spares ? model->coordinate[spare[added]].name : free_name(relax, added);
         text_print(text, "%s%s coordinate '%s': ", text->size ? ", " : "", added < spares ? "change" : "add", name);
         print_entry(relax, &found, name, text);
         if (!at->source && added < spares)
@@ -433,10 +476,10 @@ const char *relax_suggest(Pool *pool, const Model *model, const bool *body, cons
     for (int c = 0; c < relax.configurations; ++c)
         rank[c] = screws_rank(&relax, c, relax.joints, -1, NULL, &least);
     relax.counted = relax.joints;
-    if (rank[0] == relax.n &&
-        relax.coordinates) { /* the joints leave no motion: one of them is stronger than was meant */
+    if (joint_too_strong(&relax, rank[0])) {
         relax.counted += relax.coordinates;
         relax.configurations = 1;
+        rank[0] = screws_rank(&relax, 0, relax.counted, -1, NULL, &least);
     }
     while (equations_left(&relax) + relax.counted - relax.joints > rank[0])
         if (joints_stay || !relax_once(&relax, rank))
