@@ -223,6 +223,16 @@ def apply_edit(text, message, edit):
     return text.replace(old, new, 1), None
 
 
+def by_rule(line, message):
+    """The message's line after the first rule that changes it, or None."""
+    for pattern, rule in RULES:
+        if re.search(pattern, message.remedy):
+            after = rule(line, message)
+            if after is not None and after != line:
+                return after
+    return None
+
+
 def remedied(text, message, edits):
     """(the file after the remedy, None) or (None, why not)."""
     edit = edits.pop(0) if edits else None
@@ -232,13 +242,11 @@ def remedied(text, message, edits):
     if whole is not None and whole != text:
         return whole, None
     lines = text.split("\n")
-    for pattern, rule in RULES:
-        if message.line and re.search(pattern, message.remedy):
-            line = rule(lines[message.line - 1], message)
-            if line is not None and line != lines[message.line - 1]:
-                lines[message.line - 1] = line
-                return "\n".join(lines), None
-    return None, "no rule and no edit for it"
+    line = by_rule(lines[message.line - 1], message) if message.line else None
+    if line is None:
+        return None, "no rule and no edit for it"
+    lines[message.line - 1] = line
+    return "\n".join(lines), None
 
 
 def why_not(gicgen, name, edits, show):
