@@ -131,18 +131,45 @@ FREED = {2: "point_on_line", 3: "spherical", 4: "cylindrical", 5: "revolute", 6:
 FREED_KEYS = {count: "point: [0.3, 0.7, 1.1]" + (", axis: [1, 2, 4]" if count in (2, 4, 5) else "") for count in FREED}
 
 
+def add_entry(text, section, entry):
+    """The file with an entry more, first in its section, which may be a new one."""
+    if re.search(rf"^{section}:", text, re.M):
+        return re.sub(rf"^{section}:.*$", lambda found: f"{section}:\n  {entry}", text, count=1, flags=re.M)
+    return text.rstrip("\n") + f"\n{section}:\n  {entry}\n"
+
+
+def set_entry(text, name, entry):
+    """The file with another entry of that name; None: without it, and without its section if that is empty then."""
+    line = f"  {entry}\n" if entry else ""
+    text = re.sub(rf"^  {re.escape(name)}: .*\n", lambda found: line, text, count=1, flags=re.M)
+    return re.sub(r"^(coordinates|joints):\n(?! )", "", text, flags=re.M)
+
+
 def suggested(text, remedy):
     """The file with what the remedy says of joints and coordinates."""
-    for verb, kind, name, entry in re.findall(r"(make|change|add|remove) (?:dual )?(joint|coordinate) '([^']*)'"
-                                              r"(?: \([a-z_]+, \d\))?(?: an? [a-z_]+ \(\d\))?(?:: `([^`]*)`)?", remedy):
-        if verb == "add" and re.search(r"^coordinates:", text, re.M):
-            text = re.sub(r"^coordinates:.*$", f"coordinates:\n  {entry}", text, count=1, flags=re.M)
-        elif verb == "add":
-            text = text.rstrip("\n") + f"\ncoordinates:\n  {entry}\n"
+    for verb, name, entry in re.findall(r"(make joint|change coordinate|add coordinate|remove joint|remove dual coordinate) "
+                                        r"'([^']*)'(?: \([a-z_]+, \d\))?(?: an? [a-z_]+ \(\d\))?(?:: `([^`]*)`)?", remedy):
+        if verb == "add coordinate":
+            text = add_entry(text, "coordinates", entry)
         else:
-            new = "" if verb == "remove" else f"  {entry}\n"
-            text = re.sub(rf"^  {re.escape(name)}: .*\n", lambda match: new, text, count=1, flags=re.M)
-    return re.sub(r"^(coordinates|joints):\n(?! )", "", text, flags=re.M)
+            text = set_entry(text, name, entry)
+    return text
+
+
+def freed(text, message):
+    """The file with a joint or coordinate of the reader's choice, for bodies of which a message says that so many are
+    missing."""
+    alone = re.search(r"^body '([^']*)' is connected to nothing", message.says)
+    lacks = re.search(r"^body '([^']*)' has (\d) degrees? of freedom more", message.says)
+    base = re.search(r"^base: (\w+)", text, re.M)
+    if not base or not (alone or lacks):
+        return None
+    body, want = (alone[1], 6) if alone else (lacks[1], int(lacks[2]))
+    if want > 1:
+        name = f"added_{body[:20]}"
+        return add_entry(text, "joints", f"{name}: {{type: {FREED[want]}, bodies: [{base[1]}, {body}], {FREED_KEYS[want]}}}")
+    return add_entry(text, "coordinates", f"added: {{type: length, bodies: [{base[1]}, {body}], "
+                                          "points: [[0.3, 2, 0.7], [1.5, 0.4, 0.1]]}")
 
 
 def whole_rules(text, message):
@@ -152,35 +179,10 @@ def whole_rules(text, message):
     if re.search(r"make joint|change coordinate|add coordinate|remove joint", message.remedy):
         return suggested(text, message.remedy)
     unneeded = re.search(r"for example, remove dual coordinate '([^']*)'", message.remedy)
-    if unneeded and not re.search(rf"^  {unneeded[1]}:", text, re.M):  # of the mirror image
-        unneeded = re.match("(.*)", "  %s" % unneeded[1].replace("_r", "_l"))
     if unneeded:
-        rest = re.sub(rf"^ *{unneeded[1].strip()}: .*\n", "", text, flags=re.M)
-        return re.sub(r"^coordinates:\n(?! )", "", rest, flags=re.M)
-    alone = re.search(r"^body '([^']*)' is connected to nothing", message.says)
-    if alone:  # a joint with 6 equations
-        base = re.search(r"^base: (\w+)", text, re.M)[1]
-        line = f"  added_{alone[1][:20]}: {{type: fixed, bodies: [{base}, {alone[1]}], point: [0, 0, 0]}}"
-        if re.search(r"^joints:$", text, re.M):
-            return re.sub(r"^joints:$", "joints:\n" + line, text, flags=re.M)
-        return text.rstrip("\n") + "\njoints:\n" + line + "\n"
-    body = re.search(r"^body '([^']*)' has (\d) degrees? of freedom more", message.says)
-    if body:
-        body, want = body.group(1), int(body.group(2))
-        base = re.search(r"^base: (\w+)", text, re.M).group(1)
-        if want > 1:  # a joint with as many equations
-            line = f"  added: {{type: {FREED[want]}, bodies: [{base}, {body}], {FREED_KEYS[want]}}}"
-            if re.search(r"^joints:$", text, re.M):
-                return re.sub(r"^joints:$", "joints:\n" + line, text, flags=re.M)
-            return text.rstrip("\n") + "\njoints:\n" + line + "\n"
-        # an angle about the hinge of the body
-        hinge = re.search(r"type: revolute, bodies: (\[[^\]]*\b%s\b[^\]]*\]).*?axis: (\[[^\]]*\])" % body, text)
-        line = (f"  added: {{type: angle, bodies: {hinge[1]}, axis: {hinge[2]}}}" if hinge else
-                f"  added: {{type: length, bodies: [{base}, {body}], points: [[0.3, 2, 0.7], [1.5, 0.4, 0.1]]}}")
-        if re.search(r"^coordinates:$", text, re.M):
-            return re.sub(r"^coordinates:$", "coordinates:\n" + line, text, flags=re.M)
-        return text.rstrip("\n") + "\ncoordinates:\n" + line + "\n"
-    return None
+        mirrored = not re.search(rf"^  {unneeded[1]}:", text, re.M)
+        return set_entry(text, unneeded[1].replace("_r", "_l") if mirrored else unneeded[1], None)
+    return freed(text, message)
 
 
 def read_edits(path):
