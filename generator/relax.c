@@ -370,14 +370,12 @@ static void print_joint(const Relax *relax, int k, Text *text)
     print_entry(relax, &relax->link[k], joint->name, text);
 }
 
-/* Is it driven, does a force act along it, or an output show it? Then it was hardly written by mistake. */
+/* Is it driven, or does a force act along it? Then it was hardly written by mistake. */
 static bool used(const Model *model, int coordinate)
 {
     bool any = model->coordinate[coordinate].driven;
     for (int i = 0; i < model->forces; ++i)
         any = any || model->force[i].coordinate == coordinate;
-    for (int i = 0; i < model->outputs; ++i)
-        any = any || (model->output[i].type == OUTPUT_COORDINATE && model->output[i].index == coordinate);
     return any;
 }
 
@@ -491,6 +489,8 @@ const char *relax_suggest(Pool *pool, const Model *model, const bool *body, cons
                 place = model->joint[relax.index[k]].at;
             print_joint(&relax, k, &text);
         }
+    if (relax.counted > relax.joints && text.size)
+        text_print(&text, ", for the joints leave less motion than the coordinates need");
     if ((relax.counted == relax.joints && !settle_coordinates(&relax, rank, &text, &place)) || !text.size)
         return NULL;
     *at = place;

@@ -76,6 +76,19 @@ bool screws_have(JointType type, const char *letters)
     return strchr(letters, 'a' + (int)type) != NULL;
 }
 
+/* Of a coordinate: u its axis, x the point in the second body, d the way there from the first. */
+static void row_of_coordinate(Rows *rows, const Link *link, const double u[3], const double x[3], const double d[3])
+{
+    if (link->kind == COORDINATE_ANGLE) {
+        memcpy(rows->screw[rows->count++] + 3, u, 3 * sizeof *u);
+        return;
+    }
+    const double length = link->kind == COORDINATE_LENGTH ? vec_norm(d) : 1;
+    const double *along = link->kind == COORDINATE_LENGTH ? d : u;
+    const double force[3] = {along[0] / length, along[1] / length, along[2] / length};
+    add_force(rows, force, x, 0);
+}
+
 static Rows rows_of(const Relax *relax, const Link *link, const Pose3 *place)
 {
     Rows rows = {.relax = relax};
@@ -93,16 +106,7 @@ static Rows rows_of(const Relax *relax, const Link *link, const Pose3 *place)
     for (int i = 0; i < 3; ++i)
         d[i] = x[1][i] - x[0][i];
     if (link->coordinate) {
-        if (link->kind == COORDINATE_ANGLE)
-            memcpy(rows.screw[rows.count++] + 3, u[0], sizeof u[0]);
-        else if (link->kind == COORDINATE_TRANSLATION)
-            add_force(&rows, u[0], x[1], 0);
-        else {
-            const double length = vec_norm(d);
-            for (int i = 0; i < 3; ++i)
-                d[i] /= length;
-            add_force(&rows, d, x[1], 0);
-        }
+        row_of_coordinate(&rows, link, u[0], x[1], d);
         return rows;
     }
     if (screws_have(link->type, "abef"))

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """mistakes.py GICGEN RANDOM_VEHICLE TIRE COUNT [KIND]: makes COUNT times one mistake in a random vehicle
-(random_vehicle --rich, tires like the file TIRE), of all kinds of broken.py or of one, and looks at the answer: exit
-status 1, one message at the line where the mistake stands, with the culprit's name and a remedy, and no output. A remedy
-that tests/remedies.py can apply as it is printed must end that message. Prints what is not so, and how many kinds there were. KEEP=folder: files whose answer is wrong are left there."""
+(random_vehicle --rich, tires like the file TIRE), of all kinds of broken.py or of one, and looks at the answer:
+exit status 1, one message at the line where the mistake stands, with the culprit's name and a remedy, and no
+output. A remedy that tests/remedies.py can apply as it is printed must end that message. Prints what is not so,
+and how many kinds there were. KEEP=folder: files whose answer is wrong are left there."""
 import os
 import random
 import re
