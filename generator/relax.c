@@ -354,10 +354,7 @@ static void print_entry(const Relax *relax, const Link *link, const char *name, 
 static void print_joint(const Relax *relax, int k, Text *text)
 {
     const Joint *joint = &relax->model->joint[relax->index[k]];
-    text_print(text, "%s",
-               text->size                        ? ", "
-               : relax->counted == relax->joints ? ""
-                                                 : "the joints leave less motion than the coordinates need: ");
+    text_print(text, "%s", text->size ? ", " : "");
     if (relax->gone[k]) {
         text_print(text, "remove joint '%s' (%s, %d)%s", joint->name, joint_type_name[joint->type],
                    joint_equations[joint->type],
