@@ -44,7 +44,9 @@ static _Noreturn void syntax_fail(Loader *loader)
             do
                 --offset;
             while (offset > 0 && ((unsigned char)loader->source->bytes[offset] & 0xc0) == 0x80);
-        diag_fail(diag_place(loader->source, offset), "save the file as UTF-8 text", "not a text file: %s", problem);
+        diag_fail(diag_place(loader->source, offset),
+                  strstr(problem, "control") ? "take the character out" : "save the file as UTF-8 text",
+                  "not a text file: %s", problem);
     }
     Place at = place(loader, parser->problem_mark);
     const char *remedy = "check indentation, colons, quotes and brackets here and just above";
@@ -265,7 +267,8 @@ const Item *doc_read(Pool *pool, const char *path)
     do {
         next(&loader, &event);
         if (event.type == YAML_STREAM_END_EVENT)
-            diag_fail((Place){source, 1, 1}, "begin a model with `gicgen: 1` (models/FORMAT.md), a scene with `gicscene: 1` (models/SCENE.md)",
+            diag_fail((Place){source, 1, 1},
+                      "begin a model with `gicgen: 1` (models/FORMAT.md), a scene with `gicscene: 1` (models/SCENE.md)",
                       "the file is empty");
         yaml_event_type_t type = event.type;
         yaml_event_delete(&event);
@@ -431,7 +434,13 @@ void doc_check_keys(const Item *map, const char *what, const char *const *allowe
         if (k < count)
             continue;
         char remedy[REMEDY];
-        const char *nearest = diag_nearest(key, allowed, count);
+        const char *left[count + 1]; /* a key that is there already is not what was meant */
+        int lefts = 0;
+        memset(left, 0, sizeof left);
+        for (k = 0; k < count; ++k)
+            if (!doc_find(map, allowed[k]))
+                left[lefts++] = allowed[k];
+        const char *nearest = lefts ? diag_nearest(key, left, lefts) : NULL;
         int n = nearest ? snprintf(remedy, sizeof remedy, "did you mean '%s'? ", nearest) : 0;
         for (k = 0; k < count && n < REMEDY; ++k)
             n += snprintf(remedy + n, sizeof remedy - (size_t)n, "%s%s", k ? ", " : "the keys here are: ", allowed[k]);

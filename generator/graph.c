@@ -8,6 +8,8 @@
  * augmenting paths along them). What stays in excess or in want spans the over- and the under-determined part. */
 #include "graph.h"
 
+#include "relax.h"
+
 #include <string.h>
 
 static int moving(int body)
@@ -263,39 +265,6 @@ static int relaxable_joint(const Graph *graph, const Part *part, int most)
     return -1;
 }
 
-/* Are both joints hinges, with parallel axes at design? */
-static bool hinges_parallel(const Model *model, const Joint *a, const Joint *b)
-{
-    const Joint *const joint[2] = {a, b};
-    double axis[2][3], A[9], cross[3];
-    for (int i = 0; i < 2; ++i) {
-        if (joint[i]->type != JOINT_REVOLUTE)
-            return false;
-        memcpy(axis[i], joint[i]->axis[0], sizeof axis[i]);
-        if (joint[i]->body[0] == BODY_GROUND)
-            continue;
-        mat_from_euler(model->body[joint[i]->body[0]].euler, A);
-        mat_apply(A, joint[i]->axis[0], axis[i]);
-    }
-    vec_cross(axis[0], axis[1], cross);
-    return vec_norm(cross) < 1e-6;
-}
-
-/* The last hinge of the part that closes a plane loop, where two others with parallel axes have already said that it is
- * plane; -1: there is none. */
-static int plane_loop_joint(const Graph *graph, const Part *part)
-{
-    const Model *model = graph->model;
-    for (int last = model->joints - 1; last >= 0; --last) {
-        int others = 0;
-        for (int i = 0; i < last; ++i)
-            others += part->edge[last] && part->edge[i] && hinges_parallel(model, &model->joint[i], &model->joint[last]);
-        if (others >= 2)
-            return last;
-    }
-    return -1;
-}
-
 /* Suggest how to get rid of `excess` equations of the part; returns the place of the first thing to change. */
 static Place suggest_relaxing(const Graph *graph, const Part *part, int excess, Text *text)
 {
@@ -308,15 +277,11 @@ static Place suggest_relaxing(const Graph *graph, const Part *part, int excess, 
     while (coordinate < model->coordinates && !part->edge[model->joints + coordinate])
         ++coordinate;
     text_print(text, "take away %d equation%s; for example, ", excess, plural(excess));
-    const int plane = excess >= joint_equations[JOINT_REVOLUTE] - joint_equations[JOINT_POINT_ON_LINE]
-                          ? plane_loop_joint(graph, part)
-                          : -1;
-    if (plane >= 0) {
-        text_print(text,
-                   "make joint '%s' (revolute, %d) a point_on_line (%d): hinges with parallel axes have already said that "
-                   "their loop is plane",
-                   model->joint[plane].name, joint_equations[JOINT_REVOLUTE], joint_equations[JOINT_POINT_ON_LINE]);
-        return model->joint[plane].at;
+    Place at;
+    const char *relaxed = relax_suggest(graph->pool, model, part->body, part->edge, false, &at);
+    if (relaxed) {
+        text_print(text, "%s", relaxed);
+        return at;
     }
     if (coordinates_suffice)
         text_print(text, "remove dual coordinate '%s'%s", model->coordinate[coordinate].name,
@@ -383,14 +348,27 @@ static _Noreturn void fail_over(const Graph *graph, const Part *part, const char
               edge_names(graph, part), part->weight, body_names(graph, part), excess, unknowns);
 }
 
+/* ` (point_on_line, parallel, ...)`: the joints with so many equations; "" where there are none. */
+static const char *joints_with(const Graph *graph, int equations)
+{
+    Text text = {.pool = graph->pool};
+    text_add(&text, "", 0);
+    for (int i = 0; i < JOINT_TYPES; ++i)
+        if (joint_equations[i] == equations)
+            text_print(&text, "%s%s", text.size ? ", " : " (", joint_type_name[i]);
+    return text.size ? pool_print(graph->pool, "%s)", text.s) : text.s;
+}
+
 static _Noreturn void fail_under(const Graph *graph, const Part *part, const char *more)
 {
     int want = BODY_UNKNOWNS * part->bodies - part->weight;
+    Place at;
+    const char *example = relax_suggest(graph->pool, graph->model, part->body, part->edge, false, &at);
     const char *remedy = pool_print(
-        graph->pool, "add %s (a spring length, an angle) or a joint with %s here; what determines %s now: %s%s",
+        graph->pool, "add %s (a spring length, an angle) or a joint with %s%s here%s%s; what determines %s now: %s%s",
         want == 1 ? "a dual coordinate" : pool_print(graph->pool, "%d dual coordinates", want),
-        want == 1 ? "one equation" : "as many equations", part->bodies > 1 ? "them" : "it", edge_names(graph, part),
-        more);
+        want == 1 ? "one equation" : "as many equations", joints_with(graph, want), example ? "; for example, " : "",
+        example ? example : "", part->bodies > 1 ? "them" : "it", edge_names(graph, part), more);
     diag_fail(graph->model->body[part->first].at, remedy,
               "%s %s %d degree%s of freedom more than joints and dual coordinates determine", body_names(graph, part),
               part->bodies > 1 ? "have" : "has", want, plural(want));

@@ -219,8 +219,10 @@ static const Law *parse_call(Parser *p, const char *where, const char *name)
             /* min and max of three are two of two */
             bool three = count == 3 && (function[i].op == OP_MIN || function[i].op == OP_MAX);
             if (count != function[i].arguments && !three)
-                fail(p, where, "separate arguments by commas", "'%s' takes %d argument%s, not %d", name,
-                     function[i].arguments, function[i].arguments > 1 ? "s" : "", count);
+                fail(p, where,
+                     pool_print(p->pool, "write %s(%s)", name, function[i].arguments > 1 ? "number, number" : "number"),
+                     "'%s' takes %d argument%s, not %d", name, function[i].arguments,
+                     function[i].arguments > 1 ? "s" : "", count);
             const Law *two = call(p, function[i].op, function[i].name, arg[0], arg[1], NULL);
             return three ? call(p, function[i].op, function[i].name, two, arg[2], NULL) : two;
         }
@@ -257,8 +259,8 @@ static void has_one_meaning(Parser *p, const char *where, const char *name, cons
     for (int i = 0; i < model->parameters; ++i)
         other = strcmp(name, model->parameter[i].name) ? other : "parameter";
     if (other)
-        fail(p, where, pool_print(p->pool, "give the %s another name", other), "'%s' is %s here, and the name of a%s %s",
-             name, meaning, *other == 'i' ? "n" : "", other);
+        fail(p, where, pool_print(p->pool, "give the %s another name", other),
+             "'%s' is %s here, and the name of a%s %s", name, meaning, *other == 'i' ? "n" : "", other);
 }
 
 static const Law *parse_name(Parser *p)

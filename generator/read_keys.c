@@ -480,7 +480,12 @@ static int key_index(const Section *section, const char *name)
 static _Noreturn void missing_key(Reader *reader, const Section *section, int form, const Entry *entry, const Key *key,
                                   const char *what)
 {
-    const char *wanted = pool_print(reader->pool, "`%s: %s`", key->name, kind_example[key->kind]);
+    const bool named = key->kind == KEY_BODY || key->kind == KEY_FRAME || key->kind == KEY_COORDINATE ||
+                       key->kind == KEY_JOINT || key->kind == KEY_FORCE || key->kind == KEY_TIRE ||
+                       key->kind == KEY_WHEEL || key->kind == KEY_TABLE;
+    const char *example = kind_example[key->kind];
+    const char *wanted = named ? pool_print(reader->pool, "`%s: name` with the name of a %s", key->name, example)
+                               : pool_print(reader->pool, "`%s: %s`", key->name, example);
     for (int i = 0; i < entry->item->count; ++i) {
         const Item *name = entry->item->key[i];
         if (!(section->key[key_index(section, name->text)].allowed & FORM(form)) &&

@@ -2,6 +2,7 @@
  * Where along its range does a coordinate stop being independent? Each coordinate is moved alone from its design value
  * to both ends of its range; a subset whose determinant changes its sign, or that can't be followed, marks the place.
  */
+#include "relax.h"
 #include "subset.h"
 
 #include <math.h>
@@ -91,6 +92,32 @@ static void reset(Scan *scan)
     }
 }
 
+/* The entry of a coordinate that goes on where this one turns back; NULL: none is found. */
+static const char *instead(const Scan *scan, int lost, double value, bool *always)
+{
+    const Model *model = scan->model;
+    const Sequence *sequence = scan->sequence;
+    bool body[model->bodies + 1], edge[model->joints + model->coordinates + 1], wanted[sequence->subsets];
+    memset(body, 0, sizeof body);
+    memset(edge, 0, sizeof edge);
+    memset(wanted, 0, sizeof wanted);
+    wanted[lost] = true;
+    for (int s = lost; s >= 0; --s) { /* with all that it hangs on, which comes before it */
+        const Subset *subset = &sequence->subset[s];
+        if (!wanted[s] || subset->class < 0)
+            continue;
+        for (int i = 0; i < subset->knowns; ++i)
+            wanted[sequence->body_subset[subset->known[i]]] = true;
+        for (int i = 0; i < subset->bodies; ++i)
+            body[subset->body[i]] = true;
+        for (int i = 0; i < subset->joints; ++i)
+            edge[subset->joint[i]] = true;
+        for (int i = 0; i < subset->coordinates; ++i)
+            edge[model->joints + subset->coordinate[i]] = true;
+    }
+    return relax_instead(scan->pool, model, body, edge, scan->coordinate, value, always);
+}
+
 static void warn(const Scan *scan, int lost, double value)
 {
     const Coordinate *c = &scan->model->coordinate[scan->coordinate];
@@ -98,7 +125,12 @@ static void warn(const Scan *scan, int lost, double value)
     Text bodies = {.pool = scan->pool};
     for (int b = 0; b < subset->bodies; ++b)
         text_print(&bodies, "%s'%s'", b ? ", " : "", scan->model->body[subset->body[b]].name);
-    diag_warn(c->at, "end the range before that value, or choose a coordinate that keeps determining these bodies",
+    bool always;
+    const char *other = instead(scan, lost, value, &always), *remedy = "end the range before that value";
+    if (other)
+        remedy = pool_print(scan->pool, "%s, or make '%s' a coordinate that %s: %s", remedy, c->name,
+                            always ? "never turns back" : "does not turn back there", other);
+    diag_warn(c->at, remedy,
               "coordinate '%s' stops being independent at %.6g, inside its range [%g, %g]: beyond it the pose of %s is "
               "no longer "
               "determined (the other coordinates at their design values)",

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Why a subset whose equations are as many as its unknowns does not determine them: which equations repeat each other,
  * which bodies stay free, and whether that is so everywhere or at the design configuration only. */
+#include "relax.h"
 #include "subset.h"
 
 #include <math.h>
@@ -191,6 +192,22 @@ static void name_equations(const Work *w, const Subset *member, const bool *row,
     }
 }
 
+/* What to write instead, from the screws of the subset's joints; NULL: nothing is found. */
+static const char *suggest(const Work *w, const Subset *member, bool joints_stay, Place *at)
+{
+    const Model *model = w->model;
+    bool body[model->bodies + 1], edge[model->joints + model->coordinates + 1];
+    memset(body, 0, sizeof body);
+    memset(edge, 0, sizeof edge);
+    for (int i = 0; i < member->bodies; ++i)
+        body[member->body[i]] = true;
+    for (int i = 0; i < member->joints; ++i)
+        edge[member->joint[i]] = true;
+    for (int i = 0; i < member->coordinates; ++i)
+        edge[model->joints + member->coordinate[i]] = true;
+    return relax_suggest(w->pool, model, body, edge, joints_stay, at);
+}
+
 void subset_explain_singular(Work *w, const Sampling *sampling, int subset)
 {
     const Subset *member = &w->sequence->subset[subset];
@@ -228,16 +245,21 @@ void subset_explain_singular(Work *w, const Sampling *sampling, int subset)
     int place = tie->is_coordinate ? worst - member->joints : worst;
     Place at = tie->is_coordinate ? w->model->coordinate[member->coordinate[place]].at
                                   : w->model->joint[member->joint[place]].at;
+    const char *suggested = suggest(w, member, design_only, &at);
     if (design_only)
         diag_fail(at,
-                  "draw the mechanism in another position, move one of the points, or choose a coordinate that is "
-                  "independent here",
+                  suggested ? pool_print(w->pool, "%s; or draw the mechanism in another position", suggested)
+                            : "draw the mechanism in another position, or move one of the points",
                   "the design configuration is singular: there, and only there, %s fix the same motion (%d of %d "
                   "equations are "
                   "independent), and the pose of %s is not determined",
                   equations.s, rank, w->n, bodies.s);
+    /* the one equation of a link is likelier to be misplaced than to be of the wrong kind */
+    const char *place_it =
+        fewest == 1 && !tie->is_coordinate ? "move its points or axes so that it acts on what is free; or " : "";
     diag_fail(at,
-              joints > 1
+              suggested ? pool_print(w->pool, "%s%s", place_it, suggested)
+              : joints > 1
                   ? "move its points or axes out of line with the others; or, where these joints close a loop that "
                     "fixes a motion "
                     "twice by its kind, take one with fewer equations (spherical, cylindrical, point_on_line, distance)"

@@ -226,7 +226,7 @@ int main(int count, char **word)
     else if (request.rests || request.modes)
         analyse(pool, model, scene, engine, &request);
     else
-        simulate(pool, engine, scene_narrow(pool, scene, model, engine),
+        simulate(pool, engine, model, scene_narrow(pool, scene, model, engine),
                  request.page ? animation_new(pool, model, scene, request.scene) : NULL,
                  step_watch_new(pool, step_theory_new(pool, model), scene, engine, false), &request);
     engine_close(engine);

@@ -267,10 +267,10 @@ int scene_outputs(const gic_model *model, const Scene *scene, const gic_head *se
 /* equilibrium.c: the scene, or where it asks for it one that starts in static equilibrium. Ends in diag_fail where
  * there is none. */
 const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scene, Solve solve);
-/* Run a scene: results, picture, page (animation: NULL where none is asked for), summary. A failure on the way keeps
- * what was computed and ends in diag_fail. */
-void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *animation, StepWatch *watch,
-              const Request *request);
+/* Run a scene: results, picture, page (animation: NULL where none is asked for), summary. mechanism: what the engine
+ * was made for. A failure on the way keeps what was computed, with the last good state, and ends in diag_fail. */
+void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Scene *scene, Animation *animation,
+              StepWatch *watch, const Request *request);
 /* Evaluate rows of states (--eval). scene may be NULL; only its road is used. */
 void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Run a scene: steps, results, progress, summary. */
+#include "dead_centre.h"
 #include "driver.h"
 #include "rest.h"
 #include "step_watch.h"
@@ -34,6 +35,7 @@ typedef struct Run {
     int64_t samples, every; /* output times so far; one in `every` goes into the picture */
     double constraint;      /* largest residual so far */
     double integrating;     /* CPU seconds in steps */
+    double recorded;        /* time of the last row */
     double looked;          /* when the run looked around last */
     int64_t slumber;        /* of scene_outputs */
     bool shown, interrupted;
@@ -152,6 +154,7 @@ static void record(Run *run)
 {
     const Scene *scene = run->scene;
     const double time = gic_time(run->self);
+    run->recorded = time;
     if (run->csv.file) {
         csv_time(&run->csv, time);
         for (int i = 0; i < scene->columns; ++i)
@@ -240,9 +243,13 @@ static const char *remedy_of(int status)
     switch (status) {
     case GIC_ERROR_REACH:
     case GIC_ERROR_NEWTON:
+        return "a step led to where the bodies don't reach, from the state in the last row of the results: try a "
+               "shorter "
+               "step, and check springs, stops and driven coordinates that allow such a motion";
     case GIC_ERROR_SINGULAR:
-        return "the mechanism moves to where it can't be assembled: check coordinates, springs and road; the last "
-               "rows of the results show how it got there";
+        return "the last row of the results is the last state that the coordinates determine: choose others that do, "
+               "or "
+               "stops that end the motion before";
     case GIC_ERROR_RESULT:
     case GIC_ERROR_INPUT: return "the run has probably become unstable: try a shorter step";
     case GIC_ERROR_UNSTABLE:
@@ -406,8 +413,39 @@ static int run_all(Run *run, const gic_head **failed)
     return GIC_OK;
 }
 
-void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *animation, StepWatch *watch,
-              const Request *request)
+/* The last good state, where that is not an output time; it stays in the copy. Inputs may have moved on so far that it
+ * has no outputs: then the copy stays at the last output time. */
+static void record_last(Run *run)
+{
+    gic_head *before = instance_new(run->pool, run->engine);
+    memcpy(before, run->copy, run->model->size);
+    memcpy(run->copy, run->self, run->model->size);
+    run->copy->grown = -1;
+    if (run->model->outputs(run->copy) != GIC_OK)
+        memcpy(run->copy, before, run->model->size);
+    else if (gic_time(run->copy) > run->recorded)
+        record(run);
+}
+
+/* What ended the run, and the remedy. */
+static const char *explain(Run *run, const Model *mechanism, const gic_head *failed, int status, const char **remedy)
+{
+    const char *said = instance_status(run->pool, run->engine->code, failed, status);
+    const int subset = failed->subset;
+    *remedy = remedy_of(status);
+    if (!run->scene->rest)
+        record_last(run);
+    if (status != GIC_ERROR_REACH && status != GIC_ERROR_NEWTON && status != GIC_ERROR_SINGULAR)
+        return said;
+    const DeadCentre found = dead_centre_find(run->pool, mechanism, run->model, run->copy, subset);
+    if (!found.finding)
+        return said;
+    *remedy = pool_print(run->pool, "%s; the last row of the results is the last state", found.remedy);
+    return pool_print(run->pool, "%s: subset '%s'", found.finding, run->engine->code->subset_name[subset]);
+}
+
+void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Scene *scene, Animation *animation,
+              StepWatch *watch, const Request *request)
 {
     const gic_model *model = engine->code;
     const Place at = {scene->source, 0, 0};
@@ -427,8 +465,8 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *a
         diag_fail(program_place(), NULL, "no memory for the integrator");
     status = compute_outputs(&run);
     if (status != GIC_OK)
-        diag_fail(at, remedy_at_start(status),
-                  "the run can't start: %s", instance_status(pool, model, run.copy, status));
+        diag_fail(at, remedy_at_start(status), "the run can't start: %s",
+                  instance_status(pool, model, run.copy, status));
     prepare_plot(&run);
     interrupt_hold(); /* or the temporary file of the results would stay */
     if (request->results) {
@@ -440,6 +478,7 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *a
     run.looked = clock_seconds(CLOCK_MONOTONIC);
     const gic_head *failed = run.self;
     status = run_all(&run, &failed);
+    const char *remedy = NULL, *end = status != GIC_OK ? explain(&run, mechanism, failed, status, &remedy) : NULL;
     engine_rest(engine);
     clear_progress(&run);
     if (request->results)
@@ -454,10 +493,9 @@ void simulate(Pool *pool, const Engine *engine, const Scene *scene, Animation *a
         animation_write(animation, request->page);
     if (request->picture)
         plot_write(pool, &run.plot, request->picture);
-    if (status != GIC_OK)
-        diag_fail(at, remedy_of(status), "the run ends at t = %.6g s: %s", gic_time(run.self),
-                  instance_status(pool, model, failed, status));
-    const char *remedy = NULL, *finding = watch && !run.interrupted ? step_watch_judge(watch, &remedy) : NULL;
+    if (end)
+        diag_fail(at, remedy, "the run ends at t = %.6g s: %s", gic_time(run.self), end);
+    const char *finding = watch && !run.interrupted ? step_watch_judge(watch, &remedy) : NULL;
     if (finding)
         diag_fail(at, remedy, "%s", finding);
 }

@@ -72,6 +72,35 @@ warned() {
     verdict $? "$name: not $# warnings: $(cat "$name.err")"
     [ -s "$name.c" ] && [ -s "$name.h" ]
     verdict $? "$name: no output after a warning"
+    cp "$name.veh" "$name.asked"
+    cp "$name.err" "$name.said"
+    heed_entries
+    heed_ends
+    mv "$name.asked" "$name.veh"
+}
+
+# heed_entries: the coordinates that the warnings name, in place of the one warned of
+heed_entries() {
+    sed -n "s/^  remedy: .*: \`\($coordinate: {.*}\)\`$/\1/p" "$name.said" >"$name.entries"
+    [ "$(wc -l <"$name.entries")" -eq "$(grep -c 'warning:' "$name.said")" ]
+    verdict $? "$name: no coordinate instead"
+    while read -r entry; do
+        sed "s/^  $coordinate: .*/  $entry/" "$name.asked" >"$name.veh"
+        run 0
+    done <"$name.entries"
+}
+
+# heed_ends: ranges that end before the values
+heed_ends() {
+    cp "$name.asked" "$name.veh"
+    while read -r value; do
+        for end in 's/range: \[[^,]*,/range: ['"$(echo "$value" | awk '{ print $1 + 0.01 }')"',/' \
+            's/\(range: .*, \)[^]]*\]/\1'"$(echo "$value" | awk '{ print $1 - 0.01 }')"']/'; do
+            sed "/^  $coordinate:/$end" "$name.veh" >"$name.tried"
+            "$gicgen" "$name.tried" -o "$name.c" >/dev/null 2>"$name.err" && cp "$name.tried" "$name.veh" && break
+        done
+    done <"$name.values"
+    good
 }
 
 # good: not a word
@@ -239,7 +268,7 @@ coordinates:
   swing: {type: angle, bodies: [ground, rod], axis: [0, 1, 0]}
   strut: {type: length, bodies: [ground, rod], points: [[0, 0.5, -2], [1, 0, 0]]}
 END
-refused swing "'pivot'" "'swing'" "'strut'" "7 conditions" "'rod', 1 more"
+refused strut "'pivot'" "'swing'" "'strut'" "7 conditions" "'rod', 1 more"
 
 # as many equations as unknowns, but not where they are needed
 model misplaced <<'END'
@@ -253,7 +282,7 @@ coordinates:
   swing: {type: angle, bodies: [ground, one], axis: [0, 1, 0]}
   strut: {type: length, bodies: [ground, one], points: [[0, 0.5, -2], [1, 0, 0]]}
 END
-refused swing "'first'" "'swing'" "'strut'" "'one', 1 more" "'two' is under-determined"
+refused strut "'first'" "'swing'" "'strut'" "'one', 1 more" "'two' is under-determined"
 silent second
 
 # a plane loop of four revolutes says three times that it is plane

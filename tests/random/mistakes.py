@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """mistakes.py GICGEN RANDOM_VEHICLE TIRE COUNT [KIND]: makes COUNT times one mistake in a random vehicle
-(random_vehicle --rich, tires like the file TIRE), of all kinds of broken.py or of one, and looks at the answer: exit
-status 1, one message at the line where the mistake stands, with the culprit's name and a remedy, and no output. Prints
-what is not so, and how many kinds there were. KEEP=folder: files whose answer is wrong are left there."""
+(random_vehicle --rich, tires like the file TIRE), of all kinds of broken.py or of one, and looks at the answer:
+exit status 1, one message at the line where the mistake stands, with the culprit's name and a remedy, and no
+output. A remedy that tests/remedies.py can apply as it is printed must end that message. Prints what is not so,
+and how many kinds there were. KEEP=folder: files whose answer is wrong are left there."""
 import os
 import random
 import re
@@ -12,7 +13,9 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.dirname(__file__))
+sys.path.insert(1, os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 import broken  # noqa: E402
+import remedies  # noqa: E402
 
 VEHICLES = 60
 
@@ -44,6 +47,28 @@ def why(answer, mistake, folder, before):
     return None
 
 
+def remedy_fails(gicgen, answer, folder, main_file):
+    """Whether the remedy, applied, brings the same message again; None: it says nothing that can be applied by rule."""
+    message = remedies.Message(answer.stderr.decode(errors="replace"))
+    if not message.path or not re.search("|".join(pattern for pattern, _ in remedies.RULES), message.remedy):
+        return None
+    path = os.path.join(folder, message.path)
+    try:
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+    except (OSError, UnicodeDecodeError):
+        return None
+    lines = text.split("\n")
+    after = remedies.by_rule(lines[message.line - 1], message)
+    if after is None:
+        return None
+    lines[message.line - 1] = after
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join(lines))
+    again = subprocess.run([gicgen, "--dump-model", main_file], cwd=folder, capture_output=True, timeout=120)
+    return again.returncode != 0 and remedies.Message(again.stderr.decode(errors="replace")).says == message.says
+
+
 def main():
     gicgen, random_vehicle, tire, count = *(os.path.realpath(path) for path in sys.argv[1:4]), int(sys.argv[4])
     kinds = {name: kind for name, kind in broken.KINDS.items() if name in sys.argv[5:] or not sys.argv[5:]}
@@ -53,7 +78,7 @@ def main():
         subprocess.run([random_vehicle, "--seed", str(seed), "--rich", folder, "--tire", tire], check=True)
         vehicles.append(broken.Vehicle(folder, seed))
     shutil.rmtree(folder)
-    passed, failed, used = 0, 0, set()
+    passed, failed, applied, used = 0, 0, 0, set()
     for i in range(count):
         rng = random.Random(i)
         name = list(kinds)[i % len(kinds)]
@@ -72,6 +97,9 @@ def main():
         before = set(os.listdir(folder))
         answer = subprocess.run([gicgen, broken_one.main, "-o", "out.c"], cwd=folder, capture_output=True, timeout=120)
         wrong = why(answer, mistake, folder, before)
+        heeded = None if wrong else remedy_fails(gicgen, answer, folder, broken_one.main)
+        wrong = wrong or ("the remedy does not end the message" if heeded else None)
+        applied += heeded is not None
         if wrong:
             failed += 1
             print(f"FAIL {name} ({i}): {wrong}; {mistake}\n{answer.stderr.decode(errors='replace')[:1000]}")
@@ -82,7 +110,7 @@ def main():
             shutil.copytree(folder, os.path.join(os.environ["KEEP"], f"{name}_{i}".replace(" ", "_")),
                             dirs_exist_ok=True)
         shutil.rmtree(folder)
-    print(f"{len(used)} kinds")
+    print(f"{len(used)} kinds, {applied} remedies applied")
     print(f"{passed} passed, {failed} failed")
     sys.exit(failed != 0)
 
