@@ -13,6 +13,7 @@ Solver *solver_new(const Model *model)
     Solver *solver = grab(1, sizeof *solver);
     size_t bodies = (size_t)model->bodies, coordinates = (size_t)model->coordinates;
     solver->model = model;
+    solver->shortest = 1e-24;
     solver->rows = row_count(model);
     solver->first = model->free_base ? 0 : 1;
     solver->moving = model->bodies - solver->first;
@@ -32,6 +33,7 @@ Solver *solver_new(const Model *model)
     solver->w_second = grab(coordinates, sizeof *solver->w_second);
     solver->drive_force = grab(coordinates, sizeof *solver->drive_force);
     solver->w_scale = grab(coordinates, sizeof *solver->w_scale);
+    solver->design_determinant = grab((size_t)model->subsets, sizeof *solver->design_determinant);
     solver->drive_scale = grab(coordinates, sizeof *solver->drive_scale);
     solver->wheel = grab((size_t)model->wheels, sizeof *solver->wheel);
     solver->reaction = grab((size_t)model->joints, sizeof *solver->reaction);
@@ -52,6 +54,7 @@ void solver_free(Solver *solver)
     free(solver->w_second);
     free(solver->drive_force);
     free(solver->w_scale);
+    free(solver->design_determinant);
     free(solver->drive_scale);
     free(solver->reaction);
     free(solver->wheel);
@@ -261,32 +264,77 @@ bool solve_near(Solver *solver, const State *state, quad (*pose)[BODY_COORDINATE
     return refactor(solver, at) && polish(solver, state);
 }
 
-bool solve_positions(Solver *solver, const State *state)
+/* Continuation along the straight line from the coordinates of a configuration whose Jacobian is factored. */
+static bool walk(Solver *solver, const quad *to)
 {
     const Model *model = solver->model;
     Configuration *good = solver->configuration, *trial = solver->trial;
-    start_at_design(solver, state);
-    if (!refactor(solver, good) || !continue_to(solver, good) || !refactor(solver, good))
-        return false;
+    quad *from = grab((size_t)model->coordinates, sizeof *from), done = 0, step = 0.25;
     int sign = solver->dependent->sign;
-    quad done = 0, step = 0.25;
-    while (done < 1) {
+    memcpy(from, good->w, (size_t)model->coordinates * sizeof *from);
+    while (done < 1 && step >= solver->shortest) {
         step = fminq(step, 1 - done);
         configuration_copy(model, trial, good);
         for (int c = 0; c < model->coordinates; ++c)
-            trial->w[c] = model->coordinate[c].design + (done + step) * (state->w[c] - model->coordinate[c].design);
+            trial->w[c] = from[c] + (done + step) * (to[c] - from[c]);
         /* a change of the determinant's sign means that a singular configuration was jumped over */
         if (continue_to(solver, trial) && refactor(solver, trial) && solver->dependent->sign == sign) {
             configuration_copy(model, good, trial);
             done += step;
             step *= 2;
         } else {
-            step /= 2;
-            if (step < 1e-24 || !refactor(solver, good))
-                return false;
+            step = refactor(solver, good) ? step / 2 : 0;
         }
     }
-    return polish(solver, state);
+    free(from);
+    return done >= 1;
+}
+
+/* Does one whole turn of an angle lead back to the present configuration? */
+static bool turns_round(Solver *solver, int coordinate)
+{
+    const Model *model = solver->model;
+    Configuration *at = solver->configuration, *before = configuration_new(model);
+    const quad turn = 2 * acosq(-1);
+    quad *to = grab((size_t)model->coordinates, sizeof *to), apart = 0;
+    configuration_copy(model, before, at);
+    memcpy(to, at->w, (size_t)model->coordinates * sizeof *to);
+    to[coordinate] += turn;
+    bool round = walk(solver, to);
+    for (int k = 1; k < model->bodies && round; ++k) {
+        const quad sign = quad_dot(at->q[k] + 3, before->q[k] + 3, 4) < 0 ? -1 : 1;
+        for (int j = 0; j < BODY_COORDINATES; ++j)
+            apart = fmaxq(apart, fabsq(at->q[k][j] - (j < 3 ? 1 : sign) * before->q[k][j]));
+    }
+    configuration_copy(model, at, before);
+    configuration_free(before);
+    free(to);
+    return round && apart < 1e-9 * (1 + model->length) && refactor(solver, at);
+}
+
+/* Of angles far away whole turns are left out where one of them leads back to where it began: a thousand turns are not
+ * followed. */
+bool solve_positions(Solver *solver, const State *state)
+{
+    const quad turn = 2 * acosq(-1), far = 3 * turn;
+    const Model *model = solver->model;
+    Configuration *good = solver->configuration;
+    start_at_design(solver, state);
+    if (!refactor(solver, good) || !continue_to(solver, good) || !refactor(solver, good))
+        return false;
+    keep_design(solver);
+    quad *to = grab((size_t)model->coordinates, sizeof *to);
+    bool reached = true;
+    for (int c = 0; c < model->coordinates; ++c) {
+        const quad way = state->w[c] - model->coordinate[c].design;
+        const bool is_far = model->coordinate[c].type == ANGLE && fabsq(way) > far;
+        to[c] = state->w[c] - (is_far ? turn * rintq(way / turn) : 0);
+    }
+    reached = walk(solver, to);
+    for (int c = 0; c < model->coordinates && reached; ++c)
+        reached = to[c] == state->w[c] || turns_round(solver, c);
+    free(to);
+    return reached && polish(solver, state);
 }
 
 void solve_velocities(Solver *solver, const State *state)

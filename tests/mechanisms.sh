@@ -1,0 +1,215 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# mechanisms.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE: random mechanisms of a few bodies with numbers such
+# as people write (random_vehicle --mechanism), of the seeds FIRST to LAST (1 to 20), at ROWS (4) states each, quarter,
+# half and many turns among them, against quad precision: accelerations and places to what FORMAT.md section 14
+# promises, with nothing refused that is regular; and short runs, which must keep their energy where nothing takes any
+# and agree between code for the scene and the engine gic. All by the engine `tape` and by one of the other ways of
+# generating, in turn; COMPILED (50): one in so many by a C compiler. Prints a line for each thing found wrong,
+#
+#     CLASS SEED WAY: what was seen
+#
+# and, last, a line of counts, each as NAME NUMBER: of mechanisms, of those that gicgen refuses, of comparisons and rows
+# compared, of refusals without cause, of runs, of failures, the largest deviation. REFUSALS=ignore: refusals without
+# cause are counted and are no failures. KEEP=folder: the files are left there.
+random_vehicle=$1
+gicgen=$2
+gicrun=$3
+states=$4
+reference=$5
+agree=$6
+tests=$(dirname "$0")
+rows=${ROWS:-4}
+compiled=${COMPILED:-50}
+if [ -n "$KEEP" ]; then
+    work=$KEEP
+    mkdir -p "$work" || exit 1
+else
+    work=$(mktemp -d) || exit 1
+    trap 'rm -rf "$work"' EXIT
+fi
+GICGEN_CACHE=
+export GICGEN_CACHE
+: >"$work/worst"
+: >"$work/rows"
+: >"$work/baseless"
+mechanisms=0
+refused=0
+comparisons=0
+runs=0
+failures=0
+
+# wrong CLASS SEED WAY TEXT
+wrong() {
+    failures=$((failures + 1))
+    echo "$1 $2 $3: $4"
+}
+
+# may_be_refused SEED: is the design near a singular configuration in quad precision too?
+may_be_refused() {
+    "$states" "$work/$1.dump" --count 1 --seed 1 -o "$work/$1.states" &&
+        awk -F, 'NR == 1 { print; next }' "$work/$1.states" >/dev/null
+}
+
+# compare SEED WAY TOLERANCE: rows evaluated in a way against the reference
+compare() {
+    comparisons=$((comparisons + 1))
+    # shellcheck disable=SC2086  # an engine with its options
+    timeout 100 "$gicrun" --engine $2 --cc "${CC:-cc} -O0" --eval "$work/$1.states" "$work/$1.variant.veh" \
+        -o "$work/$1.results" 2>"$work/said"
+    status=$?
+    if [ $status -ne 0 ] ; then
+        wrong engine "$1" "$2" "status $status: $(grep -v '^ ' "$work/said" | head -n 1)"
+        return
+    fi
+    "$agree" "$work/$1.dump" "$work/$1.accelerations" "$work/$1.results" --tolerance "$3" --regular 100 --floor 0.01 \
+        $reactions >"$work/agreed" 2>&1
+    # agree wants half of the rows to count; here many are singular, and none may do
+    sed -n 's/^\([0-9]*\) passed, [0-9]* failed$/\1/p' "$work/agreed" >>"$work/rows"
+    baseless=$(sed -n 's/^\([0-9]*\) refused without cause$/\1/p' "$work/agreed")
+    echo "${baseless:-0}" >>"$work/baseless"
+    sed -n 's/.*worst \([0-9.e+na-]*\) in row.*/\1/p' "$work/agreed" >"$work/off"
+    [ "$2" = gic ] || [ "$2" = gcp1 ] || cat "$work/off" >>"$work/worst"
+    if grep -q '  FAILED$' "$work/agreed"; then
+        wrong numbers "$1" "$2" "$(grep '  FAILED$' "$work/agreed" | tr -s ' ' | sort -t' ' -k4 | tail -n 1)"
+    elif ! grep -q ' passed, ' "$work/agreed"; then
+        wrong compare "$1" "$2" "$(tail -n 1 "$work/agreed")"
+    elif [ -n "$baseless" ] && [ "$REFUSALS" != ignore ]; then
+        wrong refusal "$1" "$2" "$baseless rows: $(sed -n 's/^row .*: //p' "$work/agreed")"
+    fi
+}
+
+# energies RESULTS: how far kinetic and potential energy change together, and the larger of them, J
+energies() {
+    awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /kinetic/) k = i
+                       next }
+        { e = $k + $(k + 1)
+          if (NR == 2) first = e
+          d = e - first; if (d < 0) d = -d; if (d > most) most = d
+          if ($k > size) size = $k
+          p = $(k + 1); if (p < 0) p = -p; if (p > size) size = p }
+        END { printf "%.6g %.6g\n", most, size + 1e-3 }' "$1"
+}
+
+# scene SEED STEP: nice rates from the design
+scene() {
+    awk -v seed="$1" -v step="$2" -v base="$(grep '^base: ' "$work/$1.veh")" '
+        function rate() { seed = (seed * 1103515245 + 12345) % 2147483648; return int(seed / 65536) % 4 - 1 }
+        BEGIN {
+            rate(); rate()
+            printf "gicscene: 1\nduration: 0.2\nstep: %s\noutput_step: 0.01\nintegrator: rk4\ninitial:\n", step
+            if (base != "base: ground")
+                printf "  velocity: [%d, %d, 0]\n  angular_velocity: [%d, %d, %d]\n", rate(), rate(), rate(), rate(), rate()
+            printf "  rates: {"
+        }
+        /^[a-z]+:/ { inside = /^coordinates:/; next }
+        inside && !/driven/ { sub(/:.*/, "", $1); printf "%s%s: %d", n++ ? ", " : "", $1, rate() }
+        END { print "}" }' "$work/$1.veh" >"$work/$1.$2.scene"
+}
+
+# go SEED STEP ENGINE OUT: exit status of a run
+go() {
+    # shellcheck disable=SC2086  # an engine with its options
+    timeout 100 "$gicrun" -q --engine $3 --cc "${CC:-cc} -O0" "$work/$1.veh" "$work/$1.$2.scene" -o "$4" 2>"$work/said"
+}
+
+# runs_well SEED WAY: a run by that way against one by gic, and its energy
+runs_well() {
+    scene "$1" 0.002
+    runs=$((runs + 1))
+    go "$1" 0.002 gic "$work/$1.gic.csv"
+    other=$?
+    go "$1" 0.002 "$2" "$work/$1.run.csv"
+    status=$?
+    if [ $status -gt 1 ]; then
+        wrong crash "$1" "$2" "status $status: $(head -n 1 "$work/said")"
+    elif [ $status -ne 0 ] && [ $other -eq 0 ]; then
+        [ "$REFUSALS" = ignore ] || wrong stops "$1" "$2" "$(grep -m 1 error: "$work/said")"
+    elif [ $status -eq 0 ] && [ $other -eq 0 ]; then
+        off=$(paste -d, "$work/$1.run.csv" "$work/$1.gic.csv" | awk -F, '
+            NR == 1 { for (i = 1; i <= NF / 2; ++i) either[i] = $i ~ /[.]e[0-3] /; next }
+            { for (i = 1; i <= NF / 2; ++i) {
+                # Euler parameters have a sign of their own where e0 is rounding
+                if (either[i]) { if ($i < 0) $i = -$i; if ($(i + NF / 2) < 0) $(i + NF / 2) = -$(i + NF / 2) }
+                d = $i - $(i + NF / 2); s = $i + $(i + NF / 2); if (d < 0) d = -d; if (s < 0) s = -s
+            d /= 1 + s; if (d > most || d != d) most = d } } END { printf "%.6g", most }')
+        # shellcheck disable=SC2046
+        set -- "$1" "$2" "$off" $(energies "$work/$1.run.csv")
+        awk "BEGIN { exit !($3 < 1e-8) }" || wrong run "$1" "$2" "off by $3 from gic"
+        grep -q "damping\|type: force\|driven" "$work/$1.veh" || awk "BEGIN { exit !($4 > 1e-6 * $5) }" || return 0
+        grep -q "damping\|type: force\|driven" "$work/$1.veh" && return 0
+        # an integrator's error shrinks with its step
+        scene "$1" 0.0005
+        go "$1" 0.0005 "$2" "$work/$1.fine.csv" || return 0
+        # shellcheck disable=SC2046
+        set -- "$1" "$2" "$4" "$5" $(energies "$work/$1.fine.csv")
+        awk "BEGIN { exit !($5 > 0.05 * $3 && $5 > 1e-9 * $4) }" && wrong energy "$1" "$2" "drifts by $3 J of $4, with a quarter of the step by $5"
+    fi
+}
+
+way() {
+    case $(($1 % 10)) in
+    0) echo "gic" ;;
+    1) echo "gcp1" ;;
+    2) echo "tape --solve augmented --recovery newton" ;;
+    3) echo "tape --recovery closed" ;;
+    4) echo "tcc" ;;
+    5) echo "tape --recovery newton" ;;
+    6) echo "gcp2" ;;
+    7) echo "tcc --solve augmented --recovery closed" ;;
+    8) echo "tape --solve augmented" ;;
+    9) echo "gic --recovery newton" ;;
+    esac
+}
+
+mechanism() {
+    mechanisms=$((mechanisms + 1))
+    "$random_vehicle" --seed "$1" --mechanism >"$work/$1.veh" &&
+        "$gicgen" --dump-model "$work/$1.veh" >"$work/$1.dump" 2>"$work/said" &&
+        "$states" "$work/$1.dump" --count "$rows" --seed "$1" --nice -o "$work/$1.states" || {
+        wrong dump "$1" gicgen "$(head -n 1 "$work/said")"
+        return
+    }
+    timeout 100 "$reference" "$work/$1.dump" "$work/$1.states" --brisk -o "$work/$1.accelerations" 2>"$work/said" || {
+        wrong reference "$1" quad "$(tail -n 1 "$work/said")"
+        return
+    }
+    "$gicgen" "$work/$1.veh" -o "$work/model.c" 2>"$work/said"
+    status=$?
+    if [ $status -ne 0 ]; then
+        refused=$((refused + 1))
+        # a condition of the design, or of any state, that is none of a singular subset: columns condition, determinant
+        good=$(awk -F, 'NR > 1 && $NF == 0 && $(NF - 2) < 100 { ++n } END { print n + 0 }' "$work/$1.accelerations")
+        [ "$good" -eq 0 ] || [ "$REFUSALS" = ignore ] ||
+            wrong generation "$1" gicgen "$good regular states, and $(head -n 1 "$work/said" | sed 's/^[^ ]* //')"
+        [ $status -eq 1 ] || wrong crash "$1" gicgen "status $status"
+        return
+    fi
+    reactions=
+    if [ $(($1 % 3)) -eq 0 ]; then
+        reactions=--reactions
+        sh "$tests/reactions.sh" "$work/$1.dump" "$1.veh" >"$work/$1.variant.veh"
+    else
+        cp "$work/$1.veh" "$work/$1.variant.veh"
+    fi
+    compare "$1" tape 2e-12
+    way=$(way "$1")
+    case $way in g*) compare "$1" "$way" 1e-9 ;; *) compare "$1" "$way" 2e-12 ;; esac
+    case $(($1 % compiled)) in
+    0) compare "$1" "cc" 2e-12 ;;
+    1) compare "$1" "cc --lanes 4" 2e-12 ;;
+    2) compare "$1" "cc --lanes 2 --solve augmented" 2e-12 ;;
+    esac
+    [ $(($1 % 2)) -ne 0 ] || runs_well "$1" tcc
+    [ $(($1 % 20)) -ne 1 ] || runs_well "$1" "tcc --general"
+    [ -n "$KEEP" ] || rm -f "$work/$1".*
+}
+
+seed=${FIRST:-1}
+while [ "$seed" -le "${LAST:-20}" ]; do
+    mechanism "$seed"
+    seed=$((seed + 1))
+done
+sum() { awk '{ n += $1 } END { print n + 0 }' "$1"; }
+echo "mechanisms $mechanisms refused $refused comparisons $comparisons rows $(sum "$work/rows")" \
+    "baseless $(sum "$work/baseless") runs $runs failures $failures worst $(sort -g "$work/worst" | tail -n 1)"
