@@ -10,8 +10,8 @@
  * reached it with a subset condition within the limit; at least half of the rows must. Exit status 1 unless every
  * counted row agrees. With --refusals rows may be refused and unreached: every row that EVAL has and the reference
  * reached counts, and if there is none that is fine. With --regular a refusal may have a cause: a subset whose condition
- * is above that, or whose determinant is below a twentieth of that at the design. Rows with one are not counted; those
- * without are told as "refused without cause". Where nice numbers cancel, the sum of magnitudes of a group's terms can
+ * is above that on the way from the design (reference --brisk), or whose determinant is below a twentieth of that at
+ * the design. Rows with one are not counted; those without are told as "refused without cause". Where nice numbers cancel, the sum of magnitudes of a group's terms can
  * be nothing but rounding, or zero: --floor is the least part of the largest one in the row that counts as such. */
 #include "reference/solve.h"
 #include "reference/support.h"
@@ -242,7 +242,8 @@ int main(int argc, char **argv)
         fail("%s has %d rows, %s has %d", path[1], reference->rows, path[2], eval->rows);
     int status = table_want(reference, "status"), eval_status = table_want(eval, "status"),
         condition = table_want(reference, "condition"),
-        determinant = regular < HUGE_VAL ? table_want(reference, "determinant") : 0;
+        way = regular < HUGE_VAL ? table_want(reference, "way.condition") : 0,
+        determinant = regular < HUGE_VAL ? table_want(reference, "way.determinant") : 0;
     int unreached = 0, ill = 0, refused = 0, baseless = 0, passed = 0, failed = 0;
     Groups groups = groups_find(model, reference, eval, reactions, wheels);
     for (int row = 0; row < reference->rows; ++row) {
@@ -252,7 +253,7 @@ int main(int argc, char **argv)
         } else if (!(table_number(reference, row, condition) <= limit)) {
             ++ill;
         } else if (is_refused && regular < HUGE_VAL &&
-                   !(table_number(reference, row, condition) <= regular &&
+                   !(table_number(reference, row, way) <= regular &&
                      table_number(reference, row, determinant) >= 0.05)) {
             ++ill;
         } else if (is_refused && refusals) {

@@ -115,22 +115,26 @@ double subset_determinant(const Solver *solver, const Subset *subset)
     return sqrt(product);
 }
 
-void keep_design(Solver *solver)
+void begin_way(Solver *solver)
 {
     const Model *model = solver->model;
     for (int i = 0; i < model->subsets && !solver->design_known; ++i)
         if (!is_base(&model->subset[i]))
             solver->design_determinant[i] = subset_determinant(solver, &model->subset[i]);
     solver->design_known = true;
+    solver->way_condition = worst_condition(solver);
+    solver->way_determinant = 1;
 }
 
-double worst_determinant(const Solver *solver)
+void go_on(Solver *solver)
 {
-    double worst = 1;
-    for (int i = 0; i < solver->model->subsets && solver->design_known; ++i)
-        if (!is_base(&solver->model->subset[i]))
-            worst = fmin(worst, subset_determinant(solver, &solver->model->subset[i]) / solver->design_determinant[i]);
-    return worst;
+    const Model *model = solver->model;
+    solver->way_condition = fmax(solver->way_condition, worst_condition(solver));
+    for (int i = 0; i < model->subsets; ++i)
+        if (!is_base(&model->subset[i]))
+            solver->way_determinant =
+                fmin(solver->way_determinant,
+                     subset_determinant(solver, &model->subset[i]) / solver->design_determinant[i]);
 }
 
 bool is_base(const Subset *subset)

@@ -8,7 +8,8 @@
  * missing. The road's friction is 1 but on one patch. A row's status is 0, or 1 where the state can't be reached from
  * design or is singular; its other cells are empty then. With --near bodies are looked for near the poses in the
  * columns of POSES, as `gicrun --eval` writes them, instead: then the answer is about those, however they were reached.
- * With --brisk what can't be reached, and what lies close to a singular configuration, is given up early. */
+ * With --brisk what can't be reached, and what lies close to a singular configuration, is given up early, and the
+ * columns way.condition and way.determinant say how near to a singular configuration a row has come on its way. */
 #include "row.h"
 
 #include "support.h"
@@ -57,7 +58,7 @@ static void write_head(FILE *out, const Model *model)
     for (int i = 0; i < model->subsets; ++i)
         if (!is_base(&model->subset[i]))
             fprintf(out, "condition.%s,", model->body[model->subset[i].body[0]].name);
-    fputs("condition,determinant,status\n", out);
+    fputs("condition,way.condition,way.determinant,status\n", out);
 }
 
 static void write_numbers(FILE *out, const quad *x, int size)
@@ -118,12 +119,12 @@ static void write_row(FILE *out, Solver *solver)
     for (int i = 0; i < model->subsets; ++i)
         if (!is_base(&model->subset[i]))
             fprintf(out, "%.6g,", subset_condition(solver, &model->subset[i]));
-    fprintf(out, "%.6g,%.6g,0\n", worst_condition(solver), worst_determinant(solver));
+    fprintf(out, "%.6g,%.6g,%.6g,0\n", worst_condition(solver), solver->way_condition, solver->way_determinant);
 }
 
 static void write_unreached(FILE *out, const Model *model)
 {
-    int cells = (model->free_base ? 8 : 0) + 7 * (model->bodies - (model->free_base ? 0 : 1)) + 2;
+    int cells = (model->free_base ? 8 : 0) + 7 * (model->bodies - (model->free_base ? 0 : 1)) + 3;
     cells += 2 * model->coordinates + 8 * model->joints + (model->powertrain ? 2 * LINE_RESULTS : 0) + 6;
     for (int w = 0; w < model->wheels; ++w)
         for (int i = 0; i < WHEEL_COLUMNS; ++i)
@@ -195,8 +196,7 @@ int main(int argc, char **argv)
     int(*column)[BODY_COORDINATES] = near ? pose_columns(model, near) : NULL;
     quad(*pose)[BODY_COORDINATES] = grab((size_t)model->bodies, sizeof *pose);
     Solver *solver = solver_new(model);
-    if (brisk)
-        solver->shortest = 1e-3;
+    solver->brisk = brisk;
     State *state = state_new(model);
     FILE *out = output_open(out_path);
     write_head(out, model);

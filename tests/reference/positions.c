@@ -13,7 +13,6 @@ Solver *solver_new(const Model *model)
     Solver *solver = grab(1, sizeof *solver);
     size_t bodies = (size_t)model->bodies, coordinates = (size_t)model->coordinates;
     solver->model = model;
-    solver->shortest = 1e-24;
     solver->rows = row_count(model);
     solver->first = model->free_base ? 0 : 1;
     solver->moving = model->bodies - solver->first;
@@ -272,7 +271,7 @@ static bool walk(Solver *solver, const quad *to)
     quad *from = grab((size_t)model->coordinates, sizeof *from), done = 0, step = 0.25;
     int sign = solver->dependent->sign;
     memcpy(from, good->w, (size_t)model->coordinates * sizeof *from);
-    while (done < 1 && step >= solver->shortest) {
+    while (done < 1 && step >= (solver->brisk ? 1e-3 : 1e-24)) {
         step = fminq(step, 1 - done);
         configuration_copy(model, trial, good);
         for (int c = 0; c < model->coordinates; ++c)
@@ -280,6 +279,8 @@ static bool walk(Solver *solver, const quad *to)
         /* a change of the determinant's sign means that a singular configuration was jumped over */
         if (continue_to(solver, trial) && refactor(solver, trial) && solver->dependent->sign == sign) {
             configuration_copy(model, good, trial);
+            if (solver->brisk)
+                go_on(solver);
             done += step;
             step *= 2;
         } else {
@@ -322,7 +323,7 @@ bool solve_positions(Solver *solver, const State *state)
     start_at_design(solver, state);
     if (!refactor(solver, good) || !continue_to(solver, good) || !refactor(solver, good))
         return false;
-    keep_design(solver);
+    begin_way(solver);
     quad *to = grab((size_t)model->coordinates, sizeof *to);
     bool reached = true;
     for (int c = 0; c < model->coordinates; ++c) {

@@ -25,7 +25,7 @@ typedef struct Reaction {
 /* Work space and results for one model after another state. */
 typedef struct Solver {
     const Model *model;
-    double shortest;         /* step of continuation, as a part of the whole way, below which it gives up */
+    bool brisk;              /* what needs steps below a thousandth of the way is not reached; way_* are filled */
     int rows, moving, first; /* constraint rows; bodies that move; the first of them */
     Configuration *configuration, *trial;
     Row *row;
@@ -49,6 +49,9 @@ typedef struct Solver {
     quad energy[3], energy_scale[3]; /* result: kinetic, potential; rate of their sum but for its own, W */
     double *design_determinant;      /* [subsets] subset_determinant() at the design, once that is known */
     bool design_known;
+    /* result of solve_positions(): the worst condition on the way from the design, both ends included; and the smallest
+     * determinant of a subset relative to that at the design, at most 1 */
+    double way_condition, way_determinant;
     quad sum_error;                  /* result: largest deviation of the contributions' sum from the whole,
                                         relative to the scale */
 } Solver;
@@ -88,11 +91,11 @@ bool is_base(const Subset *subset);
  * of the dump's sequence, 1 without any. After solve_positions. condition.c. */
 double subset_condition(const Solver *solver, const Subset *subset);
 double worst_condition(const Solver *solver);
-/* Magnitude of the determinant of the same Jacobian; the smallest of all subsets relative to that at the design, at
- * most 1, and 1 where solve_positions() has never been called. */
+/* Magnitude of the determinant of the same Jacobian. */
 double subset_determinant(const Solver *solver, const Subset *subset);
-double worst_determinant(const Solver *solver);
-/* The present configuration is the design, as far as bodies stand relative to the base; rows are evaluated. */
-void keep_design(Solver *solver);
+/* Of way_condition and way_determinant: the present configuration is the design, as far as bodies stand relative to the
+ * base; it is on the way. Rows are evaluated. */
+void begin_way(Solver *solver);
+void go_on(Solver *solver);
 
 #endif
