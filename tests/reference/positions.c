@@ -161,7 +161,7 @@ static bool factor_dependent(Solver *solver, const Configuration *configuration)
     for (int k = 1; k < solver->model->bodies; ++k)
         for (int j = 0; j < 4; ++j)
             factors->a[(solver->rows + k - 1) * n + BODY_COORDINATES * (k - 1) + 3 + j] = configuration->q[k][3 + j];
-    return quad_factor(factors);
+    return (solver->coarse ? coarse_factor : quad_factor)(factors);
 }
 
 /* Residuals of all equations, negated, into solver->unknown; returns the largest. */
@@ -188,7 +188,7 @@ static quad correct(Solver *solver, Configuration *configuration)
     quad size = 0;
     rows_evaluate(solver->model, configuration, solver->row);
     residual(solver, configuration);
-    quad_solve(solver->dependent, solver->unknown);
+    (solver->coarse ? coarse_solve : quad_solve)(solver->dependent, solver->unknown);
     for (int k = 1; k < solver->model->bodies; ++k)
         for (int j = 0; j < BODY_COORDINATES; ++j) {
             quad step = solver->unknown[BODY_COORDINATES * (k - 1) + j];
@@ -205,7 +205,7 @@ static bool continue_to(Solver *solver, Configuration *trial)
     quad tangent = correct(solver, trial);
     if (tangent > 0.3)
         return false;
-    for (quad last = tangent; last > 1e-16;) {
+    for (quad last = tangent; last > (solver->coarse ? 1e-6 : 1e-16);) {
         quad size = correct(solver, trial);
         if (!(size < 0.25 * last))
             return false;
@@ -310,32 +310,39 @@ static bool turns_round(Solver *solver, int coordinate)
     configuration_copy(model, at, before);
     configuration_free(before);
     free(to);
-    return round && apart < 1e-9 * (1 + model->length) && refactor(solver, at);
+    return round && apart < 1e-4 * (1 + model->length) && refactor(solver, at);
 }
 
-/* Of angles far away whole turns are left out where one of them leads back to where it began: a thousand turns are not
- * followed. */
-bool solve_positions(Solver *solver, const State *state)
+/* From the design to the coordinates, but for whole turns of angles far away where one of them leads back to where it
+ * began: a thousand turns are not followed. */
+static bool go_from_design(Solver *solver, const State *state)
 {
     const quad turn = 2 * acosq(-1), far = 3 * turn;
     const Model *model = solver->model;
-    Configuration *good = solver->configuration;
-    start_at_design(solver, state);
-    if (!refactor(solver, good) || !continue_to(solver, good) || !refactor(solver, good))
+    if (!refactor(solver, solver->configuration) || !continue_to(solver, solver->configuration) ||
+        !refactor(solver, solver->configuration))
         return false;
     begin_way(solver);
     quad *to = grab((size_t)model->coordinates, sizeof *to);
-    bool reached = true;
     for (int c = 0; c < model->coordinates; ++c) {
         const quad way = state->w[c] - model->coordinate[c].design;
         const bool is_far = model->coordinate[c].type == ANGLE && fabsq(way) > far;
         to[c] = state->w[c] - (is_far ? turn * rintq(way / turn) : 0);
     }
-    reached = walk(solver, to);
+    bool reached = walk(solver, to);
     for (int c = 0; c < model->coordinates && reached; ++c)
         reached = to[c] == state->w[c] || turns_round(solver, c);
     free(to);
-    return reached && polish(solver, state);
+    return reached;
+}
+
+bool solve_positions(Solver *solver, const State *state)
+{
+    start_at_design(solver, state);
+    solver->coarse = solver->brisk;
+    bool reached = go_from_design(solver, state);
+    solver->coarse = false;
+    return reached && (!solver->brisk || refactor(solver, solver->configuration)) && polish(solver, state);
 }
 
 void solve_velocities(Solver *solver, const State *state)

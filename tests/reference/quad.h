@@ -26,6 +26,7 @@ typedef struct Factors {
     int size, sign; /* sign of the determinant */
     quad *a;        /* row-major; the caller fills it, quad_factor replaces it */
     int *row, *used;
+    double *coarse; /* of coarse_factor() */
 } Factors;
 
 Factors *factors_new(int size);
@@ -35,5 +36,8 @@ void factors_clear(Factors *factors);
 bool quad_factor(Factors *factors);
 /* x = A^-1 x */
 void quad_solve(const Factors *factors, quad *x);
+/* The same in double precision, some thirty times as fast; `a` stays. */
+bool coarse_factor(Factors *factors);
+void coarse_solve(const Factors *factors, quad *x);
 
 #endif

@@ -25,6 +25,7 @@ typedef struct Reaction {
 /* Work space and results for one model after another state. */
 typedef struct Solver {
     const Model *model;
+    bool coarse;             /* factors are those of double precision, good enough for the way */
     bool brisk;              /* what needs steps below a thousandth of the way is not reached; way_* are filled */
     int rows, moving, first; /* constraint rows; bodies that move; the first of them */
     Configuration *configuration, *trial;
