@@ -165,7 +165,7 @@ static Groups groups_find(const Model *model, const Table *reference, const Tabl
 /* The largest sum of magnitudes of a row, accelerations, forces and all. */
 static double largest_scale(const Groups *groups, const Table *reference, int row)
 {
-    double largest = 1;
+    double largest = 10; /* of the size of weights and forces of about 1 kg */
     for (int i = 0; i < groups->count; ++i)
         if (groups->group[i].scale_column >= 0)
             largest = fmax(largest, table_number(reference, row, groups->group[i].scale_column));

@@ -9,7 +9,8 @@
 
 static int any_body(Vehicle *v)
 {
-    return pick(v, v->section[BODY].count);
+    int k = pick(v, v->section[BODY].count - v->own + 1);
+    return k ? v->own + k - 1 : BASE;
 }
 
 /* A body for a joint at p: its centre of mass is there, or beside it. */
@@ -260,16 +261,20 @@ static void linkage(Vehicle *v)
 
 /* ---- forces ---- */
 
-static void add_law(Vehicle *v)
+/* Steps and switches at times and places that are met in a run, or never. */
+static void add_law(Vehicle *v, int coordinate)
 {
-    const Entry *along = &v->section[COORDINATE].entry[pick(v, v->section[COORDINATE].count)];
+    const Entry *along = &v->section[COORDINATE].entry[coordinate];
     Entry *force = add(v, FORCE, "law");
-    double size = nice_size(v, 0.1, 10), when = is_nice(v) ? 0.1 : uniform(v, 0, 0.2);
+    double size = nice_size(v, 0.1, 10), when = is_nice(v) ? 0.1 * pick(v, 4) : uniform(v, 0, 0.2);
+    const bool beyond = chance(v, 0.2); /* what a random number near 1 would not find */
     say(force, "type: force, coordinate: %s, value: \"", along->name);
-    switch (pick(v, 4)) {
+    switch (pick(v, 6)) {
     case 0: say(force, "if(time > %.6g, %.6g, 0)\"", when, size); break;
     case 1: say(force, "-%.6g * %s - rate(%s)\"", size, along->name, along->name); break;
-    case 2: say(force, "if(%s > %.6g, -%.6g, 0)\"", along->name, when, size); break;
+    case 2: say(force, "if(%s > %.6g, -%.6g, 0)\"", along->name, beyond ? 10 : when, size); break;
+    case 3: say(force, "max(0, %.6g * (time - %.6g))\"", size, when); break;
+    case 4: say(force, "if(abs(rate(%s)) > %.6g, %.6g, 0) + %.6g * min(time, 1)\"", along->name, when, size, size); break;
     default: say(force, "%.6g * sin(%.6g * time)\"", size, nice_size(v, 0.5, 10));
     }
 }
@@ -298,40 +303,92 @@ static void add_nice_element(Vehicle *v)
         say(force, ", free: 0");
 }
 
-void build_mechanism(Vehicle *v)
+/* ---- the whole ---- */
+
+static void add_unit(Vehicle *v)
 {
-    static const double share[] = {0.5, 0.5, 0.9, 1, 0};
-    static const char *const gravity[] = {"[0, 0, 0]", "[0, 0, -10]", "[0, -1, 0]", "[1, 0.5, -9.81]"};
-    v->nice = share[pick(v, 5)];
-    v->fixed = chance(v, 0.6);
-    v->tuned = chance(v, 0.1);
-    v->conserves = chance(v, 0.5);
-    if (chance(v, 0.4))
-        v->gravity = gravity[pick(v, 4)];
+    switch (pick(v, 8)) {
+    case 0:
+    case 1: linkage(v); break;
+    case 2:
+    case 3: loop(v); break;
+    default: branch(v);
+    }
+}
+
+static void add_base(Vehicle *v)
+{
+    if (v->halves) {
+        Entry *base = add(v, BODY, "base");
+        Vec com = nice_step(v, (Vec){{0, 0, 0}});
+        say_number(v, base, "mass: ", nice_size(v, 0.5, 4));
+        say(base, ", com: [%.9g, 0, %.9g], inertia: [1, 1, 0.5]", com.x[0], com.x[2]);
+        return;
+    }
     int base = nice_body(v, "base", any_point(v));
     if (v->fixed) {
         Entry *ground = &v->section[BODY].entry[base];
         strcpy(ground->name, "ground");
         ground->dropped = true;
     }
-    for (int i = 1 + chance(v, 0.5) + chance(v, 0.3); i > 0; --i)
-        switch (pick(v, 8)) {
-        case 0:
-        case 1: linkage(v); break;
-        case 2:
-        case 3: loop(v); break;
-        default: branch(v);
-        }
+}
+
+/* What there is on one side. */
+static void add_side(Vehicle *v)
+{
+    int first = v->section[COORDINATE].count;
+    v->own = v->section[BODY].count;
+    for (int i = 1 + chance(v, 0.3); i > 0; --i)
+        add_unit(v);
+    for (int i = pick(v, 3); i > 0 && !v->conserves && v->section[COORDINATE].count > first; --i)
+        add_law(v, first + pick(v, v->section[COORDINATE].count - first));
+}
+
+/* The same on the left and on the right; then, mostly, something that is on one side alone, perhaps not from the
+ * beginning. */
+static void add_halves(Vehicle *v)
+{
+    Mirror mirror;
+    const int points = v->points, axes = v->axes;
+    begin_left(v, &mirror);
+    add_side(v);
+    begin_right(v, &mirror);
+    v->points = points;
+    v->axes = axes;
+    add_side(v);
+    end_mirror(v, &mirror);
+    if (!v->conserves && v->section[COORDINATE].count && chance(v, 0.7))
+        add_law(v, pick(v, v->section[COORDINATE].count));
+}
+
+void build_mechanism(Vehicle *v)
+{
+    static const double share[] = {0.5, 0.5, 0.9, 1, 0};
+    static const char *const gravity[] = {"[0, 0, 0]", "[0, 0, -10]", "[0, -1, 0]", "[1, 0.5, -9.81]"};
+    v->nice = share[pick(v, 5)];
+    v->halves = chance(v, 0.15);
+    v->fixed = !v->halves && chance(v, 0.6);
+    v->tuned = !v->halves && chance(v, 0.1);
+    v->conserves = chance(v, v->halves ? 0.2 : 0.5);
+    v->own = 1;
+    if (!v->halves && chance(v, 0.4))
+        v->gravity = gravity[pick(v, 4)];
+    add_base(v);
+    if (v->halves)
+        add_halves(v);
+    else
+        for (int i = 1 + chance(v, 0.5) + chance(v, 0.3); i > 0; --i)
+            add_unit(v);
     if (!v->section[COORDINATE].count) {
         Vec p = any_point(v), u = nice_axis(v);
         int b = body_at(v, "link", p);
         turn_on(v, BASE, b, p, u);
         turning(v, BASE, b, u);
     }
-    for (int i = pick(v, 3); i > 0; --i)
+    for (int i = pick(v, 3); i > 0 && !v->halves; --i)
         add_nice_element(v);
-    for (int i = pick(v, 3); i > 0 && !v->conserves; --i)
-        add_law(v);
+    for (int i = pick(v, 3); i > 0 && !v->conserves && !v->halves; --i)
+        add_law(v, pick(v, v->section[COORDINATE].count));
     for (int i = 0; i < v->section[COORDINATE].count; ++i)
         say(add(v, OUTPUT, "out"), "type: coordinate, coordinate: %s", v->section[COORDINATE].entry[i].name);
     for (int i = v->fixed; i < v->section[BODY].count; ++i) {

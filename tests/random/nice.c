@@ -123,7 +123,8 @@ int nice_body(Vehicle *v, const char *prefix, Vec com)
         const Vec origin = {{0, 0, 0}};
         say_point(v, body, ", position: ", is_nice(v) && chance(v, 0.5) ? origin : nice_point(v, com));
     }
-    say_nice_orientation(v, body);
+    if (!v->halves)
+        say_nice_orientation(v, body);
     return v->section[BODY].count - 1;
 }
 
@@ -142,7 +143,7 @@ int nice_dual(Vehicle *v, const char *type, int a, int b, const Geometry *with, 
     }
     say(entry, ", range: [%.17g, ", at - reach);
     say(entry, "%.17g]", at + reach);
-    if (index > 0 && !v->conserves && chance(v, 0.15))
+    if (index > 0 && !v->conserves && !v->halves && chance(v, 0.15))
         say(entry, ", driven: true");
     if (chance(v, 0.4)) {
         Entry *force = add(v, FORCE, "spring");

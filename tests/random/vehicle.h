@@ -88,6 +88,8 @@ typedef struct Vehicle {
     double nice;         /* how often a number is such as people write */
     bool conserves;      /* nothing takes energy away or brings any */
     const char *gravity; /* as the file has it, or NULL */
+    bool halves;         /* what is built on a free base is there twice, on the left and on the right */
+    int own;             /* bodies from here on may carry others, and the base */
     int points, axes;    /* that others may have too */
     Vec place[KNOWN], axis[KNOWN];
     Section section[KINDS];

@@ -148,5 +148,14 @@ double worst_condition(const Solver *solver)
     for (int i = 0; i < solver->model->subsets; ++i)
         if (!is_base(&solver->model->subset[i]))
             worst = fmax(worst, subset_condition(solver, &solver->model->subset[i]));
+    /* where two points meet, nothing says in which direction a force between them acts */
+    for (int i = 0; i < solver->model->forces; ++i) {
+        const Force *force = &solver->model->force[i];
+        quad length, rate;
+        if (force->load || force->about || force->coordinate >= 0)
+            continue;
+        element_extension(solver->model, solver->configuration, i, &length, &rate);
+        worst = fmax(worst, length > 0 ? solver->model->length / (double)length : HUGE_VAL);
+    }
     return worst;
 }

@@ -89,7 +89,8 @@ void body_origin(const Model *model, const Configuration *configuration, int bod
 bool is_base(const Subset *subset);
 /* Condition number (2-norm) of a subset other than that: Jacobian of its joints and coordinates with respect to
  * (L omega, velocity of the centre of mass) of its bodies, L = subset_length, rows normalized. The worst of all subsets
- * of the dump's sequence, 1 without any. After solve_positions. condition.c. */
+ * of the dump's sequence, 1 without any; and, where a force acts between two points, the model's length relative to
+ * their distance. After solve_positions. condition.c. */
 double subset_condition(const Solver *solver, const Subset *subset);
 double worst_condition(const Solver *solver);
 /* Magnitude of the determinant of the same Jacobian. */
