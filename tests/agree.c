@@ -9,10 +9,11 @@
  * wheels.sh asks for, and rates of fast states. They are compared like accelerations. A row counts where the reference
  * reached it with a subset condition within the limit; at least half of the rows must. Exit status 1 unless every
  * counted row agrees. With --refusals rows may be refused and unreached: every row that EVAL has and the reference
- * reached counts, and if there is none that is fine. With --regular a refusal may have a cause: a subset whose condition
- * is above that on the way from the design (reference --brisk), or whose determinant is below a twentieth of that at
- * the design. Rows with one are not counted; those without are told as "refused without cause". Where nice numbers cancel, the sum of magnitudes of a group's terms can
- * be nothing but rounding, or zero: --floor is the least part of the largest one in the row that counts as such. */
+ * reached counts, and if there is none that is fine. With --regular a refusal may have a cause: a subset whose
+ * condition is above that on the way from the design (reference --brisk), or whose determinant is below a twentieth of
+ * that at the design. Rows with one are not counted; those without are told as "refused without cause". Where nice
+ * numbers cancel, the sum of magnitudes of a group's terms can be nothing but rounding, or zero: --floor is the least
+ * part of the largest one in the row that counts as such. */
 #include "reference/solve.h"
 #include "reference/support.h"
 #include "reference/table.h"
@@ -188,7 +189,8 @@ static double deviation(const Group *group, const Table *reference, const Table 
 }
 
 /* True when all groups of a row agree; NaN never does. */
-static bool row_agrees(Groups *groups, const Table *reference, const Table *eval, int row, double tolerance, double floor)
+static bool row_agrees(Groups *groups, const Table *reference, const Table *eval, int row, double tolerance,
+                       double floor)
 {
     bool agrees = true;
     const double least = floor > 0 ? floor * largest_scale(groups, reference, row) : 0;

@@ -228,7 +228,8 @@ static void linkage(Vehicle *v)
     t = combine(1 / norm(t), t, 0, t);
     double r = nice_size(v, 0.3, 2), l = nice_size(v, 0.5, 3), d = nice_size(v, 0.5, 3);
     bool upright = is_nice(v);
-    Vec q = upright ? in_plane(p, s, 0, t, r) : in_plane(p, s, r * uniform(v, -1, 1), t, r), base = in_plane(p, s, d, t, 0);
+    Vec q = upright ? in_plane(p, s, 0, t, r) : in_plane(p, s, r * uniform(v, -1, 1), t, r),
+        base = in_plane(p, s, d, t, 0);
     Vec e = upright ? in_plane(p, s, d, t, l) : in_plane(p, s, d * uniform(v, 0.5, 1.5), t, l * uniform(v, 0.3, 1));
     if (!planar)
         e = combine(1, e, 0.5, u);
@@ -267,14 +268,18 @@ static void add_law(Vehicle *v, int coordinate)
     const Entry *along = &v->section[COORDINATE].entry[coordinate];
     Entry *force = add(v, FORCE, "law");
     double size = nice_size(v, 0.1, 10), when = is_nice(v) ? 0.1 * pick(v, 4) : uniform(v, 0, 0.2);
+    /* nowhere that a coordinate stands: engines that integrate others know it but for rounding */
+    const double where = when + 0.0123;
     const bool beyond = chance(v, 0.2); /* what a random number near 1 would not find */
     say(force, "type: force, coordinate: %s, value: \"", along->name);
     switch (pick(v, 6)) {
     case 0: say(force, "if(time > %.6g, %.6g, 0)\"", when, size); break;
     case 1: say(force, "-%.6g * %s - rate(%s)\"", size, along->name, along->name); break;
-    case 2: say(force, "if(%s > %.6g, -%.6g, 0)\"", along->name, beyond ? 10 : when, size); break;
+    case 2: say(force, "if(%s > %.6g, -%.6g, 0)\"", along->name, beyond ? 10 : where, size); break;
     case 3: say(force, "max(0, %.6g * (time - %.6g))\"", size, when); break;
-    case 4: say(force, "if(abs(rate(%s)) > %.6g, %.6g, 0) + %.6g * min(time, 1)\"", along->name, when, size, size); break;
+    case 4:
+        say(force, "if(abs(rate(%s)) > %.6g, %.6g, 0) + %.6g * min(time, 1)\"", along->name, where, size, size);
+        break;
     default: say(force, "%.6g * sin(%.6g * time)\"", size, nice_size(v, 0.5, 10));
     }
 }

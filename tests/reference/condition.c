@@ -132,9 +132,8 @@ void go_on(Solver *solver)
     solver->way_condition = fmax(solver->way_condition, worst_condition(solver));
     for (int i = 0; i < model->subsets; ++i)
         if (!is_base(&model->subset[i]))
-            solver->way_determinant =
-                fmin(solver->way_determinant,
-                     subset_determinant(solver, &model->subset[i]) / solver->design_determinant[i]);
+            solver->way_determinant = fmin(solver->way_determinant, subset_determinant(solver, &model->subset[i]) /
+                                                                        solver->design_determinant[i]);
 }
 
 bool is_base(const Subset *subset)

@@ -271,7 +271,8 @@ static bool walk(Solver *solver, const quad *to)
     quad *from = grab((size_t)model->coordinates, sizeof *from), done = 0, step = 0.25;
     int sign = solver->dependent->sign;
     memcpy(from, good->w, (size_t)model->coordinates * sizeof *from);
-    while (done < 1 && step >= (solver->brisk ? 1e-3 : 1e-24)) {
+    const quad shortest = solver->brisk ? 1e-3 : 1e-24;
+    while (done < 1 && step >= shortest && !(solver->brisk && solver->way_determinant < 0.01)) {
         step = fminq(step, 1 - done);
         configuration_copy(model, trial, good);
         for (int c = 0; c < model->coordinates; ++c)

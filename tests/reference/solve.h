@@ -53,8 +53,8 @@ typedef struct Solver {
     /* result of solve_positions(): the worst condition on the way from the design, both ends included; and the smallest
      * determinant of a subset relative to that at the design, at most 1 */
     double way_condition, way_determinant;
-    quad sum_error;                  /* result: largest deviation of the contributions' sum from the whole,
-                                        relative to the scale */
+    quad sum_error; /* result: largest deviation of the contributions' sum from the whole,
+                       relative to the scale */
 } Solver;
 
 Solver *solver_new(const Model *model);
