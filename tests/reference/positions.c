@@ -229,12 +229,13 @@ static bool polish(Solver *solver, const State *state)
         good->w[c] = state->w[c];
     /* places have the rounding of their distance from the origin */
     const quad far = fabsq(good->q[0][0]) + fabsq(good->q[0][1]) + fabsq(good->q[0][2]);
-    const quad enough = far > 1000 ? 1e-31 * far : 1e-28;
+    const quad enough = far > 1000 ? ROUGHLY / 1000 * far : ROUGHLY;
     for (int i = 0; i < 20; ++i) {
         rows_evaluate(model, good, solver->row);
-        if (residual(solver, good) < enough)
-            return refactor(solver, good);
+        const bool is_enough = residual(solver, good) < enough;
         correct(solver, good);
+        if (is_enough)
+            return refactor(solver, good);
     }
     return false;
 }

@@ -121,7 +121,7 @@ bool quad_factor(Factors *factors)
                 best = i;
             }
         }
-        regular = largest > 1e-30;
+        regular = largest > ROUGHLY / 100;
         int pivot = factors->row[best];
         factors->row[best] = factors->row[k];
         factors->row[k] = pivot;

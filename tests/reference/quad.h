@@ -5,7 +5,36 @@
 
 #include <stdbool.h>
 
+#include <quadmath.h>
+
+/* With -DREFERENCE_LONG in extended precision of 64 bits, which is enough to judge double precision by where nothing is
+ * near singular, and twenty times as fast. ROUGHLY: a number that is rounding, with some digits to spare. */
+#ifdef REFERENCE_LONG
+#include <math.h>
+typedef long double quad;
+#define ROUGHLY 1e-17
+#define acosq acosl
+#define asinq asinl
+#define atan2q atan2l
+#define atanq atanl
+#define copysignq copysignl
+#define cosq cosl
+#define expq expl
+#define fabsq fabsl
+#define fmaxq fmaxl
+#define fminq fminl
+#define hypotq hypotl
+#define logq logl
+#define powq powl
+#define rintq rintl
+#define sinq sinl
+#define sqrtq sqrtl
+#define tanhq tanhl
+#define tanq tanl
+#else
 typedef __float128 quad;
+#define ROUGHLY 1e-28
+#endif
 
 quad quad_dot(const quad *a, const quad *b, int size);
 void quad_cross(const quad a[3], const quad b[3], quad out[3]); /* out may not alias */
