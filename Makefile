@@ -121,9 +121,9 @@ $(BUILD)/long/%.o: %.c
 	@mkdir -p $(@D)
 	$(COMPILE) -DREFERENCE_LONG -c -o $@ $<
 
-$(BUILD)/check/states $(BUILD)/check/agree: $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
+$(addprefix $(BUILD)/check/,states agree single): $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm -ldl
 
 $(BUILD)/check/random_vehicle: $(patsubst %.c,$(BUILD)/%.o,tests/random_vehicle.c $(wildcard tests/random/*.c) \
     tests/reference/support.c)

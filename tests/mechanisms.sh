@@ -1,11 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# mechanisms.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE REFERENCE_LONG: random mechanisms of a few bodies with numbers such
-# as people write (random_vehicle --mechanism), of the seeds FIRST to LAST (1 to 20), at ROWS (4) states each, quarter,
-# half and many turns among them, against quad precision: accelerations and places to what FORMAT.md section 14
-# promises, with nothing refused that is regular; and short runs, which must keep their energy where nothing takes any
-# and agree between code for the scene and the engine gic. All by the engine `tape` and by one of the other ways of
-# generating, in turn; of the former, nine in ten in extended precision alone where nothing is wrong. COMPILED (50): one in so many by a C compiler. Prints a line for each thing found wrong,
+# mechanisms.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE REFERENCE_LONG GICSWEEP SINGLE: random mechanisms of
+# a few bodies with numbers such as people write (random_vehicle --mechanism), of the seeds FIRST to LAST (1 to 20), at
+# ROWS (4) states each, quarter, half and many turns among them, against quad precision: accelerations and places to what
+# FORMAT.md section 14 promises, with nothing refused that is regular; and short runs, which must keep their energy where
+# nothing takes any, and agree between code for the scene and the engine gic. All by the engine `tape` and by one of the
+# other ways of generating, in turn; of the former, nine in ten in extended precision alone where nothing is wrong. One
+# in COMPILED (50) goes through a C compiler, as numbers one by one, in lanes, side by side in a sweep, and for warnings.
+# Prints a line for each thing found wrong,
 #
 #     CLASS SEED WAY: what was seen
 #
@@ -19,6 +21,8 @@ states=$4
 reference=$5
 agree=$6
 reference_long=$7
+gicsweep=$8
+single=$9
 tests=$(dirname "$0")
 rows=${ROWS:-4}
 compiled=${COMPILED:-50}
@@ -127,7 +131,7 @@ scene() {
         function rate() { seed = (seed * 1103515245 + 12345) % 2147483648; return int(seed / 65536) % 4 - 1 }
         BEGIN {
             rate(); rate()
-            printf "gicscene: 1\nduration: 0.2\nstep: %s\noutput_step: 0.01\nintegrator: rk4\ninitial:\n", step
+            printf "gicscene: 1\nduration: %s\nstep: %s\noutput_step: 0.01\nintegrator: rk4\ninitial:\n", halves ? 1.2 : 0.2, step
             if (base ~ /^base: base.*/ && halves)
                 printf "  velocity: [%d, 0, %d]\n  angular_velocity: [0, %d, 0]\n", rate(), rate(), rate()
             else if (base != "base: ground")
@@ -215,6 +219,57 @@ runs_well() {
     fi
 }
 
+# in_single SEED: single precision, where nothing is near singular
+in_single() {
+    comparisons=$((comparisons + 1))
+    mkdir "$work/single"
+    "$gicgen" "$work/$1.veh" -o "$work/single/model.c" 2>"$work/said" &&
+        tcc -shared -DGIC_FLOAT -I"$tests/../runtime" "$work/single/model.c" "$tests/../runtime/gic_runtime.c" \
+            -o "$work/single/model.so" >"$work/said" 2>&1 &&
+        "$single" --round "$work/$1.states" -o "$work/single/states" &&
+        "$single" "$work/single/model.so" "random_$1" "$work/single/states" -o "$work/single/results" &&
+        "$reference_long" "$work/$1.dump" "$work/single/states" --brisk -o "$work/single/accelerations" 2>"$work/said"
+    status=$?
+    "$agree" "$work/$1.dump" "$work/single/accelerations" "$work/single/results" --tolerance 1e-3 --condition 100 \
+        --refusals --floor 0.1 >"$work/agreed" 2>&1 || status=1
+    rm -rf "$work/single"
+    [ $status -eq 0 ] || wrong single "$1" float "$(head -n 1 "$work/said") $(grep -m 1 '  FAILED$' "$work/agreed")"
+}
+
+# side_by_side SEED: a sweep in the lanes of vectors against one by the engine gic
+side_by_side() {
+    name=$(awk '/^[a-z]+:/ { inside = /^coordinates:/; next }
+                inside && !/driven/ { sub(/:.*/, ""); sub(/^ */, ""); print; exit }' "$work/$1.veh")
+    scene "$1" 0.002
+    comparisons=$((comparisons + 1))
+    for engine in "" gic; do
+        "$gicsweep" -q "$work/$1.veh" "$work/$1.0.002.scene" --vary "state/$name.rate=-1:1:5" --cc "${CC:-cc} -O1" \
+            ${engine:+--engine $engine} -o "$work/$1.sweep$engine" 2>"$work/said" || {
+            wrong sweep "$1" "${engine:-lanes}" "$(grep -m 1 error: "$work/said")"
+            return
+        }
+    done
+    paste -d, "$work/$1.sweep" "$work/$1.sweepgic" | awk -F, '
+        NR == 1 { for (i = 1; i <= NF / 2; ++i) either[i] = $i ~ /[.]e[0-3][. ]/; next }
+        # a run that ends in lanes only may be near singular
+        $4 != 0 || $(4 + NF / 2) != 0 { next }
+        { for (i = 1; i <= NF / 2; ++i) {
+              d = $i - $(i + NF / 2); s = $i + $(i + NF / 2)
+              if (d < 0) d = -d
+              if (s < 0) s = -s
+              if (!either[i] && !(d <= 1e-8 * (1 + s))) bad = i ":" $i " and " $(i + NF / 2) } }
+        END { print bad; exit bad != "" }' >"$work/agreed" || wrong sweep "$1" lanes "$(cat "$work/agreed")"
+}
+
+# compiles SEED: without warnings
+compiles() {
+    comparisons=$((comparisons + 1))
+    # shellcheck disable=SC2015  # either may fail
+    "$gicgen" "$work/$1.veh" -o "$work/model.c" 2>"$work/said" &&
+        ${CC:-cc} -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -O1 -I"$tests/../runtime" \
+            -c "$work/model.c" -o "$work/model.o" 2>"$work/said" || wrong warnings "$1" cc "$(grep -m 1 error: "$work/said")"
+}
+
 way() {
     case $(($1 % 10)) in
     0) echo "gic" ;;
@@ -268,7 +323,10 @@ mechanism() {
     0) compare "$1" "cc" "$tolerance" ;;
     1) compare "$1" "cc --lanes 4" "$tolerance" ;;
     2) compare "$1" "cc --lanes 2 --solve augmented" "$tolerance" ;;
+    3) side_by_side "$1" ;;
+    4) compiles "$1" ;;
     esac
+    [ $(($1 % 5)) -ne 3 ] || in_single "$1"
     if grep -q "_l: " "$work/$1.veh" || [ $(($1 % 4)) -eq 0 ]; then
         runs_well "$1" tcc
     fi

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_random_mechanisms.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE REFERENCE_LONG: random mechanisms of a few bodies, trees
+# test_random_mechanisms.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE REFERENCE_LONG GICSWEEP SINGLE: random mechanisms of a few bodies, trees
 # and loops on free and fixed bases, half of whose numbers are such as people write, by every way of generating and every
 # engine, against quad precision, and their runs by energy: MECHANISMS (2000) of them, from the seed FIRST (1) on, on
 # all processors; tests/mechanisms.sh says how they are judged. `make stress` has 200,000. REFUSALS=ignore: refusals
@@ -13,7 +13,8 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT TERM
 tests=$(dirname "$0")
 ROWS=${ROWS:-2}
-export ROWS
+COMPILED=${COMPILED:-200}
+export ROWS COMPILED
 i=0
 while [ $i -lt "$workers" ]; do
     FIRST=$((first + count * i / workers)) LAST=$((first + count * (i + 1) / workers - 1)) \

@@ -267,18 +267,18 @@ static void add_law(Vehicle *v, int coordinate)
 {
     const Entry *along = &v->section[COORDINATE].entry[coordinate];
     Entry *force = add(v, FORCE, "law");
-    double size = nice_size(v, 0.1, 10), when = is_nice(v) ? 0.1 * pick(v, 4) : uniform(v, 0, 0.2);
-    /* nowhere that a coordinate stands: engines that integrate others know it but for rounding */
-    const double where = when + 0.0123;
-    const bool beyond = chance(v, 0.2); /* what a random number near 1 would not find */
+    static const double late[] = {0, 0.1, 0.2, 0.3, 1.05, 1.1}, apart[] = {0.0123, 0.1123, -0.0877, 10};
+    double size = nice_size(v, 0.1, 10), when = is_nice(v) ? late[pick(v, 6)] : uniform(v, 0, 1.2);
+    /* near to where it is, but not where: engines that integrate other coordinates know it but for rounding */
+    double where = along->design + apart[pick(v, 4)], fast = chance(v, 0.5) ? 1.0123 : 0.1123;
     say(force, "type: force, coordinate: %s, value: \"", along->name);
     switch (pick(v, 6)) {
     case 0: say(force, "if(time > %.6g, %.6g, 0)\"", when, size); break;
     case 1: say(force, "-%.6g * %s - rate(%s)\"", size, along->name, along->name); break;
-    case 2: say(force, "if(%s > %.6g, -%.6g, 0)\"", along->name, beyond ? 10 : where, size); break;
+    case 2: say(force, "if(%s > %.6g, -%.6g, 0)\"", along->name, where, size); break;
     case 3: say(force, "max(0, %.6g * (time - %.6g))\"", size, when); break;
     case 4:
-        say(force, "if(abs(rate(%s)) > %.6g, %.6g, 0) + %.6g * min(time, 1)\"", along->name, where, size, size);
+        say(force, "if(abs(rate(%s)) > %.6g, %.6g, 0) + %.6g * min(time, 1)\"", along->name, fast, size, size);
         break;
     default: say(force, "%.6g * sin(%.6g * time)\"", size, nice_size(v, 0.5, 10));
     }

@@ -130,7 +130,7 @@ int nice_body(Vehicle *v, const char *prefix, Vec com)
 
 int nice_dual(Vehicle *v, const char *type, int a, int b, const Geometry *with, bool turns)
 {
-    static const double design[] = {1, -1, 0.5, 1.5707963267948966};
+    static const double design[] = {1, -1, 0.5, 1.5707963267948966, 5, -3, 100};
     Entry *entry = add(v, COORDINATE, "w");
     int index = v->section[COORDINATE].count - 1;
     const bool length = !strcmp(type, "length"), angle = !strcmp(type, "angle");
@@ -138,9 +138,10 @@ int nice_dual(Vehicle *v, const char *type, int a, int b, const Geometry *with, 
     double reach = length ? 0.3 * at : angle ? (turns ? 7 : 0.6) : 0.5;
     say_connection(v, entry, type, a, b, with);
     if (!length && chance(v, 0.2)) {
-        at = is_nice(v) ? any_of(v, design, 4) : round(100 * uniform(v, -1, 1)) / 100;
+        at = is_nice(v) ? any_of(v, design, 7) : round(100 * uniform(v, -1, 1)) / 100;
         say(entry, ", design: %.17g", at);
     }
+    entry->design = at;
     say(entry, ", range: [%.17g, ", at - reach);
     say(entry, "%.17g]", at + reach);
     if (index > 0 && !v->conserves && !v->halves && chance(v, 0.15))

@@ -46,6 +46,7 @@ typedef struct Entry {
     char plain[1200]; /* as one file without inclusion and mirror images has it */
     int end[2];       /* bodies that it concerns, or NOTHING */
     int coordinate;   /* of a force, or NOTHING */
+    double design;    /* of a coordinate that nice_dual() made */
     int part;         /* file that it stands in; 0: the vehicle's own */
     int image;        /* its mirror image in the same section, or NOTHING */
     bool is_image;    /* only a plain file has it */

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# mechanisms.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE REFERENCE_LONG: random mechanisms with numbers that people write
+# mechanisms.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE REFERENCE_LONG GICSWEEP SINGLE: random mechanisms with numbers that people write
 # against quad precision (tests/mechanisms.sh), 200,000 (short: 20) of them from the seed 10,001 on, in parts of 200 on
 # all processors. That takes hours: after SECONDS_EACH (6000) no new part is begun, and the next call goes on with those
 # that are missing. What parts found stays in $BUILD/stress/mechanisms/; remove that folder to begin anew.
