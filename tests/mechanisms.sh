@@ -60,7 +60,7 @@ solve() {
 # judge SEED WAY TOLERANCE: sets $verdict, the counts of rows compared and $without cause refused, the largest deviation
 # $most, and $what there is to say. agree wants half of the rows to count; here many are singular, and none may do.
 judge() {
-    "$agree" "$work/$1.dump" "$work/$1.accelerations" "$work/$1.results" --tolerance "$3" --regular 100 --floor 0.1 \
+    "$agree" "$work/$1.dump" "$work/$1.accelerations" "$work/$1.results" --tolerance "$3" --condition 100 --regular 100 --floor 0.1 \
         $reactions >"$work/agreed" 2>&1
     # shellcheck disable=SC2046  # words
     set -- $(awk '
@@ -211,11 +211,11 @@ runs_well() {
         grep -q "damping\|type: force\|driven" "$work/$1.veh" || awk "BEGIN { exit !($4 > 1e-6 * $5) }" || return 0
         grep -q "damping\|type: force\|driven" "$work/$1.veh" && return 0
         # an integrator's error shrinks with its step
-        scene "$1" 0.0005
-        go "$1" 0.0005 "$2" "$work/$1.fine.csv" || return 0
+        scene "$1" 0.000125
+        go "$1" 0.000125 "$2" "$work/$1.fine.csv" || return 0
         # shellcheck disable=SC2046
         set -- "$1" "$2" "$4" "$5" $(energies "$work/$1.fine.csv")
-        awk "BEGIN { exit !($5 > 0.05 * $3 && $5 > 1e-9 * $4) }" && wrong energy "$1" "$2" "drifts by $3 J of $4, with a quarter of the step by $5"
+        awk "BEGIN { exit !($5 > 0.05 * $3 && $5 > 1e-9 * $4) }" && wrong energy "$1" "$2" "drifts by $3 J of $4, with a sixteenth of the step by $5"
     fi
 }
 
