@@ -88,7 +88,7 @@ programs := $(basename $(notdir $(wildcard tests/*.c)))
 attacking := $(basename $(notdir $(wildcard tests/stress/*.c)))
 variants := test_runtime_float test_runtime_fast test_dual_float test_road_float test_road_fast
 
-test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) $(attacking) reference)
+test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) $(attacking) reference reference_long)
 
 # an archive, for a test takes what it tests and no more
 $(tested): $(generator_objects) $(runtime_objects)
@@ -112,9 +112,18 @@ $(BUILD)/check/reference: $(BUILD)/tests/reference/main.o $(reference)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm
 
-$(BUILD)/check/states $(BUILD)/check/agree: $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
+# the same in extended precision, for who asks often
+$(BUILD)/check/reference_long: $(patsubst %.c,$(BUILD)/long/%.o,$(wildcard tests/reference/*.c))
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm
+
+$(BUILD)/long/%.o: %.c
+	@mkdir -p $(@D)
+	$(COMPILE) -DREFERENCE_LONG -c -o $@ $<
+
+$(addprefix $(BUILD)/check/,states agree single): $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm -ldl
 
 $(BUILD)/check/random_vehicle: $(patsubst %.c,$(BUILD)/%.o,tests/random_vehicle.c $(wildcard tests/random/*.c) \
     tests/reference/support.c)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions] [--wheels] [--refusals]
+ * agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions] [--wheels] [--refusals] [--regular 100]
+ *     [--floor 0]
  *
  * Compares what `gicrun --eval` wrote (EVAL) with what `reference` wrote (ACCEL) for the same states. Accelerations by
  * group, relative to the sum of magnitudes of the contributing terms; places relative to the model's length scale;
@@ -8,7 +9,11 @@
  * wheels.sh asks for, and rates of fast states. They are compared like accelerations. A row counts where the reference
  * reached it with a subset condition within the limit; at least half of the rows must. Exit status 1 unless every
  * counted row agrees. With --refusals rows may be refused and unreached: every row that EVAL has and the reference
- * reached counts, and if there is none that is fine. */
+ * reached counts, and if there is none that is fine. With --regular a refusal may have a cause: a subset whose
+ * condition is above that on the way from the design (reference --brisk), or whose determinant is below a twentieth of
+ * that at the design. Rows with one are not counted; those without are told as "refused without cause". Where nice
+ * numbers cancel, the sum of magnitudes of a group's terms can be nothing but rounding, or zero: --floor is the least
+ * part of the largest one in the row that counts as such. */
 #include "reference/solve.h"
 #include "reference/support.h"
 #include "reference/table.h"
@@ -19,7 +24,8 @@
 #include <string.h>
 
 static const char usage[] =
-    "usage: agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions] [--wheels] [--refusals]\n";
+    "usage: agree DUMP ACCEL EVAL [--tolerance 1e-12] [--condition 1e4] [--reactions] [--wheels] [--refusals]\n"
+    "             [--regular 100] [--floor 0]\n";
 
 /* Numbers that are compared as one vector. */
 typedef struct Group {
@@ -157,7 +163,17 @@ static Groups groups_find(const Model *model, const Table *reference, const Tabl
     return groups;
 }
 
-static double deviation(const Group *group, const Table *reference, const Table *eval, int row)
+/* The largest sum of magnitudes of a row, accelerations, forces and all. */
+static double largest_scale(const Groups *groups, const Table *reference, int row)
+{
+    double largest = 10; /* of the size of weights and forces of about 1 kg */
+    for (int i = 0; i < groups->count; ++i)
+        if (groups->group[i].scale_column >= 0)
+            largest = fmax(largest, table_number(reference, row, groups->group[i].scale_column));
+    return largest;
+}
+
+static double deviation(const Group *group, const Table *reference, const Table *eval, int row, double least)
 {
     double minus = 0, plus = 0;
     for (int i = 0; i < group->size; ++i) {
@@ -166,17 +182,21 @@ static double deviation(const Group *group, const Table *reference, const Table 
         plus += (x + y) * (x + y);
     }
     double scale = group->scale_column < 0 ? group->scale : table_number(reference, row, group->scale_column);
+    if (group->scale_column >= 0)
+        scale = fmax(scale, least);
     double size = sqrt(group->either_sign && plus < minus ? plus : minus);
     return size == 0 ? 0 : size / scale;
 }
 
 /* True when all groups of a row agree; NaN never does. */
-static bool row_agrees(Groups *groups, const Table *reference, const Table *eval, int row, double tolerance)
+static bool row_agrees(Groups *groups, const Table *reference, const Table *eval, int row, double tolerance,
+                       double floor)
 {
     bool agrees = true;
+    const double least = floor > 0 ? floor * largest_scale(groups, reference, row) : 0;
     for (int i = 0; i < groups->count; ++i) {
         Group *group = &groups->group[i];
-        double size = deviation(group, reference, eval, row);
+        double size = deviation(group, reference, eval, row, least);
         if (group->worst_row < 0 || (!isnan(group->worst) && !(size <= group->worst))) {
             group->worst = size;
             group->worst_row = row;
@@ -189,7 +209,7 @@ static bool row_agrees(Groups *groups, const Table *reference, const Table *eval
 int main(int argc, char **argv)
 {
     const char *path[3] = {NULL};
-    double tolerance = 1e-12, limit = 1e4;
+    double tolerance = 1e-12, limit = 1e4, regular = HUGE_VAL, least = 0;
     int paths = 0;
     bool reactions = false, wheels = false, refusals = false;
     for (int i = 1; i < argc; ++i) {
@@ -197,6 +217,10 @@ int main(int argc, char **argv)
             tolerance = number_of(argv[++i], "--tolerance");
         } else if (!strcmp(argv[i], "--condition") && i + 1 < argc) {
             limit = number_of(argv[++i], "--condition");
+        } else if (!strcmp(argv[i], "--regular") && i + 1 < argc) {
+            regular = number_of(argv[++i], "--regular");
+        } else if (!strcmp(argv[i], "--floor") && i + 1 < argc) {
+            least = number_of(argv[++i], "--floor");
         } else if (!strcmp(argv[i], "--reactions")) {
             reactions = true;
         } else if (!strcmp(argv[i], "--wheels")) {
@@ -219,8 +243,10 @@ int main(int argc, char **argv)
     if (reference->rows != eval->rows)
         fail("%s has %d rows, %s has %d", path[1], reference->rows, path[2], eval->rows);
     int status = table_want(reference, "status"), eval_status = table_want(eval, "status"),
-        condition = table_want(reference, "condition");
-    int unreached = 0, ill = 0, refused = 0, passed = 0, failed = 0;
+        condition = table_want(reference, "condition"),
+        way = regular < HUGE_VAL ? table_want(reference, "way.condition") : 0,
+        determinant = regular < HUGE_VAL ? table_want(reference, "way.determinant") : 0;
+    int unreached = 0, ill = 0, refused = 0, baseless = 0, passed = 0, failed = 0;
     Groups groups = groups_find(model, reference, eval, reactions, wheels);
     for (int row = 0; row < reference->rows; ++row) {
         const bool is_refused = table_number(eval, row, eval_status) != 0;
@@ -228,13 +254,19 @@ int main(int argc, char **argv)
             ++unreached;
         } else if (!(table_number(reference, row, condition) <= limit)) {
             ++ill;
+        } else if (is_refused && regular < HUGE_VAL &&
+                   !(table_number(reference, row, way) <= regular &&
+                     table_number(reference, row, determinant) >= 0.05)) {
+            ++ill;
         } else if (is_refused && refusals) {
             ++refused;
+            ++baseless;
         } else if (is_refused) {
+            ++baseless;
             if (!refused++)
                 printf("row %d: refused with status %s\n", row + 1, eval->cell[row * eval->columns + eval_status]);
             ++failed;
-        } else if (row_agrees(&groups, reference, eval, row, tolerance)) {
+        } else if (row_agrees(&groups, reference, eval, row, tolerance, least)) {
             ++passed;
         } else {
             ++failed;
@@ -247,6 +279,8 @@ int main(int argc, char **argv)
         if (groups.group[i].worst_row >= 0)
             printf("%-40s worst %.2e in row %d%s\n", groups.group[i].label, groups.group[i].worst,
                    groups.group[i].worst_row + 1, groups.group[i].worst <= tolerance ? "" : "  FAILED");
+    if (baseless && regular < HUGE_VAL)
+        printf("%d refused without cause\n", baseless);
     bool enough = refusals || (counted > 0 && 2 * counted >= reference->rows);
     if (!enough)
         printf("only %d of %d rows were admissible: that proves nothing\n", counted, reference->rows);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * random_vehicle --seed S [--broken | --rich FOLDER --tire FILE]
+ * random_vehicle --seed S [--broken | --mechanism | --rich FOLDER --tire FILE]
  *
  * Prints a random vehicle in the format of models/FORMAT.md: bodies that hold suspensions, drawn from a grammar of
  * axles and corners, each of which brings as many equations and coordinates as its bodies have freedoms. Equal seeds
@@ -7,6 +7,9 @@
  *
  * With --broken one mistake is made: the format stays valid, the mechanism does not. The first line of stderr names
  * the culprits, bodies, joints and coordinates of which an error message must name at least one.
+ *
+ * With --mechanism it is none, but a few bodies in trees and loops of any joints and coordinates, with numbers such as
+ * people write as often as general ones.
  *
  * With --rich it has tires, a powertrain, formulas and inputs too, left sides of which the reader makes the right ones,
  * and axles in files that it includes: FOLDER/S.veh and what that includes, a tire like that of the .tir FILE, and
@@ -18,7 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char usage[] = "usage: random_vehicle --seed S [--broken | --rich FOLDER --tire FILE]\n";
+static const char usage[] = "usage: random_vehicle --seed S [--broken | --mechanism | --rich FOLDER --tire FILE]\n";
 
 /* What holds up an arm that turns about u through p: the angle, or a spring to `foot` on the arm from `seat`. */
 static void suspend(Vehicle *v, int carrier, int arm, Vec p, Vec u, Vec seat, Vec foot)
@@ -532,13 +535,15 @@ static void make_mistake(Vehicle *v, Mistake mistake)
 int main(int argc, char **argv)
 {
     double seed = -1;
-    bool broken = false;
+    bool broken = false, mechanism = false;
     const char *folder = NULL, *tire = NULL;
     for (int i = 1; i < argc; ++i) {
         if (!strcmp(argv[i], "--seed") && i + 1 < argc) {
             seed = number_of(argv[++i], "--seed");
         } else if (!strcmp(argv[i], "--broken")) {
             broken = true;
+        } else if (!strcmp(argv[i], "--mechanism")) {
+            mechanism = true;
         } else if (!strcmp(argv[i], "--rich") && i + 1 < argc) {
             folder = argv[++i];
         } else if (!strcmp(argv[i], "--tire") && i + 1 < argc) {
@@ -548,7 +553,7 @@ int main(int argc, char **argv)
             return 2;
         }
     }
-    if (!(seed >= 0 && seed < 0x1p53) || !folder != !tire || (folder && broken)) {
+    if (!(seed >= 0 && seed < 0x1p53) || !folder != !tire || !!folder + broken + mechanism > 1) {
         fputs(usage, stderr);
         return 2;
     }
@@ -557,9 +562,13 @@ int main(int argc, char **argv)
     Mistake mistake = broken ? (Mistake)(1 + (int)fmod(seed, MISTAKES - 1)) : NO_MISTAKE;
     v->mistake = mistake;
     v->rich = folder;
-    build(v);
-    make_mistake(v, mistake);
-    add_outputs(v);
+    if (mechanism) {
+        build_mechanism(v);
+    } else {
+        build(v);
+        make_mistake(v, mistake);
+        add_outputs(v);
+    }
     if (folder)
         write_files(v, folder, seed, tire);
     else

@@ -1,12 +1,16 @@
 /* SPDX-License-Identifier: MIT
- * states DUMP --count N --seed S [-o STATES]
+ * states DUMP --count N --seed S [--nice] [-o STATES]
  *
  * Random candidates for `gicrun --eval` and `reference`: coordinates uniform in their ranges; base anywhere within
  * 100 m, its height within 0.3 m of design so that tires touch in some rows and not in others; every orientation in
  * even rows, every yaw with small roll and pitch in odd ones. Of a model with wheels that roll, every second odd row
  * has its tires near the road, every fourth row is slow and every sixteenth stands still with nothing wound up; slips
  * are small in most rows and far beyond all ranges in others, wheels spin either way, inputs go up to 1 beside their
- * defaults. */
+ * defaults.
+ *
+ * With --nice half of all numbers are such as people write: quarter and half turns of angles and of the base, 10 and
+ * 1000 whole turns more, coordinates at the design or an end of their range, rates 0, 1 and -1, a base that stands
+ * upside down, at the origin, or still. */
 #include "reference/dump.h"
 #include "reference/support.h"
 #include "reference/wheel.h"
@@ -16,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char usage[] = "usage: states DUMP --count N --seed S [-o STATES]\n";
+static const char usage[] = "usage: states DUMP --count N --seed S [--nice] [-o STATES]\n";
 
 static const double full_turn = 6.283185307179586;
 
@@ -66,6 +70,62 @@ enum { FAST_ROW, SLOW_ROW, STILL_ROW };
 static int motion_of(const Model *model, int row)
 {
     return !model->tires || row % 4 != 3 ? FAST_ROW : row % 16 != 15 ? SLOW_ROW : STILL_ROW;
+}
+
+/* ---- numbers that people write ---- */
+
+static double any_of(uint64_t *random, const double *x, int count)
+{
+    return x[(int)uniform(random, 0, count)];
+}
+
+/* A fourth of all rows is nice throughout, a fourth is not at all. */
+static bool is_nice(uint64_t *random, int row)
+{
+    static const double share[] = {1, 0.5, 0.5, 0};
+    return uniform(random, 0, 1) < share[row % 4];
+}
+
+/* -1, 0 or 1 times `size`, or what is given. */
+static double nice_rate(uint64_t *random, int row, double size, double other)
+{
+    static const double nice[] = {0, 0, 1, -1};
+    return is_nice(random, row) ? size * any_of(random, nice, 4) : other;
+}
+
+static void write_nice_base(FILE *out, const Model *model, uint64_t *random, int row)
+{
+    static const double axis[] = {0, 1, 2}, quarters[] = {1, 2, 3, -1};
+    double p[4];
+    memcpy(p, model->body[0].euler, sizeof p);
+    if (!is_nice(random, row))
+        any_orientation(random, p);
+    for (int i = 0; i < 2; ++i)
+        if (uniform(random, 0, 1) < 0.7) {
+            int about = (int)any_of(random, axis, 3);
+            turn(p, about, any_of(random, quarters, 4) * full_turn / 4);
+        }
+    for (int i = 0; i < 3; ++i)
+        fprintf(out, "%.17g,", nice_rate(random, row, 1, uniform(random, -100, 100)));
+    fprintf(out, "%.17g,%.17g,%.17g,%.17g,", p[0], p[1], p[2], p[3]);
+    for (int i = 0; i < 6; ++i)
+        fprintf(out, "%.17g,", nice_rate(random, row, 1, i < 3 ? uniform(random, -20, 20) : uniform(random, -2, 2)));
+}
+
+static double nice_value(uint64_t *random, const Coordinate *coordinate, int row)
+{
+    static const double quarters[] = {0, 1, 2, 3, -1, -2}, far[] = {0, 0, 0, 0, 10, -10, 1000, -1000};
+    const double at[] = {coordinate->design, coordinate->range[0], coordinate->range[1]};
+    double w = uniform(random, coordinate->range[0], coordinate->range[1]);
+    if (coordinate->type != ANGLE)
+        return is_nice(random, row) ? any_of(random, at, 3) : w;
+    double width = coordinate->range[1] - coordinate->range[0];
+    /* only of what may turn at all */
+    if (!(width > full_turn))
+        return is_nice(random, row) ? any_of(random, at, 3) : w;
+    if (is_nice(random, row))
+        w = coordinate->design + any_of(random, quarters, 6) * full_turn / 4;
+    return w + full_turn * any_of(random, far, row % 2 ? 8 : 4);
 }
 
 static void write_base(FILE *out, const Model *model, uint64_t *random, int row)
@@ -168,7 +228,7 @@ static void write_wheel_names(FILE *out, const Model *model)
         fputs(",engine.speed,transmission.age,transmission.gear,transmission.before", out);
 }
 
-static void write_states(FILE *out, const Model *model, int count, uint64_t *random)
+static void write_states(FILE *out, const Model *model, int count, bool nice, uint64_t *random)
 {
     if (model->free_base)
         fputs("r.x,r.y,r.z,e0,e1,e2,e3,v.x,v.y,v.z,omega.x,omega.y,omega.z,", out);
@@ -182,11 +242,15 @@ static void write_states(FILE *out, const Model *model, int count, uint64_t *ran
     fputc('\n', out);
     for (int row = 0; row < count; ++row) {
         if (model->free_base)
-            write_base(out, model, random, row);
+            (nice ? write_nice_base : write_base)(out, model, random, row);
         for (int c = 0; c < model->coordinates; ++c) {
             const Coordinate *coordinate = &model->coordinate[c];
             double w = uniform(random, coordinate->range[0], coordinate->range[1]);
             double rate = motion_of(model, row) == STILL_ROW ? 0 : uniform(random, -1, 1);
+            if (nice) {
+                w = nice_value(random, coordinate, row);
+                rate = nice_rate(random, row, 1, rate);
+            }
             fprintf(out, "%s%.17g,%.17g", c ? "," : "", w, rate);
             if (coordinate->driven)
                 fprintf(out, ",%.17g", uniform(random, -5, 5));
@@ -200,11 +264,14 @@ int main(int argc, char **argv)
 {
     const char *path = NULL, *out_path = NULL;
     double count = 0, seed = -1;
+    bool nice = false;
     for (int i = 1; i < argc; ++i) {
         if (!strcmp(argv[i], "--count") && i + 1 < argc) {
             count = number_of(argv[++i], "--count");
         } else if (!strcmp(argv[i], "--seed") && i + 1 < argc) {
             seed = number_of(argv[++i], "--seed");
+        } else if (!strcmp(argv[i], "--nice")) {
+            nice = true;
         } else if (!strcmp(argv[i], "-o") && i + 1 < argc) {
             out_path = argv[++i];
         } else if (argv[i][0] != '-' && !path) {
@@ -222,7 +289,7 @@ int main(int argc, char **argv)
     uint64_t random = ((uint64_t)seed + 1) * 0x9e3779b97f4a7c15u | 1;
     Model *model = model_read(path);
     FILE *out = output_open(out_path);
-    write_states(out, model, (int)count, &random);
+    write_states(out, model, (int)count, nice, &random);
     output_close(out, out_path);
     model_free(model);
     return 0;

@@ -38,7 +38,7 @@ typedef enum Mistake {
     MISTAKES
 } Mistake;
 
-enum { MOST = 400, BASE = 0, NOTHING = -1, PARTS = 4, GAINS = 3 };
+enum { MOST = 400, BASE = 0, NOTHING = -1, PARTS = 4, GAINS = 3, KNOWN = 30 };
 
 typedef struct Entry {
     char name[32];
@@ -46,6 +46,7 @@ typedef struct Entry {
     char plain[1200]; /* as one file without inclusion and mirror images has it */
     int end[2];       /* bodies that it concerns, or NOTHING */
     int coordinate;   /* of a force, or NOTHING */
+    double design;    /* of a coordinate that nice_dual() made */
     int part;         /* file that it stands in; 0: the vehicle's own */
     int image;        /* its mirror image in the same section, or NOTHING */
     bool is_image;    /* only a plain file has it */
@@ -85,6 +86,13 @@ typedef struct Vehicle {
     double spin;           /* kg m^2, the most that a wheel's spin inertia may be */
     const char *gain[GAINS], *input[GAINS];
     char powertrain[4000];
+    double nice;         /* how often a number is such as people write */
+    bool conserves;      /* nothing takes energy away or brings any */
+    const char *gravity; /* as the file has it, or NULL */
+    bool halves;         /* what is built on a free base is there twice, on the left and on the right */
+    int own;             /* bodies from here on may carry others, and the base */
+    int points, axes;    /* that others may have too */
+    Vec place[KNOWN], axis[KNOWN];
     Section section[KINDS];
 } Vehicle;
 
@@ -189,5 +197,24 @@ void add_powertrain(Vehicle *v);
 void write_files(Vehicle *v, const char *folder, double seed, const char *tire);
 /* The same in one file. */
 void write_plain(Vehicle *v, FILE *out, double seed);
+
+/* ---- numbers that people write: nice.c ---- */
+
+bool is_nice(Vehicle *v);
+/* 1, 1/2, 2, 0.1 or 10, or anything between low and high. */
+double nice_size(Vehicle *v, double low, double high);
+/* An axis of the model frame, one that there is already, or any; perpendicular to u. */
+Vec nice_axis(Vehicle *v);
+Vec nice_across(Vehicle *v, Vec u);
+/* A point 0, 1/2, 1 or 2 m away along the axes, or any. The second: or one that there is already. */
+Vec nice_step(Vehicle *v, Vec from);
+Vec nice_point(Vehicle *v, Vec near);
+/* A body of about 1 kg and 1 m; a coordinate, whose range is more than a turn where it is an angle that
+ * `turns`: their indices. */
+int nice_body(Vehicle *v, const char *prefix, Vec com);
+int nice_dual(Vehicle *v, const char *type, int a, int b, const Geometry *with, bool turns);
+
+/* mechanism.c: the whole of it, outputs too. */
+void build_mechanism(Vehicle *v);
 
 #endif

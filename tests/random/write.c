@@ -68,6 +68,8 @@ static void write_head(Vehicle *v, FILE *out, double seed)
 {
     fprintf(out, "gicgen: 1\nmodel: random_%.0f\n", seed);
     fprintf(out, "base: %s\n", body_name(v, BASE));
+    if (v->gravity)
+        fprintf(out, "gravity: %s\n", v->gravity);
 }
 
 static void write_tail(const Vehicle *v, FILE *out)

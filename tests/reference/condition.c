@@ -34,19 +34,16 @@ static double sweep(double *a, int n)
     return largest;
 }
 
-static double condition_number(double *a, int n)
+/* Squares of the singular values, in any order. */
+static void singular_squares(double *a, int n, double *square)
 {
     for (int i = 0; i < 60 && sweep(a, n) > 1e-14; ++i)
         ;
-    double low = HUGE_VAL, high = 0;
     for (int j = 0; j < n; ++j) {
-        double size = 0;
+        square[j] = 0;
         for (int i = 0; i < n; ++i)
-            size += a[i * n + j] * a[i * n + j];
-        low = fmin(low, size);
-        high = fmax(high, size);
+            square[j] += a[i * n + j] * a[i * n + j];
     }
-    return low > 0 ? sqrt(high / low) : HUGE_VAL;
 }
 
 /* One row of a subset's Jacobian, normalized. */
@@ -72,7 +69,8 @@ static void twist_row(const Solver *solver, const Subset *subset, const Row *row
         out[j] /= size;
 }
 
-double subset_condition(const Solver *solver, const Subset *subset)
+/* Squares of the singular values of a subset's Jacobian [6 bodies]; returns how many. To be freed. */
+static int subset_squares(const Solver *solver, const Subset *subset, double **square)
 {
     const Model *model = solver->model;
     int n = 6 * subset->bodies, rows = subset->coordinates, at = 0;
@@ -89,9 +87,53 @@ double subset_condition(const Solver *solver, const Subset *subset)
     for (int i = 0; i < subset->coordinates; ++i)
         twist_row(solver, subset, &solver->row[joint_row(model, model->joints) + subset->coordinate[i]], length,
                   a + n * at++);
-    double condition = condition_number(a, n);
+    *square = grab((size_t)n, sizeof **square);
+    singular_squares(a, n, *square);
     free(a);
-    return condition;
+    return n;
+}
+
+double subset_condition(const Solver *solver, const Subset *subset)
+{
+    double *square, low = HUGE_VAL, high = 0;
+    int n = subset_squares(solver, subset, &square);
+    for (int j = 0; j < n; ++j) {
+        low = fmin(low, square[j]);
+        high = fmax(high, square[j]);
+    }
+    free(square);
+    return low > 0 ? sqrt(high / low) : HUGE_VAL;
+}
+
+double subset_determinant(const Solver *solver, const Subset *subset)
+{
+    double *square, product = 1;
+    int n = subset_squares(solver, subset, &square);
+    for (int j = 0; j < n; ++j)
+        product *= square[j];
+    free(square);
+    return sqrt(product);
+}
+
+void begin_way(Solver *solver)
+{
+    const Model *model = solver->model;
+    for (int i = 0; i < model->subsets && !solver->design_known; ++i)
+        if (!is_base(&model->subset[i]))
+            solver->design_determinant[i] = subset_determinant(solver, &model->subset[i]);
+    solver->design_known = true;
+    solver->way_condition = worst_condition(solver);
+    solver->way_determinant = 1;
+}
+
+void go_on(Solver *solver)
+{
+    const Model *model = solver->model;
+    solver->way_condition = fmax(solver->way_condition, worst_condition(solver));
+    for (int i = 0; i < model->subsets; ++i)
+        if (!is_base(&model->subset[i]))
+            solver->way_determinant = fmin(solver->way_determinant, subset_determinant(solver, &model->subset[i]) /
+                                                                        solver->design_determinant[i]);
 }
 
 bool is_base(const Subset *subset)
@@ -105,5 +147,14 @@ double worst_condition(const Solver *solver)
     for (int i = 0; i < solver->model->subsets; ++i)
         if (!is_base(&solver->model->subset[i]))
             worst = fmax(worst, subset_condition(solver, &solver->model->subset[i]));
+    /* where two points meet, nothing says in which direction a force between them acts */
+    for (int i = 0; i < solver->model->forces; ++i) {
+        const Force *force = &solver->model->force[i];
+        quad length, rate;
+        if (force->load || force->about || force->coordinate >= 0)
+            continue;
+        element_extension(solver->model, solver->configuration, i, &length, &rate);
+        worst = fmax(worst, length > 0 ? solver->model->length / (double)length : HUGE_VAL);
+    }
     return worst;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * reference DUMP STATES [-o ACCEL] [--near POSES] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]
- *     [--friction X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE]
+ *     [--friction X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE] [--brisk]
  *
  * Accelerations, poses, drive forces, reactions of joints, what wheels and powertrain do, energies, scales and the
  * condition of each subset, by its first body's name, of a dumped model (`gicgen --dump-model`) at the states of a CSV
@@ -8,7 +8,8 @@
  * missing. The road's friction is 1 but on one patch. A row's status is 0, or 1 where the state can't be reached from
  * design or is singular; its other cells are empty then. With --near bodies are looked for near the poses in the
  * columns of POSES, as `gicrun --eval` writes them, instead: then the answer is about those, however they were reached.
- */
+ * With --brisk what can't be reached, and what lies close to a singular configuration, is given up early, and the
+ * columns way.condition and way.determinant say how near to a singular configuration a row has come on its way. */
 #include "row.h"
 
 #include "support.h"
@@ -18,7 +19,7 @@
 
 static const char usage[] =
     "usage: reference DUMP STATES [-o ACCEL] [--near POSES] [--road flat|sine:AMPLITUDE,WAVELENGTH,X0,PHASE_PER_Y]\n"
-    "                 [--friction X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE]\n";
+    "                 [--friction X_LOW,X_HIGH,Y_LOW,Y_HIGH,VALUE,FADE] [--brisk]\n";
 
 static void write_head(FILE *out, const Model *model)
 {
@@ -57,7 +58,7 @@ static void write_head(FILE *out, const Model *model)
     for (int i = 0; i < model->subsets; ++i)
         if (!is_base(&model->subset[i]))
             fprintf(out, "condition.%s,", model->body[model->subset[i].body[0]].name);
-    fputs("condition,status\n", out);
+    fputs("condition,way.condition,way.determinant,status\n", out);
 }
 
 static void write_numbers(FILE *out, const quad *x, int size)
@@ -118,12 +119,12 @@ static void write_row(FILE *out, Solver *solver)
     for (int i = 0; i < model->subsets; ++i)
         if (!is_base(&model->subset[i]))
             fprintf(out, "%.6g,", subset_condition(solver, &model->subset[i]));
-    fprintf(out, "%.6g,0\n", worst_condition(solver));
+    fprintf(out, "%.6g,%.6g,%.6g,0\n", worst_condition(solver), solver->way_condition, solver->way_determinant);
 }
 
 static void write_unreached(FILE *out, const Model *model)
 {
-    int cells = (model->free_base ? 8 : 0) + 7 * (model->bodies - (model->free_base ? 0 : 1)) + 1;
+    int cells = (model->free_base ? 8 : 0) + 7 * (model->bodies - (model->free_base ? 0 : 1)) + 3;
     cells += 2 * model->coordinates + 8 * model->joints + (model->powertrain ? 2 * LINE_RESULTS : 0) + 6;
     for (int w = 0; w < model->wheels; ++w)
         for (int i = 0; i < WHEEL_COLUMNS; ++i)
@@ -164,10 +165,13 @@ int main(int argc, char **argv)
 {
     const char *path[2] = {NULL, NULL}, *out_path = NULL, *near_path = NULL;
     int paths = 0, unreached = 0;
+    bool brisk = false;
     Road road = {0};
     for (int i = 1; i < argc; ++i) {
         if (!strcmp(argv[i], "-o") && i + 1 < argc) {
             out_path = argv[++i];
+        } else if (!strcmp(argv[i], "--brisk")) {
+            brisk = true;
         } else if (!strcmp(argv[i], "--near") && i + 1 < argc) {
             near_path = argv[++i];
         } else if (!strcmp(argv[i], "--road") && i + 1 < argc) {
@@ -192,6 +196,7 @@ int main(int argc, char **argv)
     int(*column)[BODY_COORDINATES] = near ? pose_columns(model, near) : NULL;
     quad(*pose)[BODY_COORDINATES] = grab((size_t)model->bodies, sizeof *pose);
     Solver *solver = solver_new(model);
+    solver->brisk = brisk;
     State *state = state_new(model);
     FILE *out = output_open(out_path);
     write_head(out, model);

@@ -49,12 +49,16 @@ static Arrow fixed_vector(const Configuration *configuration, int body, int side
     const quad *q = configuration->q[body], *rate = configuration->rate[body];
     quad B[3][4], B_rate[3][4];
     rotation_slope(q + 3, u, B);
-    rotation_slope(rate + 3, u, B_rate);
     rotate(q + 3, u, arrow.value);
+    for (int i = 0; i < 3; ++i)
+        memcpy(arrow.slope[side][i] + 3, B[i], sizeof B[i]);
+    /* most evaluations are about positions alone */
+    if (rate[3] == 0 && rate[4] == 0 && rate[5] == 0 && rate[6] == 0)
+        return arrow;
+    rotation_slope(rate + 3, u, B_rate);
     for (int i = 0; i < 3; ++i) {
         arrow.rate[i] = quad_dot(B[i], rate + 3, 4);
         arrow.bias[i] = quad_dot(B_rate[i], rate + 3, 4);
-        memcpy(arrow.slope[side][i] + 3, B[i], sizeof B[i]);
     }
     return arrow;
 }

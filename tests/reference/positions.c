@@ -32,6 +32,7 @@ Solver *solver_new(const Model *model)
     solver->w_second = grab(coordinates, sizeof *solver->w_second);
     solver->drive_force = grab(coordinates, sizeof *solver->drive_force);
     solver->w_scale = grab(coordinates, sizeof *solver->w_scale);
+    solver->design_determinant = grab((size_t)model->subsets, sizeof *solver->design_determinant);
     solver->drive_scale = grab(coordinates, sizeof *solver->drive_scale);
     solver->wheel = grab((size_t)model->wheels, sizeof *solver->wheel);
     solver->reaction = grab((size_t)model->joints, sizeof *solver->reaction);
@@ -52,6 +53,7 @@ void solver_free(Solver *solver)
     free(solver->w_second);
     free(solver->drive_force);
     free(solver->w_scale);
+    free(solver->design_determinant);
     free(solver->drive_scale);
     free(solver->reaction);
     free(solver->wheel);
@@ -159,7 +161,7 @@ static bool factor_dependent(Solver *solver, const Configuration *configuration)
     for (int k = 1; k < solver->model->bodies; ++k)
         for (int j = 0; j < 4; ++j)
             factors->a[(solver->rows + k - 1) * n + BODY_COORDINATES * (k - 1) + 3 + j] = configuration->q[k][3 + j];
-    return quad_factor(factors);
+    return (solver->coarse ? coarse_factor : quad_factor)(factors);
 }
 
 /* Residuals of all equations, negated, into solver->unknown; returns the largest. */
@@ -186,7 +188,7 @@ static quad correct(Solver *solver, Configuration *configuration)
     quad size = 0;
     rows_evaluate(solver->model, configuration, solver->row);
     residual(solver, configuration);
-    quad_solve(solver->dependent, solver->unknown);
+    (solver->coarse ? coarse_solve : quad_solve)(solver->dependent, solver->unknown);
     for (int k = 1; k < solver->model->bodies; ++k)
         for (int j = 0; j < BODY_COORDINATES; ++j) {
             quad step = solver->unknown[BODY_COORDINATES * (k - 1) + j];
@@ -203,7 +205,7 @@ static bool continue_to(Solver *solver, Configuration *trial)
     quad tangent = correct(solver, trial);
     if (tangent > 0.3)
         return false;
-    for (quad last = tangent; last > 1e-16;) {
+    for (quad last = tangent; last > (solver->coarse ? 1e-6 : 1e-16);) {
         quad size = correct(solver, trial);
         if (!(size < 0.25 * last))
             return false;
@@ -227,12 +229,13 @@ static bool polish(Solver *solver, const State *state)
         good->w[c] = state->w[c];
     /* places have the rounding of their distance from the origin */
     const quad far = fabsq(good->q[0][0]) + fabsq(good->q[0][1]) + fabsq(good->q[0][2]);
-    const quad enough = far > 1000 ? 1e-31 * far : 1e-28;
+    const quad enough = far > 1000 ? ROUGHLY / 1000 * far : ROUGHLY;
     for (int i = 0; i < 20; ++i) {
         rows_evaluate(model, good, solver->row);
-        if (residual(solver, good) < enough)
-            return refactor(solver, good);
+        const bool is_enough = residual(solver, good) < enough;
         correct(solver, good);
+        if (is_enough)
+            return refactor(solver, good);
     }
     return false;
 }
@@ -261,32 +264,87 @@ bool solve_near(Solver *solver, const State *state, quad (*pose)[BODY_COORDINATE
     return refactor(solver, at) && polish(solver, state);
 }
 
-bool solve_positions(Solver *solver, const State *state)
+/* Continuation along the straight line from the coordinates of a configuration whose Jacobian is factored. */
+static bool walk(Solver *solver, const quad *to)
 {
     const Model *model = solver->model;
     Configuration *good = solver->configuration, *trial = solver->trial;
-    start_at_design(solver, state);
-    if (!refactor(solver, good) || !continue_to(solver, good) || !refactor(solver, good))
-        return false;
+    quad *from = grab((size_t)model->coordinates, sizeof *from), done = 0, step = 0.25;
     int sign = solver->dependent->sign;
-    quad done = 0, step = 0.25;
-    while (done < 1) {
+    memcpy(from, good->w, (size_t)model->coordinates * sizeof *from);
+    const quad shortest = solver->brisk ? 1e-3 : 1e-24;
+    while (done < 1 && step >= shortest && !(solver->brisk && solver->way_determinant < 0.01)) {
         step = fminq(step, 1 - done);
         configuration_copy(model, trial, good);
         for (int c = 0; c < model->coordinates; ++c)
-            trial->w[c] = model->coordinate[c].design + (done + step) * (state->w[c] - model->coordinate[c].design);
+            trial->w[c] = from[c] + (done + step) * (to[c] - from[c]);
         /* a change of the determinant's sign means that a singular configuration was jumped over */
         if (continue_to(solver, trial) && refactor(solver, trial) && solver->dependent->sign == sign) {
             configuration_copy(model, good, trial);
+            if (solver->brisk)
+                go_on(solver);
             done += step;
             step *= 2;
         } else {
-            step /= 2;
-            if (step < 1e-24 || !refactor(solver, good))
-                return false;
+            step = refactor(solver, good) ? step / 2 : 0;
         }
     }
-    return polish(solver, state);
+    free(from);
+    return done >= 1;
+}
+
+/* Does one whole turn of an angle lead back to the present configuration? */
+static bool turns_round(Solver *solver, int coordinate)
+{
+    const Model *model = solver->model;
+    Configuration *at = solver->configuration, *before = configuration_new(model);
+    const quad turn = 2 * acosq(-1);
+    quad *to = grab((size_t)model->coordinates, sizeof *to), apart = 0;
+    configuration_copy(model, before, at);
+    memcpy(to, at->w, (size_t)model->coordinates * sizeof *to);
+    to[coordinate] += turn;
+    bool round = walk(solver, to);
+    for (int k = 1; k < model->bodies && round; ++k) {
+        const quad sign = quad_dot(at->q[k] + 3, before->q[k] + 3, 4) < 0 ? -1 : 1;
+        for (int j = 0; j < BODY_COORDINATES; ++j)
+            apart = fmaxq(apart, fabsq(at->q[k][j] - (j < 3 ? 1 : sign) * before->q[k][j]));
+    }
+    configuration_copy(model, at, before);
+    configuration_free(before);
+    free(to);
+    return round && apart < 1e-4 * (1 + model->length) && refactor(solver, at);
+}
+
+/* From the design to the coordinates, but for whole turns of angles far away where one of them leads back to where it
+ * began: a thousand turns are not followed. */
+static bool go_from_design(Solver *solver, const State *state)
+{
+    const quad turn = 2 * acosq(-1), far = 3 * turn;
+    const Model *model = solver->model;
+    if (!refactor(solver, solver->configuration) || !continue_to(solver, solver->configuration) ||
+        !refactor(solver, solver->configuration))
+        return false;
+    begin_way(solver);
+    quad *to = grab((size_t)model->coordinates, sizeof *to);
+    for (int c = 0; c < model->coordinates; ++c) {
+        const quad way = state->w[c] - model->coordinate[c].design;
+        const bool is_far = model->coordinate[c].type == ANGLE && fabsq(way) > far;
+        to[c] = state->w[c] - (is_far ? turn * rintq(way / turn) : 0);
+    }
+    bool reached = walk(solver, to);
+    for (int c = 0; c < model->coordinates && reached; ++c)
+        reached = to[c] == state->w[c] || turns_round(solver, c);
+    free(to);
+    return reached;
+}
+
+bool solve_positions(Solver *solver, const State *state)
+{
+    start_at_design(solver, state);
+    solver->coarse = solver->brisk;
+    bool reached = go_from_design(solver, state);
+    solver->coarse = false;
+    return reached && (!solver->brisk || refactor(solver, solver->configuration)) && polish(solver, state);
 }
 
 void solve_velocities(Solver *solver, const State *state)

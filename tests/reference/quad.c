@@ -4,6 +4,7 @@
 
 #include "support.h"
 
+#include <math.h>
 #include <quadmath.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,6 +80,7 @@ Factors *factors_new(int size)
     factors->a = grab((size_t)size * (size_t)size, sizeof *factors->a);
     factors->row = grab((size_t)size, sizeof *factors->row);
     factors->used = grab((size_t)size, sizeof *factors->used);
+    factors->coarse = grab((size_t)size * (size_t)size, sizeof *factors->coarse);
     return factors;
 }
 
@@ -87,6 +89,7 @@ void factors_free(Factors *factors)
     free(factors->a);
     free(factors->row);
     free(factors->used);
+    free(factors->coarse);
     free(factors);
 }
 
@@ -118,7 +121,7 @@ bool quad_factor(Factors *factors)
                 best = i;
             }
         }
-        regular = largest > 1e-30;
+        regular = largest > ROUGHLY / 100;
         int pivot = factors->row[best];
         factors->row[best] = factors->row[k];
         factors->row[k] = pivot;
@@ -161,5 +164,64 @@ void quad_solve(const Factors *factors, quad *x)
         y[i] /= a[i];
     }
     memcpy(x, y, (size_t)n * sizeof *x);
+    free(y);
+}
+
+bool coarse_factor(Factors *factors)
+{
+    int n = factors->size;
+    double *a = factors->coarse;
+    factors->sign = 1;
+    for (int i = 0; i < n; ++i) {
+        double scale = 0;
+        factors->row[i] = i;
+        for (int j = 0; j < n; ++j)
+            scale = fmax(scale, fabs(a[i * n + j] = (double)factors->a[i * n + j]));
+        if (!(scale > 0))
+            return false;
+    }
+    for (int k = 0; k < n; ++k) {
+        int best = k;
+        for (int i = k; i < n; ++i)
+            if (fabs(a[factors->row[i] * n + k]) > fabs(a[factors->row[best] * n + k]))
+                best = i;
+        int pivot = factors->row[best];
+        factors->row[best] = factors->row[k];
+        factors->row[k] = pivot;
+        const double *from = a + pivot * n;
+        if (!(fabs(from[k]) > 1e-14))
+            return false;
+        if ((best != k) != (from[k] < 0))
+            factors->sign = -factors->sign;
+        for (int i = k + 1; i < n; ++i) {
+            double *to = a + factors->row[i] * n;
+            if (to[k] == 0)
+                continue;
+            double multiplier = to[k] /= from[k];
+            for (int j = k + 1; j < n; ++j)
+                to[j] -= multiplier * from[j];
+        }
+    }
+    return true;
+}
+
+void coarse_solve(const Factors *factors, quad *x)
+{
+    int n = factors->size;
+    double *y = grab((size_t)n, sizeof *y);
+    for (int i = 0; i < n; ++i) {
+        const double *a = factors->coarse + factors->row[i] * n;
+        y[i] = (double)x[factors->row[i]];
+        for (int j = 0; j < i; ++j)
+            y[i] -= a[j] * y[j];
+    }
+    for (int i = n - 1; i >= 0; --i) {
+        const double *a = factors->coarse + factors->row[i] * n;
+        for (int j = i + 1; j < n; ++j)
+            y[i] -= a[j] * y[j];
+        y[i] /= a[i];
+    }
+    for (int i = 0; i < n; ++i)
+        x[i] = y[i];
     free(y);
 }

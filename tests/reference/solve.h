@@ -25,6 +25,8 @@ typedef struct Reaction {
 /* Work space and results for one model after another state. */
 typedef struct Solver {
     const Model *model;
+    bool coarse;             /* factors are those of double precision, good enough for the way */
+    bool brisk;              /* what needs steps below a thousandth of the way is not reached; way_* are filled */
     int rows, moving, first; /* constraint rows; bodies that move; the first of them */
     Configuration *configuration, *trial;
     Row *row;
@@ -46,8 +48,13 @@ typedef struct Solver {
     WheelState *wheel;               /* result: [wheels] */
     LineState line;                  /* result, of a powertrain */
     quad energy[3], energy_scale[3]; /* result: kinetic, potential; rate of their sum but for its own, W */
-    quad sum_error;                  /* result: largest deviation of the contributions' sum from the whole,
-                                        relative to the scale */
+    double *design_determinant;      /* [subsets] subset_determinant() at the design, once that is known */
+    bool design_known;
+    /* result of solve_positions(): the worst condition on the way from the design, both ends included; and the smallest
+     * determinant of a subset relative to that at the design, at most 1 */
+    double way_condition, way_determinant;
+    quad sum_error; /* result: largest deviation of the contributions' sum from the whole,
+                       relative to the scale */
 } Solver;
 
 Solver *solver_new(const Model *model);
@@ -82,8 +89,15 @@ void body_origin(const Model *model, const Configuration *configuration, int bod
 bool is_base(const Subset *subset);
 /* Condition number (2-norm) of a subset other than that: Jacobian of its joints and coordinates with respect to
  * (L omega, velocity of the centre of mass) of its bodies, L = subset_length, rows normalized. The worst of all subsets
- * of the dump's sequence, 1 without any. After solve_positions. condition.c. */
+ * of the dump's sequence, 1 without any; and, where a force acts between two points, the model's length relative to
+ * their distance. After solve_positions. condition.c. */
 double subset_condition(const Solver *solver, const Subset *subset);
 double worst_condition(const Solver *solver);
+/* Magnitude of the determinant of the same Jacobian. */
+double subset_determinant(const Solver *solver, const Subset *subset);
+/* Of way_condition and way_determinant: the present configuration is the design, as far as bodies stand relative to the
+ * base; it is on the way. Rows are evaluated. */
+void begin_way(Solver *solver);
+void go_on(Solver *solver);
 
 #endif

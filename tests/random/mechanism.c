@@ -1,0 +1,404 @@
+/* SPDX-License-Identifier: MIT
+ * Random mechanisms of a few bodies: trees and loops, with every type of joint and coordinate, whose numbers are those
+ * that people write or general ones. */
+#include "vehicle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int any_body(Vehicle *v)
+{
+    int k = pick(v, v->section[BODY].count - v->own + 1);
+    return k ? v->own + k - 1 : BASE;
+}
+
+/* A body for a joint at p: its centre of mass is there, or beside it. */
+static int body_at(Vehicle *v, const char *prefix, Vec p)
+{
+    return nice_body(v, prefix, is_nice(v) && chance(v, 0.3) ? p : nice_step(v, p));
+}
+
+static Vec any_point(Vehicle *v)
+{
+    return nice_point(v, (Vec){{0, 0, 0}});
+}
+
+static void turning(Vehicle *v, int a, int b, Vec u)
+{
+    nice_dual(v, "angle", a, b, &(Geometry){.axis = &u}, true);
+}
+
+static void angle(Vehicle *v, int a, int b, Vec u)
+{
+    nice_dual(v, "angle", a, b, &(Geometry){.axis = &u}, false);
+}
+
+static void slide(Vehicle *v, int a, int b, Vec p, Vec u)
+{
+    nice_dual(v, "translation", a, b, &(Geometry){.points = {&p, &p}, .axis = &u}, false);
+}
+
+/* The length between a point of each; those must differ. */
+static void length(Vehicle *v, int a, int b, Vec p)
+{
+    Vec q = nice_step(v, p), s = nice_step(v, q);
+    while (norm(combine(1, q, -1, s)) < 0.3)
+        s = nice_step(v, q);
+    nice_dual(v, "length", a, b, &(Geometry){.points = {&q, &s}}, false);
+}
+
+static Vec apart(Vehicle *v, Vec p)
+{
+    Vec q = nice_step(v, p);
+    while (norm(combine(1, p, -1, q)) < 0.3)
+        q = nice_step(v, p);
+    return q;
+}
+
+static void tie(Vehicle *v, int a, int b, Vec p)
+{
+    Vec q = nice_step(v, p), s = apart(v, q);
+    join(v, "rod", "distance", a, b, &(Geometry){.points = {&q, &s}});
+}
+
+/* ---- bodies with one carrier each: trees ---- */
+
+/* b turns on a about u, by a revolute or what is equal to it. */
+static void turn_on(Vehicle *v, int a, int b, Vec p, Vec u)
+{
+    switch (chance(v, 0.7) ? 0 : 1 + pick(v, 3)) {
+    case 1:
+        join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
+        join(v, "stop", "point_in_plane", a, b, &(Geometry){.point = &p, .axis = &u});
+        break;
+    case 2:
+        join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
+        join(v, "same", "parallel", a, b, &(Geometry){.axis = &u});
+        break;
+    case 3:
+        join(v, "line", "point_on_line", a, b, &(Geometry){.point = &p, .axis = &u});
+        join(v, "stop", "point_in_plane", a, b, &(Geometry){.point = &p, .axis = &u});
+        join(v, "same", "parallel", a, b, &(Geometry){.axis = &u});
+        break;
+    default: join(v, "hinge", "revolute", a, b, &(Geometry){.point = &p, .axis = &u});
+    }
+}
+
+static void slide_on(Vehicle *v, int a, int b, Vec p, Vec u)
+{
+    if (chance(v, 0.7)) {
+        join(v, "guide", "prismatic", a, b, &(Geometry){.point = chance(v, 0.5) ? &p : NULL, .axis = &u});
+        return;
+    }
+    Vec s = nice_across(v, u), t = cross(u, s);
+    join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
+    join(v, "key", "perpendicular", a, b, &(Geometry){.axes = {&s, &t}});
+}
+
+static void branch(Vehicle *v)
+{
+    int a = any_body(v);
+    Vec p = any_point(v), u = nice_axis(v), s = nice_across(v, u), t = cross(u, s);
+    int b = body_at(v, "link", p), kind = pick(v, 14);
+    switch (kind) {
+    case 0:
+    case 1:
+    case 2:
+    case 3:
+        turn_on(v, a, b, p, u);
+        turning(v, a, b, u);
+        break;
+    case 4:
+        turn_on(v, a, b, p, u);
+        length(v, a, b, p);
+        break;
+    case 5:
+    case 6:
+        slide_on(v, a, b, p, u);
+        slide(v, a, b, p, u);
+        break;
+    case 7:
+        join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
+        turning(v, a, b, u);
+        slide(v, a, b, p, u);
+        break;
+    case 8:
+        join(v, "cross", "universal", a, b, &(Geometry){.point = &p, .axes = {&u, &s}});
+        angle(v, a, b, u);
+        angle(v, b, a, s);
+        break;
+    case 9:
+        join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
+        angle(v, a, b, u);
+        angle(v, a, b, s);
+        angle(v, a, b, t);
+        break;
+    case 10:
+        join(v, "plane", "point_in_plane", a, b, &(Geometry){.point = &p, .axis = &u});
+        join(v, "same", "parallel", a, b, &(Geometry){.axis = &u});
+        turning(v, a, b, u);
+        slide(v, a, b, p, s);
+        slide(v, a, b, p, t);
+        break;
+    case 11:
+        join(v, "line", "point_on_line", a, b, &(Geometry){.point = &p, .axis = &u, .ordered = true});
+        join(v, "same", "parallel", a, b, &(Geometry){.axis = &u});
+        turning(v, a, b, u);
+        slide(v, a, b, p, u);
+        break;
+    case 12: join(v, "weld", "fixed", a, b, &(Geometry){.point = chance(v, 0.5) ? &p : NULL}); break;
+    default:
+        /* three lengths to a ball */
+        join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
+        for (int i = 0; i < 3; ++i)
+            length(v, a, b, p);
+    }
+}
+
+/* ---- loops of one body between two carriers ---- */
+
+static void loop(Vehicle *v)
+{
+    int a = any_body(v), c = any_body(v);
+    Vec p = any_point(v), u = nice_axis(v), s = nice_across(v, u);
+    int b = body_at(v, "part", p);
+    switch (pick(v, 8)) {
+    case 0:
+        turn_on(v, a, b, p, u);
+        tie(v, c, b, p);
+        break;
+    case 1:
+        slide_on(v, a, b, p, u);
+        tie(v, c, b, p);
+        break;
+    case 2:
+        join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
+        tie(v, c, b, p);
+        if (chance(v, 0.5))
+            angle(v, a, b, u);
+        else
+            slide(v, a, b, p, u);
+        break;
+    case 3:
+        join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
+        tie(v, c, b, p);
+        tie(v, c, b, p);
+        angle(v, a, b, u);
+        break;
+    case 4: {
+        Vec q = apart(v, p), r = apart(v, q);
+        join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
+        join(v, "link", "revolute_spherical", c, b, &(Geometry){.points = {&r, &q}, .axis = &u, .ordered = true});
+        tie(v, c, b, p);
+        break;
+    }
+    case 5:
+        join(v, "cross", "universal", a, b, &(Geometry){.point = &p, .axes = {&u, &s}});
+        tie(v, c, b, p);
+        length(v, c, b, p);
+        break;
+    case 6: {
+        Vec q = apart(v, p);
+        join(v, "ball", "spherical", a, b, &(Geometry){.point = &p});
+        join(v, "line", "point_on_line", c, b, &(Geometry){.point = &q, .axis = &u, .ordered = true});
+        angle(v, a, b, u);
+        break;
+    }
+    default:
+        for (int i = 0; i < 5; ++i)
+            tie(v, i % 2 ? c : a, b, p);
+        length(v, a, b, p);
+    }
+}
+
+/* ---- linkages on one carrier, in a plane or across ---- */
+
+/* x s + y t in the plane of a linkage, from `origin`. */
+static Vec in_plane(Vec origin, Vec s, double x, Vec t, double y)
+{
+    return combine(1, combine(1, origin, x, s), y, t);
+}
+
+static void linkage(Vehicle *v)
+{
+    int a = any_body(v), planar = chance(v, 0.7);
+    Vec p = any_point(v), u = nice_axis(v), s = nice_across(v, u), t = cross(u, s);
+    s = combine(1 / norm(s), s, 0, s);
+    t = combine(1 / norm(t), t, 0, t);
+    double r = nice_size(v, 0.3, 2), l = nice_size(v, 0.5, 3), d = nice_size(v, 0.5, 3);
+    bool upright = is_nice(v);
+    Vec q = upright ? in_plane(p, s, 0, t, r) : in_plane(p, s, r * uniform(v, -1, 1), t, r),
+        base = in_plane(p, s, d, t, 0);
+    Vec e = upright ? in_plane(p, s, d, t, l) : in_plane(p, s, d * uniform(v, 0.5, 1.5), t, l * uniform(v, 0.3, 1));
+    if (!planar)
+        e = combine(1, e, 0.5, u);
+    if (norm(combine(1, e, -1, q)) < 0.2)
+        e = in_plane(e, s, 0.5, t, 0.5);
+    int crank = body_at(v, "crank", p);
+    turn_on(v, a, crank, p, u);
+    if (chance(v, 0.5))
+        turning(v, a, crank, u);
+    else
+        angle(v, a, crank, u);
+    int coupler = nice_body(v, "coupler", combine(0.5, q, 0.5, e)), last;
+    const bool slider = chance(v, 0.4);
+    if (slider) {
+        last = body_at(v, "slider", e);
+        slide_on(v, a, last, e, s);
+    } else {
+        last = body_at(v, "rocker", e);
+        turn_on(v, a, last, base, u);
+    }
+    if (planar) {
+        join(v, "hinge", "revolute", crank, coupler, &(Geometry){.point = &q, .axis = &u});
+        join(v, "line", "point_on_line", coupler, last, &(Geometry){.point = &e, .axis = &u});
+    } else {
+        Vec way = combine(1, e, -1, q), side = nice_across(v, way), other = cross(way, side);
+        join(v, "ball", "spherical", crank, coupler, &(Geometry){.point = &q});
+        join(v, "cross", "universal", coupler, last, &(Geometry){.point = &e, .axes = {&side, &other}});
+    }
+}
+
+/* ---- forces ---- */
+
+/* Steps and switches at times and places that are met in a run, or never. */
+static void add_law(Vehicle *v, int coordinate)
+{
+    const Entry *along = &v->section[COORDINATE].entry[coordinate];
+    Entry *force = add(v, FORCE, "law");
+    static const double late[] = {0, 0.1, 0.2, 0.3, 1.05, 1.1}, apart[] = {0.0123, 0.1123, -0.0877, 10};
+    double size = nice_size(v, 0.1, 10), when = is_nice(v) ? late[pick(v, 6)] : uniform(v, 0, 1.2);
+    /* near to where it is, but not where: engines that integrate other coordinates know it but for rounding */
+    double where = along->design + apart[pick(v, 4)], fast = chance(v, 0.5) ? 1.0123 : 0.1123;
+    say(force, "type: force, coordinate: %s, value: \"", along->name);
+    switch (pick(v, 6)) {
+    case 0: say(force, "if(time > %.6g, %.6g, 0)\"", when, size); break;
+    case 1: say(force, "-%.6g * %s - rate(%s)\"", size, along->name, along->name); break;
+    case 2: say(force, "if(%s > %.6g, -%.6g, 0)\"", along->name, where, size); break;
+    case 3: say(force, "max(0, %.6g * (time - %.6g))\"", size, when); break;
+    case 4:
+        say(force, "if(abs(rate(%s)) > %.6g, %.6g, 0) + %.6g * min(time, 1)\"", along->name, fast, size, size);
+        break;
+    default: say(force, "%.6g * sin(%.6g * time)\"", size, nice_size(v, 0.5, 10));
+    }
+}
+
+static void add_nice_element(Vehicle *v)
+{
+    int b = any_body(v), a = any_body(v);
+    Entry *force = add(v, FORCE, "between");
+    Vec p = any_point(v), q = apart(v, p);
+    if (a == b)
+        a = NOTHING;
+    if (v->fixed && (a == NOTHING || a == BASE))
+        a = BASE;
+    if (a == b) {
+        force->dropped = true;
+        return;
+    }
+    say(force, "type: spring_damper, bodies: [%s, %s]", body_name(v, a), body_name(v, b));
+    say_point(v, force, ", points: [", p);
+    say_point(v, force, ", ", q);
+    say(force, "]");
+    say_number(v, force, ", stiffness: ", nice_size(v, 0.1, 100));
+    if (!v->conserves)
+        say_number(v, force, ", damping: ", nice_size(v, 0, 2));
+    if (is_nice(v))
+        say(force, ", free: 0");
+}
+
+/* ---- the whole ---- */
+
+static void add_unit(Vehicle *v)
+{
+    switch (pick(v, 8)) {
+    case 0:
+    case 1: linkage(v); break;
+    case 2:
+    case 3: loop(v); break;
+    default: branch(v);
+    }
+}
+
+static void add_base(Vehicle *v)
+{
+    if (v->halves) {
+        Entry *base = add(v, BODY, "base");
+        Vec com = nice_step(v, (Vec){{0, 0, 0}});
+        say_number(v, base, "mass: ", nice_size(v, 0.5, 4));
+        say(base, ", com: [%.9g, 0, %.9g], inertia: [1, 1, 0.5]", com.x[0], com.x[2]);
+        return;
+    }
+    int base = nice_body(v, "base", any_point(v));
+    if (v->fixed) {
+        Entry *ground = &v->section[BODY].entry[base];
+        strcpy(ground->name, "ground");
+        ground->dropped = true;
+    }
+}
+
+/* What there is on one side. */
+static void add_side(Vehicle *v)
+{
+    int first = v->section[COORDINATE].count;
+    v->own = v->section[BODY].count;
+    for (int i = 1 + chance(v, 0.3); i > 0; --i)
+        add_unit(v);
+    for (int i = pick(v, 3); i > 0 && !v->conserves && v->section[COORDINATE].count > first; --i)
+        add_law(v, first + pick(v, v->section[COORDINATE].count - first));
+}
+
+/* The same on the left and on the right; then, mostly, something that is on one side alone, perhaps not from the
+ * beginning. */
+static void add_halves(Vehicle *v)
+{
+    Mirror mirror;
+    const int points = v->points, axes = v->axes;
+    begin_left(v, &mirror);
+    add_side(v);
+    begin_right(v, &mirror);
+    v->points = points;
+    v->axes = axes;
+    add_side(v);
+    end_mirror(v, &mirror);
+    if (!v->conserves && v->section[COORDINATE].count && chance(v, 0.7))
+        add_law(v, pick(v, v->section[COORDINATE].count));
+}
+
+void build_mechanism(Vehicle *v)
+{
+    static const double share[] = {0.5, 0.5, 0.9, 1, 0};
+    static const char *const gravity[] = {"[0, 0, 0]", "[0, 0, -10]", "[0, -1, 0]", "[1, 0.5, -9.81]"};
+    v->nice = share[pick(v, 5)];
+    v->halves = chance(v, 0.15);
+    v->fixed = !v->halves && chance(v, 0.6);
+    v->tuned = !v->halves && chance(v, 0.1);
+    v->conserves = chance(v, v->halves ? 0.2 : 0.5);
+    v->own = 1;
+    if (!v->halves && chance(v, 0.4))
+        v->gravity = gravity[pick(v, 4)];
+    add_base(v);
+    if (v->halves)
+        add_halves(v);
+    else
+        for (int i = 1 + chance(v, 0.5) + chance(v, 0.3); i > 0; --i)
+            add_unit(v);
+    if (!v->section[COORDINATE].count) {
+        Vec p = any_point(v), u = nice_axis(v);
+        int b = body_at(v, "link", p);
+        turn_on(v, BASE, b, p, u);
+        turning(v, BASE, b, u);
+    }
+    for (int i = pick(v, 3); i > 0 && !v->halves; --i)
+        add_nice_element(v);
+    for (int i = pick(v, 3); i > 0 && !v->conserves && !v->halves; --i)
+        add_law(v, pick(v, v->section[COORDINATE].count));
+    for (int i = 0; i < v->section[COORDINATE].count; ++i)
+        say(add(v, OUTPUT, "out"), "type: coordinate, coordinate: %s", v->section[COORDINATE].entry[i].name);
+    for (int i = v->fixed; i < v->section[BODY].count; ++i) {
+        say(add(v, OUTPUT, "at"), "type: position, body: %s", body_name(v, i));
+        say(add(v, OUTPUT, "turned"), "type: orientation, body: %s", body_name(v, i));
+    }
+    say(add(v, OUTPUT, "energies"), "type: energy");
+}
