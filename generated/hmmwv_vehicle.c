@@ -994,7 +994,7 @@ static const gic_real hmmwv_vehicle_piece[HMMWV_VEHICLE_COORDINATE_ROOM] = {
 static int hmmwv_vehicle_recover_piece(hmmwv_vehicle *self, hmmwv_vehicle_links *links, const gic_real *old, gic_real *start)
 {
     const gic_real *const xd = self->xd;
-    int status;
+    int status = GIC_OK; /* stays so where no subset can fail */
     (void)links;
     (void)old;
     (void)start;
@@ -1255,7 +1255,7 @@ static const gic_real hmmwv_vehicle_converter_torque_y[5] = {
 static const gic_real hmmwv_vehicle_converter_torque_slope[5] = {
     R(-0.7999999999999998), R(-0.96), R(-1.2923076923076924), R(-0.8399999999999997), R(-0.5999999999999996),
 };
-static const gic_table table[4] = {
+static const gic_table hmmwv_vehicle_table[4] = {
     {hmmwv_vehicle_full_torque_x, hmmwv_vehicle_full_torque_y, hmmwv_vehicle_full_torque_slope, 20, 0, 0},
     {hmmwv_vehicle_engine_losses_x, hmmwv_vehicle_engine_losses_y, hmmwv_vehicle_engine_losses_slope, 6, 0, 0},
     {hmmwv_vehicle_converter_capacity_x, hmmwv_vehicle_converter_capacity_y, hmmwv_vehicle_converter_capacity_slope, 6, 0, 0},
@@ -1284,7 +1284,7 @@ static int hmmwv_vehicle_settle(hmmwv_vehicle *self, gic_real *y)
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
-static int road_height(const hmmwv_vehicle *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
+static int hmmwv_vehicle_road_height(const hmmwv_vehicle *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
     const gic_road *road = self->head.road;
     out[0] = out[1] = out[2] = R(0.0);
@@ -1296,7 +1296,7 @@ static int road_height(const hmmwv_vehicle *self, gic_real time, gic_real x, gic
 /* ---- wheels with tires ------------------------------------------------------------------------------------------- */
 
 /* Friction of the road under a tire, relative to the one that the tire was measured on. */
-static gic_real road_friction(const hmmwv_vehicle *self, gic_real time, gic_real x, gic_real y)
+static gic_real hmmwv_vehicle_road_friction(const hmmwv_vehicle *self, gic_real time, gic_real x, gic_real y)
 {
     const gic_road *road = self->head.road;
     return road && road->friction ? road->friction(road, self->head.lane, time, x, y) : R(1.0);
@@ -1332,7 +1332,7 @@ static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC
     /* contact with the road, and slip */
     {
         gic_real road1[3];
-        if (!road_height(self, time, link[0], link[1], road1))
+        if (!hmmwv_vehicle_road_height(self, time, link[0], link[1], road1))
             return GIC_ERROR_ROAD;
         const gic_real t2 = road1[2] * road1[2] + road1[1] * road1[1];
         const gic_real t3 = R(1.0) / GIC_SQRT(R(1.0) + t2);
@@ -1347,7 +1347,7 @@ static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC
         const gic_real t12 = link[0] + (link[8] * (t5 * t10) + link[7] * t11) * R(0.4699);
         const gic_real t13 = link[1] + (link[8] * (t8 * t10) - link[6] * t11) * R(0.4699);
         gic_real road14[3];
-        if (!road_height(self, time, t12, t13, road14))
+        if (!hmmwv_vehicle_road_height(self, time, t12, t13, road14))
             return GIC_ERROR_ROAD;
         const gic_real t15 = road14[2] * road14[2] + road14[1] * road14[1];
         const gic_real t16 = R(1.0) / GIC_SQRT(R(1.0) + t15);
@@ -1372,7 +1372,7 @@ static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC
         const gic_real t35 = link[0] + t34;
         const gic_real t36 = t29 * t33;
         const gic_real t37 = link[1] + t36;
-        const gic_real t38 = road_friction(self, time, t35, t37);
+        const gic_real t38 = hmmwv_vehicle_road_friction(self, time, t35, t37);
         if (!(t38 > R(0.0)))
             return GIC_ERROR_ROAD;
         const gic_real t39 = link[8] * link[11] + (link[7] * link[10] + link[6] * link[9]);
@@ -1821,10 +1821,10 @@ static int hmmwv_vehicle_drive(hmmwv_vehicle *self, gic_real time, const gic_rea
         const gic_real t6 = t5 - fast[16];
         const gic_real t7 = (t6 > GIC_R(0) ? t5 : fast[16]);
         const gic_real t8 = GIC_MAX((t6 > GIC_R(0) ? fast[16] : t5), R(0.0)) / GIC_MAX(t7, R(1.0));
-        const gic_real t9 = t7 / gic_table_value(&table[2], t8);
+        const gic_real t9 = t7 / gic_table_value(&hmmwv_vehicle_table[2], t8);
         const gic_real t10 = (gear[4] + t2 * (gear[3] - gear[4])) * (t9 * t9) * GIC_MIN(R(1.0), (R(1.0) - t8) * R(20.0));
         const gic_real t11 = -t10;
-        const gic_real t12 = (t6 > GIC_R(0) ? t11 : t10 * gic_table_value(&table[3], t8));
+        const gic_real t12 = (t6 > GIC_R(0) ? t11 : t10 * gic_table_value(&hmmwv_vehicle_table[3], t8));
         const gic_real t13 = t3 * t12 * R(1.25);
         const gic_real t14 = t13 + R(7.78782) * rate[0];
         const gic_real t15 = t3 * t3 * R(0.46875);
@@ -1855,7 +1855,7 @@ static int hmmwv_vehicle_drive(hmmwv_vehicle *self, gic_real time, const gic_rea
         const gic_real t40 = GIC_MIN(GIC_MAX((R(282.7433388230814) - fast[16]) * R(0.07073553026306459), R(0.0)), R(1.0));
         const gic_real t41 = GIC_MIN(GIC_MAX(GIC_MAX(u[4], (R(83.7758040957278) - fast[16]) * R(0.05968310365946076)), R(0.0)), R(1.0)) * ((R(3.0) - (t40 + t40)) * (t40 * t40));
         const gic_real t42 = fast[16] * R(9.549296585513721);
-        const gic_real t43 = t41 * gic_table_value(&table[0], t42) + gic_table_value(&table[1], t42);
+        const gic_real t43 = t41 * gic_table_value(&hmmwv_vehicle_table[0], t42) + gic_table_value(&hmmwv_vehicle_table[1], t42);
         const gic_real t44 = (fast[16] > GIC_R(0) ? t43 : GIC_MAX(t43, R(0.0)));
         const gic_real t45 = (t6 > GIC_R(0) ? t11 : t10);
         const gic_real t46 = R(7.78782) * (t39 - rate[0]);
@@ -5039,7 +5039,7 @@ static GIC_COLD gic_real hmmwv_vehicle_residual(const hmmwv_vehicle *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     hmmwv_vehicle_links links;
-    gic_real largest = R(0.0), one;
+    gic_real largest = R(0.0), one = R(0.0);
     (void)start;
     (void)one;
     links.cold = 0;

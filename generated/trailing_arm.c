@@ -928,7 +928,7 @@ static const gic_real trailing_arm_piece[TRAILING_ARM_COORDINATE_ROOM] = {
 static int trailing_arm_recover_piece(trailing_arm *self, trailing_arm_links *links, const gic_real *old, gic_real *start)
 {
     const gic_real *const xd = self->xd;
-    int status;
+    int status = GIC_OK; /* stays so where no subset can fail */
     (void)links;
     (void)old;
     (void)start;
@@ -1144,7 +1144,7 @@ static int trailing_arm_settle(trailing_arm *self, gic_real *y)
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
-static int road_height(const trailing_arm *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
+static int trailing_arm_road_height(const trailing_arm *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
     const gic_road *road = self->head.road;
     out[0] = out[1] = out[2] = R(0.0);
@@ -1359,7 +1359,7 @@ static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, co
         const gic_real t160 = y[0] + (t137 * t150 + (t157 * R(-0.909701) + t159 * t144));
         const gic_real t161 = y[1] + (t143 * t150 + (t148 * R(-0.909701) + t154 * t144));
         gic_real road162[3];
-        if (!road_height(self, time, t160, t161, road162))
+        if (!trailing_arm_road_height(self, time, t160, t161, road162))
             return GIC_ERROR_ROAD;
         const gic_real t163 = y[12] + (t137 * t145 + (t157 * t151 + t159 * t155));
         const gic_real t164 = R(1.0) - (t146 + t158);
@@ -1392,7 +1392,7 @@ static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, co
         const gic_real t191 = y[0] + (t137 * t187 + (t157 * R(0.909701) + t159 * t184));
         const gic_real t192 = y[1] + (t143 * t187 + (t148 * R(0.909701) + t154 * t184));
         gic_real road193[3];
-        if (!road_height(self, time, t191, t192, road193))
+        if (!trailing_arm_road_height(self, time, t191, t192, road193))
             return GIC_ERROR_ROAD;
         const gic_real t194 = y[12] + (t137 * t185 + (t157 * t188 + t159 * t189));
         const gic_real t195 = y[14] + (t164 * t185 + (t142 * t188 + t165 * t189));
@@ -1425,7 +1425,7 @@ static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, co
         const gic_real t222 = y[0] + (t137 * t218 + (t157 * t214 + t159 * t215));
         const gic_real t223 = y[1] + (t143 * t218 + (t148 * t214 + t154 * t215));
         gic_real road224[3];
-        if (!road_height(self, time, t222, t223, road224))
+        if (!trailing_arm_road_height(self, time, t222, t223, road224))
             return GIC_ERROR_ROAD;
         const gic_real t225 = y[12] + (t137 * t216 + (t157 * t219 + t159 * t220));
         const gic_real t226 = y[14] + (t164 * t216 + (t142 * t219 + t165 * t220));
@@ -1451,7 +1451,7 @@ static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, co
         const gic_real t246 = y[0] + (t137 * t242 + (t157 * t238 + t159 * t239));
         const gic_real t247 = y[1] + (t143 * t242 + (t148 * t238 + t154 * t239));
         gic_real road248[3];
-        if (!road_height(self, time, t246, t247, road248))
+        if (!trailing_arm_road_height(self, time, t246, t247, road248))
             return GIC_ERROR_ROAD;
         const gic_real t249 = y[12] + (t137 * t240 + (t157 * t243 + t159 * t244));
         const gic_real t250 = y[14] + (t164 * t240 + (t142 * t243 + t165 * t244));
@@ -1759,7 +1759,7 @@ static int trailing_arm_measure(const trailing_arm *self, gic_real time, const g
         const gic_real t114 = m[163] * t28 - m[164] * t32 + (y[16] * t29 - y[17] * t33);
         const gic_real t115 = y[13] + (t13 * t112 + (t20 * t113 + t24 * t114));
         gic_real road116[3];
-        if (!road_height(self, time, t38, t39, road116))
+        if (!trailing_arm_road_height(self, time, t38, t39, road116))
             return GIC_ERROR_ROAD;
         const gic_real t117 = y[12] + (t5 * t112 + (t17 * t113 + t22 * t114));
         const gic_real t118 = y[14] + (t9 * t112 + (t18 * t113 + t23 * t114));
@@ -1773,7 +1773,7 @@ static int trailing_arm_measure(const trailing_arm *self, gic_real time, const g
         const gic_real t126 = m[199] * t43 - m[200] * t47 + (y[16] * t44 - y[17] * t48);
         const gic_real t127 = y[13] + (t13 * t124 + (t20 * t125 + t24 * t126));
         gic_real road128[3];
-        if (!road_height(self, time, t53, t54, road128))
+        if (!trailing_arm_road_height(self, time, t53, t54, road128))
             return GIC_ERROR_ROAD;
         const gic_real t129 = y[12] + (t5 * t124 + (t17 * t125 + t22 * t126));
         const gic_real t130 = y[14] + (t9 * t124 + (t18 * t125 + t23 * t126));
@@ -1787,7 +1787,7 @@ static int trailing_arm_measure(const trailing_arm *self, gic_real time, const g
         const gic_real t138 = m[103] * t56 + (y[16] * t57 - y[17] * R(0.909701));
         const gic_real t139 = y[13] + (t13 * t136 + (t20 * t137 + t24 * t138));
         gic_real road140[3];
-        if (!road_height(self, time, t60, t61, road140))
+        if (!trailing_arm_road_height(self, time, t60, t61, road140))
             return GIC_ERROR_ROAD;
         const gic_real t141 = y[12] + (t5 * t136 + (t17 * t137 + t22 * t138));
         const gic_real t142 = y[14] + (t9 * t136 + (t18 * t137 + t23 * t138));
@@ -1801,7 +1801,7 @@ static int trailing_arm_measure(const trailing_arm *self, gic_real time, const g
         const gic_real t150 = m[133] * t63 + (y[16] * t64 - y[17] * R(-0.909701));
         const gic_real t151 = y[13] + (t13 * t148 + (t20 * t149 + t24 * t150));
         gic_real road152[3];
-        if (!road_height(self, time, t67, t68, road152))
+        if (!trailing_arm_road_height(self, time, t67, t68, road152))
             return GIC_ERROR_ROAD;
         const gic_real t153 = y[12] + (t5 * t148 + (t17 * t149 + t22 * t150));
         const gic_real t154 = y[14] + (t9 * t148 + (t18 * t149 + t23 * t150));
@@ -3164,7 +3164,7 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t272 = y[0] + (t269 * t260 + (t270 * R(-0.909701) + t271 * t254));
         const gic_real t273 = y[1] + (t252 * t260 + (t258 * R(-0.909701) + t264 * t254));
         gic_real road274[3];
-        if (!road_height(self, time, t272, t273, road274))
+        if (!trailing_arm_road_height(self, time, t272, t273, road274))
             return GIC_ERROR_ROAD;
         const gic_real t275 = y[12] + (t269 * t255 + (t270 * t261 + t271 * t265));
         const gic_real t276 = t250 + t251;
@@ -3197,7 +3197,7 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t303 = y[0] + (t269 * t299 + (t270 * R(0.909701) + t271 * t296));
         const gic_real t304 = y[1] + (t252 * t299 + (t258 * R(0.909701) + t264 * t296));
         gic_real road305[3];
-        if (!road_height(self, time, t303, t304, road305))
+        if (!trailing_arm_road_height(self, time, t303, t304, road305))
             return GIC_ERROR_ROAD;
         const gic_real t306 = y[12] + (t269 * t297 + (t270 * t300 + t271 * t301));
         const gic_real t307 = y[14] + (t249 * t297 + (t276 * t300 + t277 * t301));
@@ -3222,7 +3222,7 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t326 = y[0] + (t269 * t322 + (t270 * t318 + t271 * t319));
         const gic_real t327 = y[1] + (t252 * t322 + (t258 * t318 + t264 * t319));
         gic_real road328[3];
-        if (!road_height(self, time, t326, t327, road328))
+        if (!trailing_arm_road_height(self, time, t326, t327, road328))
             return GIC_ERROR_ROAD;
         const gic_real t329 = y[12] + (t269 * t320 + (t270 * t323 + t271 * t324));
         const gic_real t330 = y[14] + (t249 * t320 + (t276 * t323 + t277 * t324));
@@ -3248,7 +3248,7 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t350 = y[0] + (t269 * t346 + (t270 * t342 + t271 * t343));
         const gic_real t351 = y[1] + (t252 * t346 + (t258 * t342 + t264 * t343));
         gic_real road352[3];
-        if (!road_height(self, time, t350, t351, road352))
+        if (!trailing_arm_road_height(self, time, t350, t351, road352))
             return GIC_ERROR_ROAD;
         const gic_real t353 = y[12] + (t269 * t344 + (t270 * t347 + t271 * t348));
         const gic_real t354 = y[14] + (t249 * t344 + (t276 * t347 + t277 * t348));
@@ -3745,7 +3745,7 @@ static GIC_COLD int trailing_arm_energy(const trailing_arm *self, gic_real time,
         const gic_real t300 = y[0] + (t16 * t295 + (t28 * t291 + t34 * t292));
         const gic_real t301 = y[1] + (t12 * t295 + (t25 * t291 + t33 * t292));
         gic_real road302[3];
-        if (!road_height(self, time, t300, t301, road302))
+        if (!trailing_arm_road_height(self, time, t300, t301, road302))
             return GIC_ERROR_ROAD;
         const gic_real t303 = y[12] + (t16 * t293 + (t28 * t296 + t34 * t297));
         const gic_real t304 = t299 * road302[2] + t303 * road302[1] - t298;
@@ -3793,7 +3793,7 @@ static GIC_COLD int trailing_arm_energy(const trailing_arm *self, gic_real time,
         const gic_real t346 = y[0] + (t16 * t341 + (t28 * t337 + t34 * t338));
         const gic_real t347 = y[1] + (t12 * t341 + (t25 * t337 + t33 * t338));
         gic_real road348[3];
-        if (!road_height(self, time, t346, t347, road348))
+        if (!trailing_arm_road_height(self, time, t346, t347, road348))
             return GIC_ERROR_ROAD;
         const gic_real t349 = y[12] + (t16 * t339 + (t28 * t342 + t34 * t343));
         const gic_real t350 = t345 * road348[2] + t349 * road348[1] - t344;
@@ -3814,7 +3814,7 @@ static GIC_COLD int trailing_arm_energy(const trailing_arm *self, gic_real time,
         const gic_real t365 = y[0] + (t16 * t360 + (t28 * R(0.909701) + t34 * t357));
         const gic_real t366 = y[1] + (t12 * t360 + (t25 * R(0.909701) + t33 * t357));
         gic_real road367[3];
-        if (!road_height(self, time, t365, t366, road367))
+        if (!trailing_arm_road_height(self, time, t365, t366, road367))
             return GIC_ERROR_ROAD;
         const gic_real t368 = y[12] + (t16 * t358 + (t28 * t361 + t34 * t362));
         const gic_real t369 = t364 * road367[2] + t368 * road367[1] - t363;
@@ -3834,7 +3834,7 @@ static GIC_COLD int trailing_arm_energy(const trailing_arm *self, gic_real time,
         const gic_real t383 = y[0] + (t16 * t378 + (t28 * R(-0.909701) + t34 * t375));
         const gic_real t384 = y[1] + (t12 * t378 + (t25 * R(-0.909701) + t33 * t375));
         gic_real road385[3];
-        if (!road_height(self, time, t383, t384, road385))
+        if (!trailing_arm_road_height(self, time, t383, t384, road385))
             return GIC_ERROR_ROAD;
         const gic_real t386 = y[12] + (t16 * t376 + (t28 * t379 + t34 * t380));
         const gic_real t387 = t382 * road385[2] + t386 * road385[1] - t381;
@@ -3880,7 +3880,7 @@ static GIC_COLD gic_real trailing_arm_residual(const trailing_arm *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     trailing_arm_links links;
-    gic_real largest = R(0.0), one;
+    gic_real largest = R(0.0), one = R(0.0);
     (void)start;
     (void)one;
     links.cold = 0;
