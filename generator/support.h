@@ -4,6 +4,7 @@
 #ifndef GICGEN_SUPPORT_H
 #define GICGEN_SUPPORT_H
 
+#include <signal.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -81,6 +82,18 @@ enum {
 /* All bytes of a file ("-": standard input), terminated. Exits with a message when it can't be read, or has more than
  * `most` bytes: devices and pipes may never end. */
 char *file_read(Pool *pool, const char *path, size_t most, size_t *size);
+
+/* ---- temporary.c -------------------------------------------------------------------------------- */
+
+/* A new file beside `path`, open for writing, whose random name *name nobody has put there before: no link is followed.
+ * NULL with errno: it can't be made. The caller renames it to `path`, or removes it. */
+FILE *temporary_open(Pool *pool, const char *path, char **name);
+
+enum { SIGNAL_MOST = 64 /* the greatest number of a signal */ };
+
+/* The signals that would end the program where it stands, unless whoever started it wants them ignored (nohup): those
+ * that ask to stop, alarms and limits, and those of a write that fails. */
+sigset_t stop_signals(void);
 
 /* ---- diag.c: messages for people ---------------------------------------------------------------- */
 

@@ -15,7 +15,7 @@
 typedef struct Unfinished {
     Pool *pool; /* its own: it is needed when all others are gone */
     pid_t process;
-    const char *path;
+    char *path; /* NULL: there is none */
 } Unfinished;
 
 /* Whoever ends the program in the middle of a table, out of memory or a library that does, leaves none behind; and it
@@ -23,7 +23,7 @@ typedef struct Unfinished {
 static void remove_unfinished(int status, void *what)
 {
     Unfinished *unfinished = what;
-    const bool ours = unfinished->process == getpid();
+    const bool ours = unfinished->path && unfinished->process == getpid();
     if (ours && !unlink(unfinished->path) && status == 0) {
         fprintf(stderr, "%s: error: a library ended the program\n  remedy: is there memory enough?\n",
                 program_place().source->path);
@@ -32,13 +32,14 @@ static void remove_unfinished(int status, void *what)
     pool_free(unfinished->pool);
 }
 
-static void watch(const char *temporary)
+/* Memory for it is there before the file. */
+static Unfinished *watch(void)
 {
     Pool *pool = pool_new();
     Unfinished *unfinished = pool_alloc(pool, sizeof *unfinished);
-    *unfinished = (Unfinished){pool, getpid(), pool_print(pool, "%s", temporary)};
-    if (on_exit(remove_unfinished, unfinished))
-        pool_free(pool);
+    *unfinished = (Unfinished){pool, getpid(), NULL};
+    on_exit(remove_unfinished, unfinished); /* where that fails only these few bytes stay */
+    return unfinished;
 }
 
 static _Noreturn void write_fail(const Csv *csv, const char *what)
@@ -46,6 +47,8 @@ static _Noreturn void write_fail(const Csv *csv, const char *what)
     int reason = errno;
     if (csv->temporary)
         remove(csv->temporary);
+    if (reason == EPIPE)
+        interrupt_release(); /* nobody reads: end as any program would, without a word */
     diag_fail(program_place(), "make room, or choose another place with -o", "can't %s %s: %s", what,
               strcmp(csv->path, "-") ? csv->path : "to standard output", strerror(reason));
 }
@@ -58,12 +61,13 @@ Csv csv_open(Pool *pool, const char *path)
         if (!csv.file)
             diag_fail(program_place(), "choose another place with -o", "can't open %s: %s", path, strerror(errno));
     } else if (strcmp(path, "-")) {
-        const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid());
-        watch(temporary); /* which takes memory itself: there is nothing yet that could be left */
-        csv.file = fopen(temporary, "w");
-        if (!csv.file)
-            write_fail(&(Csv){.path = path, .temporary = temporary}, "create");
-        csv.temporary = temporary;
+        Unfinished *unfinished = watch();
+        csv.file = temporary_open(unfinished->pool, path, &unfinished->path);
+        if (!csv.file) {
+            unfinished->path = NULL;
+            write_fail(&(Csv){.path = path}, "create");
+        }
+        csv.temporary = pool_print(pool, "%s", unfinished->path);
     }
     return csv;
 }
