@@ -235,11 +235,11 @@ bool path_ends(const char *path, const char *end)
     return n > m && !strcmp(path + n - m, end);
 }
 
-/* A file on its way to its place. While there is one, signals that would leave it behind wait; a signal for a write that
- * fails would come before the message. */
+/* A file on its way to its place. While there is one, signals that would leave it behind wait; a signal for a write
+ * that fails would come before the message. */
 typedef struct Moving {
     const char *path;
-    char *name; /* NULL: none yet, or renamed */
+    char *name;                 /* NULL: none yet, or renamed */
     const struct Moving *other; /* that belongs to it; NULL: none */
 } Moving;
 

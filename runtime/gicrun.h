@@ -193,20 +193,23 @@ void csv_end_row(Csv *csv);
 void csv_close(Csv *csv);   /* exits with a message where not all could be written */
 void csv_abandon(Csv *csv); /* instead of csv_close: no results are left */
 
-/* A table of numbers with named columns; units in brackets behind the names are dropped. */
+/* A table of numbers with named columns. */
 typedef struct CsvTable {
     const Source *source;
     int columns, rows;
-    const char **name;
-    size_t *at;    /* where the names begin in the source */
-    double *value; /* [rows][columns] */
-    size_t *line;  /* [rows] where each begins in the source */
+    const char **name, **unit; /* unit: in brackets behind the name, NULL: none */
+    size_t *at;                /* where the names begin in the source */
+    double *value;             /* [rows][columns] */
+    size_t *line;              /* [rows] where each begins in the source */
 } CsvTable;
 
-/* header: the first line that messages suggest. */
-const CsvTable *csv_read(Pool *pool, const char *path, const char *header);
+/* header: the first line that messages suggest; by: the file that names this one, NULL: the user does. Where a file
+ * names it and its first line has none of the columns, no message shows what stands there. */
+const CsvTable *csv_read(Pool *pool, const char *path, const char *header, const Source *by);
 Place csv_place(const CsvTable *table, int row);
 Place csv_name_place(const CsvTable *table, int column);
+/* End with a message where a column states another unit than the one that its numbers are taken for. */
+void csv_check_unit(Pool *pool, const CsvTable *table, int column, const char *unit);
 
 /* ---- plot.c --------------------------------------------------------------------------------------------- */
 

@@ -62,7 +62,8 @@ static bool take_line(Journal *journal, const char *line)
 static _Noreturn void refuse_foreign(const Journal *journal)
 {
     diag_fail(program_place(), "remove it, or choose another place with -o",
-              "%s is of another sweep: another model, scene, range or version", journal->path);
+              "%s is of another sweep: another model, scene, file that they name, range, compiler or program",
+              journal->path);
 }
 
 /* What is in the file: whole lines. */

@@ -39,6 +39,77 @@ check "a journal: no link is followed" eval \
     '! "$gicsweep" -q pendulum.veh pendulum.scene --vary angle=0:1:2 -o sweep.csv 2>"$work/err" && [ "$(cat "$work/victim")" = mine ]'
 rm -f sweep.csv.journal
 
+# ---- outputs over inputs
+
+mkdir parts
+sed -n '/^gicgen/p; /^bodies/,$p' pendulum.veh >parts/rod.veh
+sed '/^bodies/,$d' pendulum.veh >whole.veh
+echo 'include: parts/rod.veh' >>whole.veh
+printf '%s\n' 'angle,angle.rate' '1,0' >states.csv
+printf '%s\n' 'x,height' '0,0' '1,0' >road.csv
+sed '/^road/d' pendulum.scene >rough.scene
+echo 'road: {type: table, file: road.csv}' >>rough.scene
+ln whole.veh linked.csv
+# kept FILE COMMAND...: refused, and FILE is as it was
+kept() {
+    file=$1
+    shift
+    cp "$file" "$work/before"
+    "$@" >"$work/out" 2>"$work/err"
+    [ $? -eq 1 ] && cmp -s "$file" "$work/before" && grep -q "error: this input would be overwritten by the output" "$work/err"
+}
+check "results over the scene" kept rough.scene "$gicrun" -q whole.veh rough.scene -o rough.scene
+check "results over the model" kept whole.veh "$gicrun" -q whole.veh rough.scene -o whole.veh
+check "results over the model by another name" kept whole.veh "$gicrun" -q whole.veh rough.scene -o linked.csv
+check "results over an included file" kept parts/rod.veh "$gicrun" -q whole.veh rough.scene -o ./parts/../parts/rod.veh
+check "results over the road" kept road.csv "$gicrun" -q whole.veh rough.scene -o road.csv
+check "evaluations over the states" kept states.csv "$gicrun" -q --eval states.csv whole.veh -o states.csv
+cp whole.veh whole.c
+check "code over the model" kept whole.c "$gicgen" whole.c -o whole.c
+cp whole.veh whole.h
+check "a header over the model" kept whole.h "$gicgen" whole.h -o whole.c
+check "a sweep over the road" kept road.csv "$gicsweep" -q whole.veh rough.scene --vary angle=0:1:2 -o road.csv
+
+# ---- files that are something else: their place is told, not what stands there
+
+printf '%s\n' 'root:secret:0:0:root:/root:/bin/sh' 'daemon:secret:1:1:' '[secret]' >passwd
+# told COMMAND...: refused without a word of what stands there
+told() {
+    "$@" >"$work/out" 2>"$work/err"
+    [ $? -eq 1 ] && grep -q 'passwd' "$work/err" && ! grep -q 'secret\|daemon' "$work/err"
+}
+sed '/^include/d' whole.veh >foreign.veh
+echo 'include: passwd' >>foreign.veh
+check "an included file that is no model" told "$gicgen" --sequence foreign.veh
+sed 's/road.csv/passwd/' rough.scene >foreign.scene
+check "a road that is no table" told "$gicrun" -q whole.veh foreign.scene
+sed '/^road/d' rough.scene >foreign.scene
+echo 'road: {type: grid, file: passwd}' >>foreign.scene
+check "nor a height field" told "$gicrun" -q whole.veh foreign.scene
+printf '%s\n' 'gicgen: 1' 'model: cart' 'base: box' 'bodies:' '  box: {mass: 10, com: [0, 0, 1], inertia: [10, 10, 10]}' \
+    'tires:' '  all: {file: passwd}' >tire.veh
+check "a tire that is no tire" told "$gicgen" --sequence tire.veh
+for device in /dev/zero /dev/tty /dev/full; do
+    sed "s|road.csv|$device|" rough.scene >foreign.scene
+    check "$device as a road" eval '! timeout 20 "$gicrun" -q whole.veh foreign.scene >"$work/out" 2>"$work/err" && says "it is a device"'
+    { sed '/^include/d' whole.veh && echo "include: $device"; } >foreign.veh
+    check "$device included" eval '! timeout 20 "$gicgen" --sequence foreign.veh >"$work/out" 2>"$work/err" && says "it is a device"'
+done
+
+# ---- tables
+
+# table HEADER TEXT: states with that header are refused with that text
+table() {
+    printf "$1\\n1,0\\n" >states.csv
+    "$gicrun" -q --eval states.csv whole.veh >"$work/out" 2>"$work/err"
+    [ $? -eq 1 ] && says "$2"
+}
+check "degrees are no radians" table 'angle [deg],angle.rate' "column 'angle' is in deg, and its numbers would be taken for rad"
+check "nor are degrees a second" table 'angle [rad],angle.rate [deg/s]' "column 'angle.rate' is in deg/s"
+check "a NUL byte in the header" table 'angle\000x,angle.rate' 'a NUL byte'
+printf '%s\n' 'angle [rad],"angle.rate [rad/s]"' '1,0' >states.csv
+check "its own units" "$gicrun" -q --eval states.csv whole.veh -o out.csv
+
 # ---- signals
 
 sed 's/^duration:.*/duration: 1000000/; s/^output_step:.*/output_step: 10/' pendulum.scene >long.scene
