@@ -135,6 +135,8 @@ void profile_at(const Profile *profile, double time, double out[3]);
 void scene_inputs(void *user, int32_t lane, double time, double *input);
 /* The first time after `time` at which a profile is less smooth than elsewhere, or INFINITY. */
 double scene_next_kink(const Scene *scene, double time);
+/* The longest step (s) that misses no period of a sine among the inputs, or INFINITY. */
+double scene_longest_step(const Scene *scene);
 /* The time up to which all inputs surely stay as they are at `time`, `time` itself where they may move. */
 double scene_quiet_until(const Scene *scene, double time);
 /* scene_outputs.c: columns, curves and panels of a scene. */
