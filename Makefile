@@ -204,7 +204,8 @@ $(driving:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/%.o $(driven:%=$
 
 batched := hmmwv steered quarter_car
 
-$(code)/%_batch.c: $(code)/%.c
+# a static rule: as an implicit one it competes with the one above, and versions of make choose differently
+$(batched:%=$(code)/%_batch.c): $(code)/%_batch.c: $(code)/%.c
 	$(BUILD)/gicgen --batch 8 $(firstword $(wildcard $(code)/$*.veh models/$*.veh)) -o $@
 
 # vectors are passed between functions of one file alone, so that an older gcc's way to do it is no matter

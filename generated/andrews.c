@@ -1364,7 +1364,7 @@ static const gic_real andrews_piece[ANDREWS_COORDINATE_ROOM] = {
 static int andrews_recover_piece(andrews *self, andrews_links *links, const gic_real *old, gic_real *start)
 {
     const gic_real *const xd = self->xd;
-    int status;
+    int status = GIC_OK; /* stays so where no subset can fail */
     (void)links;
     (void)old;
     (void)start;
@@ -2587,7 +2587,7 @@ static GIC_COLD gic_real andrews_residual(const andrews *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     andrews_links links;
-    gic_real largest = R(0.0), one;
+    gic_real largest = R(0.0), one = R(0.0);
     (void)start;
     (void)one;
     links.cold = 0;

@@ -1651,7 +1651,7 @@ static const gic_real five_link_piece[FIVE_LINK_COORDINATE_ROOM] = {
 static int five_link_recover_piece(five_link *self, five_link_links *links, const gic_real *old, gic_real *start)
 {
     const gic_real *const xd = self->xd;
-    int status;
+    int status = GIC_OK; /* stays so where no subset can fail */
     (void)links;
     (void)old;
     (void)start;
@@ -1861,7 +1861,7 @@ static int five_link_settle(five_link *self, gic_real *y)
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
-static int road_height(const five_link *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
+static int five_link_road_height(const five_link *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
     const gic_road *road = self->head.road;
     out[0] = out[1] = out[2] = R(0.0);
@@ -2096,7 +2096,7 @@ static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gi
         const gic_real t178 = y[0] + (t152 * t169 + (t176 * t163 + t177 * t164));
         const gic_real t179 = y[1] + (t160 * t169 + (t167 * t163 + t173 * t164));
         gic_real road180[3];
-        if (!road_height(self, time, t178, t179, road180))
+        if (!five_link_road_height(self, time, t178, t179, road180))
             return GIC_ERROR_ROAD;
         const gic_real t181 = y[12] + (t152 * t165 + (t176 * t170 + t177 * t174));
         const gic_real t182 = t158 + t159;
@@ -2122,7 +2122,7 @@ static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gi
         const gic_real t202 = y[0] + (t152 * t198 + (t176 * t194 + t177 * t195));
         const gic_real t203 = y[1] + (t160 * t198 + (t167 * t194 + t173 * t195));
         gic_real road204[3];
-        if (!road_height(self, time, t202, t203, road204))
+        if (!five_link_road_height(self, time, t202, t203, road204))
             return GIC_ERROR_ROAD;
         const gic_real t205 = y[12] + (t152 * t196 + (t176 * t199 + t177 * t200));
         const gic_real t206 = y[14] + (t157 * t196 + (t182 * t199 + t183 * t200));
@@ -2146,7 +2146,7 @@ static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gi
         const gic_real t224 = y[0] + (t152 * t220 + (t176 * t216 + t177 * t217));
         const gic_real t225 = y[1] + (t160 * t220 + (t167 * t216 + t173 * t217));
         gic_real road226[3];
-        if (!road_height(self, time, t224, t225, road226))
+        if (!five_link_road_height(self, time, t224, t225, road226))
             return GIC_ERROR_ROAD;
         const gic_real t227 = y[12] + (t152 * t218 + (t176 * t221 + t177 * t222));
         const gic_real t228 = y[14] + (t157 * t218 + (t182 * t221 + t183 * t222));
@@ -2170,7 +2170,7 @@ static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gi
         const gic_real t246 = y[0] + (t152 * t242 + (t176 * t238 + t177 * t239));
         const gic_real t247 = y[1] + (t160 * t242 + (t167 * t238 + t173 * t239));
         gic_real road248[3];
-        if (!road_height(self, time, t246, t247, road248))
+        if (!five_link_road_height(self, time, t246, t247, road248))
             return GIC_ERROR_ROAD;
         const gic_real t249 = y[12] + (t152 * t240 + (t176 * t243 + t177 * t244));
         const gic_real t250 = y[14] + (t157 * t240 + (t182 * t243 + t183 * t244));
@@ -2434,7 +2434,7 @@ static int five_link_measure(const five_link *self, gic_real time, const gic_rea
         const gic_real t108 = m[163] * t28 - m[164] * t32 + (y[16] * t29 - y[17] * t33);
         const gic_real t109 = y[13] + (t13 * t106 + (t20 * t107 + t24 * t108));
         gic_real road110[3];
-        if (!road_height(self, time, t38, t39, road110))
+        if (!five_link_road_height(self, time, t38, t39, road110))
             return GIC_ERROR_ROAD;
         const gic_real t111 = y[12] + (t5 * t106 + (t17 * t107 + t22 * t108));
         const gic_real t112 = y[14] + (t9 * t106 + (t18 * t107 + t23 * t108));
@@ -2448,7 +2448,7 @@ static int five_link_measure(const five_link *self, gic_real time, const gic_rea
         const gic_real t120 = m[199] * t43 - m[200] * t47 + (y[16] * t44 - y[17] * t48);
         const gic_real t121 = y[13] + (t13 * t118 + (t20 * t119 + t24 * t120));
         gic_real road122[3];
-        if (!road_height(self, time, t53, t54, road122))
+        if (!five_link_road_height(self, time, t53, t54, road122))
             return GIC_ERROR_ROAD;
         const gic_real t123 = y[12] + (t5 * t118 + (t17 * t119 + t22 * t120));
         const gic_real t124 = y[14] + (t9 * t118 + (t18 * t119 + t23 * t120));
@@ -2462,7 +2462,7 @@ static int five_link_measure(const five_link *self, gic_real time, const gic_rea
         const gic_real t132 = m[105] + (m[103] * t58 - m[104] * t62) + (y[16] * t59 - y[17] * t63);
         const gic_real t133 = y[13] + (t13 * t130 + (t20 * t131 + t24 * t132));
         gic_real road134[3];
-        if (!road_height(self, time, t68, t69, road134))
+        if (!five_link_road_height(self, time, t68, t69, road134))
             return GIC_ERROR_ROAD;
         const gic_real t135 = y[12] + (t5 * t130 + (t17 * t131 + t22 * t132));
         const gic_real t136 = y[14] + (t9 * t130 + (t18 * t131 + t23 * t132));
@@ -2476,7 +2476,7 @@ static int five_link_measure(const five_link *self, gic_real time, const gic_rea
         const gic_real t144 = m[135] + (m[133] * t73 - m[134] * t77) + (y[16] * t74 - y[17] * t78);
         const gic_real t145 = y[13] + (t13 * t142 + (t20 * t143 + t24 * t144));
         gic_real road146[3];
-        if (!road_height(self, time, t83, t84, road146))
+        if (!five_link_road_height(self, time, t83, t84, road146))
             return GIC_ERROR_ROAD;
         const gic_real t147 = y[12] + (t5 * t142 + (t17 * t143 + t22 * t144));
         const gic_real t148 = y[14] + (t9 * t142 + (t18 * t143 + t23 * t144));
@@ -3894,7 +3894,7 @@ static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, cons
         const gic_real t310 = y[0] + (t307 * t298 + (t308 * t291 + t309 * t292));
         const gic_real t311 = y[1] + (t289 * t298 + (t296 * t291 + t302 * t292));
         gic_real road312[3];
-        if (!road_height(self, time, t310, t311, road312))
+        if (!five_link_road_height(self, time, t310, t311, road312))
             return GIC_ERROR_ROAD;
         const gic_real t313 = y[12] + (t307 * t293 + (t308 * t299 + t309 * t303));
         const gic_real t314 = t287 + t288;
@@ -3922,7 +3922,7 @@ static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, cons
         const gic_real t336 = y[0] + (t307 * t332 + (t308 * t328 + t309 * t329));
         const gic_real t337 = y[1] + (t289 * t332 + (t296 * t328 + t302 * t329));
         gic_real road338[3];
-        if (!road_height(self, time, t336, t337, road338))
+        if (!five_link_road_height(self, time, t336, t337, road338))
             return GIC_ERROR_ROAD;
         const gic_real t339 = y[12] + (t307 * t330 + (t308 * t333 + t309 * t334));
         const gic_real t340 = y[14] + (t286 * t330 + (t314 * t333 + t315 * t334));
@@ -3948,7 +3948,7 @@ static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, cons
         const gic_real t360 = y[0] + (t307 * t356 + (t308 * t352 + t309 * t353));
         const gic_real t361 = y[1] + (t289 * t356 + (t296 * t352 + t302 * t353));
         gic_real road362[3];
-        if (!road_height(self, time, t360, t361, road362))
+        if (!five_link_road_height(self, time, t360, t361, road362))
             return GIC_ERROR_ROAD;
         const gic_real t363 = y[12] + (t307 * t354 + (t308 * t357 + t309 * t358));
         const gic_real t364 = y[14] + (t286 * t354 + (t314 * t357 + t315 * t358));
@@ -3974,7 +3974,7 @@ static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, cons
         const gic_real t384 = y[0] + (t307 * t380 + (t308 * t376 + t309 * t377));
         const gic_real t385 = y[1] + (t289 * t380 + (t296 * t376 + t302 * t377));
         gic_real road386[3];
-        if (!road_height(self, time, t384, t385, road386))
+        if (!five_link_road_height(self, time, t384, t385, road386))
             return GIC_ERROR_ROAD;
         const gic_real t387 = y[12] + (t307 * t378 + (t308 * t381 + t309 * t382));
         const gic_real t388 = y[14] + (t286 * t378 + (t314 * t381 + t315 * t382));
@@ -4475,7 +4475,7 @@ static GIC_COLD int five_link_energy(const five_link *self, gic_real time, const
         const gic_real t346 = y[0] + (t16 * t341 + (t28 * t337 + t34 * t338));
         const gic_real t347 = y[1] + (t12 * t341 + (t25 * t337 + t33 * t338));
         gic_real road348[3];
-        if (!road_height(self, time, t346, t347, road348))
+        if (!five_link_road_height(self, time, t346, t347, road348))
             return GIC_ERROR_ROAD;
         const gic_real t349 = y[12] + (t16 * t339 + (t28 * t342 + t34 * t343));
         const gic_real t350 = t345 * road348[2] + t349 * road348[1] - t344;
@@ -4499,7 +4499,7 @@ static GIC_COLD int five_link_energy(const five_link *self, gic_real time, const
         const gic_real t368 = y[0] + (t16 * t363 + (t28 * t359 + t34 * t360));
         const gic_real t369 = y[1] + (t12 * t363 + (t25 * t359 + t33 * t360));
         gic_real road370[3];
-        if (!road_height(self, time, t368, t369, road370))
+        if (!five_link_road_height(self, time, t368, t369, road370))
             return GIC_ERROR_ROAD;
         const gic_real t371 = y[12] + (t16 * t361 + (t28 * t364 + t34 * t365));
         const gic_real t372 = t367 * road370[2] + t371 * road370[1] - t366;
@@ -4522,7 +4522,7 @@ static GIC_COLD int five_link_energy(const five_link *self, gic_real time, const
         const gic_real t389 = y[0] + (t16 * t384 + (t28 * t380 + t34 * t381));
         const gic_real t390 = y[1] + (t12 * t384 + (t25 * t380 + t33 * t381));
         gic_real road391[3];
-        if (!road_height(self, time, t389, t390, road391))
+        if (!five_link_road_height(self, time, t389, t390, road391))
             return GIC_ERROR_ROAD;
         const gic_real t392 = y[12] + (t16 * t382 + (t28 * t385 + t34 * t386));
         const gic_real t393 = t388 * road391[2] + t392 * road391[1] - t387;
@@ -4544,7 +4544,7 @@ static GIC_COLD int five_link_energy(const five_link *self, gic_real time, const
         const gic_real t409 = y[0] + (t16 * t404 + (t28 * t400 + t34 * t401));
         const gic_real t410 = y[1] + (t12 * t404 + (t25 * t400 + t33 * t401));
         gic_real road411[3];
-        if (!road_height(self, time, t409, t410, road411))
+        if (!five_link_road_height(self, time, t409, t410, road411))
             return GIC_ERROR_ROAD;
         const gic_real t412 = y[12] + (t16 * t402 + (t28 * t405 + t34 * t406));
         const gic_real t413 = t408 * road411[2] + t412 * road411[1] - t407;
@@ -4590,7 +4590,7 @@ static GIC_COLD gic_real five_link_residual(const five_link *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     five_link_links links;
-    gic_real largest = R(0.0), one;
+    gic_real largest = R(0.0), one = R(0.0);
     (void)start;
     (void)one;
     links.cold = 0;

@@ -986,7 +986,7 @@ static const gic_real hmmwv_piece[HMMWV_COORDINATE_ROOM] = {
 static int hmmwv_recover_piece(hmmwv *self, hmmwv_links *links, const gic_real *old, gic_real *start)
 {
     const gic_real *const xd = self->xd;
-    int status;
+    int status = GIC_OK; /* stays so where no subset can fail */
     (void)links;
     (void)old;
     (void)start;
@@ -1228,7 +1228,7 @@ static int hmmwv_settle(hmmwv *self, gic_real *y)
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
-static int road_height(const hmmwv *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
+static int hmmwv_road_height(const hmmwv *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
     const gic_road *road = self->head.road;
     out[0] = out[1] = out[2] = R(0.0);
@@ -1458,7 +1458,7 @@ static GIC_APART int hmmwv_dynamics(hmmwv *self, gic_real time, const gic_real *
         const gic_real t175 = y[0] + (t150 * t165 + (t172 * t158 + t174 * t159));
         const gic_real t176 = y[1] + (t156 * t165 + (t163 * t158 + t169 * t159));
         gic_real road177[3];
-        if (!road_height(self, time, t175, t176, road177))
+        if (!hmmwv_road_height(self, time, t175, t176, road177))
             return GIC_ERROR_ROAD;
         const gic_real t178 = y[12] + (t150 * t160 + (t172 * t166 + t174 * t170));
         const gic_real t179 = R(1.0) - (t161 + t173);
@@ -1486,7 +1486,7 @@ static GIC_APART int hmmwv_dynamics(hmmwv *self, gic_real time, const gic_real *
         const gic_real t201 = y[0] + (t150 * t197 + (t172 * t193 + t174 * t194));
         const gic_real t202 = y[1] + (t156 * t197 + (t163 * t193 + t169 * t194));
         gic_real road203[3];
-        if (!road_height(self, time, t201, t202, road203))
+        if (!hmmwv_road_height(self, time, t201, t202, road203))
             return GIC_ERROR_ROAD;
         const gic_real t204 = y[12] + (t150 * t195 + (t172 * t198 + t174 * t199));
         const gic_real t205 = y[14] + (t179 * t195 + (t155 * t198 + t180 * t199));
@@ -1513,7 +1513,7 @@ static GIC_APART int hmmwv_dynamics(hmmwv *self, gic_real time, const gic_real *
         const gic_real t226 = R(-1.653405) * t174;
         const gic_real t227 = R(-1.653405) * t169;
         gic_real road228[3];
-        if (!road_height(self, time, y[0] + (t150 * t222 + (t172 * t217 + t226)), y[1] + (t156 * t222 + (t163 * t217 + t227)), road228))
+        if (!hmmwv_road_height(self, time, y[0] + (t150 * t222 + (t172 * t217 + t226)), y[1] + (t156 * t222 + (t163 * t217 + t227)), road228))
             return GIC_ERROR_ROAD;
         const gic_real t229 = y[12] + (t150 * t219 + (t172 * t223 + t174 * t224));
         const gic_real t230 = y[14] + (t179 * t219 + (t155 * t223 + t180 * t224));
@@ -1535,7 +1535,7 @@ static GIC_APART int hmmwv_dynamics(hmmwv *self, gic_real time, const gic_real *
         const gic_real t246 = y[16] * t244 - y[17] * t241;
         const gic_real t247 = y[13] + (t156 * t242 + (t163 * t245 + t169 * t246));
         gic_real road248[3];
-        if (!road_height(self, time, y[0] + (t150 * t244 + (t226 + t172 * t241)), y[1] + (t156 * t244 + (t227 + t163 * t241)), road248))
+        if (!hmmwv_road_height(self, time, y[0] + (t150 * t244 + (t226 + t172 * t241)), y[1] + (t156 * t244 + (t227 + t163 * t241)), road248))
             return GIC_ERROR_ROAD;
         const gic_real t249 = y[12] + (t150 * t242 + (t172 * t245 + t174 * t246));
         const gic_real t250 = y[14] + (t179 * t242 + (t155 * t245 + t180 * t246));
@@ -1777,7 +1777,7 @@ static int hmmwv_measure(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t93 = m[163] * t28 - m[164] * t32 + (y[16] * t29 - y[17] * t33);
         const gic_real t94 = y[13] + (t13 * t91 + (t20 * t92 + t24 * t93));
         gic_real road95[3];
-        if (!road_height(self, time, t38, t39, road95))
+        if (!hmmwv_road_height(self, time, t38, t39, road95))
             return GIC_ERROR_ROAD;
         const gic_real t96 = y[12] + (t5 * t91 + (t17 * t92 + t22 * t93));
         const gic_real t97 = y[14] + (t9 * t91 + (t18 * t92 + t23 * t93));
@@ -1791,7 +1791,7 @@ static int hmmwv_measure(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t105 = m[199] * t43 - m[200] * t47 + (y[16] * t44 - y[17] * t48);
         const gic_real t106 = y[13] + (t13 * t103 + (t20 * t104 + t24 * t105));
         gic_real road107[3];
-        if (!road_height(self, time, t53, t54, road107))
+        if (!hmmwv_road_height(self, time, t53, t54, road107))
             return GIC_ERROR_ROAD;
         const gic_real t108 = y[12] + (t5 * t103 + (t17 * t104 + t22 * t105));
         const gic_real t109 = y[14] + (t9 * t103 + (t18 * t104 + t23 * t105));
@@ -1807,7 +1807,7 @@ static int hmmwv_measure(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t119 = y[16] * t58 - y[17] * t61;
         const gic_real t120 = y[13] + (t13 * t116 + (t20 * t118 + t24 * t119));
         gic_real road121[3];
-        if (!road_height(self, time, t63, t65, road121))
+        if (!hmmwv_road_height(self, time, t63, t65, road121))
             return GIC_ERROR_ROAD;
         const gic_real t122 = y[12] + (t5 * t116 + (t17 * t118 + t22 * t119));
         const gic_real t123 = y[14] + (t9 * t116 + (t18 * t118 + t23 * t119));
@@ -1821,7 +1821,7 @@ static int hmmwv_measure(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t131 = y[16] * t70 - y[17] * t73;
         const gic_real t132 = y[13] + (t13 * t129 + (t20 * t130 + t24 * t131));
         gic_real road133[3];
-        if (!road_height(self, time, t74, t75, road133))
+        if (!hmmwv_road_height(self, time, t74, t75, road133))
             return GIC_ERROR_ROAD;
         const gic_real t134 = y[12] + (t5 * t129 + (t17 * t130 + t22 * t131));
         const gic_real t135 = y[14] + (t9 * t129 + (t18 * t130 + t23 * t131));
@@ -3333,7 +3333,7 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t321 = t311 - t312;
         const gic_real t322 = R(-1.653405) * t313;
         gic_real road323[3];
-        if (!road_height(self, time, y[0] + (t318 * t309 + (t320 + t321 * t303)), y[1] + (t302 * t309 + (t322 + t307 * t303)), road323))
+        if (!hmmwv_road_height(self, time, y[0] + (t318 * t309 + (t320 + t321 * t303)), y[1] + (t302 * t309 + (t322 + t307 * t303)), road323))
             return GIC_ERROR_ROAD;
         const gic_real t324 = y[12] + (t318 * t304 + (t321 * t310 + t319 * t314));
         const gic_real t325 = t300 + t301;
@@ -3357,7 +3357,7 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t343 = y[16] * t341 - y[17] * t338;
         const gic_real t344 = y[13] + (t302 * t339 + (t307 * t342 + t313 * t343));
         gic_real road345[3];
-        if (!road_height(self, time, y[0] + (t318 * t341 + (t321 * t338 + t320)), y[1] + (t302 * t341 + (t307 * t338 + t322)), road345))
+        if (!hmmwv_road_height(self, time, y[0] + (t318 * t341 + (t321 * t338 + t320)), y[1] + (t302 * t341 + (t307 * t338 + t322)), road345))
             return GIC_ERROR_ROAD;
         const gic_real t346 = y[12] + (t318 * t339 + (t321 * t342 + t319 * t343));
         const gic_real t347 = y[14] + (t299 * t339 + (t325 * t342 + t326 * t343));
@@ -3382,7 +3382,7 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t366 = y[0] + (t318 * t362 + (t321 * t358 + t319 * t359));
         const gic_real t367 = y[1] + (t302 * t362 + (t307 * t358 + t313 * t359));
         gic_real road368[3];
-        if (!road_height(self, time, t366, t367, road368))
+        if (!hmmwv_road_height(self, time, t366, t367, road368))
             return GIC_ERROR_ROAD;
         const gic_real t369 = y[12] + (t318 * t360 + (t321 * t363 + t319 * t364));
         const gic_real t370 = y[14] + (t299 * t360 + (t325 * t363 + t326 * t364));
@@ -3408,7 +3408,7 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t390 = y[0] + (t318 * t386 + (t321 * t382 + t319 * t383));
         const gic_real t391 = y[1] + (t302 * t386 + (t307 * t382 + t313 * t383));
         gic_real road392[3];
-        if (!road_height(self, time, t390, t391, road392))
+        if (!hmmwv_road_height(self, time, t390, t391, road392))
             return GIC_ERROR_ROAD;
         const gic_real t393 = y[12] + (t318 * t384 + (t321 * t387 + t319 * t388));
         const gic_real t394 = y[14] + (t299 * t384 + (t325 * t387 + t326 * t388));
@@ -3947,7 +3947,7 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t363 = y[0] + (t16 * t358 + (t28 * t354 + t34 * t355));
         const gic_real t364 = y[1] + (t12 * t358 + (t25 * t354 + t33 * t355));
         gic_real road365[3];
-        if (!road_height(self, time, t363, t364, road365))
+        if (!hmmwv_road_height(self, time, t363, t364, road365))
             return GIC_ERROR_ROAD;
         const gic_real t366 = y[12] + (t16 * t356 + (t28 * t359 + t34 * t360));
         const gic_real t367 = t362 * road365[2] + t366 * road365[1] - t361;
@@ -3971,7 +3971,7 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t385 = y[0] + (t16 * t380 + (t28 * t376 + t34 * t377));
         const gic_real t386 = y[1] + (t12 * t380 + (t25 * t376 + t33 * t377));
         gic_real road387[3];
-        if (!road_height(self, time, t385, t386, road387))
+        if (!hmmwv_road_height(self, time, t385, t386, road387))
             return GIC_ERROR_ROAD;
         const gic_real t388 = y[12] + (t16 * t378 + (t28 * t381 + t34 * t382));
         const gic_real t389 = t384 * road387[2] + t388 * road387[1] - t383;
@@ -3992,7 +3992,7 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t404 = R(-1.653405) * t34;
         const gic_real t405 = R(-1.653405) * t33;
         gic_real road406[3];
-        if (!road_height(self, time, y[0] + (t16 * t399 + (t28 * t396 + t404)), y[1] + (t12 * t399 + (t25 * t396 + t405)), road406))
+        if (!hmmwv_road_height(self, time, y[0] + (t16 * t399 + (t28 * t396 + t404)), y[1] + (t12 * t399 + (t25 * t396 + t405)), road406))
             return GIC_ERROR_ROAD;
         const gic_real t407 = y[12] + (t16 * t397 + (t28 * t400 + t34 * t401));
         const gic_real t408 = t403 * road406[2] + t407 * road406[1] - t402;
@@ -4010,7 +4010,7 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t420 = y[14] + (t8 * t415 + (t23 * t418 + t32 * t419));
         const gic_real t421 = y[13] + (t12 * t415 + (t25 * t418 + t33 * t419));
         gic_real road422[3];
-        if (!road_height(self, time, y[0] + (t16 * t417 + (t404 + t28 * t414)), y[1] + (t12 * t417 + (t405 + t25 * t414)), road422))
+        if (!hmmwv_road_height(self, time, y[0] + (t16 * t417 + (t404 + t28 * t414)), y[1] + (t12 * t417 + (t405 + t25 * t414)), road422))
             return GIC_ERROR_ROAD;
         const gic_real t423 = y[12] + (t16 * t415 + (t28 * t418 + t34 * t419));
         const gic_real t424 = t421 * road422[2] + t423 * road422[1] - t420;
@@ -4056,7 +4056,7 @@ static GIC_COLD gic_real hmmwv_residual(const hmmwv *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     hmmwv_links links;
-    gic_real largest = R(0.0), one;
+    gic_real largest = R(0.0), one = R(0.0);
     (void)start;
     (void)one;
     links.cold = 0;

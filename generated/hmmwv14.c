@@ -1518,7 +1518,7 @@ static const gic_real hmmwv14_piece[HMMWV14_COORDINATE_ROOM] = {
 static int hmmwv14_recover_piece(hmmwv14 *self, hmmwv14_links *links, const gic_real *old, gic_real *start)
 {
     const gic_real *const xd = self->xd;
-    int status;
+    int status = GIC_OK; /* stays so where no subset can fail */
     (void)links;
     (void)old;
     (void)start;
@@ -1760,7 +1760,7 @@ static int hmmwv14_settle(hmmwv14 *self, gic_real *y)
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
-static int road_height(const hmmwv14 *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
+static int hmmwv14_road_height(const hmmwv14 *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
     const gic_road *road = self->head.road;
     out[0] = out[1] = out[2] = R(0.0);
@@ -2010,7 +2010,7 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t193 = y[0] + (t167 * t184 + (t191 * t178 + t192 * t179));
         const gic_real t194 = y[1] + (t175 * t184 + (t182 * t178 + t188 * t179));
         gic_real road195[3];
-        if (!road_height(self, time, t193, t194, road195))
+        if (!hmmwv14_road_height(self, time, t193, t194, road195))
             return GIC_ERROR_ROAD;
         const gic_real t196 = y[12] + (t167 * t180 + (t191 * t185 + t192 * t189));
         const gic_real t197 = t173 + t174;
@@ -2036,7 +2036,7 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t217 = y[0] + (t167 * t213 + (t191 * t209 + t192 * t210));
         const gic_real t218 = y[1] + (t175 * t213 + (t182 * t209 + t188 * t210));
         gic_real road219[3];
-        if (!road_height(self, time, t217, t218, road219))
+        if (!hmmwv14_road_height(self, time, t217, t218, road219))
             return GIC_ERROR_ROAD;
         const gic_real t220 = y[12] + (t167 * t211 + (t191 * t214 + t192 * t215));
         const gic_real t221 = y[14] + (t172 * t211 + (t197 * t214 + t198 * t215));
@@ -2060,7 +2060,7 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t239 = y[0] + (t167 * t235 + (t191 * t231 + t192 * t232));
         const gic_real t240 = y[1] + (t175 * t235 + (t182 * t231 + t188 * t232));
         gic_real road241[3];
-        if (!road_height(self, time, t239, t240, road241))
+        if (!hmmwv14_road_height(self, time, t239, t240, road241))
             return GIC_ERROR_ROAD;
         const gic_real t242 = y[12] + (t167 * t233 + (t191 * t236 + t192 * t237));
         const gic_real t243 = y[14] + (t172 * t233 + (t197 * t236 + t198 * t237));
@@ -2084,7 +2084,7 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t261 = y[0] + (t167 * t257 + (t191 * t253 + t192 * t254));
         const gic_real t262 = y[1] + (t175 * t257 + (t182 * t253 + t188 * t254));
         gic_real road263[3];
-        if (!road_height(self, time, t261, t262, road263))
+        if (!hmmwv14_road_height(self, time, t261, t262, road263))
             return GIC_ERROR_ROAD;
         const gic_real t264 = y[12] + (t167 * t255 + (t191 * t258 + t192 * t259));
         const gic_real t265 = y[14] + (t172 * t255 + (t197 * t258 + t198 * t259));
@@ -2437,7 +2437,7 @@ static int hmmwv14_measure(const hmmwv14 *self, gic_real time, const gic_real *y
         const gic_real t130 = m[199] * t28 - m[200] * t32 + (y[16] * t29 - y[17] * t33);
         const gic_real t131 = y[13] + (t13 * t128 + (t20 * t129 + t24 * t130));
         gic_real road132[3];
-        if (!road_height(self, time, t38, t39, road132))
+        if (!hmmwv14_road_height(self, time, t38, t39, road132))
             return GIC_ERROR_ROAD;
         const gic_real t133 = y[12] + (t5 * t128 + (t17 * t129 + t22 * t130));
         const gic_real t134 = y[14] + (t9 * t128 + (t18 * t129 + t23 * t130));
@@ -2451,7 +2451,7 @@ static int hmmwv14_measure(const hmmwv14 *self, gic_real time, const gic_real *y
         const gic_real t142 = m[271] * t43 - m[272] * t47 + (y[16] * t44 - y[17] * t48);
         const gic_real t143 = y[13] + (t13 * t140 + (t20 * t141 + t24 * t142));
         gic_real road144[3];
-        if (!road_height(self, time, t53, t54, road144))
+        if (!hmmwv14_road_height(self, time, t53, t54, road144))
             return GIC_ERROR_ROAD;
         const gic_real t145 = y[12] + (t5 * t140 + (t17 * t141 + t22 * t142));
         const gic_real t146 = y[14] + (t9 * t140 + (t18 * t141 + t23 * t142));
@@ -2465,7 +2465,7 @@ static int hmmwv14_measure(const hmmwv14 *self, gic_real time, const gic_real *y
         const gic_real t154 = m[337] * t57 - m[338] * t60 + (y[16] * t58 - y[17] * t61);
         const gic_real t155 = y[13] + (t13 * t152 + (t20 * t153 + t24 * t154));
         gic_real road156[3];
-        if (!road_height(self, time, t65, t66, road156))
+        if (!hmmwv14_road_height(self, time, t65, t66, road156))
             return GIC_ERROR_ROAD;
         const gic_real t157 = y[12] + (t5 * t152 + (t17 * t153 + t22 * t154));
         const gic_real t158 = y[14] + (t9 * t152 + (t18 * t153 + t23 * t154));
@@ -2479,7 +2479,7 @@ static int hmmwv14_measure(const hmmwv14 *self, gic_real time, const gic_real *y
         const gic_real t166 = m[397] * t69 - m[398] * t72 + (y[16] * t70 - y[17] * t73);
         const gic_real t167 = y[13] + (t13 * t164 + (t20 * t165 + t24 * t166));
         gic_real road168[3];
-        if (!road_height(self, time, t77, t78, road168))
+        if (!hmmwv14_road_height(self, time, t77, t78, road168))
             return GIC_ERROR_ROAD;
         const gic_real t169 = y[12] + (t5 * t164 + (t17 * t165 + t22 * t166));
         const gic_real t170 = y[14] + (t9 * t164 + (t18 * t165 + t23 * t166));
@@ -4577,7 +4577,7 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
         const gic_real t525 = y[0] + (t522 * t513 + (t523 * t506 + t524 * t507));
         const gic_real t526 = y[1] + (t504 * t513 + (t511 * t506 + t517 * t507));
         gic_real road527[3];
-        if (!road_height(self, time, t525, t526, road527))
+        if (!hmmwv14_road_height(self, time, t525, t526, road527))
             return GIC_ERROR_ROAD;
         const gic_real t528 = y[12] + (t522 * t508 + (t523 * t514 + t524 * t518));
         const gic_real t529 = t502 + t503;
@@ -4605,7 +4605,7 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
         const gic_real t551 = y[0] + (t522 * t547 + (t523 * t543 + t524 * t544));
         const gic_real t552 = y[1] + (t504 * t547 + (t511 * t543 + t517 * t544));
         gic_real road553[3];
-        if (!road_height(self, time, t551, t552, road553))
+        if (!hmmwv14_road_height(self, time, t551, t552, road553))
             return GIC_ERROR_ROAD;
         const gic_real t554 = y[12] + (t522 * t545 + (t523 * t548 + t524 * t549));
         const gic_real t555 = y[14] + (t501 * t545 + (t529 * t548 + t530 * t549));
@@ -4651,7 +4651,7 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
         const gic_real t595 = y[0] + (t522 * t591 + (t523 * t587 + t524 * t588));
         const gic_real t596 = y[1] + (t504 * t591 + (t511 * t587 + t517 * t588));
         gic_real road597[3];
-        if (!road_height(self, time, t595, t596, road597))
+        if (!hmmwv14_road_height(self, time, t595, t596, road597))
             return GIC_ERROR_ROAD;
         const gic_real t598 = y[12] + (t522 * t589 + (t523 * t592 + t524 * t593));
         const gic_real t599 = y[14] + (t501 * t589 + (t529 * t592 + t530 * t593));
@@ -4677,7 +4677,7 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
         const gic_real t619 = y[0] + (t522 * t615 + (t523 * t611 + t524 * t612));
         const gic_real t620 = y[1] + (t504 * t615 + (t511 * t611 + t517 * t612));
         gic_real road621[3];
-        if (!road_height(self, time, t619, t620, road621))
+        if (!hmmwv14_road_height(self, time, t619, t620, road621))
             return GIC_ERROR_ROAD;
         const gic_real t622 = y[12] + (t522 * t613 + (t523 * t616 + t524 * t617));
         const gic_real t623 = y[14] + (t501 * t613 + (t529 * t616 + t530 * t617));
@@ -5522,7 +5522,7 @@ static GIC_COLD int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic
         const gic_real t574 = y[0] + (t16 * t569 + (t28 * t565 + t34 * t566));
         const gic_real t575 = y[1] + (t12 * t569 + (t25 * t565 + t33 * t566));
         gic_real road576[3];
-        if (!road_height(self, time, t574, t575, road576))
+        if (!hmmwv14_road_height(self, time, t574, t575, road576))
             return GIC_ERROR_ROAD;
         const gic_real t577 = y[12] + (t16 * t567 + (t28 * t570 + t34 * t571));
         const gic_real t578 = t573 * road576[2] + t577 * road576[1] - t572;
@@ -5570,7 +5570,7 @@ static GIC_COLD int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic
         const gic_real t620 = y[0] + (t16 * t615 + (t28 * t611 + t34 * t612));
         const gic_real t621 = y[1] + (t12 * t615 + (t25 * t611 + t33 * t612));
         gic_real road622[3];
-        if (!road_height(self, time, t620, t621, road622))
+        if (!hmmwv14_road_height(self, time, t620, t621, road622))
             return GIC_ERROR_ROAD;
         const gic_real t623 = y[12] + (t16 * t613 + (t28 * t616 + t34 * t617));
         const gic_real t624 = t619 * road622[2] + t623 * road622[1] - t618;
@@ -5593,7 +5593,7 @@ static GIC_COLD int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic
         const gic_real t641 = y[0] + (t16 * t636 + (t28 * t632 + t34 * t633));
         const gic_real t642 = y[1] + (t12 * t636 + (t25 * t632 + t33 * t633));
         gic_real road643[3];
-        if (!road_height(self, time, t641, t642, road643))
+        if (!hmmwv14_road_height(self, time, t641, t642, road643))
             return GIC_ERROR_ROAD;
         const gic_real t644 = y[12] + (t16 * t634 + (t28 * t637 + t34 * t638));
         const gic_real t645 = t640 * road643[2] + t644 * road643[1] - t639;
@@ -5615,7 +5615,7 @@ static GIC_COLD int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic
         const gic_real t661 = y[0] + (t16 * t656 + (t28 * t652 + t34 * t653));
         const gic_real t662 = y[1] + (t12 * t656 + (t25 * t652 + t33 * t653));
         gic_real road663[3];
-        if (!road_height(self, time, t661, t662, road663))
+        if (!hmmwv14_road_height(self, time, t661, t662, road663))
             return GIC_ERROR_ROAD;
         const gic_real t664 = y[12] + (t16 * t654 + (t28 * t657 + t34 * t658));
         const gic_real t665 = t660 * road663[2] + t664 * road663[1] - t659;
@@ -5664,7 +5664,7 @@ static GIC_COLD gic_real hmmwv14_residual(const hmmwv14 *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     hmmwv14_links links;
-    gic_real largest = R(0.0), one;
+    gic_real largest = R(0.0), one = R(0.0);
     (void)start;
     (void)one;
     links.cold = 0;

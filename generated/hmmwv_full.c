@@ -986,7 +986,7 @@ static const gic_real hmmwv_full_piece[HMMWV_FULL_COORDINATE_ROOM] = {
 static int hmmwv_full_recover_piece(hmmwv_full *self, hmmwv_full_links *links, const gic_real *old, gic_real *start)
 {
     const gic_real *const xd = self->xd;
-    int status;
+    int status = GIC_OK; /* stays so where no subset can fail */
     (void)links;
     (void)old;
     (void)start;
@@ -1280,7 +1280,7 @@ static const gic_real hmmwv_full_rebound_r_y[4] = {
 static const gic_real hmmwv_full_rebound_r_slope[4] = {
     R(-2889591.999999997), R(0.0), R(0.0), R(2889591.999999997),
 };
-static const gic_table table[7] = {
+static const gic_table hmmwv_full_table[7] = {
     {hmmwv_full_spring_f_x, hmmwv_full_spring_f_y, hmmwv_full_spring_f_slope, 11, 0, 1},
     {hmmwv_full_spring_r_x, hmmwv_full_spring_r_y, hmmwv_full_spring_r_slope, 11, 0, 1},
     {hmmwv_full_rubber_x, hmmwv_full_rubber_y, hmmwv_full_rubber_slope, 11, 0, 0},
@@ -1312,7 +1312,7 @@ static int hmmwv_full_settle(hmmwv_full *self, gic_real *y)
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
-static int road_height(const hmmwv_full *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
+static int hmmwv_full_road_height(const hmmwv_full *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
     const gic_road *road = self->head.road;
     out[0] = out[1] = out[2] = R(0.0);
@@ -1522,7 +1522,7 @@ static GIC_APART int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const 
         const gic_real t155 = GIC_SQRT(t153 * t153 + (R(4.633797183999867e-05) + t154 * t154));
         const gic_real t156 = R(1.0) / t155;
         const gic_real t157 = t156 * (m[132] * t151 * t153 - m[132] * t152 * t154);
-        const gic_real t158 = gic_table_value(&table[4], t155) * GIC_MIN(R(0.0), t157) + gic_table_value(&table[6], t155) * GIC_MAX(R(0.0), t157);
+        const gic_real t158 = gic_table_value(&hmmwv_full_table[4], t155) * GIC_MIN(R(0.0), t157) + gic_table_value(&hmmwv_full_table[6], t155) * GIC_MAX(R(0.0), t157);
         const gic_real t159 = t156 * t158;
         const gic_real t160 = R(0.006807199999999902) * t159;
         const gic_real t161 = t154 * t159;
@@ -1533,7 +1533,7 @@ static GIC_APART int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const 
         const gic_real t166 = GIC_SQRT(t164 * t164 + (R(4.633797183999867e-05) + t165 * t165));
         const gic_real t167 = R(1.0) / t166;
         const gic_real t168 = t167 * (m[102] * t162 * t164 - m[102] * t163 * t165);
-        const gic_real t169 = gic_table_value(&table[4], t166) * GIC_MIN(R(0.0), t168) + gic_table_value(&table[6], t166) * GIC_MAX(R(0.0), t168);
+        const gic_real t169 = gic_table_value(&hmmwv_full_table[4], t166) * GIC_MIN(R(0.0), t168) + gic_table_value(&hmmwv_full_table[6], t166) * GIC_MAX(R(0.0), t168);
         const gic_real t170 = t167 * t169;
         const gic_real t171 = R(0.006807199999999902) * t170;
         const gic_real t172 = t165 * t170;
@@ -1564,7 +1564,7 @@ static GIC_APART int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const 
         const gic_real t197 = y[0] + (t150 * t187 + (t194 * t180 + t196 * t181));
         const gic_real t198 = y[1] + (t178 * t187 + (t185 * t180 + t191 * t181));
         gic_real road199[3];
-        if (!road_height(self, time, t197, t198, road199))
+        if (!hmmwv_full_road_height(self, time, t197, t198, road199))
             return GIC_ERROR_ROAD;
         const gic_real t200 = y[12] + (t150 * t182 + (t194 * t188 + t196 * t192));
         const gic_real t201 = R(1.0) - (t183 + t195);
@@ -1592,7 +1592,7 @@ static GIC_APART int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const 
         const gic_real t223 = y[0] + (t150 * t219 + (t194 * t215 + t196 * t216));
         const gic_real t224 = y[1] + (t178 * t219 + (t185 * t215 + t191 * t216));
         gic_real road225[3];
-        if (!road_height(self, time, t223, t224, road225))
+        if (!hmmwv_full_road_height(self, time, t223, t224, road225))
             return GIC_ERROR_ROAD;
         const gic_real t226 = y[12] + (t150 * t217 + (t194 * t220 + t196 * t221));
         const gic_real t227 = y[14] + (t201 * t217 + (t177 * t220 + t202 * t221));
@@ -1612,7 +1612,7 @@ static GIC_APART int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const 
         const gic_real t241 = GIC_SQRT(t239 * t239 + (R(4.633797183999867e-05) + t240 * t240));
         const gic_real t242 = R(1.0) / t241;
         const gic_real t243 = t242 * (m[72] * t237 * t239 - m[72] * t238 * t240);
-        const gic_real t244 = gic_table_value(&table[3], t241) * GIC_MIN(R(0.0), t243) + gic_table_value(&table[5], t241) * GIC_MAX(R(0.0), t243);
+        const gic_real t244 = gic_table_value(&hmmwv_full_table[3], t241) * GIC_MIN(R(0.0), t243) + gic_table_value(&hmmwv_full_table[5], t241) * GIC_MAX(R(0.0), t243);
         const gic_real t245 = t242 * t244;
         const gic_real t246 = R(-0.006807199999999902) * t245;
         const gic_real t247 = t240 * t245;
@@ -1623,7 +1623,7 @@ static GIC_APART int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const 
         const gic_real t252 = GIC_SQRT(t250 * t250 + (t251 * t251 + R(4.633797183999867e-05)));
         const gic_real t253 = R(1.0) / t252;
         const gic_real t254 = t253 * (m[42] * t248 * t250 - m[42] * t249 * t251);
-        const gic_real t255 = gic_table_value(&table[3], t252) * GIC_MIN(R(0.0), t254) + gic_table_value(&table[5], t252) * GIC_MAX(R(0.0), t254);
+        const gic_real t255 = gic_table_value(&hmmwv_full_table[3], t252) * GIC_MIN(R(0.0), t254) + gic_table_value(&hmmwv_full_table[5], t252) * GIC_MAX(R(0.0), t254);
         const gic_real t256 = t253 * t255;
         const gic_real t257 = R(-0.006807199999999902) * t256;
         const gic_real t258 = t251 * t256;
@@ -1647,7 +1647,7 @@ static GIC_APART int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const 
         const gic_real t276 = R(-1.653405) * t196;
         const gic_real t277 = R(-1.653405) * t191;
         gic_real road278[3];
-        if (!road_height(self, time, y[0] + (t150 * t272 + (t194 * t267 + t276)), y[1] + (t178 * t272 + (t185 * t267 + t277)), road278))
+        if (!hmmwv_full_road_height(self, time, y[0] + (t150 * t272 + (t194 * t267 + t276)), y[1] + (t178 * t272 + (t185 * t267 + t277)), road278))
             return GIC_ERROR_ROAD;
         const gic_real t279 = y[12] + (t150 * t269 + (t194 * t273 + t196 * t274));
         const gic_real t280 = y[14] + (t201 * t269 + (t177 * t273 + t202 * t274));
@@ -1669,7 +1669,7 @@ static GIC_APART int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const 
         const gic_real t296 = y[16] * t294 - y[17] * t291;
         const gic_real t297 = y[13] + (t178 * t292 + (t185 * t295 + t191 * t296));
         gic_real road298[3];
-        if (!road_height(self, time, y[0] + (t150 * t294 + (t276 + t194 * t291)), y[1] + (t178 * t294 + (t277 + t185 * t291)), road298))
+        if (!hmmwv_full_road_height(self, time, y[0] + (t150 * t294 + (t276 + t194 * t291)), y[1] + (t178 * t294 + (t277 + t185 * t291)), road298))
             return GIC_ERROR_ROAD;
         const gic_real t299 = y[12] + (t150 * t292 + (t194 * t295 + t196 * t296));
         const gic_real t300 = y[14] + (t201 * t292 + (t177 * t295 + t202 * t296));
@@ -1691,19 +1691,19 @@ static GIC_APART int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const 
         const gic_real t316 = y[16] * R(0.056);
         const gic_real t317 = t314 + n[188] + n[211] - R(2086.52) * (y[17] * t315 + y[16] * t316);
         const gic_real t318 = t307 + (t288 + (t211 + t313 - t171 - t160)) - t317;
-        const gic_real t319 = GIC_MAX(gic_table_value(&table[2], GIC_MAX(R(0.15) - x[2], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&table[2], GIC_MAX(x[2] - R(0.35), R(0.0))), R(0.0));
+        const gic_real t319 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[2], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[2] - R(0.35), R(0.0))), R(0.0));
         const gic_real t320 = t164 * t170;
         const gic_real t321 = t163 * t172 - t162 * t320;
         const gic_real t322 = t201 * t286;
         const gic_real t323 = t266 * t322 - t270 * t287;
-        const gic_real t324 = t319 - gic_table_value(&table[1], x[2] - R(0.382)) + m[114] * t321 + (m[251] * t322 + m[250] * t287 + m[246] * t323);
+        const gic_real t324 = t319 - gic_table_value(&hmmwv_full_table[1], x[2] - R(0.382)) + m[114] * t321 + (m[251] * t322 + m[250] * t287 + m[246] * t323);
         const gic_real t325 = t324 - (n[90] + n[200]);
-        const gic_real t326 = GIC_MAX(gic_table_value(&table[2], GIC_MAX(R(0.15) - x[3], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&table[2], GIC_MAX(x[3] - R(0.35), R(0.0))), R(0.0));
+        const gic_real t326 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[3], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[3] - R(0.35), R(0.0))), R(0.0));
         const gic_real t327 = t153 * t159;
         const gic_real t328 = t152 * t161 - t151 * t327;
         const gic_real t329 = t201 * t305;
         const gic_real t330 = t290 * t329 - t293 * t306;
-        const gic_real t331 = t326 - gic_table_value(&table[1], x[3] - R(0.382)) + m[144] * t328 + (m[281] * t329 + m[280] * t306 + m[276] * t330);
+        const gic_real t331 = t326 - gic_table_value(&hmmwv_full_table[1], x[3] - R(0.382)) + m[144] * t328 + (m[281] * t329 + m[280] * t306 + m[276] * t330);
         const gic_real t332 = t331 - (n[113] + n[223]);
         const gic_real t333 = t308 - t312 + t318 * t70 - t325 * t43 - t332 * t44;
         const gic_real t334 = t201 * t209;
@@ -1755,15 +1755,15 @@ static GIC_APART int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const 
         const gic_real t380 = t379 - t325 * t61 - t332 * t62 - t63 * t352;
         const gic_real t381 = t380 + t65 * t367;
         const gic_real t382 = R(1.0) / t138;
-        const gic_real t383 = GIC_MAX(gic_table_value(&table[2], GIC_MAX(R(0.15) - x[0], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&table[2], GIC_MAX(x[0] - R(0.3), R(0.0))), R(0.0));
+        const gic_real t383 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[0], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[0] - R(0.3), R(0.0))), R(0.0));
         const gic_real t384 = m[185] * t336 + m[184] * t234 + (m[182] * t236 + (m[181] * t354 + m[180] * t337));
-        const gic_real t385 = t383 - gic_table_value(&table[0], x[0] - R(0.339)) + m[54] * t341 + t384;
+        const gic_real t385 = t383 - gic_table_value(&hmmwv_full_table[0], x[0] - R(0.339)) + m[54] * t341 + t384;
         const gic_real t386 = t385 - (n[44] + n[143]) - t318 * t79 - t81 * t352;
         const gic_real t387 = t85 * (t89 * t368 + t91 * t375 + t92 * t381);
         const gic_real t388 = t386 - t83 * t367 - t387;
-        const gic_real t389 = GIC_MAX(gic_table_value(&table[2], GIC_MAX(R(0.15) - x[1], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&table[2], GIC_MAX(x[1] - R(0.3), R(0.0))), R(0.0));
+        const gic_real t389 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[1], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[1] - R(0.3), R(0.0))), R(0.0));
         const gic_real t390 = m[221] * t334 + m[220] * t210 + (m[218] * t212 + (m[217] * t353 + m[216] * t335));
-        const gic_real t391 = t389 - gic_table_value(&table[0], x[1] - R(0.339)) + m[84] * t339 + t390;
+        const gic_real t391 = t389 - gic_table_value(&hmmwv_full_table[0], x[1] - R(0.339)) + m[84] * t339 + t390;
         const gic_real t392 = t391 - (n[67] + n[175]) - t318 * t96 - t98 * t352;
         const gic_real t393 = t85 * (t105 * t368 + t106 * t375 + t107 * t381);
         const gic_real t394 = t392 - t100 * t367 - t393;
@@ -1919,10 +1919,10 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t74 = y[0] + (t5 * t70 + (t62 + t17 * t73));
         const gic_real t75 = y[1] + (t13 * t70 + (t64 + t20 * t73));
         const gic_real t76 = y[2] + (t9 * t70 + (t66 + t18 * t73));
-        const gic_real t77 = gic_table_value(&table[0], x[0] - R(0.339));
-        const gic_real t78 = gic_table_value(&table[0], x[1] - R(0.339));
-        const gic_real t79 = gic_table_value(&table[1], x[2] - R(0.382));
-        const gic_real t80 = gic_table_value(&table[1], x[3] - R(0.382));
+        const gic_real t77 = gic_table_value(&hmmwv_full_table[0], x[0] - R(0.339));
+        const gic_real t78 = gic_table_value(&hmmwv_full_table[0], x[1] - R(0.339));
+        const gic_real t79 = gic_table_value(&hmmwv_full_table[1], x[2] - R(0.382));
+        const gic_real t80 = gic_table_value(&hmmwv_full_table[1], x[3] - R(0.382));
         const gic_real t81 = x[4] * R(100000.0);
         const gic_real t82 = xd[4] * R(12000.0);
         const gic_real t83 = m[167] + (m[162] * t32 - m[163] * t36) + (y[15] * t33 - y[16] * t37);
@@ -1930,7 +1930,7 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t85 = m[163] * t28 - m[164] * t32 + (y[16] * t29 - y[17] * t33);
         const gic_real t86 = y[13] + (t13 * t83 + (t20 * t84 + t24 * t85));
         gic_real road87[3];
-        if (!road_height(self, time, t38, t39, road87))
+        if (!hmmwv_full_road_height(self, time, t38, t39, road87))
             return GIC_ERROR_ROAD;
         const gic_real t88 = y[12] + (t5 * t83 + (t17 * t84 + t22 * t85));
         const gic_real t89 = y[14] + (t9 * t83 + (t18 * t84 + t23 * t85));
@@ -1944,7 +1944,7 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t97 = m[199] * t43 - m[200] * t47 + (y[16] * t44 - y[17] * t48);
         const gic_real t98 = y[13] + (t13 * t95 + (t20 * t96 + t24 * t97));
         gic_real road99[3];
-        if (!road_height(self, time, t53, t54, road99))
+        if (!hmmwv_full_road_height(self, time, t53, t54, road99))
             return GIC_ERROR_ROAD;
         const gic_real t100 = y[12] + (t5 * t95 + (t17 * t96 + t22 * t97));
         const gic_real t101 = y[14] + (t9 * t95 + (t18 * t96 + t23 * t97));
@@ -1960,7 +1960,7 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t111 = y[16] * t58 - y[17] * t61;
         const gic_real t112 = y[13] + (t13 * t108 + (t20 * t110 + t24 * t111));
         gic_real road113[3];
-        if (!road_height(self, time, t63, t65, road113))
+        if (!hmmwv_full_road_height(self, time, t63, t65, road113))
             return GIC_ERROR_ROAD;
         const gic_real t114 = y[12] + (t5 * t108 + (t17 * t110 + t22 * t111));
         const gic_real t115 = y[14] + (t9 * t108 + (t18 * t110 + t23 * t111));
@@ -1974,7 +1974,7 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t123 = y[16] * t70 - y[17] * t73;
         const gic_real t124 = y[13] + (t13 * t121 + (t20 * t122 + t24 * t123));
         gic_real road125[3];
-        if (!road_height(self, time, t74, t75, road125))
+        if (!hmmwv_full_road_height(self, time, t74, t75, road125))
             return GIC_ERROR_ROAD;
         const gic_real t126 = y[12] + (t5 * t121 + (t17 * t122 + t22 * t123));
         const gic_real t127 = y[14] + (t9 * t121 + (t18 * t122 + t23 * t123));
@@ -2185,27 +2185,27 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t332 = R(-888.3445500000001) * (y[2] + (t9 * t295 + (t66 + t18 * t292)));
         const gic_real t333 = R(-888.3445500000001) * (y[2] + (t9 * t314 + (t66 + t18 * t311)));
         const gic_real t334 = t327 - R(-888.3445500000001) * t328 - t330 - t331 - t332 - t333;
-        const gic_real t335 = gic_table_value(&table[2], GIC_MAX(R(0.15) - x[0], R(0.0)));
+        const gic_real t335 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[0], R(0.0)));
         const gic_real t336 = xd[0] * t77 + xd[1] * t78 + xd[2] * t79 + xd[3] * t80;
-        const gic_real t337 = gic_table_value(&table[2], GIC_MAX(x[0] - R(0.3), R(0.0)));
+        const gic_real t337 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[0] - R(0.3), R(0.0)));
         const gic_real t338 = GIC_MAX(t337, R(0.0));
         const gic_real t339 = t336 + xd[4] * t82 + xd[0] * t337 + xd[0] * (t338 - t337);
         const gic_real t340 = GIC_MAX(t335, R(0.0));
-        const gic_real t341 = gic_table_value(&table[2], GIC_MAX(x[1] - R(0.3), R(0.0)));
+        const gic_real t341 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[1] - R(0.3), R(0.0)));
         const gic_real t342 = xd[0] * t335 - t339 + xd[0] * (t340 - t335) - xd[1] * t341;
         const gic_real t343 = GIC_MAX(t341, R(0.0));
-        const gic_real t344 = gic_table_value(&table[2], GIC_MAX(R(0.15) - x[1], R(0.0)));
+        const gic_real t344 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[1], R(0.0)));
         const gic_real t345 = GIC_MAX(t344, R(0.0));
         const gic_real t346 = t342 - xd[1] * (t343 - t341) + xd[1] * t344 + xd[1] * (t345 - t344);
-        const gic_real t347 = gic_table_value(&table[2], GIC_MAX(x[2] - R(0.35), R(0.0)));
+        const gic_real t347 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[2] - R(0.35), R(0.0)));
         const gic_real t348 = GIC_MAX(t347, R(0.0));
-        const gic_real t349 = gic_table_value(&table[2], GIC_MAX(R(0.15) - x[2], R(0.0)));
+        const gic_real t349 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[2], R(0.0)));
         const gic_real t350 = t346 - xd[2] * t347 - xd[2] * (t348 - t347) + xd[2] * t349;
         const gic_real t351 = GIC_MAX(t349, R(0.0));
-        const gic_real t352 = gic_table_value(&table[2], GIC_MAX(x[3] - R(0.35), R(0.0)));
+        const gic_real t352 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[3] - R(0.35), R(0.0)));
         const gic_real t353 = GIC_MAX(t352, R(0.0));
         const gic_real t354 = t350 + xd[2] * (t351 - t349) - xd[3] * t352 - xd[3] * (t353 - t352);
-        const gic_real t355 = gic_table_value(&table[2], GIC_MAX(R(0.15) - x[3], R(0.0)));
+        const gic_real t355 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[3], R(0.0)));
         const gic_real t356 = GIC_MAX(t355, R(0.0));
         const gic_real t357 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
         const gic_real t358 = t357 - R(0.32313880000000006);
@@ -2213,7 +2213,7 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t360 = R(0.307086) + t359 - R(0.4977892);
         const gic_real t361 = GIC_SQRT(t358 * t358 + (t360 * t360 + R(4.633797183999867e-05)));
         const gic_real t362 = R(1.0) / t361 * (m[42] * t359 * t358 - m[42] * t357 * t360);
-        const gic_real t363 = gic_table_value(&table[3], t361) * GIC_MIN(R(0.0), t362) + gic_table_value(&table[5], t361) * GIC_MAX(R(0.0), t362);
+        const gic_real t363 = gic_table_value(&hmmwv_full_table[3], t361) * GIC_MIN(R(0.0), t362) + gic_table_value(&hmmwv_full_table[5], t361) * GIC_MAX(R(0.0), t362);
         const gic_real t364 = t354 + xd[3] * t355 + xd[3] * (t356 - t355) - t362 * t363;
         const gic_real t365 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
         const gic_real t366 = t365 - R(0.32313880000000006);
@@ -2221,21 +2221,21 @@ static int hmmwv_full_measure(const hmmwv_full *self, gic_real time, const gic_r
         const gic_real t368 = R(-0.307086) + t367 - R(-0.4977892);
         const gic_real t369 = GIC_SQRT(t366 * t366 + (R(4.633797183999867e-05) + t368 * t368));
         const gic_real t370 = R(1.0) / t369 * (m[72] * t367 * t366 - m[72] * t365 * t368);
-        const gic_real t371 = gic_table_value(&table[3], t369) * GIC_MIN(R(0.0), t370) + gic_table_value(&table[5], t369) * GIC_MAX(R(0.0), t370);
+        const gic_real t371 = gic_table_value(&hmmwv_full_table[3], t369) * GIC_MIN(R(0.0), t370) + gic_table_value(&hmmwv_full_table[5], t369) * GIC_MAX(R(0.0), t370);
         const gic_real t372 = m[101] * R(0.01939183545039609) + m[100] * R(0.23915941563573181);
         const gic_real t373 = t372 - R(0.32313880000000006);
         const gic_real t374 = m[98] * R(0.01939183545039609) + m[97] * R(0.23915941563573181);
         const gic_real t375 = R(0.307086) + t374 - R(0.4977892);
         const gic_real t376 = GIC_SQRT(t373 * t373 + (R(4.633797183999867e-05) + t375 * t375));
         const gic_real t377 = R(1.0) / t376 * (m[102] * t374 * t373 - m[102] * t372 * t375);
-        const gic_real t378 = gic_table_value(&table[4], t376) * GIC_MIN(R(0.0), t377) + gic_table_value(&table[6], t376) * GIC_MAX(R(0.0), t377);
+        const gic_real t378 = gic_table_value(&hmmwv_full_table[4], t376) * GIC_MIN(R(0.0), t377) + gic_table_value(&hmmwv_full_table[6], t376) * GIC_MAX(R(0.0), t377);
         const gic_real t379 = m[131] * R(0.01939183545039609) + m[130] * R(-0.23915941563573181);
         const gic_real t380 = t379 - R(0.32313880000000006);
         const gic_real t381 = m[128] * R(0.01939183545039609) + m[127] * R(-0.23915941563573181);
         const gic_real t382 = R(-0.307086) + t381 - R(-0.4977892);
         const gic_real t383 = GIC_SQRT(t380 * t380 + (R(4.633797183999867e-05) + t382 * t382));
         const gic_real t384 = R(1.0) / t383 * (m[132] * t381 * t380 - m[132] * t379 * t382);
-        const gic_real t385 = gic_table_value(&table[4], t383) * GIC_MIN(R(0.0), t384) + gic_table_value(&table[6], t383) * GIC_MAX(R(0.0), t384);
+        const gic_real t385 = gic_table_value(&hmmwv_full_table[4], t383) * GIC_MIN(R(0.0), t384) + gic_table_value(&hmmwv_full_table[6], t383) * GIC_MAX(R(0.0), t384);
         const gic_real t386 = t364 - t370 * t371 - t377 * t378 - t384 * t385;
         const gic_real t387 = t386 + t89 * t94 + t101 * t106 + t115 * t120;
         const gic_real t388 = y[0];
@@ -3555,7 +3555,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t321 = t311 - t312;
         const gic_real t322 = R(-1.653405) * t313;
         gic_real road323[3];
-        if (!road_height(self, time, y[0] + (t318 * t309 + (t320 + t321 * t303)), y[1] + (t302 * t309 + (t322 + t307 * t303)), road323))
+        if (!hmmwv_full_road_height(self, time, y[0] + (t318 * t309 + (t320 + t321 * t303)), y[1] + (t302 * t309 + (t322 + t307 * t303)), road323))
             return GIC_ERROR_ROAD;
         const gic_real t324 = y[12] + (t318 * t304 + (t321 * t310 + t319 * t314));
         const gic_real t325 = t300 + t301;
@@ -3579,7 +3579,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t343 = y[16] * t341 - y[17] * t338;
         const gic_real t344 = y[13] + (t302 * t339 + (t307 * t342 + t313 * t343));
         gic_real road345[3];
-        if (!road_height(self, time, y[0] + (t318 * t341 + (t321 * t338 + t320)), y[1] + (t302 * t341 + (t307 * t338 + t322)), road345))
+        if (!hmmwv_full_road_height(self, time, y[0] + (t318 * t341 + (t321 * t338 + t320)), y[1] + (t302 * t341 + (t307 * t338 + t322)), road345))
             return GIC_ERROR_ROAD;
         const gic_real t346 = y[12] + (t318 * t339 + (t321 * t342 + t319 * t343));
         const gic_real t347 = y[14] + (t299 * t339 + (t325 * t342 + t326 * t343));
@@ -3598,7 +3598,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t360 = GIC_SQRT(t359 * t359 + (R(4.633797183999867e-05) + t358 * t358));
         const gic_real t361 = R(1.0) / t360;
         const gic_real t362 = t361 * (m[132] * t357 * t359 - m[132] * t356 * t358);
-        const gic_real t363 = gic_table_value(&table[4], t360) * GIC_MIN(R(0.0), t362) + gic_table_value(&table[6], t360) * GIC_MAX(R(0.0), t362);
+        const gic_real t363 = gic_table_value(&hmmwv_full_table[4], t360) * GIC_MIN(R(0.0), t362) + gic_table_value(&hmmwv_full_table[6], t360) * GIC_MAX(R(0.0), t362);
         const gic_real t364 = t361 * t363;
         const gic_real t365 = t358 * t364;
         const gic_real t366 = t359 * t364;
@@ -3610,7 +3610,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t372 = GIC_SQRT(t371 * t371 + (R(4.633797183999867e-05) + t370 * t370));
         const gic_real t373 = R(1.0) / t372;
         const gic_real t374 = t373 * (m[102] * t369 * t371 - m[102] * t368 * t370);
-        const gic_real t375 = gic_table_value(&table[4], t372) * GIC_MIN(R(0.0), t374) + gic_table_value(&table[6], t372) * GIC_MAX(R(0.0), t374);
+        const gic_real t375 = gic_table_value(&hmmwv_full_table[4], t372) * GIC_MIN(R(0.0), t374) + gic_table_value(&hmmwv_full_table[6], t372) * GIC_MAX(R(0.0), t374);
         const gic_real t376 = t373 * t375;
         const gic_real t377 = t370 * t376;
         const gic_real t378 = t371 * t376;
@@ -3628,7 +3628,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t390 = y[0] + (t318 * t386 + (t321 * t382 + t319 * t383));
         const gic_real t391 = y[1] + (t302 * t386 + (t307 * t382 + t313 * t383));
         gic_real road392[3];
-        if (!road_height(self, time, t390, t391, road392))
+        if (!hmmwv_full_road_height(self, time, t390, t391, road392))
             return GIC_ERROR_ROAD;
         const gic_real t393 = y[12] + (t318 * t384 + (t321 * t387 + t319 * t388));
         const gic_real t394 = y[14] + (t299 * t384 + (t325 * t387 + t326 * t388));
@@ -3654,7 +3654,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t414 = y[0] + (t318 * t410 + (t321 * t406 + t319 * t407));
         const gic_real t415 = y[1] + (t302 * t410 + (t307 * t406 + t313 * t407));
         gic_real road416[3];
-        if (!road_height(self, time, t414, t415, road416))
+        if (!hmmwv_full_road_height(self, time, t414, t415, road416))
             return GIC_ERROR_ROAD;
         const gic_real t417 = y[12] + (t318 * t408 + (t321 * t411 + t319 * t412));
         const gic_real t418 = y[14] + (t299 * t408 + (t325 * t411 + t326 * t412));
@@ -3674,7 +3674,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t432 = GIC_SQRT(t431 * t431 + (R(4.633797183999867e-05) + t430 * t430));
         const gic_real t433 = R(1.0) / t432;
         const gic_real t434 = t433 * (m[72] * t429 * t431 - m[72] * t428 * t430);
-        const gic_real t435 = gic_table_value(&table[3], t432) * GIC_MIN(R(0.0), t434) + gic_table_value(&table[5], t432) * GIC_MAX(R(0.0), t434);
+        const gic_real t435 = gic_table_value(&hmmwv_full_table[3], t432) * GIC_MIN(R(0.0), t434) + gic_table_value(&hmmwv_full_table[5], t432) * GIC_MAX(R(0.0), t434);
         const gic_real t436 = t433 * t435;
         const gic_real t437 = t430 * t436;
         const gic_real t438 = t431 * t436;
@@ -3686,7 +3686,7 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t444 = GIC_SQRT(t443 * t443 + (t442 * t442 + R(4.633797183999867e-05)));
         const gic_real t445 = R(1.0) / t444;
         const gic_real t446 = t445 * (m[42] * t441 * t443 - m[42] * t440 * t442);
-        const gic_real t447 = gic_table_value(&table[3], t444) * GIC_MIN(R(0.0), t446) + gic_table_value(&table[5], t444) * GIC_MAX(R(0.0), t446);
+        const gic_real t447 = gic_table_value(&hmmwv_full_table[3], t444) * GIC_MIN(R(0.0), t446) + gic_table_value(&hmmwv_full_table[5], t444) * GIC_MAX(R(0.0), t446);
         const gic_real t448 = t445 * t447;
         const gic_real t449 = t442 * t448;
         const gic_real t450 = t443 * t448;
@@ -3833,19 +3833,19 @@ static GIC_COLD int hmmwv_full_inverse(const hmmwv_full *self, gic_real time, co
         const gic_real t591 = t425 + (t450 + t438 + t378 + t366 - t450 - t438);
         const gic_real t592 = t590 + t196 + t222 + t252 + t285 - (t334 + (t353 + (t401 + t591 - t378 - t366)));
         const gic_real t593 = m[185] * t112 + m[184] * t120 + (m[182] * t566 + (m[181] * t515 + m[180] * t121));
-        const gic_real t594 = GIC_MAX(gic_table_value(&table[2], GIC_MAX(R(0.15) - x[0], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&table[2], GIC_MAX(x[0] - R(0.3), R(0.0))), R(0.0));
+        const gic_real t594 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[0], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[0] - R(0.3), R(0.0))), R(0.0));
         const gic_real t595 = m[185] * t425 + m[184] * t426 + (m[182] * t580 + (m[181] * t545 + m[180] * t427));
-        const gic_real t596 = t594 - gic_table_value(&table[0], x[0] - R(0.339)) + m[54] * t451 + t595;
+        const gic_real t596 = t594 - gic_table_value(&hmmwv_full_table[0], x[0] - R(0.339)) + m[54] * t451 + t595;
         const gic_real t597 = m[221] * t168 + m[220] * t176 + (m[218] * t569 + (m[217] * t519 + m[216] * t177));
-        const gic_real t598 = GIC_MAX(gic_table_value(&table[2], GIC_MAX(R(0.15) - x[1], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&table[2], GIC_MAX(x[1] - R(0.3), R(0.0))), R(0.0));
+        const gic_real t598 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[1], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[1] - R(0.3), R(0.0))), R(0.0));
         const gic_real t599 = m[221] * t401 + m[220] * t402 + (m[218] * t579 + (m[217] * t544 + m[216] * t403));
-        const gic_real t600 = t598 - gic_table_value(&table[0], x[1] - R(0.339)) + m[84] * t439 + t599;
+        const gic_real t600 = t598 - gic_table_value(&hmmwv_full_table[0], x[1] - R(0.339)) + m[84] * t439 + t599;
         const gic_real t601 = m[114] * t204 + (m[251] * t252 + m[250] * t261 + m[246] * t262);
-        const gic_real t602 = GIC_MAX(gic_table_value(&table[2], GIC_MAX(R(0.15) - x[2], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&table[2], GIC_MAX(x[2] - R(0.35), R(0.0))), R(0.0));
-        const gic_real t603 = t602 - gic_table_value(&table[1], x[2] - R(0.382)) + m[114] * t379 + (m[251] * t353 + m[250] * t354 + m[246] * t355);
+        const gic_real t602 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[2], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[2] - R(0.35), R(0.0))), R(0.0));
+        const gic_real t603 = t602 - gic_table_value(&hmmwv_full_table[1], x[2] - R(0.382)) + m[114] * t379 + (m[251] * t353 + m[250] * t354 + m[246] * t355);
         const gic_real t604 = m[144] * t228 + (m[281] * t285 + m[280] * t292 + m[276] * t293);
-        const gic_real t605 = GIC_MAX(gic_table_value(&table[2], GIC_MAX(R(0.15) - x[3], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&table[2], GIC_MAX(x[3] - R(0.35), R(0.0))), R(0.0));
-        const gic_real t606 = t605 - gic_table_value(&table[1], x[3] - R(0.382)) + m[144] * t367 + (m[281] * t334 + m[280] * t335 + m[276] * t336);
+        const gic_real t605 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[3], R(0.0))), R(0.0)) - GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[3] - R(0.35), R(0.0))), R(0.0));
+        const gic_real t606 = t605 - gic_table_value(&hmmwv_full_table[1], x[3] - R(0.382)) + m[144] * t367 + (m[281] * t334 + m[280] * t335 + m[276] * t336);
         const gic_real t607 = t555 + (m[176] * t566 + (m[175] * t515 + m[174] * t121));
         const gic_real t608 = t607 + (m[212] * t569 + (m[211] * t519 + m[210] * t177));
         const gic_real t609 = m[176] * t580 + (m[175] * t545 + m[174] * t427) - (x[4] * R(100000.0) + xd[4] * R(12000.0));
@@ -4230,23 +4230,23 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t347 = (m[264] + y[15]) * (R(4.8947505) * (m[270] + rate[15] + m[276] * rate[21]));
         const gic_real t348 = y[17] * (t341 + t344 * t345) + (y[16] * t346 + t347);
         const gic_real t349 = t254 + (t271 + t280) + (t307 + t316) + (t339 + t348);
-        const gic_real t350 = gic_table_value(&table[2], GIC_MAX(R(0.15) - x[0], R(0.0)));
-        const gic_real t351 = xd[0] * gic_table_value(&table[0], x[0] - R(0.339)) + xd[1] * gic_table_value(&table[0], x[1] - R(0.339));
-        const gic_real t352 = t351 + xd[2] * gic_table_value(&table[1], x[2] - R(0.382)) + xd[3] * gic_table_value(&table[1], x[3] - R(0.382));
-        const gic_real t353 = gic_table_value(&table[2], GIC_MAX(x[0] - R(0.3), R(0.0)));
+        const gic_real t350 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[0], R(0.0)));
+        const gic_real t351 = xd[0] * gic_table_value(&hmmwv_full_table[0], x[0] - R(0.339)) + xd[1] * gic_table_value(&hmmwv_full_table[0], x[1] - R(0.339));
+        const gic_real t352 = t351 + xd[2] * gic_table_value(&hmmwv_full_table[1], x[2] - R(0.382)) + xd[3] * gic_table_value(&hmmwv_full_table[1], x[3] - R(0.382));
+        const gic_real t353 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[0] - R(0.3), R(0.0)));
         const gic_real t354 = t352 + xd[4] * (xd[4] * R(12000.0)) + xd[0] * t353 + xd[0] * (GIC_MAX(t353, R(0.0)) - t353);
         const gic_real t355 = xd[0] * t350 - t354 + xd[0] * (GIC_MAX(t350, R(0.0)) - t350);
-        const gic_real t356 = gic_table_value(&table[2], GIC_MAX(x[1] - R(0.3), R(0.0)));
+        const gic_real t356 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[1] - R(0.3), R(0.0)));
         const gic_real t357 = t355 - xd[1] * t356 - xd[1] * (GIC_MAX(t356, R(0.0)) - t356);
-        const gic_real t358 = gic_table_value(&table[2], GIC_MAX(R(0.15) - x[1], R(0.0)));
+        const gic_real t358 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[1], R(0.0)));
         const gic_real t359 = t357 + xd[1] * t358 + xd[1] * (GIC_MAX(t358, R(0.0)) - t358);
-        const gic_real t360 = gic_table_value(&table[2], GIC_MAX(x[2] - R(0.35), R(0.0)));
+        const gic_real t360 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[2] - R(0.35), R(0.0)));
         const gic_real t361 = t359 - xd[2] * t360 - xd[2] * (GIC_MAX(t360, R(0.0)) - t360);
-        const gic_real t362 = gic_table_value(&table[2], GIC_MAX(R(0.15) - x[2], R(0.0)));
+        const gic_real t362 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[2], R(0.0)));
         const gic_real t363 = t361 + xd[2] * t362 + xd[2] * (GIC_MAX(t362, R(0.0)) - t362);
-        const gic_real t364 = gic_table_value(&table[2], GIC_MAX(x[3] - R(0.35), R(0.0)));
+        const gic_real t364 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[3] - R(0.35), R(0.0)));
         const gic_real t365 = t363 - xd[3] * t364 - xd[3] * (GIC_MAX(t364, R(0.0)) - t364);
-        const gic_real t366 = gic_table_value(&table[2], GIC_MAX(R(0.15) - x[3], R(0.0)));
+        const gic_real t366 = gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[3], R(0.0)));
         const gic_real t367 = t365 + xd[3] * t366 + xd[3] * (GIC_MAX(t366, R(0.0)) - t366);
         const gic_real t368 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
         const gic_real t369 = t368 - R(0.32313880000000006);
@@ -4254,21 +4254,21 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t371 = R(0.307086) + t370 - R(0.4977892);
         const gic_real t372 = GIC_SQRT(t369 * t369 + (t371 * t371 + R(4.633797183999867e-05)));
         const gic_real t373 = R(1.0) / t372 * (m[42] * t370 * t369 - m[42] * t368 * t371);
-        const gic_real t374 = gic_table_value(&table[3], t372) * GIC_MIN(R(0.0), t373) + gic_table_value(&table[5], t372) * GIC_MAX(R(0.0), t373);
+        const gic_real t374 = gic_table_value(&hmmwv_full_table[3], t372) * GIC_MIN(R(0.0), t373) + gic_table_value(&hmmwv_full_table[5], t372) * GIC_MAX(R(0.0), t373);
         const gic_real t375 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
         const gic_real t376 = t375 - R(0.32313880000000006);
         const gic_real t377 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
         const gic_real t378 = R(-0.307086) + t377 - R(-0.4977892);
         const gic_real t379 = GIC_SQRT(t376 * t376 + (R(4.633797183999867e-05) + t378 * t378));
         const gic_real t380 = R(1.0) / t379 * (m[72] * t377 * t376 - m[72] * t375 * t378);
-        const gic_real t381 = gic_table_value(&table[3], t379) * GIC_MIN(R(0.0), t380) + gic_table_value(&table[5], t379) * GIC_MAX(R(0.0), t380);
+        const gic_real t381 = gic_table_value(&hmmwv_full_table[3], t379) * GIC_MIN(R(0.0), t380) + gic_table_value(&hmmwv_full_table[5], t379) * GIC_MAX(R(0.0), t380);
         const gic_real t382 = m[101] * R(0.01939183545039609) + m[100] * R(0.23915941563573181);
         const gic_real t383 = t382 - R(0.32313880000000006);
         const gic_real t384 = m[98] * R(0.01939183545039609) + m[97] * R(0.23915941563573181);
         const gic_real t385 = R(0.307086) + t384 - R(0.4977892);
         const gic_real t386 = GIC_SQRT(t383 * t383 + (R(4.633797183999867e-05) + t385 * t385));
         const gic_real t387 = R(1.0) / t386 * (m[102] * t384 * t383 - m[102] * t382 * t385);
-        const gic_real t388 = gic_table_value(&table[4], t386) * GIC_MIN(R(0.0), t387) + gic_table_value(&table[6], t386) * GIC_MAX(R(0.0), t387);
+        const gic_real t388 = gic_table_value(&hmmwv_full_table[4], t386) * GIC_MIN(R(0.0), t387) + gic_table_value(&hmmwv_full_table[6], t386) * GIC_MAX(R(0.0), t387);
         const gic_real t389 = t367 - t373 * t374 - t380 * t381 - t387 * t388;
         const gic_real t390 = m[131] * R(0.01939183545039609) + m[130] * R(-0.23915941563573181);
         const gic_real t391 = t390 - R(0.32313880000000006);
@@ -4276,7 +4276,7 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t393 = R(-0.307086) + t392 - R(-0.4977892);
         const gic_real t394 = GIC_SQRT(t391 * t391 + (R(4.633797183999867e-05) + t393 * t393));
         const gic_real t395 = R(1.0) / t394 * (m[132] * t392 * t391 - m[132] * t390 * t393);
-        const gic_real t396 = gic_table_value(&table[4], t394) * GIC_MIN(R(0.0), t395) + gic_table_value(&table[6], t394) * GIC_MAX(R(0.0), t395);
+        const gic_real t396 = gic_table_value(&hmmwv_full_table[4], t394) * GIC_MIN(R(0.0), t395) + gic_table_value(&hmmwv_full_table[6], t394) * GIC_MAX(R(0.0), t395);
         const gic_real t397 = t113 + (m[157] * R(0.12319000000000002) + t114);
         const gic_real t398 = t106 + (m[154] * R(0.12319000000000002) + t107);
         const gic_real t399 = m[151] + t397;
@@ -4291,7 +4291,7 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t408 = y[0] + (t14 * t403 + (t26 * t399 + t32 * t400));
         const gic_real t409 = y[1] + (t10 * t403 + (t23 * t399 + t31 * t400));
         gic_real road410[3];
-        if (!road_height(self, time, t408, t409, road410))
+        if (!hmmwv_full_road_height(self, time, t408, t409, road410))
             return GIC_ERROR_ROAD;
         const gic_real t411 = y[12] + (t14 * t401 + (t26 * t404 + t32 * t405));
         const gic_real t412 = t407 * road410[2] + t411 * road410[1] - t406;
@@ -4314,7 +4314,7 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t429 = y[0] + (t14 * t424 + (t26 * t420 + t32 * t421));
         const gic_real t430 = y[1] + (t10 * t424 + (t23 * t420 + t31 * t421));
         gic_real road431[3];
-        if (!road_height(self, time, t429, t430, road431))
+        if (!hmmwv_full_road_height(self, time, t429, t430, road431))
             return GIC_ERROR_ROAD;
         const gic_real t432 = y[12] + (t14 * t422 + (t26 * t425 + t32 * t426));
         const gic_real t433 = t428 * road431[2] + t432 * road431[1] - t427;
@@ -4334,7 +4334,7 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t447 = R(-1.653405) * t32;
         const gic_real t448 = R(-1.653405) * t31;
         gic_real road449[3];
-        if (!road_height(self, time, y[0] + (t14 * t442 + (t26 * t439 + t447)), y[1] + (t10 * t442 + (t23 * t439 + t448)), road449))
+        if (!hmmwv_full_road_height(self, time, y[0] + (t14 * t442 + (t26 * t439 + t447)), y[1] + (t10 * t442 + (t23 * t439 + t448)), road449))
             return GIC_ERROR_ROAD;
         const gic_real t450 = y[12] + (t14 * t440 + (t26 * t443 + t32 * t444));
         const gic_real t451 = t446 * road449[2] + t450 * road449[1] - t445;
@@ -4353,7 +4353,7 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
         const gic_real t464 = y[14] + (t6 * t459 + (t21 * t462 + t30 * t463));
         const gic_real t465 = y[13] + (t10 * t459 + (t23 * t462 + t31 * t463));
         gic_real road466[3];
-        if (!road_height(self, time, y[0] + (t14 * t461 + (t447 + t26 * t458)), y[1] + (t10 * t461 + (t448 + t23 * t458)), road466))
+        if (!hmmwv_full_road_height(self, time, y[0] + (t14 * t461 + (t447 + t26 * t458)), y[1] + (t10 * t461 + (t448 + t23 * t458)), road466))
             return GIC_ERROR_ROAD;
         const gic_real t467 = y[12] + (t14 * t459 + (t26 * t462 + t32 * t463));
         const gic_real t468 = t465 * road466[2] + t467 * road466[1] - t464;
@@ -4399,7 +4399,7 @@ static GIC_COLD gic_real hmmwv_full_residual(const hmmwv_full *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     hmmwv_full_links links;
-    gic_real largest = R(0.0), one;
+    gic_real largest = R(0.0), one = R(0.0);
     (void)start;
     (void)one;
     links.cold = 0;

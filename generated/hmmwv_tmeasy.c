@@ -990,7 +990,7 @@ static const gic_real hmmwv_tmeasy_piece[HMMWV_TMEASY_COORDINATE_ROOM] = {
 static int hmmwv_tmeasy_recover_piece(hmmwv_tmeasy *self, hmmwv_tmeasy_links *links, const gic_real *old, gic_real *start)
 {
     const gic_real *const xd = self->xd;
-    int status;
+    int status = GIC_OK; /* stays so where no subset can fail */
     (void)links;
     (void)old;
     (void)start;
@@ -1234,7 +1234,7 @@ static int hmmwv_tmeasy_settle(hmmwv_tmeasy *self, gic_real *y)
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
-static int road_height(const hmmwv_tmeasy *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
+static int hmmwv_tmeasy_road_height(const hmmwv_tmeasy *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
     const gic_road *road = self->head.road;
     out[0] = out[1] = out[2] = R(0.0);
@@ -1246,7 +1246,7 @@ static int road_height(const hmmwv_tmeasy *self, gic_real time, gic_real x, gic_
 /* ---- wheels with tires ------------------------------------------------------------------------------------------- */
 
 /* Friction of the road under a tire, relative to the one that the tire was measured on. */
-static gic_real road_friction(const hmmwv_tmeasy *self, gic_real time, gic_real x, gic_real y)
+static gic_real hmmwv_tmeasy_road_friction(const hmmwv_tmeasy *self, gic_real time, gic_real x, gic_real y)
 {
     const gic_road *road = self->head.road;
     return road && road->friction ? road->friction(road, self->head.lane, time, x, y) : R(1.0);
@@ -1282,7 +1282,7 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
     /* contact with the road, and slip */
     {
         gic_real road1[3];
-        if (!road_height(self, time, link[0], link[1], road1))
+        if (!hmmwv_tmeasy_road_height(self, time, link[0], link[1], road1))
             return GIC_ERROR_ROAD;
         const gic_real t2 = road1[2] * road1[2] + road1[1] * road1[1];
         const gic_real t3 = R(1.0) / GIC_SQRT(R(1.0) + t2);
@@ -1297,7 +1297,7 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
         const gic_real t12 = link[0] + (link[8] * (t5 * t10) + link[7] * t11) * R(0.4699);
         const gic_real t13 = link[1] + (link[8] * (t8 * t10) - link[6] * t11) * R(0.4699);
         gic_real road14[3];
-        if (!road_height(self, time, t12, t13, road14))
+        if (!hmmwv_tmeasy_road_height(self, time, t12, t13, road14))
             return GIC_ERROR_ROAD;
         const gic_real t15 = road14[2] * road14[2] + road14[1] * road14[1];
         const gic_real t16 = R(1.0) / GIC_SQRT(R(1.0) + t15);
@@ -1322,7 +1322,7 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
         const gic_real t35 = link[0] + t34;
         const gic_real t36 = t29 * t33;
         const gic_real t37 = link[1] + t36;
-        const gic_real t38 = road_friction(self, time, t35, t37);
+        const gic_real t38 = hmmwv_tmeasy_road_friction(self, time, t35, t37);
         if (!(t38 > R(0.0)))
             return GIC_ERROR_ROAD;
         const gic_real t39 = link[8] * link[11] + (link[7] * link[10] + link[6] * link[9]);
@@ -4716,7 +4716,7 @@ static GIC_COLD gic_real hmmwv_tmeasy_residual(const hmmwv_tmeasy *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     hmmwv_tmeasy_links links;
-    gic_real largest = R(0.0), one;
+    gic_real largest = R(0.0), one = R(0.0);
     (void)start;
     (void)one;
     links.cold = 0;

@@ -199,7 +199,7 @@ static const gic_real pendulum_piece[PENDULUM_COORDINATE_ROOM] = {
 static int pendulum_recover_piece(pendulum *self, pendulum_links *links, const gic_real *old, gic_real *start)
 {
     const gic_real *const xd = self->xd;
-    int status;
+    int status = GIC_OK; /* stays so where no subset can fail */
     (void)links;
     (void)old;
     (void)start;
@@ -791,7 +791,7 @@ static GIC_COLD gic_real pendulum_residual(const pendulum *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     pendulum_links links;
-    gic_real largest = R(0.0), one;
+    gic_real largest = R(0.0), one = R(0.0);
     (void)start;
     (void)one;
     links.cold = 0;

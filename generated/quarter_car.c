@@ -585,7 +585,7 @@ static const gic_real quarter_car_piece[QUARTER_CAR_COORDINATE_ROOM] = {
 static int quarter_car_recover_piece(quarter_car *self, quarter_car_links *links, const gic_real *old, gic_real *start)
 {
     const gic_real *const xd = self->xd;
-    int status;
+    int status = GIC_OK; /* stays so where no subset can fail */
     (void)links;
     (void)old;
     (void)start;
@@ -752,7 +752,7 @@ static int quarter_car_settle(quarter_car *self, gic_real *y)
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
-static int road_height(const quarter_car *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
+static int quarter_car_road_height(const quarter_car *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
     const gic_road *road = self->head.road;
     out[0] = out[1] = out[2] = R(0.0);
@@ -791,7 +791,7 @@ static GIC_APART int quarter_car_dynamics(quarter_car *self, gic_real time, cons
         const gic_real t6 = m[77] * R(0.09182100000000004) + (m[76] * R(0.12319000000000002) + m[75] * R(-0.004825999999999997));
         const gic_real t7 = m[74] * R(0.09182100000000004) + (m[73] * R(0.12319000000000002) + m[72] * R(-0.004825999999999997));
         gic_real road8[3];
-        if (!road_height(self, time, R(-0.035559999999999994) + t5, m[67] + t7, road8))
+        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t5, m[67] + t7, road8))
             return GIC_ERROR_ROAD;
         const gic_real t9 = (m[82] + (m[80] * t5 - m[78] * t6)) * road8[2];
         const gic_real t10 = t9 + (m[79] * t6 - m[80] * t7) * road8[1];
@@ -840,7 +840,7 @@ static int quarter_car_measure(const quarter_car *self, gic_real time, const gic
         const gic_real t14 = t13 * R(167070.9);
         const gic_real t15 = xd[1] * R(17490.8);
         gic_real road16[3];
-        if (!road_height(self, time, t4, t8, road16))
+        if (!quarter_car_road_height(self, time, t4, t8, road16))
             return GIC_ERROR_ROAD;
         const gic_real t17 = (m[82] + (m[80] * t3 - m[78] * t11)) * road16[2];
         const gic_real t18 = t17 + (m[79] * t11 - m[80] * t7) * road16[1];
@@ -1358,7 +1358,7 @@ static GIC_COLD int quarter_car_inverse(const quarter_car *self, gic_real time, 
         const gic_real t20 = t8 + (m[76] * R(0.12319000000000002) + t9);
         const gic_real t21 = t12 + (m[73] * R(0.12319000000000002) + t13);
         gic_real road22[3];
-        if (!road_height(self, time, R(-0.035559999999999994) + t19, m[67] + t21, road22))
+        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t19, m[67] + t21, road22))
             return GIC_ERROR_ROAD;
         const gic_real t23 = (m[82] + (m[80] * t19 - m[78] * t20)) * road22[2];
         const gic_real t24 = t23 + (m[79] * t20 - m[80] * t21) * road22[1];
@@ -1469,7 +1469,7 @@ static GIC_COLD int quarter_car_energy(const quarter_car *self, gic_real time, c
         const gic_real t51 = m[83] + (m[78] * t49 - m[79] * t50);
         const gic_real t52 = t18 + (m[76] * R(0.12319000000000002) + t19);
         gic_real road53[3];
-        if (!road_height(self, time, R(-0.035559999999999994) + t50, m[67] + t49, road53))
+        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t50, m[67] + t49, road53))
             return GIC_ERROR_ROAD;
         const gic_real t54 = (m[82] + (m[80] * t50 - m[78] * t52)) * road53[2];
         const gic_real t55 = t54 + (m[79] * t52 - m[80] * t49) * road53[1];
@@ -1496,7 +1496,7 @@ static GIC_COLD gic_real quarter_car_residual(const quarter_car *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     quarter_car_links links;
-    gic_real largest = R(0.0), one;
+    gic_real largest = R(0.0), one = R(0.0);
     (void)start;
     (void)one;
     links.cold = 0;

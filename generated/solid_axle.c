@@ -1721,7 +1721,7 @@ static const gic_real solid_axle_piece[SOLID_AXLE_COORDINATE_ROOM] = {
 static int solid_axle_recover_piece(solid_axle *self, solid_axle_links *links, const gic_real *old, gic_real *start)
 {
     const gic_real *const xd = self->xd;
-    int status;
+    int status = GIC_OK; /* stays so where no subset can fail */
     (void)links;
     (void)old;
     (void)start;
@@ -1925,7 +1925,7 @@ static int solid_axle_settle(solid_axle *self, gic_real *y)
 }
 
 /* Height and slopes of the road under a point; 0 when they are not finite numbers. */
-static int road_height(const solid_axle *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
+static int solid_axle_road_height(const solid_axle *self, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
     const gic_road *road = self->head.road;
     out[0] = out[1] = out[2] = R(0.0);
@@ -2158,7 +2158,7 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
         const gic_real t180 = y[0] + (t149 * t171 + (t178 * t163 + t179 * t164));
         const gic_real t181 = y[1] + (t156 * t171 + (t167 * t163 + t175 * t164));
         gic_real road182[3];
-        if (!road_height(self, time, t180, t181, road182))
+        if (!solid_axle_road_height(self, time, t180, t181, road182))
             return GIC_ERROR_ROAD;
         const gic_real t183 = y[12] + (t149 * t165 + (t178 * t172 + t179 * t176));
         const gic_real t184 = t154 + t155;
@@ -2184,7 +2184,7 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
         const gic_real t204 = y[0] + (t149 * t200 + (t178 * t196 + t179 * t197));
         const gic_real t205 = y[1] + (t156 * t200 + (t167 * t196 + t175 * t197));
         gic_real road206[3];
-        if (!road_height(self, time, t204, t205, road206))
+        if (!solid_axle_road_height(self, time, t204, t205, road206))
             return GIC_ERROR_ROAD;
         const gic_real t207 = y[12] + (t149 * t198 + (t178 * t201 + t179 * t202));
         const gic_real t208 = y[14] + (t153 * t198 + (t184 * t201 + t185 * t202));
@@ -2209,7 +2209,7 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
         const gic_real t227 = y[0] + (t149 * t223 + (t178 * t219 + t179 * t220));
         const gic_real t228 = y[1] + (t156 * t223 + (t167 * t219 + t175 * t220));
         gic_real road229[3];
-        if (!road_height(self, time, t227, t228, road229))
+        if (!solid_axle_road_height(self, time, t227, t228, road229))
             return GIC_ERROR_ROAD;
         const gic_real t230 = y[12] + (t149 * t221 + (t178 * t224 + t179 * t225));
         const gic_real t231 = y[14] + (t153 * t221 + (t184 * t224 + t185 * t225));
@@ -2233,7 +2233,7 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
         const gic_real t249 = y[0] + (t149 * t245 + (t178 * t241 + t179 * t242));
         const gic_real t250 = y[1] + (t156 * t245 + (t167 * t241 + t175 * t242));
         gic_real road251[3];
-        if (!road_height(self, time, t249, t250, road251))
+        if (!solid_axle_road_height(self, time, t249, t250, road251))
             return GIC_ERROR_ROAD;
         const gic_real t252 = y[12] + (t149 * t243 + (t178 * t246 + t179 * t247));
         const gic_real t253 = y[14] + (t153 * t243 + (t184 * t246 + t185 * t247));
@@ -2487,7 +2487,7 @@ static int solid_axle_measure(const solid_axle *self, gic_real time, const gic_r
         const gic_real t99 = m[139] * t28 - m[140] * t32 + (y[16] * t29 - y[17] * t33);
         const gic_real t100 = y[13] + (t13 * t97 + (t20 * t98 + t24 * t99));
         gic_real road101[3];
-        if (!road_height(self, time, t38, t39, road101))
+        if (!solid_axle_road_height(self, time, t38, t39, road101))
             return GIC_ERROR_ROAD;
         const gic_real t102 = y[12] + (t5 * t97 + (t17 * t98 + t22 * t99));
         const gic_real t103 = y[14] + (t9 * t97 + (t18 * t98 + t23 * t99));
@@ -2501,7 +2501,7 @@ static int solid_axle_measure(const solid_axle *self, gic_real time, const gic_r
         const gic_real t111 = m[175] * t43 - m[176] * t47 + (y[16] * t44 - y[17] * t48);
         const gic_real t112 = y[13] + (t13 * t109 + (t20 * t110 + t24 * t111));
         gic_real road113[3];
-        if (!road_height(self, time, t53, t54, road113))
+        if (!solid_axle_road_height(self, time, t53, t54, road113))
             return GIC_ERROR_ROAD;
         const gic_real t114 = y[12] + (t5 * t109 + (t17 * t110 + t22 * t111));
         const gic_real t115 = y[14] + (t9 * t109 + (t18 * t110 + t23 * t111));
@@ -2515,7 +2515,7 @@ static int solid_axle_measure(const solid_axle *self, gic_real time, const gic_r
         const gic_real t123 = m[105] + (m[103] * t58 - m[104] * t62) + (y[16] * t59 - y[17] * t63);
         const gic_real t124 = y[13] + (t13 * t121 + (t20 * t122 + t24 * t123));
         gic_real road125[3];
-        if (!road_height(self, time, t68, t69, road125))
+        if (!solid_axle_road_height(self, time, t68, t69, road125))
             return GIC_ERROR_ROAD;
         const gic_real t126 = y[12] + (t5 * t121 + (t17 * t122 + t22 * t123));
         const gic_real t127 = y[14] + (t9 * t121 + (t18 * t122 + t23 * t123));
@@ -2529,7 +2529,7 @@ static int solid_axle_measure(const solid_axle *self, gic_real time, const gic_r
         const gic_real t135 = m[105] + (m[103] * t71 - m[104] * t73) + (y[16] * t72 - y[17] * t74);
         const gic_real t136 = y[13] + (t13 * t133 + (t20 * t134 + t24 * t135));
         gic_real road137[3];
-        if (!road_height(self, time, t77, t78, road137))
+        if (!solid_axle_road_height(self, time, t77, t78, road137))
             return GIC_ERROR_ROAD;
         const gic_real t138 = y[12] + (t5 * t133 + (t17 * t134 + t22 * t135));
         const gic_real t139 = y[14] + (t9 * t133 + (t18 * t134 + t23 * t135));
@@ -3811,7 +3811,7 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
         const gic_real t264 = y[0] + (t261 * t252 + (t262 * t245 + t263 * t246));
         const gic_real t265 = y[1] + (t243 * t252 + (t250 * t245 + t256 * t246));
         gic_real road266[3];
-        if (!road_height(self, time, t264, t265, road266))
+        if (!solid_axle_road_height(self, time, t264, t265, road266))
             return GIC_ERROR_ROAD;
         const gic_real t267 = y[12] + (t261 * t247 + (t262 * t253 + t263 * t257));
         const gic_real t268 = t241 + t242;
@@ -3838,7 +3838,7 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
         const gic_real t289 = y[0] + (t261 * t285 + (t262 * t281 + t263 * t282));
         const gic_real t290 = y[1] + (t243 * t285 + (t250 * t281 + t256 * t282));
         gic_real road291[3];
-        if (!road_height(self, time, t289, t290, road291))
+        if (!solid_axle_road_height(self, time, t289, t290, road291))
             return GIC_ERROR_ROAD;
         const gic_real t292 = y[12] + (t261 * t283 + (t262 * t286 + t263 * t287));
         const gic_real t293 = y[14] + (t240 * t283 + (t268 * t286 + t269 * t287));
@@ -3864,7 +3864,7 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
         const gic_real t313 = y[0] + (t261 * t309 + (t262 * t305 + t263 * t306));
         const gic_real t314 = y[1] + (t243 * t309 + (t250 * t305 + t256 * t306));
         gic_real road315[3];
-        if (!road_height(self, time, t313, t314, road315))
+        if (!solid_axle_road_height(self, time, t313, t314, road315))
             return GIC_ERROR_ROAD;
         const gic_real t316 = y[12] + (t261 * t307 + (t262 * t310 + t263 * t311));
         const gic_real t317 = y[14] + (t240 * t307 + (t268 * t310 + t269 * t311));
@@ -3890,7 +3890,7 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
         const gic_real t337 = y[0] + (t261 * t333 + (t262 * t329 + t263 * t330));
         const gic_real t338 = y[1] + (t243 * t333 + (t250 * t329 + t256 * t330));
         gic_real road339[3];
-        if (!road_height(self, time, t337, t338, road339))
+        if (!solid_axle_road_height(self, time, t337, t338, road339))
             return GIC_ERROR_ROAD;
         const gic_real t340 = y[12] + (t261 * t331 + (t262 * t334 + t263 * t335));
         const gic_real t341 = y[14] + (t240 * t331 + (t268 * t334 + t269 * t335));
@@ -4336,7 +4336,7 @@ static GIC_COLD int solid_axle_energy(const solid_axle *self, gic_real time, con
         const gic_real t298 = y[0] + (t16 * t293 + (t28 * t289 + t34 * t290));
         const gic_real t299 = y[1] + (t12 * t293 + (t25 * t289 + t33 * t290));
         gic_real road300[3];
-        if (!road_height(self, time, t298, t299, road300))
+        if (!solid_axle_road_height(self, time, t298, t299, road300))
             return GIC_ERROR_ROAD;
         const gic_real t301 = y[12] + (t16 * t291 + (t28 * t294 + t34 * t295));
         const gic_real t302 = t297 * road300[2] + t301 * road300[1] - t296;
@@ -4360,7 +4360,7 @@ static GIC_COLD int solid_axle_energy(const solid_axle *self, gic_real time, con
         const gic_real t320 = y[0] + (t16 * t315 + (t28 * t311 + t34 * t312));
         const gic_real t321 = y[1] + (t12 * t315 + (t25 * t311 + t33 * t312));
         gic_real road322[3];
-        if (!road_height(self, time, t320, t321, road322))
+        if (!solid_axle_road_height(self, time, t320, t321, road322))
             return GIC_ERROR_ROAD;
         const gic_real t323 = y[12] + (t16 * t313 + (t28 * t316 + t34 * t317));
         const gic_real t324 = t319 * road322[2] + t323 * road322[1] - t318;
@@ -4383,7 +4383,7 @@ static GIC_COLD int solid_axle_energy(const solid_axle *self, gic_real time, con
         const gic_real t341 = y[0] + (t16 * t336 + (t28 * t332 + t34 * t333));
         const gic_real t342 = y[1] + (t12 * t336 + (t25 * t332 + t33 * t333));
         gic_real road343[3];
-        if (!road_height(self, time, t341, t342, road343))
+        if (!solid_axle_road_height(self, time, t341, t342, road343))
             return GIC_ERROR_ROAD;
         const gic_real t344 = y[12] + (t16 * t334 + (t28 * t337 + t34 * t338));
         const gic_real t345 = t340 * road343[2] + t344 * road343[1] - t339;
@@ -4405,7 +4405,7 @@ static GIC_COLD int solid_axle_energy(const solid_axle *self, gic_real time, con
         const gic_real t361 = y[0] + (t16 * t356 + (t28 * t352 + t34 * t353));
         const gic_real t362 = y[1] + (t12 * t356 + (t25 * t352 + t33 * t353));
         gic_real road363[3];
-        if (!road_height(self, time, t361, t362, road363))
+        if (!solid_axle_road_height(self, time, t361, t362, road363))
             return GIC_ERROR_ROAD;
         const gic_real t364 = y[12] + (t16 * t354 + (t28 * t357 + t34 * t358));
         const gic_real t365 = t360 * road363[2] + t364 * road363[1] - t359;
@@ -4450,7 +4450,7 @@ static GIC_COLD gic_real solid_axle_residual(const solid_axle *self)
 {
     const gic_real *const start = self->start[self->head.flip];
     solid_axle_links links;
-    gic_real largest = R(0.0), one;
+    gic_real largest = R(0.0), one = R(0.0);
     (void)start;
     (void)one;
     links.cold = 0;

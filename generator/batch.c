@@ -227,13 +227,15 @@ void generate_batch(Pool *pool, const Formulation *formulation, const Batch *bat
                     const char *model_header, const char *header, Text *c, Text *h)
 {
     const char *name = formulation->model->name;
+    Style own = style_lanes;
+    own.prefix = pool_print(pool, "%s_", name);
     BatchGeneration b = {
         .g = {.pool = pool,
               .formulation = formulation,
               .model = formulation->model,
               .sequence = formulation->sequence,
               .plan = formulation->plan,
-              .style = &style_lanes,
+              .style = &own,
               .templates = templates,
               .header = header,
               .upper = capital(pool, name),

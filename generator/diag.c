@@ -112,7 +112,7 @@ static void report(Place at, const char *kind, const char *remedy, const char *f
     fprintf(stderr, " %s: ", kind);
     print_clean(message);
     fputc('\n', stderr);
-    if (at.source && at.line > 0)
+    if (at.source && at.line > 0 && !at.source->hidden)
         print_line(at);
     if (at.source && at.source->mirrored)
         fprintf(stderr, "  note: mirrored from '%s'\n", at.source->mirrored);

@@ -249,11 +249,31 @@ static Item *node(Loader *loader, yaml_event_t *event, int depth, int *height)
     return item;
 }
 
+static const Item *read_tree(Pool *pool, Source *source);
+
 const Item *doc_read(Pool *pool, const char *path)
 {
-    Source *source = pool_alloc(pool, sizeof *source);
-    source->path = path;
-    source->bytes = file_read(pool, path, TEXT_MOST, &source->size);
+    return read_tree(pool, source_read(pool, path, TEXT_MOST, NULL));
+}
+
+const Item *doc_read_named(Pool *pool, const char *path, const Item *by, const char *const *key)
+{
+    Source *source = source_read(pool, path, TEXT_MOST, by->at.source);
+    /* anything but blanks and comments */
+    bool empty = true;
+    for (const char *s = source->bytes; *s && empty; s += strcspn(s, "\n"), s += *s == '\n')
+        empty = strchr("#\n", s[strspn(s, " \t\r")]);
+    bool known = empty;
+    for (const char *const *k = key; *k && !known; ++k)
+        known = strstr(source->bytes, *k);
+    if (!known)
+        diag_fail(by->at, pool_print(pool, "is it the file that was meant? Such a file has the key '%s'", key[0]),
+                  "'%s' lacks the key '%s'", path, key[0]);
+    return read_tree(pool, source);
+}
+
+static const Item *read_tree(Pool *pool, Source *source)
+{
     if (source->size >= 3 && !memcmp(source->bytes, "\xef\xbb\xbf", 3)) { /* byte order mark: not a column */
         source->bytes += 3;
         source->size -= 3;

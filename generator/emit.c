@@ -193,13 +193,21 @@ static void write_whole(Emitter *m, Text *line, Ex e, bool vector, int width)
     text_print(line, spread ? ")" : "");
 }
 
+/* In front of names that the generated file defines itself, so that two such files fit in one translation unit. */
+static const char *own_prefix(const Emitter *m)
+{
+    return m->style->prefix ? m->style->prefix : "";
+}
+
 /* The functions of lanes are called as those of numbers are: LANE_SQRT for GIC_SQRT. */
 static const char *form_text(const Emitter *m, Ex e, Text *line)
 {
     const Op op = (Op)m->dag->node[e].op;
     const char *text = op_form[op].text;
-    if (!is_vector(m, e))
+    if (!is_vector(m, e)) {
+        text_print(line, "%s", op == OP_FRICTION ? own_prefix(m) : "");
         return text;
+    }
     if (op == OP_POSITIVE || op == OP_FRICTION) {
         text_print(line, "%s", function_name(width_of(m, e)));
         return op == OP_POSITIVE ? "_POSITIVE(%0, %1, %2)" : "_FRICTION(%0, %1)";
@@ -267,9 +275,10 @@ static void write_text(Emitter *m, Text *line, Ex e, int strength)
     }
     if (node->op == OP_TABLE) {
         if (is_vector(m, e))
-            text_print(line, "%s_TABLE(&table[%d], ", function_name(width_of(m, e)), (int)node->arg[1]);
+            text_print(line, "%s_TABLE(", function_name(width_of(m, e)));
         else
-            text_print(line, "gic_table_value(&table[%d], ", (int)node->arg[1]);
+            text_print(line, "gic_table_value(");
+        text_print(line, "&%stable[%d], ", own_prefix(m), (int)node->arg[1]);
         write_whole(m, line, node->arg[0], is_vector(m, e), width_of(m, e));
         text_print(line, ")");
         return;
@@ -306,8 +315,10 @@ static void write_statement(Emitter *m, Ex e)
         text_print(&line, "%s road%d[3];\n%*s", real, number, m->indent, "");
         if (width)
             text_print(&line, "if (!%s_ROAD(", function_name(width));
+        else if (m->style->lanes)
+            text_print(&line, "NEED(LANE_ROAD(");
         else
-            text_print(&line, m->style->lanes ? "NEED(LANE_ROAD(" : "if (!road_height(self, time, ");
+            text_print(&line, "if (!%sroad_height(self, time, ", own_prefix(m));
         write_whole(m, &line, node->arg[0], is_vector(m, e), width);
         text_print(&line, ", ");
         write_whole(m, &line, node->arg[1], is_vector(m, e), width);

@@ -205,8 +205,9 @@ static void node_evaluate(const Dag *dag, const Node *node, double *out, int fir
 Ex ex_literal(Dag *dag, double value)
 {
     double sample[dag->samples];
-    for (int s = 0; s < dag->samples; ++s)
-        sample[s] = value + 0.0; /* no negative zero: -0.0 and 0.0 are one node */
+    sample[0] = value + 0.0; /* no negative zero: -0.0 and 0.0 are one node */
+    for (int s = 1; s < dag->samples; ++s)
+        sample[s] = sample[0];
     return intern(dag, &(Node){.op = OP_LITERAL, .level = LEVEL_LITERAL}, sample);
 }
 

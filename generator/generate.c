@@ -427,7 +427,7 @@ static void write_lookup(Generation *g, Text *out)
             text_print(out, "\n};\n");
         }
     }
-    line(out, 0, "static const gic_table table[%d] = {", model->tables);
+    line(out, 0, "static const gic_table %s_table[%d] = {", model->name, model->tables);
     for (int i = 0; i < model->tables; ++i) {
         const Table *table = &model->table[i];
         line(out, 4, "{%s_%s_x, %s_%s_y, %s_%s_slope, %d, %d, %d},", model->name, table->name, model->name, table->name,
@@ -637,12 +637,14 @@ void generate(Pool *pool, const Formulation *formulation, const Style *style, co
               Text *c, Text *h)
 {
     const char *name = formulation->model->name;
+    Style own = *style;
+    own.prefix = pool_print(pool, "%s_", name);
     Generation g = {.pool = pool,
                     .formulation = formulation,
                     .model = formulation->model,
                     .sequence = formulation->sequence,
                     .plan = formulation->plan,
-                    .style = style,
+                    .style = &own,
                     .templates = templates,
                     .header = header,
                     .upper = capital(pool, name),

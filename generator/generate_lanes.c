@@ -303,6 +303,7 @@ void write_lane_class(Generation *g, Text *out)
     Style style = style_lanes;
     style.width = g->plan->class_lanes[g->class];
     style.known_stride = stride;
+    style.prefix = usual->prefix;
     Text body = {.pool = g->pool};
     g->style = &style;
     g->constants[g->class] = (Constants){0};

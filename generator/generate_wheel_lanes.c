@@ -136,7 +136,9 @@ static void insert_class(void *context, const char *name, Text *out, int indent)
         const Block *block = !strcmp(name, "contact") ? &class->contact
                              : !strcmp(name, "tire")  ? &class->tire
                                                       : &class->balance;
-        block_emit(out, block, &style_wheels, &x->constants, indent);
+        Style style = style_wheels;
+        style.prefix = x->g->style->prefix;
+        block_emit(out, block, &style, &x->constants, indent);
     }
 }
 

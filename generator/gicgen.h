@@ -429,6 +429,7 @@ typedef struct Style {
     const int *known_stride; /* [knowns] with a width: numbers from one number of a known to the next, each a row of it;
                               * negative: one body is the known of all lanes */
     bool lane_constants;     /* with `lanes`: constants of members are vectors too, not only numbers of all lanes */
+    const char *prefix;      /* of the names of functions and tables that the file defines; NULL: none */
 } Style;
 
 extern const Style style_readable, style_direct, style_lanes;

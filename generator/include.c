@@ -193,7 +193,8 @@ static Open part_open(Pool *pool, const Item *item, const char *name, const Open
     return open;
 }
 
-static const Item *file_read_whole(Pool *pool, const Open *open);
+/* by: where it is named; NULL: by the user. */
+static const Item *file_read_whole(Pool *pool, const Open *open, const Item *by);
 
 /* One element of `include`: a path, or a map that says also where and under which names. */
 static const Item *part_read(Pool *pool, const Item *item, const Open *from)
@@ -211,12 +212,13 @@ static const Item *part_read(Pool *pool, const Item *item, const Open *from)
     if (value[PART_PREFIX].item)
         name_check(value[PART_PREFIX].text, "a prefix", value[PART_PREFIX].item->at);
     Open open = part_open(pool, file, doc_word(file, "include"), from);
-    return part_placed(pool, file_read_whole(pool, &open), value);
+    return part_placed(pool, file_read_whole(pool, &open, file), value);
 }
 
-static const Item *file_read_whole(Pool *pool, const Open *open)
+static const Item *file_read_whole(Pool *pool, const Open *open, const Item *by)
 {
-    const Item *file = doc_read(pool, open->path);
+    static const char *const key[] = {"gicgen", "bodies:", "joints:", "coordinates:", "forces:", "outputs:", NULL};
+    const Item *file = by ? doc_read_named(pool, open->path, by, key) : doc_read(pool, open->path);
     open->taken->bytes += file->at.source->size;
     if (open->taken->bytes > TEXT_MOST)
         diag_fail((Place){file->at.source, 0, 0}, "include less",
@@ -240,5 +242,5 @@ const Item *file_included(Pool *pool, const char *path)
     Open open = {.path = path, .taken = &(Taken){0}};
     if (strcmp(path, "-"))
         stat(path, &open.identity); /* a path that can't be read: doc_read says so */
-    return file_read_whole(pool, &open);
+    return file_read_whole(pool, &open, NULL);
 }

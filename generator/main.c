@@ -231,14 +231,27 @@ static void write_report(Pool *pool, const Model *model, const Sequence *sequenc
     file_write(options->page, page.s, page.size);
 }
 
+/* No output may be one of the inputs: code and its header, or a page. */
+static void check_outputs(Pool *pool, const Options *options, const Source *input)
+{
+    const char *output = options->page ? options->page : options->output;
+    if (!output)
+        return;
+    source_keep(input, output);
+    if (path_ends(output, ".c"))
+        source_keep(input, pool_print(pool, "%.*sh", (int)strlen(output) - 1, output));
+}
+
 int main(int count, char **word)
 {
     Options options = read_options(count, word);
     Pool *pool = pool_new();
     const Model *model = model_read(pool, options.model);
     Setting setting = {model, NULL};
+    check_outputs(pool, &options, model->source);
     if (options.scene) {
         const Scene *scene = scene_read(pool, options.scene, model, NULL, 0);
+        check_outputs(pool, &options, scene->source);
         model = scene_rig(pool, model, &scene);
         setting.facts = scene_facts(pool, model, scene, options.scene, false);
     }

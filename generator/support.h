@@ -4,6 +4,7 @@
 #ifndef GICGEN_SUPPORT_H
 #define GICGEN_SUPPORT_H
 
+#include <signal.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -82,6 +83,18 @@ enum {
  * `most` bytes: devices and pipes may never end. */
 char *file_read(Pool *pool, const char *path, size_t most, size_t *size);
 
+/* ---- temporary.c -------------------------------------------------------------------------------- */
+
+/* A new file beside `path`, open for writing, whose random name *name nobody has put there before: no link is followed.
+ * NULL with errno: it can't be made. The caller renames it to `path`, or removes it. */
+FILE *temporary_open(Pool *pool, const char *path, char **name);
+
+enum { SIGNAL_MOST = 64 /* the greatest number of a signal */ };
+
+/* The signals that would end the program where it stands, unless whoever started it wants them ignored (nohup): those
+ * that ask to stop, alarms and limits, and those of a write that fails. */
+sigset_t stop_signals(void);
+
 /* ---- diag.c: messages for people ---------------------------------------------------------------- */
 
 /* A place in an input file. line and column count from 1; 0: the file as a whole. */
@@ -95,6 +108,8 @@ typedef struct Source {
     const char *bytes;
     size_t size;
     const char *mirrored; /* its places stand for the mirror image of this entry; NULL: for what is written there */
+    bool hidden;          /* messages show places in it, but not what stands there: nobody knows yet what file it is */
+    struct Named *named;  /* the files that it names: source.c */
 } Source;
 
 /* Print `path:line:col: error: <message>`, the source line with a caret under the column, in a mirror image
@@ -109,6 +124,15 @@ const char *diag_line(Place at);
 Place diag_place(const Source *source, size_t offset);
 /* Of `count` words the one most like `word` (edit distance), or NULL when none is near. */
 const char *diag_nearest(const char *word, const char *const *words, int count);
+
+/* ---- source.c: input files and those that they name ---------------------------------------------- */
+
+/* Read a file as file_read() does; by: the file that names it, NULL: the user does. */
+Source *source_read(Pool *pool, const char *path, size_t most, const Source *by);
+/* End with a message where a file to be written is this input, or one that it names. */
+void source_keep(const Source *source, const char *output);
+/* A hash of what stands in it and in all files that it names. */
+uint64_t source_hash(const Source *source);
 
 /* ---- doc.c: YAML into a tree that knows its places ---------------------------------------------- */
 
@@ -129,6 +153,9 @@ typedef struct Item {
 /* Parse a file ("-": standard input) into a tree. YAML errors, aliases to ancestors, duplicate keys, nesting deeper
  * than 64 and more than one document end in diag_fail. */
 const Item *doc_read(Pool *pool, const char *path);
+/* The same for a file that another one names, in the item `by`. Where no word of the list `key`, which ends with NULL,
+ * stands in it, it is no such file, and the message shows nothing of it. */
+const Item *doc_read_named(Pool *pool, const char *path, const Item *by, const char *const *key);
 /* Value of a key of a map, or NULL. */
 const Item *doc_find(const Item *map, const char *key);
 

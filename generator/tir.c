@@ -239,7 +239,7 @@ typedef struct Found {
 typedef struct Tir {
     Pool *pool;
     const char *what; /* "tire 'front'" */
-    Source source;
+    const Source *source;
     const char *section; /* being read, NULL: none yet */
     const char **sections;
     size_t *section_at;
@@ -251,7 +251,7 @@ typedef struct Tir {
 
 static Place place(const Tir *tir, const char *s)
 {
-    return diag_place(&tir->source, (size_t)(s - tir->source.bytes));
+    return diag_place(tir->source, (size_t)(s - tir->source->bytes));
 }
 
 /* The text from s to end in capitals. */
@@ -292,7 +292,7 @@ static void section_begin(Tir *tir, const char *s, const char *end)
     tir->section = capitals(tir->pool, name, last > name ? last : name);
     tir->table = false;
     *POOL_PUSH(tir->pool, tir->sections, count) = tir->section;
-    *POOL_PUSH(tir->pool, tir->section_at, tir->section_count) = (size_t)(s - tir->source.bytes);
+    *POOL_PUSH(tir->pool, tir->section_at, tir->section_count) = (size_t)(s - tir->source->bytes);
 }
 
 /* The key of that name; units count in their own section alone, for others have a MASS too. */
@@ -387,7 +387,7 @@ static void line_read(Tir *tir, const char *s, const char *end)
 
 static void lines_read(Tir *tir)
 {
-    const char *s = tir->source.bytes, *end = s + tir->source.size;
+    const char *s = tir->source->bytes, *end = s + tir->source->size;
     for (const char *c = s; c < end; ++c)
         if ((unsigned char)*c < 0x20 && !memchr("\t\n\r\f", *c, 4))
             diag_fail(place(tir, c), "name a .tir file, which is text", "%s: this is no text: byte %d", tir->what,
@@ -401,7 +401,7 @@ static void lines_read(Tir *tir)
         line_read(tir, line, s++);
     }
     if (tir->unknown > UNKNOWN_MOST)
-        diag_warn((Place){&tir->source, 0, 0}, "name a PAC2002 or MF5.2 file", "%s: %d more keys are not known",
+        diag_warn((Place){tir->source, 0, 0}, "name a PAC2002 or MF5.2 file", "%s: %d more keys are not known",
                   tir->what, tir->unknown - UNKNOWN_MOST);
 }
 
@@ -416,9 +416,9 @@ static _Noreturn void missing(const Tir *tir, int key, const char *section, cons
     const char *remedy = pool_print(tir->pool, "add `%s = %s` to [%s]", key_name[key], example, section);
     for (int i = tir->section_count - 1; i >= 0; --i)
         if (!strcmp(tir->sections[i], section))
-            diag_fail(diag_place(&tir->source, tir->section_at[i]), remedy, "%s: [%s] lacks %s", tir->what, section,
+            diag_fail(diag_place(tir->source, tir->section_at[i]), remedy, "%s: [%s] lacks %s", tir->what, section,
                       key_name[key]);
-    diag_fail(diag_place(&tir->source, 0), remedy, "%s: the section [%s] with %s is missing", tir->what, section,
+    diag_fail(diag_place(tir->source, 0), remedy, "%s: the section [%s] with %s is missing", tir->what, section,
               key_name[key]);
 }
 
@@ -618,13 +618,38 @@ static void tire_fill(const Tir *tir, Tire *tire)
     bottom_read(tir, tire);
 }
 
+/* Does a text in capitals have a section of one of the names? */
+static bool has_section(const char *text, const char *const *name, int names)
+{
+    for (const char *s = text; (s = strchr(s, '[')); ++s) {
+        const char *word = s + 1 + strspn(s + 1, " \t\f");
+        for (int i = 0; i < names; ++i)
+            if (!strncmp(word, name[i], strlen(name[i])))
+                return true;
+    }
+    return false;
+}
+
+/* A file without any of the sections that tires have is something else: no message shows what stands there. */
+static const Source *tire_file(Pool *pool, const char *path, const char *what, const Source *by)
+{
+    static const char *const section[] = {"MDI_HEADER", "UNITS", "MODEL"};
+    Source *source = source_read(pool, path, TEXT_MOST, by);
+    const bool empty = !source->bytes[strspn(source->bytes, " \t\r\n\f")];
+    source->hidden = !empty && !has_section(capitals(pool, source->bytes, source->bytes + source->size), section, 3);
+    if (source->hidden)
+        diag_fail((Place){source, 1, 1}, "name a .tir file, which has sections such as [UNITS] and [MODEL]",
+                  "%s: this is no tire property file", what);
+    return source;
+}
+
 void tir_read(const Reader *reader, const Item *item, const char *what, Tire *tire)
 {
     Tir *tir = pool_alloc(reader->pool, sizeof *tir);
     struct stat identity;
     *tir = (Tir){.pool = reader->pool, .what = what};
-    tir->source.path = path_check(reader->pool, item, item->at.source->path, doc_word(item, what), "read", &identity);
-    tir->source.bytes = file_read(reader->pool, tir->source.path, TEXT_MOST, &tir->source.size);
+    const char *path = path_check(reader->pool, item, item->at.source->path, doc_word(item, what), "read", &identity);
+    tir->source = tire_file(reader->pool, path, what, item->at.source);
     lines_read(tir);
     numbers_read(tir);
     format_check(tir);

@@ -235,43 +235,62 @@ bool path_ends(const char *path, const char *end)
     return n > m && !strcmp(path + n - m, end);
 }
 
-/* End with a message about a file that can't be written, without the temporary ones (NULL: none). */
-static _Noreturn void write_fail(const char *path, const char *what, const char *temporary, const char *other)
+/* A file on its way to its place. While there is one, signals that would leave it behind wait; a signal for a write
+ * that fails would come before the message. */
+typedef struct Moving {
+    const char *path;
+    char *name;                 /* NULL: none yet, or renamed */
+    const struct Moving *other; /* that belongs to it; NULL: none */
+} Moving;
+
+/* End with a message about a file that can't be written, without temporary ones. */
+static _Noreturn void write_fail(const Moving *moving, const char *what)
 {
     const int reason = errno;
-    if (temporary)
-        remove(temporary);
-    if (other)
-        remove(other);
+    if (moving->name)
+        remove(moving->name);
+    if (moving->other && moving->other->name)
+        remove(moving->other->name);
     errno = reason;
-    file_fail(path, what);
+    file_fail(moving->path, what);
 }
 
-/* Write to a temporary file beside `path`. Returns its name, to be freed. other: as for write_fail. */
-static char *temporary_write(const char *path, const char *bytes, size_t size, const char *other)
+static void temporary_write(Pool *pool, Moving *moving, const char *bytes, size_t size)
 {
-    const size_t room = strlen(path) + 32;
-    char *temporary = malloc(room);
-    if (!temporary) {
-        if (other)
-            remove(other);
-        out_of_memory();
-    }
-    snprintf(temporary, room, "%s.%ld.tmp", path, (long)getpid());
-    FILE *file = fopen(temporary, "wb");
+    char *name;
+    FILE *file = temporary_open(pool, moving->path, &name);
     if (!file)
-        write_fail(path, "can't create", NULL, other);
+        write_fail(moving, "can't create");
+    moving->name = name;
     const bool written = fwrite(bytes, 1, size, file) == size;
     if (fclose(file) || !written)
-        write_fail(path, "can't write", temporary, other);
-    return temporary;
+        write_fail(moving, "can't write");
 }
 
-static void temporary_move(char *temporary, const char *path, const char *other)
+static void temporary_move(Moving *moving)
 {
-    if (rename(temporary, path))
-        write_fail(path, "can't write", temporary, other);
-    free(temporary);
+    if (rename(moving->name, moving->path))
+        write_fail(moving, "can't write");
+    moving->name = NULL;
+}
+
+/* Write a file, and where other_path is not NULL another one, and rename what is whole. */
+static void move_in(Moving *first, const char *bytes, size_t size, const char *other_path, const Text *other)
+{
+    Pool *pool = pool_new(); /* before there is anything to leave behind */
+    Moving second = {.path = other_path, .other = first};
+    const sigset_t stop = stop_signals();
+    sigset_t before;
+    sigprocmask(SIG_BLOCK, &stop, &before);
+    temporary_write(pool, first, bytes, size);
+    if (other_path)
+        temporary_write(pool, &second, other->s, other->size);
+    first->other = &second;
+    temporary_move(first);
+    if (other_path)
+        temporary_move(&second);
+    pool_free(pool);
+    sigprocmask(SIG_SETMASK, &before, NULL);
 }
 
 void file_write(const char *path, const char *bytes, size_t size)
@@ -290,7 +309,7 @@ void file_write(const char *path, const char *bytes, size_t size)
             file_fail(path, "can't write");
         return;
     }
-    temporary_move(temporary_write(path, bytes, size, NULL), path, NULL);
+    move_in(&(Moving){.path = path}, bytes, size, NULL, NULL);
 }
 
 void file_write_both(const char *path, const Text *text, const char *other_path, const Text *other)
@@ -300,10 +319,7 @@ void file_write_both(const char *path, const Text *text, const char *other_path,
         file_write(other_path, other->s, other->size);
         return;
     }
-    char *first = temporary_write(path, text->s, text->size, NULL);
-    char *second = temporary_write(other_path, other->s, other->size, first);
-    temporary_move(first, path, second);
-    temporary_move(second, other_path, NULL);
+    move_in(&(Moving){.path = path}, text->s, text->size, other_path, other);
 }
 
 char *file_read(Pool *pool, const char *path, size_t most, size_t *size)

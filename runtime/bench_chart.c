@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 void chart_point(Pool *pool, Chart *chart, const char *series, int group, double x, double y)
 {
@@ -21,12 +20,11 @@ void chart_point(Pool *pool, Chart *chart, const char *series, int group, double
     *POOL_PUSH(pool, s->y, s->points) = y;
 }
 
-static const char *chart_script(Pool *pool, const Chart *chart, const char *output)
+static const char *chart_script(Pool *pool, const Chart *chart)
 {
     Text out = {.pool = pool};
     const char *const label[][2] = {{"title", chart->title}, {"xlabel", chart->x}, {"ylabel", chart->y}};
     text_print(&out, "set terminal svg size 900,560 noenhanced background 'white'\n");
-    plot_output(&out, output);
     for (int i = 0; i < 3; ++i) {
         text_print(&out, "set %s ", label[i][0]);
         plot_text(&out, label[i][1]);
@@ -50,14 +48,14 @@ static const char *chart_script(Pool *pool, const Chart *chart, const char *outp
                    i, s->group + 1, 2 * member + 3, member);
         plot_text(&out, s->name);
     }
-    text_print(&out, "\nset output\n");
+    text_print(&out, "\n");
     return out.s;
 }
 
 void chart_write(Pool *pool, const Chart *chart, const char *path)
 {
-    const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid()), *said = "";
-    int status = gnuplot_run(pool, chart_script(pool, chart, temporary), temporary, path, &said);
+    const char *said = "";
+    const int status = gnuplot_run(pool, chart_script(pool, chart), path, &said);
     if (status)
         diag_fail(program_place(), "gnuplot draws it (Debian: apt-get install gnuplot-nox)", "no picture %s: %s", path,
                   said);

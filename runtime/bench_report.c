@@ -182,15 +182,18 @@ static void page_html(Text *out, const Report *report)
 static void write_file(Pool *pool, const char *folder, const char *name, const Text *text)
 {
     const char *path = pool_print(pool, "%s/%s", folder, name);
-    const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid());
-    FILE *file = fopen(temporary, "w");
+    char *temporary;
+    interrupt_hold();
+    FILE *file = temporary_open(pool, path, &temporary);
     bool good = file && fwrite(text->s, 1, text->size, file) == text->size;
     good = file && !fclose(file) && good;
     good = good && !rename(temporary, path);
+    const int error = errno;
+    if (file && !good)
+        unlink(temporary);
+    interrupt_release();
     if (good)
         return;
-    const int error = errno;
-    unlink(temporary);
     diag_fail(program_place(), "choose another folder with -o", "can't write %s: %s", path, strerror(error));
 }
 

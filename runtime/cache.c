@@ -54,12 +54,24 @@ static Seal seal_of(const char *bytes, size_t size)
 /* ---- files --------------------------------------------------------------------------------------------------------
  */
 
-/* All bytes of a file, or NULL. */
-static char *read_bytes(Pool *pool, const char *path, size_t *size)
+/* May nobody but this user, or root, have written it? */
+static bool is_own(const struct stat *is)
 {
-    FILE *file = fopen(path, "rb");
-    if (!file)
+    return is->st_uid == geteuid() && !(is->st_mode & (S_IWGRP | S_IWOTH));
+}
+
+/* All bytes of a file, or NULL. own: it must be one that is_own(), and no link. */
+static char *read_bytes(Pool *pool, const char *path, bool own, size_t *size)
+{
+    struct stat is;
+    const int handle = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | (own ? O_NOFOLLOW : 0));
+    const bool good = handle >= 0 && !fstat(handle, &is) && S_ISREG(is.st_mode) && (!own || is_own(&is));
+    FILE *file = good ? fdopen(handle, "rb") : NULL;
+    if (!file) {
+        if (handle >= 0)
+            close(handle);
         return NULL;
+    }
     Text text = {.pool = pool};
     char buffer[1 << 14];
     for (size_t n; (n = fread(buffer, 1, sizeof buffer, file)) > 0;)
@@ -105,8 +117,8 @@ const char *cache_folder(Pool *pool, const char **why)
         *why = "neither GICGEN_CACHE nor HOME names a folder";
     else if (*folder && (!make_folders(pool, folder) || stat(folder, &is)))
         *why = pool_print(pool, "can't make the folder %s: %s", folder, strerror(errno));
-    else if (*folder && (is.st_uid != geteuid() || (is.st_mode & S_IWOTH)))
-        *why = pool_print(pool, "the folder %s belongs to somebody else, or everybody may write there", folder);
+    else if (*folder && !is_own(&is))
+        *why = pool_print(pool, "the folder %s belongs to somebody else, or others may write there", folder);
     return *why || !*folder ? NULL : folder;
 }
 
@@ -127,11 +139,9 @@ const char *cache_find(Pool *pool, const char *folder, const char *key)
 {
     const char *path = object_path(pool, folder, key);
     size_t size;
-    const char *bytes = read_bytes(pool, path, &size);
-    if (!bytes)
-        return NULL;
+    const char *bytes = read_bytes(pool, path, true, &size);
     Seal found;
-    if (size > sizeof found) {
+    if (bytes && size > sizeof found) {
         memcpy(&found, bytes + size - sizeof found, sizeof found);
         const Seal right = seal_of(bytes, size - sizeof found);
         if (!memcmp(&found, &right, sizeof found)) {
@@ -196,7 +206,7 @@ static void trim(Pool *pool, const char *folder, int64_t most)
 bool cache_keep(Pool *pool, const char *folder, const char *key, const char *path, int64_t most)
 {
     size_t size;
-    const char *bytes = read_bytes(pool, path, &size), *place = object_path(pool, folder, key);
+    const char *bytes = read_bytes(pool, path, false, &size), *place = object_path(pool, folder, key);
     char *temporary = pool_print(pool, "%s.XXXXXX", place);
     if (!bytes)
         return false;

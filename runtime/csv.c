@@ -15,7 +15,7 @@
 typedef struct Unfinished {
     Pool *pool; /* its own: it is needed when all others are gone */
     pid_t process;
-    const char *path;
+    char *path; /* NULL: there is none */
 } Unfinished;
 
 /* Whoever ends the program in the middle of a table, out of memory or a library that does, leaves none behind; and it
@@ -23,7 +23,7 @@ typedef struct Unfinished {
 static void remove_unfinished(int status, void *what)
 {
     Unfinished *unfinished = what;
-    const bool ours = unfinished->process == getpid();
+    const bool ours = unfinished->path && unfinished->process == getpid();
     if (ours && !unlink(unfinished->path) && status == 0) {
         fprintf(stderr, "%s: error: a library ended the program\n  remedy: is there memory enough?\n",
                 program_place().source->path);
@@ -32,13 +32,14 @@ static void remove_unfinished(int status, void *what)
     pool_free(unfinished->pool);
 }
 
-static void watch(const char *temporary)
+/* Memory for it is there before the file. */
+static Unfinished *watch(void)
 {
     Pool *pool = pool_new();
     Unfinished *unfinished = pool_alloc(pool, sizeof *unfinished);
-    *unfinished = (Unfinished){pool, getpid(), pool_print(pool, "%s", temporary)};
-    if (on_exit(remove_unfinished, unfinished))
-        pool_free(pool);
+    *unfinished = (Unfinished){pool, getpid(), NULL};
+    on_exit(remove_unfinished, unfinished); /* where that fails only these few bytes stay */
+    return unfinished;
 }
 
 static _Noreturn void write_fail(const Csv *csv, const char *what)
@@ -46,6 +47,8 @@ static _Noreturn void write_fail(const Csv *csv, const char *what)
     int reason = errno;
     if (csv->temporary)
         remove(csv->temporary);
+    if (reason == EPIPE)
+        interrupt_release(); /* nobody reads: end as any program would, without a word */
     diag_fail(program_place(), "make room, or choose another place with -o", "can't %s %s: %s", what,
               strcmp(csv->path, "-") ? csv->path : "to standard output", strerror(reason));
 }
@@ -58,12 +61,13 @@ Csv csv_open(Pool *pool, const char *path)
         if (!csv.file)
             diag_fail(program_place(), "choose another place with -o", "can't open %s: %s", path, strerror(errno));
     } else if (strcmp(path, "-")) {
-        const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid());
-        watch(temporary); /* which takes memory itself: there is nothing yet that could be left */
-        csv.file = fopen(temporary, "w");
-        if (!csv.file)
-            write_fail(&(Csv){.path = path, .temporary = temporary}, "create");
-        csv.temporary = temporary;
+        Unfinished *unfinished = watch();
+        csv.file = temporary_open(unfinished->pool, path, &unfinished->path);
+        if (!csv.file) {
+            unfinished->path = NULL;
+            write_fail(&(Csv){.path = path}, "create");
+        }
+        csv.temporary = pool_print(pool, "%s", unfinished->path);
     }
     return csv;
 }
@@ -224,9 +228,10 @@ static void check_header(Pool *pool, const CsvTable *table, const Cell *c, const
                   "'%s' is no name of a column", name);
 }
 
-/* Name of a column: quotes around it and a unit in brackets behind it are dropped. */
-static const char *column_name(Pool *pool, const Source *source, Cell c, const char *header)
+/* Name of a column without quotes around it, and the unit in brackets behind it, *unit: NULL: none. */
+static const char *column_name(Pool *pool, const Source *source, Cell c, const char *header, const char **unit)
 {
+    *unit = NULL;
     if (c.to - c.from >= 2 && *c.from == '"' && c.to[-1] == '"') {
         ++c.from;
         --c.to;
@@ -234,6 +239,7 @@ static const char *column_name(Pool *pool, const Source *source, Cell c, const c
     if (c.to > c.from && c.to[-1] == ']')
         for (const char *bracket = c.to; --bracket > c.from;)
             if (*bracket == '[') {
+                *unit = cell_text(pool, &(Cell){bracket + 1, c.to - 1});
                 c.to = bracket;
                 break;
             }
@@ -247,9 +253,9 @@ static const char *column_name(Pool *pool, const Source *source, Cell c, const c
 
 static void read_header(Pool *pool, CsvTable *table, const char *header, const char *s, const char *end)
 {
-    int places = 0;
+    int places = 0, units = 0;
     for (Cell c; next_cell(&s, end, &c);) {
-        const char *name = column_name(pool, table->source, c, header);
+        const char *unit, *name = column_name(pool, table->source, c, header, &unit);
         check_header(pool, table, &c, name, header);
         if (table->columns == COLUMNS_MOST)
             diag_fail(cell_place(table->source, &c), "remove some of them", "more than %d columns", COLUMNS_MOST);
@@ -257,6 +263,7 @@ static void read_header(Pool *pool, CsvTable *table, const char *header, const c
             if (!strcmp(table->name[i], name))
                 diag_fail(cell_place(table->source, &c), "remove one of them", "column '%s' is here twice", name);
         *POOL_PUSH(pool, table->name, table->columns) = name;
+        *POOL_PUSH(pool, table->unit, units) = unit;
         *POOL_PUSH(pool, table->at, places) = (size_t)(c.from - table->source->bytes);
     }
 }
@@ -278,11 +285,40 @@ static void read_row(Pool *pool, CsvTable *table, int *values, const char *s, co
                   "the row has %d cells, the header has %d", column, table->columns);
 }
 
-const CsvTable *csv_read(Pool *pool, const char *path, const char *header)
+/* Do the words of a line hold one of the columns that `header` lists? */
+static bool names_any(Pool *pool, const char *s, const char *end, const char *header)
 {
-    Source *source = pool_alloc(pool, sizeof *source);
-    source->path = path;
-    source->bytes = file_read(pool, path, TABLE_MOST, &source->size);
+    static const char between[] = " ,;\t\r\"[]";
+    char *rest;
+    for (char *word = strtok_r(pool_print(pool, "%.*s", (int)(end - s), s), between, &rest); word;
+         word = strtok_r(NULL, between, &rest)) {
+        const size_t length = strlen(word);
+        for (const char *at = header; (at = strstr(at, word)); ++at)
+            if ((at == header || strchr(between, at[-1])) && (!at[length] || strchr(between, at[length])))
+                return true;
+    }
+    return false;
+}
+
+/* The line that names the columns. Of a file without one nothing is shown where another file names it. */
+static void begin_table(Pool *pool, CsvTable *table, Source *source, bool named, const char *header, const char *s,
+                        const char *end)
+{
+    source->hidden = named && !names_any(pool, s, end, header);
+    if (source->hidden)
+        diag_fail(diag_place(source, (size_t)(s - source->bytes)),
+                  pool_print(pool, "is it the file that was meant? The first line names the columns: %s", header),
+                  "this line names no column of such a table");
+    const char *nought = memchr(source->bytes, 0, source->size);
+    if (nought)
+        diag_fail(diag_place(source, (size_t)(nought - source->bytes)), "save the table as plain text (UTF-8)",
+                  "a NUL byte: this is no text");
+    read_header(pool, table, header, s, end);
+}
+
+const CsvTable *csv_read(Pool *pool, const char *path, const char *header, const Source *by)
+{
+    Source *source = source_read(pool, path, TABLE_MOST, by);
     if (source->size >= 3 && !memcmp(source->bytes, "\xef\xbb\xbf", 3)) { /* byte order mark */
         source->bytes += 3;
         source->size -= 3;
@@ -300,7 +336,7 @@ const CsvTable *csv_read(Pool *pool, const char *path, const char *header)
         if (first == end || *first == '#')
             continue;
         if (!table->columns)
-            read_header(pool, table, header, s, end);
+            begin_table(pool, table, source, by, header, s, end);
         else
             read_row(pool, table, &values, s, end);
     }
@@ -318,4 +354,32 @@ Place csv_place(const CsvTable *table, int row)
 Place csv_name_place(const CsvTable *table, int column)
 {
     return diag_place(table->source, table->at[column]);
+}
+
+/* The next character of a unit, without blanks and signs of products: "N m" is "N*m". */
+static char unit_character(const char **s)
+{
+    *s += strspn(*s, " *");
+    return **s ? *(*s)++ : '\0';
+}
+
+static bool same_unit(const char *a, const char *b)
+{
+    for (;;) {
+        const char c = unit_character(&a), d = unit_character(&b);
+        if (c != d)
+            return false;
+        if (!c)
+            return true;
+    }
+}
+
+void csv_check_unit(Pool *pool, const CsvTable *table, int column, const char *unit)
+{
+    const char *given = table->unit[column];
+    const bool none = !strcmp(unit, "1") && given && (!*given || !strcmp(given, "-"));
+    if (given && !none && !same_unit(given, unit))
+        diag_fail(csv_name_place(table, column),
+                  pool_print(pool, "convert the numbers, and write [%s] or no unit", unit),
+                  "column '%s' is in %s, and its numbers would be taken for %s", table->name[column], given, unit);
 }

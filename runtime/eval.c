@@ -22,6 +22,17 @@ static const char *number_name(const Engine *engine, int i)
                            : model->discrete[model->free_base + gear].name;
 }
 
+static const char *number_unit(const Engine *engine, int i)
+{
+    const gic_model *model = engine->code;
+    int input = i - engine->standard_count, parameter = input - model->input_count;
+    int gear = parameter - model->parameter_count;
+    return input < 0       ? engine->standard[i].unit
+           : parameter < 0 ? model->input[input].unit
+           : gear < 0      ? model->parameter[parameter].unit
+                           : model->discrete[model->free_base + gear].unit;
+}
+
 /* The same where several things have one name, `parameter/name`; NULL: of a gear. */
 static const char *full_name(Pool *pool, const Engine *engine, int i)
 {
@@ -74,6 +85,7 @@ static Columns find_columns(Pool *pool, const Engine *engine, const CsvTable *ta
             diag_fail(csv_name_place(table, k),
                       nearest ? pool_print(pool, "did you mean '%s'?", nearest) : "remove the column",
                       "the model has no state, input or tunable parameter '%s'", table->name[k]);
+        csv_check_unit(pool, table, k, number_unit(engine, i));
         columns.column[i] = k;
     }
     Text missing = {.pool = pool};
@@ -177,7 +189,7 @@ static int set_gears(const gic_model *model, const Columns *columns, const doubl
 void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request)
 {
     const gic_model *model = engine->code;
-    const CsvTable *table = csv_read(pool, request->states, "r.x,r.y,...");
+    const CsvTable *table = csv_read(pool, request->states, "r.x,r.y,...", NULL);
     const Columns columns = find_columns(pool, engine, table);
     gic_head *self = instance_new(pool, engine);
     double *input = instance_array(self, model->input_offset);

@@ -197,6 +197,21 @@ static void analyse(Pool *pool, const Model *model, const Scene *scene, const En
         modes_report(pool, scene, request, found);
 }
 
+/* No output may be one of the files that the run is made of. */
+static void check_outputs(const Request *request, const Model *model, const Scene *scene)
+{
+    const char *const output[] = {request->results, request->picture, request->page};
+    const Source states = {.path = request->states ? request->states : "-"};
+    for (size_t i = 0; i < sizeof output / sizeof *output; ++i) {
+        if (!output[i])
+            continue;
+        source_keep(model->source, output[i]);
+        source_keep(&states, output[i]);
+        if (scene)
+            source_keep(scene->source, output[i]);
+    }
+}
+
 int main(int count, char **word)
 {
     const Request request = read_command_line(count, word);
@@ -204,6 +219,7 @@ int main(int count, char **word)
     const Model *model = model_read(pool, request.model);
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
+    check_outputs(&request, model, scene);
     model = scene_rig(pool, model, &scene);
     const bool runs = !request.states && !request.rests && !request.modes;
     if (runs)

@@ -45,7 +45,7 @@ int64_t usage_whole(const char *program, const char *message, const char *word, 
  * called by. */
 Place program_place(void);
 
-/* Between hold and release SIGINT, SIGTERM and SIGHUP wait, so that what was begun can be put in order: temporary files
+/* Between hold and release all signals of stop_signals() wait, so that what was begun can be put in order: temporary files
  * removed, results kept. Release lets them through: one that has arrived ends the program there. */
 void interrupt_hold(void);
 bool interrupt_arrived(void);
@@ -56,6 +56,8 @@ enum { PROCESS_NOT_STARTED = -1, PROCESS_INTERRUPTED = -2 };
 /* Run argv[0], searched in PATH, with `input` as its standard input; call between hold and release. Returns the exit
  * status (128 + signal when one killed it) or one of the above; *said: all it printed, or why it didn't start. */
 int process_run(Pool *pool, char *const argv[], const char *input, const char **said);
+/* The same with its standard output into an open file, beside its messages in *said. */
+int process_run_into(Pool *pool, char *const argv[], const char *input, int output, const char **said);
 
 /* A file without a name, for what a child reads or prints: unlike a pipe it never blocks either side. -1: none; and all
  * that is in one. */
@@ -133,6 +135,8 @@ void profile_at(const Profile *profile, double time, double out[3]);
 void scene_inputs(void *user, int32_t lane, double time, double *input);
 /* The first time after `time` at which a profile is less smooth than elsewhere, or INFINITY. */
 double scene_next_kink(const Scene *scene, double time);
+/* The longest step (s) that misses no period of a sine among the inputs, or INFINITY. */
+double scene_longest_step(const Scene *scene);
 /* The time up to which all inputs surely stay as they are at `time`, `time` itself where they may move. */
 double scene_quiet_until(const Scene *scene, double time);
 /* scene_outputs.c: columns, curves and panels of a scene. */
@@ -191,20 +195,23 @@ void csv_end_row(Csv *csv);
 void csv_close(Csv *csv);   /* exits with a message where not all could be written */
 void csv_abandon(Csv *csv); /* instead of csv_close: no results are left */
 
-/* A table of numbers with named columns; units in brackets behind the names are dropped. */
+/* A table of numbers with named columns. */
 typedef struct CsvTable {
     const Source *source;
     int columns, rows;
-    const char **name;
-    size_t *at;    /* where the names begin in the source */
-    double *value; /* [rows][columns] */
-    size_t *line;  /* [rows] where each begins in the source */
+    const char **name, **unit; /* unit: in brackets behind the name, NULL: none */
+    size_t *at;                /* where the names begin in the source */
+    double *value;             /* [rows][columns] */
+    size_t *line;              /* [rows] where each begins in the source */
 } CsvTable;
 
-/* header: the first line that messages suggest. */
-const CsvTable *csv_read(Pool *pool, const char *path, const char *header);
+/* header: the first line that messages suggest; by: the file that names this one, NULL: the user does. Where a file
+ * names it and its first line has none of the columns, no message shows what stands there. */
+const CsvTable *csv_read(Pool *pool, const char *path, const char *header, const Source *by);
 Place csv_place(const CsvTable *table, int row);
 Place csv_name_place(const CsvTable *table, int column);
+/* End with a message where a column states another unit than the one that its numbers are taken for. */
+void csv_check_unit(Pool *pool, const CsvTable *table, int column, const char *unit);
 
 /* ---- plot.c --------------------------------------------------------------------------------------------- */
 
@@ -219,14 +226,14 @@ typedef struct Plot {
 
 /* Picture by gnuplot, SVG or PNG by the ending of `path`; curves of the same unit share a panel. */
 void plot_write(Pool *pool, const Plot *plot, const char *path);
-/* For scripts of gnuplot: a text in quotes, with a blank in front of a `>` behind `]]`; `set output` of a path, which
- * is one even where it begins with `|` or `~`.
- */
+/* For scripts of gnuplot: a text in quotes, with a blank in front of a `>` behind `]]`. */
 void plot_text(Text *text, const char *s);
-void plot_output(Text *text, const char *path);
-/* Let gnuplot run a script that writes the file `temporary`, which then becomes `path`. Returns what process_run does,
- * 1 when the file is not whole or could not be renamed; *said: why. */
-int gnuplot_run(Pool *pool, const char *script, const char *temporary, const char *path, const char **said);
+
+enum { PLOT_NO_FILE = -3 /* beside process_run's */ };
+
+/* Let gnuplot run a script whose picture becomes the file `path`. Returns what process_run does, PLOT_NO_FILE where the
+ * file can't be made, 1 when it is not whole or could not be renamed; *said: why. */
+int gnuplot_run(Pool *pool, const char *script, const char *path, const char **said);
 bool plot_known(const char *path); /* does `path` end in .svg or .png? */
 
 /* ---- animate.c: a page of HTML in which the model moves ------------------------------------------------- */

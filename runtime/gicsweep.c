@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char help[] = "usage: gicsweep MODEL.veh SCENE --vary NAME=LOW:HIGH:COUNT ... [-o results.csv]\n"
                            "       gicsweep MODEL.veh SCENE --latin COUNT --vary NAME=LOW:HIGH ... [-o results.csv]\n"
@@ -70,12 +71,11 @@ static Options read_command_line(Pool *pool, int count, char **word)
         switch (option) {
         case VARY: vary_read(pool, &o.plan, optarg); break;
         case LATIN:
-            o.plan.latin =
-                usage_whole("gicsweep", "--latin takes 1 to 10000000 runs, not", optarg, 1, SWEEP_RUNS_MOST);
+            o.plan.latin = usage_whole("gicsweep", "--latin takes 1 to 10000000 runs, not", optarg, 1, SWEEP_RUNS_MOST);
             break;
         case SEED:
-            o.plan.seed = (uint64_t)usage_whole("gicsweep", "--seed takes a whole number from 0 on, not", optarg, 0,
-                                                INT64_MAX);
+            o.plan.seed =
+                (uint64_t)usage_whole("gicsweep", "--seed takes a whole number from 0 on, not", optarg, 0, INT64_MAX);
             break;
         case 'o': o.results = optarg; break;
         case ENGINE:
@@ -132,17 +132,33 @@ static const Engine *open_code(Pool *pool, const Options *o, const Model *model,
     return engine_open(pool, *many || !tried ? "cc" : "tcc", model, &o->code);
 }
 
-/* What decides the results. */
-static const char *sweep_key(Pool *pool, const Sweep *sweep)
+/* This program, as it was built. */
+static uint64_t program_hash(Pool *pool)
+{
+    static const char self[] = "/proc/self/exe"; /* elsewhere the version has to do */
+    size_t size = 0;
+    const char *bytes = access(self, R_OK) ? "" : file_read(pool, self, TABLE_MOST, &size);
+    return text_hash(bytes, size);
+}
+
+/* What decides the results: the program, model and scene with all files that they name, what is varied, and how code is
+ * compiled. */
+static const char *sweep_key(Pool *pool, const Sweep *sweep, const EngineOptions *code)
 {
     Text text = {.pool = pool};
     const SweepPlan *plan = sweep->plan;
-    text_print(&text, "%s %s %s %lld %llu", GICGEN_VERSION, sweep->engine->code->hash, sweep->engine->name,
+    text_print(&text, "%s %016llx %016llx %016llx %s %d %lld %llu", GICGEN_VERSION,
+               (unsigned long long)program_hash(pool), (unsigned long long)source_hash(sweep->model->source),
+               (unsigned long long)source_hash(sweep->scene->source), sweep->engine->name, sweep->many != NULL,
                (long long)plan->latin, (unsigned long long)plan->seed);
     for (int v = 0; v < plan->varied; ++v)
         text_print(&text, " %s=%.17g:%.17g:%lld", plan->vary[v].name, plan->vary[v].low, plan->vary[v].high,
                    (long long)plan->vary[v].count);
-    return cache_key(pool, (const char *const[]){text.s, sweep->scene->source->bytes, NULL});
+    int words;
+    const char **word = compiler_words(pool, code->compiler, code->flags, &words);
+    for (int i = 0; i < words; ++i)
+        text_print(&text, " %s", word[i]);
+    return cache_key(pool, (const char *const[]){text.s, compiler_identity(pool, word, words), NULL});
 }
 
 /* The unit of a varied number. */
@@ -202,6 +218,11 @@ int main(int count, char **word)
     Options o = read_command_line(pool, count, word);
     const Model *model = model_read(pool, o.model);
     const Scene *scene = scene_read(pool, o.scene, model, NULL, 0);
+    const char *const journal_path = pool_print(pool, "%s.journal", o.results);
+    for (int i = 0; i < 2; ++i) {
+        source_keep(model->source, i ? journal_path : o.results);
+        source_keep(scene->source, i ? journal_path : o.results);
+    }
     scene_no_rig(scene);
     scene = equilibrium_start(pool, model, scene, o.code.solve);
     Sweep sweep = {.pool = pool,
@@ -214,7 +235,7 @@ int main(int count, char **word)
     plan_close(pool, &o.plan, model, sweep.engine);
 
     interrupt_hold();
-    Journal journal = journal_open(pool, o.results, sweep_key(pool, &sweep), o.plan.runs);
+    Journal journal = journal_open(pool, o.results, sweep_key(pool, &sweep, &o.code), o.plan.runs);
     const int64_t before = journal.finished;
     const double start = clock_seconds(CLOCK_MONOTONIC);
     sweep.journal = &journal;

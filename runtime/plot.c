@@ -23,8 +23,8 @@ static void plot_character(Text *text, char c)
 }
 
 /* In single quotes all is as it stands, but two of them at the beginning are a text of their own, and the end of a line
- * ends it. shown: gnuplot writes a `>` into an SVG as it is, which behind `]]` is no XML. */
-static void plot_quoted(Text *text, const char *s, bool shown)
+ * ends it. gnuplot writes a `>` into an SVG as it is, which behind `]]` is no XML. */
+void plot_text(Text *text, const char *s)
 {
     const char *c = s;
     while ((unsigned char)*c >= ' ' && *c != '\'' && *c != '>')
@@ -35,23 +35,11 @@ static void plot_quoted(Text *text, const char *s, bool shown)
     }
     text_print(text, "\"");
     for (c = s; *c; ++c) {
-        if (shown && *c == '>' && c - s >= 2 && c[-1] == ']' && c[-2] == ']')
+        if (*c == '>' && c - s >= 2 && c[-1] == ']' && c[-2] == ']')
             plot_character(text, ' ');
         plot_character(text, *c);
     }
     text_print(text, "\"");
-}
-
-void plot_text(Text *text, const char *s)
-{
-    plot_quoted(text, s, true);
-}
-
-void plot_output(Text *text, const char *path)
-{
-    text_print(text, "set output ");
-    plot_quoted(text, path[0] == '/' ? path : pool_print(text->pool, "./%s", path), false);
-    text_print(text, "\n");
 }
 
 /* Is curve i the first of its unit? */
@@ -124,7 +112,7 @@ static void panel_over(Text *script, const Plot *plot, int panel)
     text_print(script, "plot $data using %d:%d with lines linewidth 1.5 notitle\n", x + 2, y + 2);
 }
 
-static const char *plot_script(Pool *pool, const Plot *plot, const char *path, const char *temporary)
+static const char *plot_script(Pool *pool, const Plot *plot, const char *path)
 {
     Text script = {.pool = pool};
     int over_time = 0, done = 0;
@@ -134,7 +122,6 @@ static const char *plot_script(Pool *pool, const Plot *plot, const char *path, c
     data_block(&script, plot);
     text_print(&script, "set terminal %s size %d,%d noenhanced\n",
                path_ends(path, ".svg") ? "svg background 'white'" : "pngcairo", WIDTH, PANEL_HEIGHT * panels + 40);
-    plot_output(&script, temporary);
     text_print(&script,
                "set grid\nset key outside center top horizontal\nset lmargin 10\nset tmargin 4\n"
                "set multiplot layout %d,1 title ",
@@ -146,7 +133,7 @@ static const char *plot_script(Pool *pool, const Plot *plot, const char *path, c
             panel(&script, plot, i, ++done == over_time);
     for (int i = 0; i < plot->panels; ++i)
         panel_over(&script, plot, i);
-    text_print(&script, "unset multiplot\nset output\n");
+    text_print(&script, "unset multiplot\n");
     return script.s;
 }
 
@@ -162,11 +149,20 @@ static bool is_whole(const char *path)
     return read && (strstr(end, "</svg>") || !memcmp(end + 4, "IEND", 4));
 }
 
-int gnuplot_run(Pool *pool, const char *script, const char *temporary, const char *path, const char **said)
+int gnuplot_run(Pool *pool, const char *script, const char *path, const char **said)
 {
     char *const argv[] = {"gnuplot", "-", NULL};
+    char *temporary;
     interrupt_hold();
-    int status = process_run(pool, argv, script, said);
+    FILE *file = temporary_open(pool, path, &temporary);
+    if (!file) {
+        *said = strerror(errno);
+        interrupt_release();
+        return PLOT_NO_FILE;
+    }
+    /* gnuplot opens no file itself: a name may have become a link since */
+    int status = process_run_into(pool, argv, script, fileno(file), said);
+    fclose(file);
     if (!status && !is_whole(temporary)) {
         *said = pool_print(pool, "%sgnuplot left half a picture\n", *said);
         status = 1;
@@ -183,13 +179,10 @@ int gnuplot_run(Pool *pool, const char *script, const char *temporary, const cha
 
 void plot_write(Pool *pool, const Plot *plot, const char *path)
 {
-    const char *temporary = pool_print(pool, "%s.%ld.tmp", path, (long)getpid()), *said = "";
-    interrupt_hold();                   /* gnuplot_run does, but the file is there before */
-    FILE *file = fopen(temporary, "w"); /* where gnuplot can't write it goes on with standard output */
-    if (!file)
-        diag_fail(program_place(), "choose another place with --plot", "can't create %s: %s", path, strerror(errno));
-    fclose(file);
-    int status = gnuplot_run(pool, plot_script(pool, plot, path, temporary), temporary, path, &said);
+    const char *said = "";
+    const int status = gnuplot_run(pool, plot_script(pool, plot, path), path, &said);
+    if (status == PLOT_NO_FILE)
+        diag_fail(program_place(), "choose another place with --plot", "can't create %s: %s", path, said);
     if (status == PROCESS_NOT_STARTED)
         diag_fail(program_place(), "install it (Debian: apt-get install gnuplot-nox), or run without --plot",
                   "no picture: gnuplot can't be started: %s", said);

@@ -20,23 +20,9 @@ Place program_place(void)
     return (Place){&program, 0, 0};
 }
 
-/* What is held: the signals that ask to stop, unless whoever started us wants them ignored (nohup). */
-static sigset_t held_signals(void)
-{
-    const int stop[] = {SIGINT, SIGTERM, SIGHUP};
-    sigset_t set;
-    sigemptyset(&set);
-    for (size_t i = 0; i < sizeof stop / sizeof *stop; ++i) {
-        struct sigaction action;
-        if (!sigaction(stop[i], NULL, &action) && action.sa_handler != SIG_IGN)
-            sigaddset(&set, stop[i]);
-    }
-    return set;
-}
-
 void interrupt_hold(void)
 {
-    sigset_t set = held_signals();
+    sigset_t set = stop_signals();
     sigaddset(&set, SIGCHLD);
     signal(SIGCHLD, SIG_DFL); /* inherited as ignored it would hide how a child ended */
     sigprocmask(SIG_BLOCK, &set, NULL);
@@ -44,9 +30,9 @@ void interrupt_hold(void)
 
 bool interrupt_arrived(void)
 {
-    sigset_t set = held_signals(), pending;
+    sigset_t set = stop_signals(), pending;
     sigpending(&pending);
-    for (int signal_number = 1; signal_number < 32; ++signal_number)
+    for (int signal_number = 1; signal_number <= SIGNAL_MOST; ++signal_number)
         if (sigismember(&set, signal_number) == 1 && sigismember(&pending, signal_number) == 1)
             return true;
     return false;
@@ -54,7 +40,7 @@ bool interrupt_arrived(void)
 
 void interrupt_release(void)
 {
-    sigset_t set = held_signals();
+    sigset_t set = stop_signals();
     sigaddset(&set, SIGCHLD);
     sigprocmask(SIG_UNBLOCK, &set, NULL);
 }
@@ -98,7 +84,7 @@ const char *nameless_text(Pool *pool, int file)
 }
 
 /* A process group of its own: the terminal's Ctrl-C reaches the child through us, and its own children die with it. */
-static int spawn(pid_t *child, char *const argv[], int input, int output)
+static int spawn(pid_t *child, char *const argv[], int input, int output, int errors)
 {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
@@ -107,7 +93,7 @@ static int spawn(pid_t *child, char *const argv[], int input, int output)
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, input, 0);
     posix_spawn_file_actions_adddup2(&actions, output, 1);
-    posix_spawn_file_actions_adddup2(&actions, output, 2);
+    posix_spawn_file_actions_adddup2(&actions, errors, 2);
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setsigmask(&attributes, &none);
     posix_spawnattr_setpgroup(&attributes, 0);
@@ -121,7 +107,7 @@ static int spawn(pid_t *child, char *const argv[], int input, int output)
 /* Wait for the child or for a held signal, which ends the child and stays pending. */
 static int await(pid_t child)
 {
-    sigset_t set = held_signals();
+    sigset_t set = stop_signals();
     sigaddset(&set, SIGCHLD);
     int status;
     while (waitpid(child, &status, WNOHANG) != child) {
@@ -136,14 +122,14 @@ static int await(pid_t child)
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-int process_run(Pool *pool, char *const argv[], const char *input, const char **said)
+int process_run_into(Pool *pool, char *const argv[], const char *input, int output, const char **said)
 {
     int in = nameless_file(pool), out = nameless_file(pool), result = PROCESS_NOT_STARTED;
     pid_t child;
     if (in < 0 || out < 0 || !write_all(in, input, strlen(input))) {
         *said = pool_print(pool, "no temporary file in %s: %s", temporary_folder(), strerror(errno));
     } else {
-        int error = spawn(&child, argv, in, out);
+        int error = spawn(&child, argv, in, output < 0 ? out : output, out);
         if (error)
             *said = strerror(error);
         else
@@ -156,4 +142,9 @@ int process_run(Pool *pool, char *const argv[], const char *input, const char **
     if (out >= 0)
         close(out);
     return result;
+}
+
+int process_run(Pool *pool, char *const argv[], const char *input, const char **said)
+{
+    return process_run_into(pool, argv, input, -1, said);
 }

@@ -491,6 +491,15 @@ double scene_next_kink(const Scene *scene, double time)
     return next;
 }
 
+double scene_longest_step(const Scene *scene)
+{
+    double longest = INFINITY;
+    for (int i = 0; i < scene->profiles; ++i)
+        if (!scene->profile[i].count && scene->profile[i].amplitude != 0)
+            longest = fmin(longest, 1 / (8 * scene->profile[i].frequency));
+    return longest;
+}
+
 /* How long a profile stays as it is at `time`. */
 static double profile_quiet_until(const Profile *profile, double time)
 {

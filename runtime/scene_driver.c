@@ -65,7 +65,7 @@ static void read_file(Pool *pool, const Item *file, Path *path)
     for (int i = 0; i < table->columns; ++i)
         for (int k = 0; k < 2; ++k)
             if (!strcmp(table->name[i], k ? "y" : "x"))
-                column[k] = i;
+                csv_check_unit(pool, table, column[k] = i, "m");
     if (column[0] < 0 || column[1] < 0 || table->rows < 2)
         diag_fail((Place){table->source, 1, 1}, "the first line is `x,y`, each other one a point",
                   "a path needs columns x and y and at least two rows");

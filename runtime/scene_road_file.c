@@ -27,7 +27,7 @@ const CsvTable *scene_file(Pool *pool, const Item *item, const char *what, const
         diag_fail(item->at, "name a file in it", "can't read the %s '%s': it is a folder", what, path);
     if (!S_ISREG(about.st_mode))
         diag_fail(item->at, "name a file", "can't read the %s '%s': it is a device or a pipe", what, path);
-    return csv_read(pool, path, header);
+    return csv_read(pool, path, header, item->at.source);
 }
 
 /* Refuse columns that are none of the `count` known ones. */
@@ -40,6 +40,7 @@ static void check_columns(Pool *pool, const CsvTable *table, const char *const *
         if (k == count)
             diag_fail(csv_name_place(table, i), pool_print(pool, "the columns are %s", header),
                       "a road knows no column '%s'", table->name[i]);
+        csv_check_unit(pool, table, i, "m");
     }
 }
 

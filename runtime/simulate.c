@@ -345,7 +345,8 @@ static int step_awake(const gic_model *model, const Scene *scene, Variable *vari
     if (!variable)
         return gic_step(model, self, scene->step, scene->method);
     const double kink = scene_next_kink(scene, gic_time(self));
-    const int status = variable_step(variable, self, fmin(kink, end));
+    const double most = gic_time(self) + scene_longest_step(scene);
+    const int status = variable_step(variable, self, fmin(fmin(kink, end), most));
     if (status == GIC_OK && gic_time(self) >= kink)
         variable_restart(variable);
     return status;

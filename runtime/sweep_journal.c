@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static _Noreturn void journal_fail(const Journal *journal, const char *what)
@@ -61,7 +62,8 @@ static bool take_line(Journal *journal, const char *line)
 static _Noreturn void refuse_foreign(const Journal *journal)
 {
     diag_fail(program_place(), "remove it, or choose another place with -o",
-              "%s is of another sweep: another model, scene, range or version", journal->path);
+              "%s is of another sweep: another model, scene, file that they name, range, compiler or program",
+              journal->path);
 }
 
 /* What is in the file: whole lines. */
@@ -88,9 +90,13 @@ Journal journal_open(Pool *pool, const char *results, const char *key, int64_t r
     Journal journal = {.pool = pool, .path = pool_print(pool, "%s.journal", results), .runs = runs};
     const char *first = pool_print(pool, "gicsweep journal %s\n", key);
     journal.row = pool_alloc(pool, sizeof *journal.row * (size_t)runs);
-    journal.file = open(journal.path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    journal.file = open(journal.path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     if (journal.file < 0)
         journal_fail(&journal, "open");
+    struct stat is;
+    if (fstat(journal.file, &is) || !S_ISREG(is.st_mode) || is.st_uid != geteuid())
+        diag_fail(program_place(), "remove it, or choose another place with -o",
+                  "%s is no file, or somebody else's", journal.path);
     if (flock(journal.file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
         diag_fail(program_place(), "wait for it, or choose another place with -o", "another gicsweep is writing %s",
                   journal.path);

@@ -7,6 +7,7 @@
 #include "variable.h"
 
 #include "gsl_errors.h"
+#include "resolve.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
@@ -28,6 +29,8 @@ struct Variable {
     gsl_odeiv2_driver *driver;
     double *integrated, *settled; /* states */
     void *before;                 /* the instance at the start of the step */
+    Probe *probe;                 /* sees where the road is looked up */
+    bool begun;                   /* has there been a step? */
 };
 
 static double *array_of(void *self, size_t offset)
@@ -62,6 +65,7 @@ static int right_hand_side(double time, const double *state, double *rate, void 
 {
     Variable *variable = user;
     refresh_inputs(variable->model, variable->self, time);
+    probe_begin(variable->probe, time);
     const int status = variable->model->rhs(variable->self, time, state, rate);
     if (status == GIC_OK)
         return GSL_SUCCESS;
@@ -85,10 +89,11 @@ Variable *variable_open(const gic_model *model, int32_t method, double tolerance
     variable->integrated = calloc(states(model), sizeof(double));
     variable->settled = calloc(states(model), sizeof(double));
     variable->before = malloc(model->size);
+    variable->probe = probe_new();
     variable->driver =
         gsl_odeiv2_driver_alloc_standard_new(&variable->system, type, variable->first_step, tolerance, tolerance, 1, 0);
     variable_restart(variable);
-    if (variable->integrated && variable->settled && variable->before && variable->driver)
+    if (variable->integrated && variable->settled && variable->before && variable->probe && variable->driver)
         return variable;
     variable_close(variable);
     return NULL;
@@ -103,6 +108,7 @@ void variable_close(Variable *variable)
     free(variable->integrated);
     free(variable->settled);
     free(variable->before);
+    probe_free(variable->probe);
     free(variable);
 }
 
@@ -146,6 +152,12 @@ static int advance(Variable *variable, double *time, double end)
     return status;
 }
 
+/* How far the next step may go at most: over no detail of the road. Where code looks no road up there is none. */
+static double longest(const Variable *variable)
+{
+    return variable->begun && !probe_asked(variable->probe) ? INFINITY : probe_longest(variable->probe);
+}
+
 int variable_step(Variable *variable, void *instance, double end)
 {
     const gic_model *model = variable->model;
@@ -157,10 +169,16 @@ int variable_step(Variable *variable, void *instance, double end)
         gsl_odeiv2_step_reset(variable->driver->s);
         variable->step = variable->first_step;
     }
+    const gic_road *const road = self->road;
+    self->road = probe_road(variable->probe, road);
     variable->self = self;
     memcpy(variable->before, self, model->size);
-    const int status = advance(variable, &time, end);
+    const int status = advance(variable, &time, road ? fmin(end, time + longest(variable)) : end);
+    self->road = road;
     self->status = status;
+    if (status == GIC_OK)
+        probe_end(variable->probe);
+    variable->begun = variable->begun || status == GIC_OK;
     variable->fresh = status != GIC_OK || variable->jumped;
     if (status == GIC_OK) {
         memcpy(state, variable->settled, size);

@@ -20,7 +20,7 @@ typedef struct Variable Variable;
 Variable *variable_open(const gic_model *model, int32_t method, double tolerance);
 void variable_close(Variable *variable);
 
-/* One step, as long as the tolerance allows, that ends at `end` exactly where it would pass it; end > time of `self`.
+/* One step, as long as the tolerance and the detail of the road allow (resolve.h), that ends at `end` exactly where it would pass it; end > time of `self`.
  * On GIC_OK state, time and input[] have moved; otherwise they are untouched, and the status is that of the last
  * evaluation that failed, or GIC_ERROR_ARGUMENT where rounding alone exceeds the tolerance. */
 int variable_step(Variable *variable, void *self, double end);

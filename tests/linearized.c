@@ -37,7 +37,7 @@ int main(int argc, char **argv)
     }
     Pool *pool = pool_new();
     const Model *model = model_read(pool, argv[1]);
-    const CsvTable *table = csv_read(pool, argv[2], "r.x,r.y,...");
+    const CsvTable *table = csv_read(pool, argv[2], "r.x,r.y,...", NULL);
     const Scene *scene = argc > 3 ? scene_read(pool, argv[3], model, NULL, 0) : NULL;
     const Engine *engine = engine_open(pool, "tape", model, &(EngineOptions){.quiet = true});
     const Linear *linear = linear_open(pool, engine);

@@ -24,6 +24,7 @@ typedef struct Shelf {
 static int set_up(void **state)
 {
     static Shelf f;
+    umask(022);
     f.pool = pool_new();
     char *folder = pool_print(f.pool, "%s/gicgen-cache-XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
     if (!mkdtemp(folder))
@@ -187,9 +188,12 @@ static void test_folders(void **state)
     /* where anybody could put an object */
     setenv("GICGEN_CACHE", f->folder, 1);
     assert_non_null(cache_folder(f->pool, &why));
-    assert_int_equal(chmod(f->folder, 0777), 0);
-    assert_null(cache_folder(f->pool, &why));
-    assert_non_null(strstr(why, "everybody may write"));
+    const mode_t open_to[] = {0777, 0770, 0702};
+    for (size_t i = 0; i < sizeof open_to / sizeof *open_to; ++i) {
+        assert_int_equal(chmod(f->folder, open_to[i]), 0);
+        assert_null(cache_folder(f->pool, &why));
+        assert_non_null(strstr(why, "others may write"));
+    }
     assert_int_equal(chmod(f->folder, 0700), 0);
     /* without a name of its own */
     unsetenv("GICGEN_CACHE");
@@ -203,6 +207,30 @@ static void test_folders(void **state)
     assert_non_null(why);
 }
 
+/* An object that somebody else may have written is none, whatever its seal says. */
+static void test_foreign_objects(void **state)
+{
+    Shelf *f = *state;
+    const char *why, *folder = cache_folder(f->pool, &why);
+    const char *aside = pool_print(f->pool, "%s/aside", f->root);
+    put(f, 100, 'x');
+    for (int way = 0; way < 4; ++way) {
+        assert_true(cache_keep(f->pool, folder, "one", f->object, CACHE_MOST));
+        const char *path = cache_find(f->pool, folder, "one");
+        assert_non_null(path);
+        if (way < 2) {
+            assert_int_equal(chmod(path, way ? 0602 : 0660), 0);
+        } else if (way == 2) { /* a link to a good one */
+            assert_int_equal(rename(path, aside), 0);
+            assert_int_equal(symlink(aside, path), 0);
+        } else if (chown(path, 65534, (gid_t)-1)) {
+            break; /* only root can give a file away */
+        }
+        assert_null(cache_find(f->pool, folder, "one"));
+        assert_int_equal(size_of(path), -1);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -212,6 +240,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_limit, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_processes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_folders, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_foreign_objects, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -52,8 +52,8 @@ drive row "{type: bumps, bumps: [$row]}"
 same sine row 1e-12
 
 drive inline '{type: table, x: [0, 3, 4, 5, 6.5, 30], left: [0, 0, 0.05, -0.02, 0, 0], right: [0, 0, 0.01, 0.01, 0, 0]}'
-printf '%s\n' 'x,left,right' 0,0,0 3,0,0 4,0.05,0.01 5,-0.02,0.01 6.5,0,0 30,0,0 >"$work/table.csv"
-drive table '{type: table, file: table.csv}'
+printf '%s\n' 'x,left,right' 0,0,0 3,0,0 4,0.05,0.01 5,-0.02,0.01 6.5,0,0 30,0,0 >"$work/table_road.csv"
+drive table '{type: table, file: table_road.csv}'
 same inline table 0
 
 # a plane by its nodes is one between them, where no edge is near
@@ -148,7 +148,8 @@ refused 'road.csv:' 'the file is empty'
 badfile table 1:3: "no column 'hight'" x,hight 0,0 1,0
 badfile table 1:1: 'columns are separated by semicolons' 'x;height' '0;0' '1;0'
 badfile table 1:1: 'columns are separated by tabs' "x$(printf '\t')height" "0$(printf '\t')0"
-badfile table 1:1: "'0' is no name of a column" 0,0 1,0
+badfile table 1:1: 'this line names no column of such a table' 0,0 1,0
+badfile table 1:3: "column 'height' is in mm" x,'height [mm]' 0,0 1,0
 badfile table 1:3: 'height beside left or right' x,height,left 0,0,0 1,0,0
 badfile table 1:1: "the column 'x' is missing" left,right 0,0 1,0
 badfile table 1:1: "the column 'right' is missing" x,left 0,0 1,0

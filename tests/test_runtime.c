@@ -406,7 +406,9 @@ static void test_unwound(void **unused)
     const gic_real bound = (gic_real)(sizeof(gic_real) == 8 ? 0x1p30 : 0x1p20);
     assert_true(fabs((double)gic_unwound(GIC_R(1.9) * bound)) < 4);
     assert_true(gic_unwound(2 * bound) == 2 * bound);
+#ifndef __FAST_MATH__ /* which promises that there are no infinities */
     assert_true(gic_unwound((gic_real)-INFINITY) == (gic_real)-INFINITY);
+#endif
 }
 
 /* What is to blame for a step that fails: 2 coordinates of a free base, the second of which is driven. */

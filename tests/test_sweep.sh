@@ -116,6 +116,30 @@ check "no finished run is lost" grep -q "1000 runs in .*, $kept of them from an 
 check "the same bytes in the end" cmp -s "$work/whole.csv" "$work/killed.csv"
 check "no journal is left" [ ! -e "$work/killed.csv.journal" ]
 
+# ---- nothing else goes on where a sweep was stopped: another road in the same file, other flags, another program
+
+# stopped COMMAND...: begins a sweep and stops it when it has finished some runs
+stopped() {
+    "$@" >"$work/out" 2>"$work/err" &
+    sweep=$!
+    while kill -0 $sweep 2>/dev/null && [ "$(cat "$work/cut.csv.journal" 2>/dev/null | wc -l)" -lt 3 ]; do sleep 0.02; done
+    kill -TERM $sweep 2>/dev/null
+    wait $sweep
+}
+sed 's/^road:.*/road: {type: table, file: road.csv}/' "$work/long.scene" >"$work/table.scene"
+printf '%s\n' 'x,height' 0,0 4,0.03 8,0 >"$work/road.csv"
+onward() { "$@" "$car" "$work/table.scene" --vary speed=4:6:1000 -o "$work/cut.csv"; }
+onward stopped "$gicsweep" -q
+check "stopped on the way" [ "$(wc -l <"$work/cut.csv.journal")" -gt 2 ]
+printf '%s\n' 'x,height' 0,0 4,0.02 8,0 >"$work/road.csv"
+check "another road in the same file" says "is of another sweep" 1 onward "$gicsweep" -q
+printf '%s\n' 'x,height' 0,0 4,0.03 8,0 >"$work/road.csv"
+check "other flags" says "is of another sweep" 1 onward "$gicsweep" -q --cflags -O1
+cp "$gicsweep" "$work/other_sweep"
+echo >>"$work/other_sweep"
+check "another program" says "is of another sweep" 1 onward "$work/other_sweep" -q
+check "the same goes on" onward "$gicsweep" -q
+
 # ---- inputs among the outputs, in lanes and alone, as gicrun writes them
 
 cat >"$work/cart.veh" <<'XXX'

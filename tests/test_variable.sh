@@ -115,6 +115,37 @@ for integrator in adams rkck; do
     check "$integrator: nor is its place" near "$(at "$work/a.csv" x.value 2)" 2.3805 1e-7
 done
 
+# A bump 5 cm long at 30 m/s, after a second on flat ground where steps have become long: as RK4 has it with steps of
+# 0.1 ms, three millimetres; and as a table with the same bump among straight pieces has it. Steps go up to the bump, over
+# it and on: some hundreds, where steps of a millimetre everywhere would be twenty thousand.
+short() {
+    cat <<XXX
+gicscene: 1
+duration: 2
+output_step: 0.5
+initial: {position: [0, 0, 0.4740625], velocity: [30, 0, 0]}
+road: $1
+outputs: [chassis, wheel_f_l, wheel_r_l]
+XXX
+}
+bump='{type: bumps, bumps: [{x: 30.01, length: 0.05, height: 0.03}]}'
+table='{type: table, x: [0, 30, 30.02, 30.04, 90], height: [0, 0, 0.03, 0, 0]}'
+short '{type: flat}' >"$work/level.scene"
+run models/hmmwv.veh "$work/level.scene" --integrator adams --tolerance 1e-6 -o "$work/level.csv"
+for road in "$bump" "$table"; do
+    kind=$(echo "$road" | sed 's/{type: //; s/,.*//')
+    { short "$road"; echo 'step: 0.0001'; echo 'integrator: rk4'; } >"$work/fine.scene"
+    run models/hmmwv.veh "$work/fine.scene" -o "$work/fine.csv"
+    check "$kind: the road moves the car" eval '! below "$(apart "$work/level.csv" "$work/fine.csv" 10)" 1e-4'
+    { short "$road"; echo 'integrator: adams'; } >"$work/variable.scene"
+    for integrator in adams rkck; do
+        run models/hmmwv.veh "$work/variable.scene" --integrator $integrator --tolerance 1e-6 -o "$work/a.csv"
+        check "$kind, $integrator: no step passes over it" below "$(apart "$work/fine.csv" "$work/a.csv" 10)" 1e-5
+        check "$kind, $integrator: steps are long elsewhere" \
+            [ "$(sed -n 's/.* in \([0-9]*\) steps of .*/\1/p' "$work/err")" -lt 1000 ]
+    done
+done
+
 # A failure is told with its status, and what was computed is kept: the force ceases to be a number at x = 1, where the
 # cart arrives before 0.5 s (it is never slower than 2 m/s) and after 0.47 s (it is never pushed by more than 1 N)
 sed 's/value: push/value: sqrt(1 - x)/; /^inputs/d; /^  push: {unit/d' "$work/cart.veh" >"$work/wall.veh"

@@ -77,6 +77,7 @@ def operations(text):
     text = re.sub(r"\bconst gic_real (?=t)|&", "", text).replace("->", ".")
     count = dict.fromkeys(KINDS, 0)
     before = ""
+    text = re.sub(r"\b\w+_(road_(height|friction)\()", r"\1", text)
     for token in re.findall(r"\w+|\S", text):
         binary = re.fullmatch(r"\w+|\)", before) and before != "return"
         if token in "+-" and binary:
