@@ -69,21 +69,21 @@
  * Operations of one right-hand side; Newton's iteration: one correction with old factors, one with new:
  *                                                            add  multiply  divide   root  function
  *   subset 'rack' (1 times, closed form)                      13        25       0      0         0
- *   subset 'lca_f_l' (4 times, closed form)                   68       111       1      1         0
- *   subset 'wheel_f_l' (2 times, closed form)                301       409       5      2         0
- *   subset 'wheel_r_l' (2 times, closed form)                 85       129       2      1         0
+ *   subset 'lca_f_l' (4 times, closed form)                   69       111       1      1         0
+ *   subset 'wheel_f_l' (2 times, closed form)                306       423       3      2         0
+ *   subset 'wheel_r_l' (2 times, closed form)                 86       129       2      1         0
  *   forces and equations of motion                           608       555       5      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         1       0      0         0
  *   wheel 'tire_f_l' (4 times)                               194       313      23     12        37
- *   powertrain                                                47        68       6      0         4
- *   a fast step: all of these                                823      1321      98     48       152
- *   all together                                            2687      3623     121     58       152
+ *   powertrain                                                50        71       6      0         4
+ *   a fast step: all of these                                826      1324      98     48       152
+ *   all together                                            2706      3654     117     58       152
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0x753da03b
+#if HMMWV_VEHICLE_H != 0x2ec7b3af
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -166,11 +166,12 @@
 #define GIC_AMPLIFIED (R(GIC_RECOVERY_ERROR) > R(0.0) ? R(1.0) : GIC_AMPLIFICATION)
 
 /* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
- * pieces in which a change of the coordinates is followed. */
+ * pieces in which a change of the coordinates is followed, into how many parts one of them may be split. */
 #define GIC_CHORDS 6
 #define GIC_PASSES 8
 #define GIC_LEAP_SQUARE R(0.25)
 #define GIC_PIECES 1000
+#define GIC_SPLIT 64
 
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
@@ -254,46 +255,42 @@ static GIC_COLD gic_real hmmwv_vehicle_residual_rack(const gic_real *GIC_RESTRIC
     return worst;
 }
 
-static const gic_real hmmwv_vehicle_k_lca_f_l[4][29] = {
+static const gic_real hmmwv_vehicle_k_lca_f_l[4][28] = {
     { /* lca_f_l */
-        R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(-0.9999999999999999),
-        R(-0.038649583990999964), R(0.056072097532999944), R(0.038649583990999964), R(-0.056072097532999944),
-        R(51.57660077184115), R(209.3566321652692), R(-209.35663216526913), R(51.57660077184116),
-        R(-51.57660077184115), R(209.35663216526913), R(50.90547521989429), R(10.049655409199135),
-        R(-10.049655409199135), R(3.0379110359107786e-06), R(0.24689200985615367), R(8.917091066652826),
-        R(0.307086), R(0.19748499999999997), R(-0.20269199999999993), R(1.688965),
-        R(40.476046225), R(0.01121887479261392), R(0.2403881036540444), R(0.509778),
-        R(7.8923759275231005),
+        R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.038649583990999964),
+        R(-0.056072097532999944), R(-0.038649583990999964), R(0.056072097532999944), R(50.90547521989429),
+        R(10.049655409199135), R(-10.049655409199135), R(51.57660077184115), R(209.3566321652692),
+        R(-209.35663216526913), R(51.57660077184116), R(-51.57660077184115), R(209.35663216526913),
+        R(-0.20269199999999993), R(0.19748499999999997), R(3.0379110359107786e-06), R(0.24689200985615367),
+        R(0.307086), R(40.476046225), R(-8.917091066652828), R(1.688965),
+        R(0.01121887479261392), R(0.2403881036540444), R(0.509778), R(7.8923759275231005),
     },
     { /* lca_f_r */
-        R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.9999999999999999),
-        R(0.038649583990999964), R(-0.056072097532999944), R(0.038649583990999964), R(-0.056072097532999944),
-        R(-51.57660077184115), R(209.3566321652692), R(-209.35663216526913), R(-51.57660077184116),
-        R(51.57660077184115), R(209.35663216526913), R(-50.90547521989429), R(10.049655409199135),
-        R(-10.049655409199135), R(3.0379110359107786e-06), R(-0.24689200985615367), R(8.917091066652826),
-        R(-0.307086), R(0.19748499999999997), R(0.20269199999999993), R(1.688965),
-        R(40.476046225), R(0.01121887479261392), R(-0.2403881036540444), R(-0.509778),
-        R(7.8923759275231005),
+        R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.038649583990999964),
+        R(-0.056072097532999944), R(0.038649583990999964), R(-0.056072097532999944), R(-50.90547521989429),
+        R(10.049655409199135), R(-10.049655409199135), R(-51.57660077184115), R(209.3566321652692),
+        R(-209.35663216526913), R(-51.57660077184116), R(51.57660077184115), R(209.35663216526913),
+        R(0.20269199999999993), R(0.19748499999999997), R(3.0379110359107786e-06), R(-0.24689200985615367),
+        R(-0.307086), R(40.476046225), R(8.917091066652828), R(1.688965),
+        R(0.01121887479261392), R(-0.2403881036540444), R(-0.509778), R(7.8923759275231005),
     },
     { /* lca_r_l */
-        R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(-1.0000000000000002),
-        R(-0.033962503042599984), R(0.06962018656579992), R(0.033962503042599984), R(-0.06962018656579992),
-        R(39.864795135905354), R(161.81677595488466), R(-161.8167759548846), R(39.86479513590536),
-        R(-39.864795135905354), R(161.8167759548846), R(39.34606605646902), R(7.767620356494953),
-        R(-7.767620356494953), R(-3.0379110358344508e-06), R(0.246867347245056), R(7.181825051954386),
-        R(0.307086), R(0.2564891999999999), R(-0.19448779999999993), R(-1.688965),
-        R(-40.476046225), R(0.011218874792613923), R(0.24038810365404442), R(0.5015738),
-        R(6.355965194292886),
+        R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(0.033962503042599984),
+        R(-0.06962018656579992), R(-0.033962503042599984), R(0.06962018656579992), R(39.34606605646902),
+        R(7.767620356494953), R(-7.767620356494953), R(39.864795135905354), R(161.81677595488466),
+        R(-161.8167759548846), R(39.86479513590536), R(-39.864795135905354), R(161.8167759548846),
+        R(-0.19448779999999993), R(0.2564891999999999), R(-3.0379110358344508e-06), R(0.246867347245056),
+        R(0.307086), R(-40.476046225), R(-7.181825051954384), R(-1.688965),
+        R(0.011218874792613923), R(0.24038810365404442), R(0.5015738), R(6.355965194292886),
     },
     { /* lca_r_r */
-        R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(1.0000000000000002),
-        R(0.033962503042599984), R(-0.06962018656579992), R(0.033962503042599984), R(-0.06962018656579992),
-        R(-39.864795135905354), R(161.81677595488466), R(-161.8167759548846), R(-39.86479513590536),
-        R(39.864795135905354), R(161.8167759548846), R(-39.34606605646902), R(7.767620356494953),
-        R(-7.767620356494953), R(-3.0379110358344508e-06), R(-0.246867347245056), R(7.181825051954386),
-        R(-0.307086), R(0.2564891999999999), R(0.19448779999999993), R(-1.688965),
-        R(-40.476046225), R(0.011218874792613923), R(-0.24038810365404442), R(-0.5015738),
-        R(6.355965194292886),
+        R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(0.033962503042599984),
+        R(-0.06962018656579992), R(0.033962503042599984), R(-0.06962018656579992), R(-39.34606605646902),
+        R(7.767620356494953), R(-7.767620356494953), R(-39.864795135905354), R(161.81677595488466),
+        R(-161.8167759548846), R(-39.86479513590536), R(39.864795135905354), R(161.8167759548846),
+        R(0.19448779999999993), R(0.2564891999999999), R(-3.0379110358344508e-06), R(-0.246867347245056),
+        R(-0.307086), R(-40.476046225), R(7.181825051954384), R(-1.688965),
+        R(0.011218874792613923), R(-0.24038810365404442), R(-0.5015738), R(6.355965194292886),
     },
 };
 
@@ -316,102 +313,104 @@ static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_
         if (!(t2 - k[2] > R(0.0)))
             return GIC_ERROR_SINGULAR;
         const gic_real t3 = GIC_SQRT(t2);
-        const gic_real t4 = t3 * (R(1.0) / (t2 * k[3]));
-        const gic_real t5 = t3 * k[4] + k[5] * t1;
-        const gic_real t6 = k[6] * t1 - t3 * k[7];
-        const gic_real t7 = t5 * k[8] + t6 * k[9];
-        motion[7] = t7;
-        const gic_real t8 = t5 * k[10] + t6 * k[11];
-        motion[8] = t8;
-        const gic_real t9 = t5 * k[9] + t6 * k[12];
-        motion[10] = t9;
-        const gic_real t10 = t5 * k[11] + t6 * k[13];
-        motion[11] = t10;
-        const gic_real t11 = t6 * k[14] + t5 * k[15];
-        const gic_real t12 = x[0] * t4;
-        motion[24] = t12;
-        const gic_real t13 = t6 * k[16] + t5 * k[14];
-        const gic_real t14 = t8 * k[17] + t7 * k[18];
-        const gic_real t15 = t8 * R(0.4469);
-        const gic_real t16 = rate[0] * t12;
-        motion[12] = t16;
-        const gic_real t17 = t12 * R(0.4469);
-        const gic_real t18 = t10 * k[17] + t9 * k[18];
-        const gic_real t19 = R(0.4469) + t10 * (t10 * R(0.4469));
-        if (!(t3 * k[19] - GIC_FABS(t16) * ahead[0] > R(0.004)))
+        const gic_real t4 = k[3] * t1 - t3 * k[4];
+        const gic_real t5 = t3 * k[5] + k[6] * t1;
+        const gic_real t6 = t4 * k[7] + t5 * k[8];
+        const gic_real t7 = t4 * k[9] + t5 * k[7];
+        const gic_real t8 = t5 * k[10] + t4 * k[11];
+        motion[7] = t8;
+        const gic_real t9 = t5 * k[12] + t4 * k[13];
+        motion[8] = t9;
+        const gic_real t10 = t5 * k[11] + t4 * k[14];
+        motion[10] = t10;
+        const gic_real t11 = t5 * k[13] + t4 * k[15];
+        motion[11] = t11;
+        const gic_real t12 = t6 + k[16];
+        const gic_real t13 = t7 - k[17];
+        const gic_real t14 = t9 * k[18] + t8 * k[19];
+        const gic_real t15 = t6 * t13 - t7 * t12;
+        const gic_real t16 = t11 * k[18] + t10 * k[19];
+        const gic_real t17 = t9 * R(0.4469);
+        const gic_real t18 = R(0.4469) + t11 * (t11 * R(0.4469));
+        const gic_real t19 = k[20] + t14;
+        const gic_real t20 = R(0.4469) + t9 * t17;
+        const gic_real t21 = R(1.0) / t15;
+        const gic_real t22 = turn[1] * t16 - turn[2] * t19;
+        const gic_real t23 = t11 * t17;
+        const gic_real t24 = R(23.965) * t19;
+        inertia[1] = t24;
+        const gic_real t25 = R(23.965) * t16;
+        inertia[2] = t25;
+        const gic_real t26 = -(t19 * k[21]);
+        inertia[6] = t26;
+        const gic_real t27 = -(t16 * k[21]);
+        inertia[7] = t27;
+        const gic_real t28 = turn[2] * t18 + turn[1] * t23;
+        const gic_real t29 = turn[2] * t23 + turn[1] * t20;
+        const gic_real t30 = t19 * t24;
+        const gic_real t31 = t16 * t25;
+        const gic_real t32 = t23 - t16 * t24;
+        inertia[8] = t32;
+        const gic_real t33 = x[0] * t21;
+        motion[24] = t33;
+        const gic_real t34 = t30 + (t18 + R(68.36262541240713));
+        inertia[5] = t34;
+        const gic_real t35 = t30 + (R(0.4469) + t31);
+        inertia[3] = t35;
+        const gic_real t36 = rate[0] * t33;
+        motion[12] = t36;
+        const gic_real t37 = t16 * t33;
+        const gic_real t38 = t14 * t33;
+        const gic_real t39 = R(0.4469) * t33;
+        const gic_real t40 = t31 + (t20 + R(68.36262541240713));
+        inertia[4] = t40;
+        if (!(k[22] * t15 - ahead[0] * GIC_FABS(t36) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t20 = t11 * t16;
-        const gic_real t21 = t13 * t16;
-        const gic_real t22 = k[20] + t14;
-        const gic_real t23 = t16 * t14;
-        const gic_real t24 = R(0.4469) + t8 * t15;
-        const gic_real t25 = t16 * t18;
-        const gic_real t26 = t10 * t15;
-        const gic_real t27 = t16 + turn[0];
-        const gic_real t28 = (t13 - k[21]) * (t16 * t21) + t16 * t20 * (t11 + k[22]);
-        const gic_real t29 = turn[0] * t22 + (t23 + (t23 - k[23] * turn[1]));
-        const gic_real t30 = k[23] * turn[2] - turn[0] * t18 - (t25 + t25);
-        const gic_real t31 = turn[1] * t18 - turn[2] * t22;
-        const gic_real t32 = turn[2] * t19 + turn[1] * t26;
-        const gic_real t33 = turn[2] * t26 + turn[1] * t24;
-        const gic_real t34 = rate[0] * rate[0] - t20 * t20 - t21 * t21 + t28;
-        const gic_real t35 = t16 * turn[2];
-        const gic_real t36 = R(0.4469) * t27;
-        const gic_real t37 = t16 * turn[1];
-        const gic_real t38 = t12 * t18;
-        const gic_real t39 = t12 * t14;
-        const gic_real t40 = R(23.965) * t22;
-        inertia[1] = t40;
-        const gic_real t41 = R(23.965) * t18;
-        inertia[2] = t41;
-        const gic_real t42 = R(23.965) * (turn[1] * t29 - turn[2] * t30);
-        inertia[9] = t42;
-        const gic_real t43 = t24 * t35 + (turn[2] * t36 - t26 * t37) - t27 * t32;
-        const gic_real t44 = t27 * t33 + (t26 * t35 - turn[1] * t36 - t19 * t37);
-        const gic_real t45 = R(23.965) * t38;
-        const gic_real t46 = t4 * t34;
-        motion[18] = t46;
-        const gic_real t47 = R(23.965) * t39;
-        inertia[17] = t47;
-        const gic_real t48 = t22 * t40;
-        const gic_real t49 = t18 * t41;
-        const gic_real t50 = t26 - t18 * t40;
-        inertia[8] = t50;
-        const gic_real t51 = -(t22 * k[24]);
-        inertia[6] = t51;
-        const gic_real t52 = turn[2] * t31 - t16 * t23 - turn[0] * t29 - t18 * t46;
-        const gic_real t53 = t14 * t46 + (turn[0] * t30 - t16 * t25 - turn[1] * t31);
-        const gic_real t54 = turn[1] * t32 - turn[2] * t33 + R(0.4469) * t46;
-        const gic_real t55 = t22 * t47 + (t17 + t18 * t45);
-        inertia[18] = t55;
-        const gic_real t56 = t38 * t45 + (t12 * t17 + t39 * t47);
-        inertia[22] = t56;
-        const gic_real t57 = t48 + (R(0.4469) + t49);
-        inertia[3] = t57;
-        const gic_real t58 = t49 + (t24 + R(68.36262541240713));
-        inertia[4] = t58;
-        const gic_real t59 = R(23.965) * t52;
-        inertia[10] = t59;
-        const gic_real t60 = k[24] * t52 + t44 - t22 * t42;
-        inertia[14] = t60;
-        const gic_real t61 = t48 + (t19 + R(68.36262541240713));
-        inertia[5] = t61;
-        const gic_real t62 = R(23.965) * t53;
-        inertia[11] = t62;
-        const gic_real t63 = t18 * t42 + t43 - k[24] * t53;
-        inertia[13] = t63;
-        const gic_real t64 = -(t18 * k[24]);
-        inertia[7] = t64;
-        const gic_real t65 = -(k[24] * t39);
-        inertia[19] = t65;
-        const gic_real t66 = t54 + t22 * t62 - t18 * t59;
-        inertia[12] = t66;
-        const gic_real t67 = t12 * t54 + t39 * t62 - t38 * t59;
-        inertia[21] = t67;
-        const gic_real t68 = -(k[24] * t38);
-        inertia[20] = t68;
-        const gic_real t69 = -t45;
-        inertia[16] = t69;
+        const gic_real t41 = t6 * t36;
+        const gic_real t42 = t7 * t36;
+        const gic_real t43 = t16 * t36;
+        const gic_real t44 = t14 * t36;
+        const gic_real t45 = turn[2] * t36;
+        const gic_real t46 = turn[1] * t36;
+        const gic_real t47 = turn[0] + t36;
+        const gic_real t48 = R(23.965) * t37;
+        const gic_real t49 = R(23.965) * t38;
+        inertia[17] = t49;
+        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (t36 * t42) + t12 * (t36 * t41));
+        const gic_real t51 = t44 + (turn[0] * t19 - k[23] * turn[1] + t44);
+        const gic_real t52 = k[23] * turn[2] - turn[0] * t16 - t43 - t43;
+        const gic_real t53 = R(0.4469) * t47;
+        const gic_real t54 = t19 * t49 + (t39 + t16 * t48);
+        inertia[18] = t54;
+        const gic_real t55 = t37 * t48 + (t33 * t39 + t38 * t49);
+        inertia[22] = t55;
+        const gic_real t56 = turn[2] * t53 + (t20 * t45 - t23 * t46 - t28 * t47);
+        const gic_real t57 = t21 * t50;
+        motion[18] = t57;
+        const gic_real t58 = t29 * t47 + (t23 * t45 - t18 * t46) - turn[1] * t53;
+        const gic_real t59 = turn[2] * t22 - t36 * t44 - turn[0] * t51 - t16 * t57;
+        const gic_real t60 = t14 * t57 + (turn[0] * t52 - (turn[1] * t22 + t36 * t43));
+        const gic_real t61 = R(23.965) * (turn[1] * t51 - turn[2] * t52);
+        inertia[9] = t61;
+        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * t57;
+        const gic_real t63 = -(k[21] * t38);
+        inertia[19] = t63;
+        const gic_real t64 = -(k[21] * t37);
+        inertia[20] = t64;
+        const gic_real t65 = -t48;
+        inertia[16] = t65;
+        const gic_real t66 = R(23.965) * t59;
+        inertia[10] = t66;
+        const gic_real t67 = k[21] * t59 + (t58 - t19 * t61);
+        inertia[14] = t67;
+        const gic_real t68 = R(23.965) * t60;
+        inertia[11] = t68;
+        const gic_real t69 = t16 * t61 + t56 - k[21] * t60;
+        inertia[13] = t69;
+        const gic_real t70 = t62 + t19 * t68 - t16 * t66;
+        inertia[12] = t70;
+        const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
+        inertia[21] = t71;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -425,10 +424,10 @@ static GIC_COLD gic_real hmmwv_vehicle_residual_lca_f_l(const gic_real *GIC_REST
     gic_real worst;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[25] * motion[11] + k[26] * motion[10] - k[21];
-        const gic_real t2 = k[20] + (k[25] * motion[8] + k[26] * motion[7]) - k[27];
+        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10] - k[17];
+        const gic_real t2 = k[20] + (k[24] * motion[8] + k[25] * motion[7]) - k[26];
         const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[28]));
+        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[27]));
         worst = t4;
     }
     return worst;
@@ -477,286 +476,284 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t10 = k[3] - t4;
         const gic_real t11 = R(-0.012812720436325503) - R(0.9665541626242249) * t5;
         const gic_real t12 = t3 - t4;
-        const gic_real t13 = rate[1] * t7;
-        const gic_real t14 = rate[1] * t8;
-        motion[17] = t14;
-        const gic_real t15 = m1[18] * t1 - m1[12] * (m1[12] * t2);
-        motion[23] = t15;
-        const gic_real t16 = t10 * t10 + (t5 * t5 + R(0.0035428684840000087));
-        const gic_real t17 = k[4] * t10 + (R(0.21526024724178433) * t5 + R(-0.05753123686771919));
-        const gic_real t18 = k[4] * t5 - R(0.21526024724178433) * t10;
-        const gic_real t19 = R(0.9665541626242249) * t10 - k[5];
-        const gic_real t20 = -t13;
-        motion[16] = t20;
-        const gic_real t21 = -t9;
-        motion[22] = t21;
-        const gic_real t22 = -t7;
-        motion[34] = t22;
-        const gic_real t23 = R(0.5) * (R(0.04548219048831001) + t16);
-        const gic_real t24 = t18 * t18 + (t19 * t19 + t11 * t11);
-        const gic_real t25 = R(4.3116545195287515e-08) + t17;
-        const gic_real t26 = t23 - t17 * t25;
-        const gic_real t27 = t25 * t16 - t17 * t23;
-        const gic_real t28 = R(0.116636750597) * t24 - t23 * t26 - t25 * t27;
-        if (!(t28 > R(0.0)))
+        const gic_real t13 = k[4] * t7 - R(0.21526024724178433) * t8;
+        const gic_real t14 = rate[1] * t7;
+        const gic_real t15 = t10 * t10 + (t5 * t5 + R(0.0035428684840000087));
+        const gic_real t16 = k[4] * t10 + (R(0.21526024724178433) * t5 + R(-0.05753123686771919));
+        const gic_real t17 = k[4] * t5 - R(0.21526024724178433) * t10;
+        const gic_real t18 = R(0.9665541626242249) * t10 - k[5];
+        const gic_real t19 = m1[18] * t1 - m1[12] * (m1[12] * t2);
+        motion[23] = t19;
+        const gic_real t20 = rate[1] * t8;
+        motion[17] = t20;
+        const gic_real t21 = -t14;
+        motion[16] = t21;
+        const gic_real t22 = -t9;
+        motion[22] = t22;
+        const gic_real t23 = -t7;
+        motion[34] = t23;
+        const gic_real t24 = R(0.5) * (R(0.04548219048831001) + t15);
+        const gic_real t25 = t17 * t17 + (t18 * t18 + t11 * t11);
+        const gic_real t26 = R(4.3116545195287515e-08) + t16;
+        const gic_real t27 = t24 - t16 * t26;
+        const gic_real t28 = t26 * t15 - t16 * t24;
+        const gic_real t29 = R(0.116636750597) * t25 - t24 * t27 - t26 * t28;
+        if (!(t29 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t28 - R(1.16636750597e-05) * t24 > R(0.0)))
+        if (!(t29 - R(1.16636750597e-05) * t25 > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t29 = GIC_SQRT(t28);
-        const gic_real t30 = R(1.0) / t24;
-        const gic_real t31 = t27 * t30;
-        const gic_real t32 = t26 * t30;
-        const gic_real t33 = t30 * (k[6] * t29);
-        const gic_real t34 = t19 * t33 + (R(0.21526024724178433) * t31 + t5 * t32);
-        const gic_real t35 = t11 * t33 + (k[4] * t31 + t10 * t32);
-        const gic_real t36 = t18 * t33 + (R(0.9665541626242249) * t31 + R(-0.059522000000000075) * t32);
+        const gic_real t30 = R(1.0) / t25;
+        const gic_real t31 = t30 * (k[6] * GIC_SQRT(t29));
+        const gic_real t32 = t28 * t30;
+        const gic_real t33 = t27 * t30;
+        const gic_real t34 = t18 * t31 + (R(0.21526024724178433) * t32 + t5 * t33);
+        const gic_real t35 = t11 * t31 + (k[4] * t32 + t10 * t33);
+        const gic_real t36 = t17 * t31 + (R(0.9665541626242249) * t32 + R(-0.059522000000000075) * t33);
         const gic_real t37 = t34 + (t2 - R(0.23411769999999993));
         const gic_real t38 = t35 + (t4 - k[3]);
-        const gic_real t39 = R(-0.2147570000000001) * t36 + (t6 * t34 + t12 * t35);
-        const gic_real t40 = t36 + R(0.059522000000000075);
-        const gic_real t41 = R(0.5) * (t12 * t12 + (t6 * t6 + R(-0.07206227845579997))) - R(0.2910617987184667) * t39;
-        const gic_real t42 = R(8.573627050492616) * t39;
-        const gic_real t43 = t6 - t34 * t42;
-        const gic_real t44 = t12 - t35 * t42;
-        const gic_real t45 = R(-0.2147570000000001) - t36 * t42;
-        const gic_real t46 = t45 * t45 + (t43 * t43 + t44 * t44);
-        const gic_real t47 = R(0.021346939557573212) * t46 - t41 * t41;
-        if (!(t47 > R(0.0)))
+        const gic_real t39 = R(0.21526024724178433) * t35 - k[4] * t34;
+        const gic_real t40 = R(-0.2147570000000001) * t36 + (t6 * t34 + t12 * t35);
+        const gic_real t41 = t36 + R(0.059522000000000075);
+        const gic_real t42 = R(0.9665541626242249) * t34 - R(0.21526024724178433) * t36;
+        const gic_real t43 = k[4] * t36 - R(0.9665541626242249) * t35;
+        const gic_real t44 = t35 * t37 - t34 * t38;
+        const gic_real t45 = t36 * t38 - t35 * t41;
+        const gic_real t46 = t34 * t41 - t36 * t37;
+        const gic_real t47 = t7 * t38 - t8 * t37;
+        const gic_real t48 = R(0.5) * (t12 * t12 + (t6 * t6 + R(-0.07206227845579997))) - R(0.2910617987184667) * t40;
+        const gic_real t49 = R(8.573627050492616) * t40;
+        const gic_real t50 = t44 * t43 - t45 * t39;
+        const gic_real t51 = t46 * t39 - t44 * t42;
+        const gic_real t52 = t45 * t42 - t46 * t43;
+        const gic_real t53 = t6 - t34 * t49;
+        const gic_real t54 = t12 - t35 * t49;
+        const gic_real t55 = R(-0.2147570000000001) - t36 * t49;
+        const gic_real t56 = t55 * t55 + (t53 * t53 + t54 * t54);
+        const gic_real t57 = R(0.021346939557573212) * t56 - t48 * t48;
+        if (!(t57 > R(0.0)))
             return GIC_ERROR_NEWTON;
-        if (!(t47 - R(2.1346939557573214e-06) * t46 > R(0.0)))
+        if (!(t57 - R(2.1346939557573214e-06) * t56 > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t48 = GIC_SQRT(t47);
-        const gic_real t49 = R(1.0) / t46;
-        const gic_real t50 = t49 * t41;
-        const gic_real t51 = t49 * (k[7] * t48);
-        const gic_real t52 = t29 * t48;
-        const gic_real t53 = t44 * t50 + (t34 * t45 - t36 * t43) * t51;
-        const gic_real t54 = t43 * t50 + (t36 * t44 - t35 * t45) * t51;
-        const gic_real t55 = t45 * t50 + (t35 * t43 - t34 * t44) * t51;
-        const gic_real t56 = t53 + R(0.2910617987184667) * t35;
-        const gic_real t57 = t54 + R(0.2910617987184667) * t34;
-        const gic_real t58 = t35 * t54 - t34 * t53;
-        const gic_real t59 = t55 + R(0.2910617987184667) * t36;
-        const gic_real t60 = t34 * t55 - t36 * t54;
-        const gic_real t61 = t56 + (t4 - t3);
-        const gic_real t62 = t36 * t53 - t35 * t55;
-        const gic_real t63 = t57 + (t2 - R(0.054228999999999916));
-        const gic_real t64 = R(-18.07838873614245) * t58 + (k[8] * t55 + k[9] * t36);
-        motion[4] = t64;
-        const gic_real t65 = t59 + R(0.2147570000000001);
-        const gic_real t66 = k[10] * t58 + (R(0.21916659821076587) * t55 + R(2.860192849101719) * t36);
-        motion[5] = t66;
-        const gic_real t67 = R(-18.07838873614245) * t60 + (k[8] * t53 + k[9] * t35);
-        motion[7] = t67;
-        const gic_real t68 = t56 * t63 - t57 * t61;
-        const gic_real t69 = t59 * t61 - t56 * t65;
-        const gic_real t70 = t7 * t61 - t8 * t63;
-        const gic_real t71 = t57 * t65 - t59 * t63;
-        const gic_real t72 = k[10] * t60 + (R(0.21916659821076587) * t53 + R(2.860192849101719) * t35);
-        motion[8] = t72;
-        if (!(GIC_FABS(t68) > R(4.93617613698909e-06)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t73 = R(1.0) / t68;
-        const gic_real t74 = R(-18.07838873614245) * t62 + (k[8] * t54 + k[9] * t34);
-        motion[10] = t74;
-        const gic_real t75 = k[10] * t62 + (R(0.21916659821076587) * t54 + R(2.860192849101719) * t34);
-        motion[11] = t75;
-        const gic_real t76 = k[11] * t58 + (R(-6.332169372123424) * t55 + R(-0.14982584743276878) * t36);
-        motion[3] = t76;
-        const gic_real t77 = k[11] * t60 + (R(-6.332169372123424) * t53 + R(-0.14982584743276878) * t35);
-        motion[6] = t77;
-        const gic_real t78 = (t35 * t37 - t34 * t38) * t73;
-        const gic_real t79 = (R(0.21526024724178433) * t35 - k[4] * t34) * t73;
-        const gic_real t80 = k[11] * t62 + (R(-6.332169372123424) * t54 + R(-0.14982584743276878) * t34);
-        motion[9] = t80;
-        const gic_real t81 = R(-4.5794204999999994) * t67;
-        const gic_real t82 = R(-0.004825999999999997) * t76 + (R(0.09182099999999999) * t66 + k[12] * t64);
-        const gic_real t83 = R(-0.004825999999999997) * t77 + (R(0.09182099999999999) * t72 + k[12] * t67);
-        const gic_real t84 = t36 * t38 - t35 * t40 - t69 * t78;
-        const gic_real t85 = t7 * t38 - t8 * t37 - t78 * t70;
-        const gic_real t86 = t61 * t78;
-        const gic_real t87 = t34 * t40 - t36 * t37 - t71 * t78;
-        const gic_real t88 = R(-0.004825999999999997) * t80 + (R(0.09182099999999999) * t75 + k[12] * t74);
-        const gic_real t89 = t80 * (R(0.12192999999999987) * t80) + (R(4.7728205) + t74 * (R(-4.5794204999999994) * t74));
-        if (!(GIC_FABS(t84) > R(1.6836348082111396e-05)))
-            return GIC_ERROR_SINGULAR;
-        const gic_real t90 = t68 * t84 * (t52 * (R(1.0) / (t47 * (R(-0.3415212300824061) * t28))));
-        const gic_real t91 = R(1.0) / t84;
-        const gic_real t92 = R(1.653405) + t82;
-        const gic_real t93 = t4 + t83;
-        const gic_real t94 = t2 + t88;
-        const gic_real t95 = R(0.12192999999999987) * t76;
-        const gic_real t96 = R(-4.5794204999999994) * t64;
-        const gic_real t97 = R(0.12192999999999987) * t77;
-        const gic_real t98 = R(90.555) * t92;
-        inertia[0] = t98;
-        const gic_real t99 = R(90.555) * t93;
-        inertia[1] = t99;
-        const gic_real t100 = R(90.555) * t94;
-        inertia[2] = t100;
-        const gic_real t101 = t76 * t95 + (R(4.7728205) + t64 * t96);
-        const gic_real t102 = t77 * t97 + (R(4.7728205) + t67 * t81);
-        const gic_real t103 = (k[4] * t36 - R(0.9665541626242249) * t35 - t69 * t79) * t91;
-        const gic_real t104 = t67 * t96 + t77 * t95;
-        const gic_real t105 = t74 * t96 + t80 * t95;
-        const gic_real t106 = t74 * t81 + t80 * t97;
-        const gic_real t107 = t93 * t99;
-        const gic_real t108 = t92 * t98;
-        const gic_real t109 = t94 * t100;
-        const gic_real t110 = t104 - t93 * t98;
-        inertia[6] = t110;
-        const gic_real t111 = t107 + (t89 + t108);
-        inertia[5] = t111;
-        const gic_real t112 = t109 + (t101 + t107);
-        inertia[3] = t112;
-        const gic_real t113 = t109 + (t102 + t108);
-        inertia[4] = t113;
-        const gic_real t114 = t105 - t94 * t98;
-        inertia[7] = t114;
-        const gic_real t115 = k[4] * t7 - R(0.21526024724178433) * t8 - t79 * t70 - t103 * t85;
-        const gic_real t116 = t90 * (t103 * t86 - t61 * t79);
-        motion[25] = t116;
-        const gic_real t117 = t106 - t94 * t99;
-        inertia[8] = t117;
-        const gic_real t118 = t91 * (t86 + t87 * t116);
-        const gic_real t119 = t90 * t115;
-        motion[31] = t119;
-        const gic_real t120 = t91 * (t85 - t87 * t119);
-        motion[32] = t120;
-        const gic_real t121 = rate[0] * t116 + rate[1] * t119;
-        motion[13] = t121;
-        const gic_real t122 = t73 * (t69 * t118 + (t61 - t71 * t116));
-        motion[24] = t122;
-        const gic_real t123 = t118 * t83 + t116 * t88;
-        const gic_real t124 = turn[1] + t121;
-        const gic_real t125 = -t118;
-        motion[26] = t125;
-        const gic_real t126 = t73 * (t70 - t71 * t119 - t69 * t120);
-        motion[30] = t126;
-        const gic_real t127 = rate[1] * t120 - rate[0] * t118;
-        motion[14] = t127;
-        const gic_real t128 = t119 * t88 - t120 * t83;
-        const gic_real t129 = R(90.555) * t123;
-        inertia[15] = t129;
-        const gic_real t130 = t57 * t121 - t56 * t127;
-        const gic_real t131 = t34 * t121 - t35 * t127;
-        const gic_real t132 = t121 * t88 - t127 * t83;
-        const gic_real t133 = turn[2] + t127;
-        const gic_real t134 = t122 * t101 + (t116 * t104 - t118 * t105);
-        const gic_real t135 = rate[0] * t122 + rate[1] * t126;
-        motion[12] = t135;
-        const gic_real t136 = t122 * t104 + (t116 * t102 - t118 * t106);
-        const gic_real t137 = t132 + (t132 + (turn[1] * t94 - turn[2] * t93));
-        const gic_real t138 = t122 * t105 + (t116 * t106 - t118 * t89);
-        const gic_real t139 = t56 * t135 - t59 * t121;
-        const gic_real t140 = t59 * t127 - t57 * t135;
-        const gic_real t141 = t35 * t135 - t36 * t121;
-        const gic_real t142 = t36 * t127 - t34 * t135;
-        const gic_real t143 = t135 * t83 - t121 * t82;
-        const gic_real t144 = t127 * t82 - t135 * t88;
-        const gic_real t145 = t14 + t139;
-        const gic_real t146 = t140 - (m0[16] + t13);
-        const gic_real t147 = t63 * (t135 * t140 - t121 * t130) + t61 * (t127 * t130 - t135 * t139);
-        const gic_real t148 = t9 * t61 - t15 * t63 - t130 * t130 - t145 * t145;
-        const gic_real t149 = t14 + t141;
-        const gic_real t150 = t135 * t142 - t121 * t131;
-        const gic_real t151 = t127 * t131 - t135 * t141;
-        const gic_real t152 = t121 * t141 - t127 * t142;
-        const gic_real t153 = t9 * t38 - t15 * t37 - t131 * t131 - t149 * t149;
-        const gic_real t154 = t142 - t13;
-        const gic_real t155 = t14 + t143;
-        const gic_real t156 = t144 - t13;
-        const gic_real t157 = turn[0] + t135;
-        const gic_real t158 = turn[2] * t137 + (t127 * t132 - t9) - t135 * t143;
-        const gic_real t159 = t148 - t146 * t146 - t65 * (t121 * t139 - t127 * t140);
-        const gic_real t160 = k[4] * t9 - R(0.21526024724178433) * t15 - R(0.21526024724178433) * t150 - (k[4] * t151 + R(0.9665541626242249) * t152);
-        const gic_real t161 = t153 - t154 * t154 - t40 * t152 - (t37 * t150 + t38 * t151);
-        const gic_real t162 = t155 + (t155 + (turn[0] * t93 - turn[1] * t92));
-        const gic_real t163 = t156 + (t156 + (turn[2] * t92 - turn[0] * t94));
-        const gic_real t164 = t159 - t147;
-        const gic_real t165 = t105 * t157 + (t89 * t133 + t106 * t124);
-        const gic_real t166 = t104 * t157 + (t106 * t133 + t102 * t124);
-        const gic_real t167 = t101 * t157 + (t105 * t133 + t104 * t124);
-        const gic_real t168 = t161 - t78 * t164;
-        const gic_real t169 = t135 * t144 + (t15 - t121 * t132 - turn[1] * t137);
-        const gic_real t170 = t120 * t82 - t7 - t126 * t88;
-        const gic_real t171 = turn[1] * t162 + (t121 * t143 - t127 * t144) - turn[2] * t163;
-        const gic_real t172 = t90 * (t160 - t79 * t164 - t103 * t168);
-        motion[19] = t172;
-        const gic_real t173 = t126 * t83 + (t8 - t119 * t82);
-        const gic_real t174 = t126 * t101 + (t120 * t105 + t119 * t104);
-        const gic_real t175 = t126 * t104 + (t120 * t106 + t119 * t102);
-        const gic_real t176 = t126 * t105 + (t120 * t89 + t119 * t106);
-        const gic_real t177 = t122 * t88 + t118 * t82;
-        const gic_real t178 = t122 * t83 - t116 * t82;
-        const gic_real t179 = R(90.555) * t128;
-        inertia[22] = t179;
-        const gic_real t180 = ahead[0] * (GIC_FABS(t135) + (GIC_FABS(t121) + GIC_FABS(t127)));
-        const gic_real t181 = t91 * (t168 - t87 * t172);
-        motion[20] = t181;
-        const gic_real t182 = t172 + (turn[2] * t135 - turn[0] * t127);
-        const gic_real t183 = R(90.555) * t177;
-        const gic_real t184 = R(90.555) * t178;
+        const gic_real t58 = R(1.0) / t56;
+        const gic_real t59 = t58 * (k[7] * GIC_SQRT(t57));
+        const gic_real t60 = t58 * t48;
+        const gic_real t61 = t54 * t60 + (t34 * t55 - t36 * t53) * t59;
+        const gic_real t62 = t53 * t60 + (t36 * t54 - t35 * t55) * t59;
+        const gic_real t63 = t55 * t60 + (t35 * t53 - t34 * t54) * t59;
+        const gic_real t64 = t61 + R(0.2910617987184667) * t35;
+        const gic_real t65 = t62 + R(0.2910617987184667) * t34;
+        const gic_real t66 = t35 * t62 - t34 * t61;
+        const gic_real t67 = t63 + R(0.2910617987184667) * t36;
+        const gic_real t68 = t34 * t63 - t36 * t62;
+        const gic_real t69 = t64 + (t4 - t3);
+        const gic_real t70 = t36 * t61 - t35 * t63;
+        const gic_real t71 = t65 + (t2 - R(0.054228999999999916));
+        const gic_real t72 = R(-18.07838873614245) * t66 + (k[8] * t63 + k[9] * t36);
+        motion[4] = t72;
+        const gic_real t73 = t67 + R(0.2147570000000001);
+        const gic_real t74 = R(-18.07838873614245) * t68 + (k[8] * t61 + k[9] * t35);
+        motion[7] = t74;
+        const gic_real t75 = k[10] * t68 + (R(0.21916659821076587) * t61 + R(2.860192849101719) * t35);
+        motion[8] = t75;
+        const gic_real t76 = t67 * t69 - t64 * t73;
+        const gic_real t77 = t65 * t73 - t67 * t71;
+        const gic_real t78 = t64 * t71 - t65 * t69;
+        const gic_real t79 = t7 * t69 - t8 * t71;
+        const gic_real t80 = R(-18.07838873614245) * t70 + (k[8] * t62 + k[9] * t34);
+        motion[10] = t80;
+        const gic_real t81 = k[10] * t70 + (R(0.21916659821076587) * t62 + R(2.860192849101719) * t34);
+        motion[11] = t81;
+        const gic_real t82 = t78 * t52 + (t76 * t51 + t77 * t50);
+        const gic_real t83 = k[10] * t66 + (R(0.21916659821076587) * t63 + R(2.860192849101719) * t36);
+        motion[5] = t83;
+        const gic_real t84 = k[11] * t68 + (R(-6.332169372123424) * t61 + R(-0.14982584743276878) * t35);
+        motion[6] = t84;
+        const gic_real t85 = k[11] * t70 + (R(-6.332169372123424) * t62 + R(-0.14982584743276878) * t34);
+        motion[9] = t85;
+        const gic_real t86 = k[11] * t66 + (R(-6.332169372123424) * t63 + R(-0.14982584743276878) * t36);
+        motion[3] = t86;
+        const gic_real t87 = R(1.0) / t82;
+        const gic_real t88 = R(-4.5794204999999994) * t74;
+        const gic_real t89 = R(-0.004825999999999997) * t84 + (R(0.09182099999999999) * t75 + k[12] * t74);
+        const gic_real t90 = R(-0.004825999999999997) * t85 + (R(0.09182099999999999) * t81 + k[12] * t80);
+        const gic_real t91 = R(-0.004825999999999997) * t86 + (R(0.09182099999999999) * t83 + k[12] * t72);
+        const gic_real t92 = t85 * (R(0.12192999999999987) * t85) + (R(4.7728205) + t80 * (R(-4.5794204999999994) * t80));
+        const gic_real t93 = (t78 * t42 - t77 * t39) * t87;
+        const gic_real t94 = (t77 * t43 - t76 * t42) * t87;
+        const gic_real t95 = (t76 * t39 - t78 * t43) * t87;
+        const gic_real t96 = (t77 * t44 - t78 * t46) * t87;
+        const gic_real t97 = (t76 * t46 - t77 * t45) * t87;
+        const gic_real t98 = (t78 * t45 - t76 * t44) * t87;
+        const gic_real t99 = t51 * t87;
+        const gic_real t100 = t52 * t87;
+        const gic_real t101 = t50 * t87;
+        const gic_real t102 = t4 + t89;
+        const gic_real t103 = t2 + t90;
+        const gic_real t104 = R(1.653405) + t91;
+        const gic_real t105 = R(0.12192999999999987) * t86;
+        const gic_real t106 = R(-4.5794204999999994) * t72;
+        const gic_real t107 = t69 * t99;
+        motion[26] = t107;
+        const gic_real t108 = t69 * t100;
+        motion[24] = t108;
+        const gic_real t109 = t69 * t101;
+        motion[25] = t109;
+        const gic_real t110 = R(0.12192999999999987) * t84;
+        const gic_real t111 = t13 * t96 + (t99 * t79 + t93 * t47);
+        motion[32] = t111;
+        const gic_real t112 = t13 * t97 + (t100 * t79 + t94 * t47);
+        motion[30] = t112;
+        const gic_real t113 = t13 * t98 + (t101 * t79 + t95 * t47);
+        motion[31] = t113;
+        const gic_real t114 = t84 * t110 + (R(4.7728205) + t74 * t88);
+        const gic_real t115 = t86 * t105 + (R(4.7728205) + t72 * t106);
+        const gic_real t116 = t74 * t106 + t84 * t105;
+        const gic_real t117 = rate[0] * t107 + rate[1] * t111;
+        motion[14] = t117;
+        const gic_real t118 = rate[0] * t108 + rate[1] * t112;
+        motion[12] = t118;
+        const gic_real t119 = t80 * t106 + t85 * t105;
+        const gic_real t120 = rate[0] * t109 + rate[1] * t113;
+        motion[13] = t120;
+        const gic_real t121 = t80 * t88 + t85 * t110;
+        const gic_real t122 = t108 * t89 - t109 * t91;
+        const gic_real t123 = turn[2] + t117;
+        const gic_real t124 = t36 * t117 - t34 * t118;
+        const gic_real t125 = t67 * t117 - t65 * t118;
+        const gic_real t126 = t65 * t120 - t64 * t117;
+        const gic_real t127 = t64 * t118 - t67 * t120;
+        const gic_real t128 = t34 * t120 - t35 * t117;
+        const gic_real t129 = t35 * t118 - t36 * t120;
+        const gic_real t130 = t124 - t14;
+        const gic_real t131 = t125 - (m0[16] + t14);
+        const gic_real t132 = t118 * t89 - t120 * t91;
+        const gic_real t133 = t117 * t91 - t118 * t90;
+        const gic_real t134 = t20 + t127;
+        const gic_real t135 = t118 * t124 - t120 * t128;
+        const gic_real t136 = t20 + t129;
+        const gic_real t137 = t120 * t129 - t117 * t124;
+        const gic_real t138 = t9 * t69 - t19 * t71 - t126 * t126 - t134 * t134;
+        const gic_real t139 = t9 * t38 - t19 * t37 - t128 * t128 - t136 * t136;
+        const gic_real t140 = t117 * t128 - t118 * t129;
+        const gic_real t141 = t71 * (t118 * t125 - t120 * t126) + t69 * (t117 * t126 - t118 * t127);
+        const gic_real t142 = t120 * t90 - t117 * t89;
+        const gic_real t143 = t20 + t132;
+        const gic_real t144 = k[4] * t9 - R(0.21526024724178433) * t19 - R(0.21526024724178433) * t135 - (k[4] * t140 + R(0.9665541626242249) * t137);
+        const gic_real t145 = t138 - t131 * t131 - t73 * (t120 * t127 - t117 * t125);
+        const gic_real t146 = t139 - t130 * t130 - t41 * t137 - (t37 * t135 + t38 * t140);
+        const gic_real t147 = t142 + (t142 + (turn[1] * t103 - turn[2] * t102));
+        const gic_real t148 = t143 + (t143 + (turn[0] * t102 - turn[1] * t104));
+        const gic_real t149 = t133 - t14;
+        const gic_real t150 = turn[1] + t120;
+        const gic_real t151 = turn[0] + t118;
+        const gic_real t152 = t108 * t115 + (t107 * t119 + t109 * t116);
+        const gic_real t153 = t149 + (t149 + (turn[2] * t104 - turn[0] * t103));
+        const gic_real t154 = t145 - t141;
+        const gic_real t155 = t119 * t151 + (t92 * t123 + t121 * t150);
+        const gic_real t156 = t116 * t151 + (t121 * t123 + t114 * t150);
+        const gic_real t157 = t19 + t118 * t133 - t120 * t142 - turn[1] * t147;
+        const gic_real t158 = t94 * t146 + (t100 * t154 + t97 * t144);
+        motion[18] = t158;
+        const gic_real t159 = t95 * t146 + (t101 * t154 + t98 * t144);
+        motion[19] = t159;
+        const gic_real t160 = t93 * t146 + (t99 * t154 + t96 * t144);
+        motion[20] = t160;
+        const gic_real t161 = turn[2] * t147 + (t117 * t142 - t9 - t118 * t132);
+        const gic_real t162 = t115 * t151 + (t119 * t123 + t116 * t150);
+        const gic_real t163 = turn[1] * t148 + (t120 * t132 - t117 * t133) - turn[2] * t153;
+        const gic_real t164 = t159 + (turn[2] * t118 - turn[0] * t117);
+        const gic_real t165 = t160 + (turn[0] * t120 - turn[1] * t118);
+        const gic_real t166 = t158 + (turn[1] * t117 - turn[2] * t120);
+        const gic_real t167 = t158 * t89 + (turn[0] * t153 + t157) - t159 * t91;
+        const gic_real t168 = t160 * t91 + (t161 - turn[0] * t148) - t158 * t90;
+        const gic_real t169 = t108 * t116 + (t107 * t121 + t109 * t114);
+        const gic_real t170 = R(90.555) * (t159 * t90 + t163 - t160 * t89);
+        inertia[9] = t170;
+        const gic_real t171 = t119 * t165 + (t150 * t155 - t123 * t156) + (t116 * t164 + t115 * t166);
+        const gic_real t172 = t121 * t165 + (t123 * t162 - t151 * t155) + (t114 * t164 + t116 * t166);
+        const gic_real t173 = t92 * t165 + (t151 * t156 - t150 * t162) + (t121 * t164 + t119 * t166);
+        const gic_real t174 = t108 * t119 + (t107 * t92 + t109 * t121);
+        const gic_real t175 = t113 * t90 - t111 * t89;
+        const gic_real t176 = t111 * t91 - t7 - t112 * t90;
+        const gic_real t177 = t8 + t112 * t89 - t113 * t91;
+        const gic_real t178 = t112 * t115 + (t111 * t119 + t113 * t116);
+        const gic_real t179 = t112 * t116 + (t111 * t121 + t113 * t114);
+        const gic_real t180 = t112 * t119 + (t111 * t92 + t113 * t121);
+        const gic_real t181 = t109 * t90 - t107 * t89;
+        const gic_real t182 = t107 * t91 - t108 * t90;
+        const gic_real t183 = R(90.555) * t167;
+        inertia[11] = t183;
+        const gic_real t184 = R(90.555) * t122;
         inertia[17] = t184;
-        const gic_real t185 = R(90.555) * t170;
-        inertia[23] = t185;
-        const gic_real t186 = R(90.555) * t173;
-        inertia[24] = t186;
-        const gic_real t187 = t116 * t136 + t123 * t129 + (t122 * t134 - t118 * t138);
-        const gic_real t188 = t116 * t175 + t123 * t179 + (t122 * t174 - t118 * t176);
-        if (!(R(114.33048504553747) * t52 - t180 > R(0.004)))
+        const gic_real t185 = R(90.555) * t175;
+        inertia[22] = t185;
+        const gic_real t186 = ahead[0] * (GIC_FABS(t117) + (GIC_FABS(t118) + GIC_FABS(t120)));
+        const gic_real t187 = R(90.555) * t104;
+        inertia[0] = t187;
+        const gic_real t188 = R(90.555) * t102;
+        inertia[1] = t188;
+        const gic_real t189 = R(90.555) * t168;
+        inertia[10] = t189;
+        const gic_real t190 = R(90.555) * t181;
+        inertia[15] = t190;
+        const gic_real t191 = R(90.555) * t182;
+        inertia[16] = t191;
+        const gic_real t192 = t107 * t173 + t109 * t172 + (t108 * t171 + t183 * t122);
+        const gic_real t193 = R(90.555) * t176;
+        inertia[23] = t193;
+        const gic_real t194 = R(90.555) * t177;
+        inertia[24] = t194;
+        const gic_real t195 = t111 * t173 + t113 * t172 + (t112 * t171 + t183 * t177);
+        if (!(R(-334.7683100636247) * t82 - t186 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t189 = t73 * (t164 - t71 * t172 - t69 * t181);
-        motion[18] = t189;
-        const gic_real t190 = t181 + (turn[0] * t121 - turn[1] * t135);
-        const gic_real t191 = R(90.555) * (t172 * t88 + t171 - t181 * t83);
-        inertia[9] = t191;
-        const gic_real t192 = t120 * t176 + t128 * t179 + (t119 * t175 + t126 * t174);
-        const gic_real t193 = t93 * t184 + (t134 + t94 * t183);
-        inertia[18] = t193;
-        const gic_real t194 = t136 + t94 * t129 - t92 * t184;
-        inertia[19] = t194;
-        const gic_real t195 = t105 * t190 + (t104 * t182 + (t124 * t165 - t133 * t166));
-        const gic_real t196 = t189 + (turn[1] * t127 - turn[2] * t121);
-        const gic_real t197 = t106 * t190 + (t102 * t182 + (t133 * t167 - t157 * t165));
-        const gic_real t198 = t89 * t190 + (t106 * t182 + (t157 * t166 - t124 * t167));
-        const gic_real t199 = t181 * t82 + (t158 - turn[0] * t162) - t189 * t88;
-        const gic_real t200 = t189 * t83 + (turn[0] * t163 + t169 - t172 * t82);
-        const gic_real t201 = t101 * t196 + t195;
-        const gic_real t202 = t138 - t93 * t129 - t92 * t183;
-        inertia[20] = t202;
-        const gic_real t203 = t104 * t196 + t197;
-        const gic_real t204 = t174 + t93 * t186 - t94 * t185;
-        inertia[25] = t204;
-        const gic_real t205 = t175 + t94 * t179 - t92 * t186;
-        inertia[26] = t205;
-        const gic_real t206 = t105 * t196 + t198;
-        const gic_real t207 = t92 * t185 + (t176 - t93 * t179);
-        inertia[27] = t207;
-        const gic_real t208 = R(90.555) * t199;
-        inertia[10] = t208;
-        const gic_real t209 = t187 + (t178 * t184 + t177 * t183);
-        inertia[29] = t209;
-        const gic_real t210 = R(90.555) * t200;
-        inertia[11] = t210;
-        const gic_real t211 = t188 + (t178 * t186 - t177 * t185);
-        inertia[30] = t211;
-        const gic_real t212 = t116 * t203 + t191 * t123 + (t122 * t201 - t118 * t206);
-        const gic_real t213 = t120 * t206 + t191 * t128 + (t119 * t203 + t126 * t201);
-        const gic_real t214 = t201 + t93 * t210 - t94 * t208;
-        inertia[12] = t214;
-        const gic_real t215 = t203 + t94 * t191 - t92 * t210;
-        inertia[13] = t215;
-        const gic_real t216 = t92 * t208 + (t206 - t93 * t191);
-        inertia[14] = t216;
-        const gic_real t217 = t210 * t178 - t208 * t177 + t212;
-        inertia[21] = t217;
-        const gic_real t218 = t192 + (t173 * t186 + t170 * t185);
-        inertia[31] = t218;
-        const gic_real t219 = t210 * t173 + t208 * t170 + t213;
-        inertia[28] = t219;
-        const gic_real t220 = -t183;
-        inertia[16] = t220;
+        const gic_real t196 = t107 * t174 + t109 * t169 + (t108 * t152 + t122 * t184);
+        const gic_real t197 = t107 * t180 + t109 * t179 + (t108 * t178 + t181 * t185);
+        const gic_real t198 = t111 * t180 + t113 * t179 + (t112 * t178 + t175 * t185);
+        const gic_real t199 = R(90.555) * t103;
+        inertia[2] = t199;
+        const gic_real t200 = t102 * t188;
+        const gic_real t201 = t104 * t187;
+        const gic_real t202 = t171 + t102 * t183 - t103 * t189;
+        inertia[12] = t202;
+        const gic_real t203 = t172 + t103 * t170 - t104 * t183;
+        inertia[13] = t203;
+        const gic_real t204 = t173 + t104 * t189 - t102 * t170;
+        inertia[14] = t204;
+        const gic_real t205 = t152 + t102 * t184 - t103 * t191;
+        inertia[18] = t205;
+        const gic_real t206 = t169 + t103 * t190 - t104 * t184;
+        inertia[19] = t206;
+        const gic_real t207 = t174 + t104 * t191 - t102 * t190;
+        inertia[20] = t207;
+        const gic_real t208 = t189 * t182 + t170 * t181 + t192;
+        inertia[21] = t208;
+        const gic_real t209 = t178 + t102 * t194 - t103 * t193;
+        inertia[25] = t209;
+        const gic_real t210 = t179 + t103 * t185 - t104 * t194;
+        inertia[26] = t210;
+        const gic_real t211 = t104 * t193 + (t180 - t102 * t185);
+        inertia[27] = t211;
+        const gic_real t212 = t189 * t176 + t170 * t175 + t195;
+        inertia[28] = t212;
+        const gic_real t213 = t182 * t191 + t181 * t190 + t196;
+        inertia[29] = t213;
+        const gic_real t214 = t197 + (t122 * t194 + t182 * t193);
+        inertia[30] = t214;
+        const gic_real t215 = t198 + (t177 * t194 + t176 * t193);
+        inertia[31] = t215;
+        const gic_real t216 = t103 * t199;
+        const gic_real t217 = t200 + (t92 + t201);
+        inertia[5] = t217;
+        const gic_real t218 = t116 - t102 * t187;
+        inertia[6] = t218;
+        const gic_real t219 = t119 - t103 * t187;
+        inertia[7] = t219;
+        const gic_real t220 = t121 - t103 * t188;
+        inertia[8] = t220;
+        const gic_real t221 = t216 + (t115 + t200);
+        inertia[3] = t221;
+        const gic_real t222 = t216 + (t114 + t201);
+        inertia[4] = t222;
     }
     ++self->head.newton_count;
     return GIC_OK;
@@ -794,14 +791,14 @@ static GIC_COLD gic_real hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RE
     return worst;
 }
 
-static const gic_real hmmwv_vehicle_k_wheel_r_l[2][7] = {
+static const gic_real hmmwv_vehicle_k_wheel_r_l[2][8] = {
     { /* wheel_r_l */
         R(0.49375935710120966), R(0.307086), R(0.462153), R(-0.07099299999999997),
-        R(-1.0), R(0.07099299999999997), R(0.08910630000000008),
+        R(-1.0), R(0.07099299999999997), R(0.08910630000000008), R(-5.957189034897722),
     },
     { /* wheel_r_r */
         R(-0.49375935710120966), R(-0.307086), R(-0.462153), R(0.07099299999999997),
-        R(1.0), R(-0.07099299999999997), R(-0.08910630000000008),
+        R(1.0), R(-0.07099299999999997), R(-0.08910630000000008), R(5.957189034897722),
     },
 };
 
@@ -849,111 +846,111 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
             return GIC_ERROR_NEWTON;
         if (!(t20 - t19 * R(0.0001) > R(0.0)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t21 = GIC_SQRT(t20);
+        const gic_real t21 = k[4] * GIC_SQRT(t20);
         const gic_real t22 = R(1.0) / t19;
-        const gic_real t23 = k[4] * t21;
-        const gic_real t24 = t21 * (R(1.0) / (k[4] * t20));
-        const gic_real t25 = t22 * (t15 * t13 - t14 * t23);
-        motion[10] = t25;
-        const gic_real t26 = t22 * (t15 * t23 + t14 * t13);
-        const gic_real t27 = R(4.7728205) + t25 * (R(-4.5794204999999994) * t25);
-        const gic_real t28 = -t25;
-        motion[8] = t28;
-        const gic_real t29 = R(-0.3340099999999999) * t25 + k[5] * t26;
-        const gic_real t30 = k[3] * t25 + R(-0.3340099999999999) * t26;
-        const gic_real t31 = R(0.09182099999999999) * t25 + k[6] * t26;
-        const gic_real t32 = k[6] * t25 - R(0.09182099999999999) * t26;
-        const gic_real t33 = R(-4.5794204999999994) * t26;
-        const gic_real t34 = -t26;
-        motion[7] = t34;
-        motion[11] = t34;
-        const gic_real t35 = t9 + t29;
-        const gic_real t36 = t2 - R(0.22567900000000002) + t30;
-        const gic_real t37 = R(4.7728205) + t26 * t33;
-        const gic_real t38 = t3 - t31;
-        const gic_real t39 = t25 * t33;
-        const gic_real t40 = t2 + t32;
-        const gic_real t41 = R(90.555) * t38;
-        inertia[1] = t41;
-        const gic_real t42 = turn[2] * t27 - turn[1] * t39;
-        const gic_real t43 = t24 * (t5 * t35 - t6 * t36);
-        motion[24] = t43;
-        const gic_real t44 = turn[1] * t40 - turn[2] * t38;
-        const gic_real t45 = turn[1] * t37 - turn[2] * t39;
-        const gic_real t46 = R(90.555) * t40;
-        inertia[2] = t46;
-        const gic_real t47 = t38 * t41;
-        const gic_real t48 = -(t39 + t40 * t41);
-        inertia[8] = t48;
-        const gic_real t49 = -(R(-149.724089775) * t38);
-        inertia[6] = t49;
-        const gic_real t50 = -(R(-149.724089775) * t40);
-        inertia[7] = t50;
-        const gic_real t51 = t40 * t46;
-        const gic_real t52 = t47 + (R(247.5545586544339) + t27);
-        inertia[5] = t52;
-        const gic_real t53 = rate[0] * t43;
-        motion[12] = t53;
-        const gic_real t54 = t5 + t43 * t32;
-        const gic_real t55 = t6 - t43 * t31;
-        const gic_real t56 = R(4.8947505) * t43;
-        const gic_real t57 = t51 + (R(4.8947505) + t47);
-        inertia[3] = t57;
-        if (!(R(5.957189034897722) * t21 - ahead[0] * GIC_FABS(t53) > R(0.004)))
+        const gic_real t23 = t22 * (t15 * t13 - t14 * t21);
+        motion[10] = t23;
+        const gic_real t24 = t22 * (t15 * t21 + t14 * t13);
+        const gic_real t25 = R(4.7728205) + t23 * (R(-4.5794204999999994) * t23);
+        const gic_real t26 = -t23;
+        motion[8] = t26;
+        const gic_real t27 = R(-0.3340099999999999) * t23 + k[5] * t24;
+        const gic_real t28 = k[3] * t23 + R(-0.3340099999999999) * t24;
+        const gic_real t29 = R(0.09182099999999999) * t23 + k[6] * t24;
+        const gic_real t30 = k[6] * t23 - R(0.09182099999999999) * t24;
+        const gic_real t31 = R(-4.5794204999999994) * t24;
+        const gic_real t32 = -t24;
+        motion[7] = t32;
+        motion[11] = t32;
+        const gic_real t33 = t9 + t27;
+        const gic_real t34 = t2 - R(0.22567900000000002) + t28;
+        const gic_real t35 = R(4.7728205) + t24 * t31;
+        const gic_real t36 = t3 - t29;
+        const gic_real t37 = t23 * t31;
+        const gic_real t38 = t2 + t30;
+        const gic_real t39 = R(90.555) * t36;
+        inertia[1] = t39;
+        const gic_real t40 = turn[2] * t25 - turn[1] * t37;
+        const gic_real t41 = t27 * t34 - t28 * t33;
+        const gic_real t42 = turn[1] * t38 - turn[2] * t36;
+        const gic_real t43 = turn[1] * t35 - turn[2] * t37;
+        const gic_real t44 = R(90.555) * t38;
+        inertia[2] = t44;
+        const gic_real t45 = t36 * t39;
+        const gic_real t46 = -(t37 + t38 * t39);
+        inertia[8] = t46;
+        const gic_real t47 = -(R(-149.724089775) * t36);
+        inertia[6] = t47;
+        const gic_real t48 = R(1.0) / t41;
+        const gic_real t49 = t38 * t44;
+        const gic_real t50 = t45 + (R(247.5545586544339) + t25);
+        inertia[5] = t50;
+        const gic_real t51 = -(R(-149.724089775) * t38);
+        inertia[7] = t51;
+        const gic_real t52 = t49 + (R(4.8947505) + t45);
+        inertia[3] = t52;
+        const gic_real t53 = t49 + (R(247.5545586544339) + t35);
+        inertia[4] = t53;
+        const gic_real t54 = t48 * (t5 * t33 - t6 * t34);
+        motion[24] = t54;
+        const gic_real t55 = rate[0] * t54;
+        motion[12] = t55;
+        const gic_real t56 = t5 + t54 * t30;
+        const gic_real t57 = t6 - t54 * t29;
+        const gic_real t58 = R(4.8947505) * t54;
+        if (!(k[7] * t41 - ahead[0] * GIC_FABS(t55) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t58 = t30 * t53;
-        const gic_real t59 = t29 * t53;
-        const gic_real t60 = t53 * t32;
-        const gic_real t61 = t53 * t31;
-        const gic_real t62 = turn[0] + t53;
-        const gic_real t63 = turn[1] * t53;
-        const gic_real t64 = turn[2] * t53;
-        const gic_real t65 = R(90.555) * t54;
-        const gic_real t66 = t36 * (t53 * t58) + (t7 * t35 - t12 * t36);
-        const gic_real t67 = t11 + t59;
-        const gic_real t68 = t10 + t58;
-        const gic_real t69 = t10 + t60;
-        const gic_real t70 = t11 - t61;
-        const gic_real t71 = R(4.8947505) * t62;
-        const gic_real t72 = R(90.555) * t55;
-        inertia[17] = t72;
-        const gic_real t73 = t51 + (R(247.5545586544339) + t37);
-        inertia[4] = t73;
-        const gic_real t74 = -(R(-149.724089775) * t55);
+        const gic_real t59 = t28 * t55;
+        const gic_real t60 = t27 * t55;
+        const gic_real t61 = t55 * t30;
+        const gic_real t62 = t55 * t29;
+        const gic_real t63 = turn[0] + t55;
+        const gic_real t64 = turn[1] * t55;
+        const gic_real t65 = turn[2] * t55;
+        const gic_real t66 = R(90.555) * t56;
+        const gic_real t67 = t34 * (t55 * t59) + (t7 * t33 - t12 * t34);
+        const gic_real t68 = t11 + t60;
+        const gic_real t69 = t10 + t59;
+        const gic_real t70 = t10 + t61;
+        const gic_real t71 = t11 - t62;
+        const gic_real t72 = R(4.8947505) * t63;
+        const gic_real t73 = R(90.555) * t57;
+        inertia[17] = t73;
+        const gic_real t74 = -(R(-149.724089775) * t57);
         inertia[19] = t74;
-        const gic_real t75 = R(-1.653405) * turn[2] - turn[0] * t40 - t69 - t69;
-        const gic_real t76 = t70 + (t70 + (turn[0] * t38 - R(-1.653405) * turn[1]));
-        const gic_real t77 = t35 * (t53 * t59) - t67 * t67 + (t66 - t68 * t68);
-        const gic_real t78 = turn[2] * t71 + (t39 * t63 + t37 * t64 - t62 * t42);
-        const gic_real t79 = t62 * t45 - t27 * t63 - t39 * t64 - turn[1] * t71;
-        const gic_real t80 = t38 * t72 + (t56 + t40 * t65);
-        inertia[18] = t80;
-        const gic_real t81 = turn[0] * t75 + (t12 - turn[1] * t44 - t53 * t60);
-        const gic_real t82 = t53 * t61 + (turn[2] * t44 - t7) - turn[0] * t76;
-        const gic_real t83 = t24 * t77;
-        motion[18] = t83;
-        const gic_real t84 = R(90.555) * (turn[1] * t76 - turn[2] * t75);
-        inertia[9] = t84;
-        const gic_real t85 = t54 * t65 + (t43 * t56 + t55 * t72);
-        inertia[22] = t85;
-        const gic_real t86 = R(4.8947505) * t83 + (turn[1] * t42 - turn[2] * t45);
-        const gic_real t87 = -(R(-149.724089775) * t54);
-        inertia[20] = t87;
-        const gic_real t88 = -t65;
+        const gic_real t75 = -(R(-149.724089775) * t56);
+        inertia[20] = t75;
+        const gic_real t76 = R(-1.653405) * turn[2] - turn[0] * t38 - t70 - t70;
+        const gic_real t77 = t71 + (t71 + (turn[0] * t36 - R(-1.653405) * turn[1]));
+        const gic_real t78 = t33 * (t55 * t60) - t68 * t68 + (t67 - t69 * t69);
+        const gic_real t79 = turn[2] * t72 + (t37 * t64 + t35 * t65 - t63 * t40);
+        const gic_real t80 = t63 * t43 - t25 * t64 - t37 * t65 - turn[1] * t72;
+        const gic_real t81 = t36 * t73 + (t58 + t38 * t66);
+        inertia[18] = t81;
+        const gic_real t82 = turn[0] * t76 + (t12 - turn[1] * t42 - t55 * t61);
+        const gic_real t83 = t55 * t62 + (turn[2] * t42 - t7) - turn[0] * t77;
+        const gic_real t84 = t48 * t78;
+        motion[18] = t84;
+        const gic_real t85 = R(90.555) * (turn[1] * t77 - turn[2] * t76);
+        inertia[9] = t85;
+        const gic_real t86 = t56 * t66 + (t54 * t58 + t57 * t73);
+        inertia[22] = t86;
+        const gic_real t87 = R(4.8947505) * t84 + (turn[1] * t40 - turn[2] * t43);
+        const gic_real t88 = -t66;
         inertia[16] = t88;
-        const gic_real t89 = t81 - t83 * t31;
-        const gic_real t90 = t82 - t83 * t32;
+        const gic_real t89 = t82 - t84 * t29;
+        const gic_real t90 = t83 - t84 * t30;
         const gic_real t91 = R(90.555) * t89;
         inertia[11] = t91;
-        const gic_real t92 = t40 * t84 + t78 - R(-149.724089775) * t89;
+        const gic_real t92 = t38 * t85 + t79 - R(-149.724089775) * t89;
         inertia[13] = t92;
         const gic_real t93 = R(90.555) * t90;
         inertia[10] = t93;
-        const gic_real t94 = R(-149.724089775) * t90 + (t79 - t38 * t84);
+        const gic_real t94 = R(-149.724089775) * t90 + (t80 - t36 * t85);
         inertia[14] = t94;
-        const gic_real t95 = t86 + t38 * t91 - t40 * t93;
+        const gic_real t95 = t87 + t36 * t91 - t38 * t93;
         inertia[12] = t95;
-        const gic_real t96 = t43 * t86 + t91 * t55 - t93 * t54;
+        const gic_real t96 = t54 * t87 + t91 * t57 - t93 * t56;
         inertia[21] = t96;
     }
     ++self->head.newton_count;
@@ -1121,31 +1118,39 @@ static int hmmwv_vehicle_recover_piece(hmmwv_vehicle *self, hmmwv_vehicle_links 
     return GIC_OK;
 }
 
-/* Piece after piece of a way from start `first`, which stays that until the last one is good, for a way that fails is
- * forgotten. Leaves the last one's start in *last. */
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
+ * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
 static int hmmwv_vehicle_recover_way(hmmwv_vehicle *self, hmmwv_vehicle_links *links, const gic_real *way, int far, int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
     int32_t now = first, next;
-    int i, piece, pieces = 1, status;
+    int i, piece = 1, pieces = 1, usual, status;
     for (i = 0; far && i < HMMWV_VEHICLE_COORDINATES; ++i) {
         const gic_real parts = GIC_FABS(way[i]) / hmmwv_vehicle_piece[i];
         if (!(parts < R(GIC_PIECES)))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
     }
-    for (piece = 1;; ++piece) {
+    for (usual = pieces;;) {
         for (next = 0; next == first || next == now || next == hold;)
             ++next;
         memcpy(self->start[next], self->x, HMMWV_VEHICLE_COORDINATES * sizeof *self->x);
         for (i = 0; piece < pieces && i < HMMWV_VEHICLE_COORDINATES; ++i)
             self->start[next][i] = self->start[first][i] + (gic_real)piece / (gic_real)pieces * way[i];
         status = hmmwv_vehicle_recover_piece(self, links, self->start[now], self->start[next]);
-        if (status != GIC_OK)
-            return status;
-        now = *last = next;
-        if (piece >= pieces)
-            return GIC_OK;
+        if (status == GIC_OK) {
+            now = *last = next;
+            if (piece >= pieces)
+                return GIC_OK;
+            if (piece % 2 == 0 && pieces > usual)
+                piece /= 2, pieces /= 2;
+            ++piece;
+        } else {
+            if (HMMWV_VEHICLE_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
+                return status;
+            piece = 2 * piece - 1, pieces *= 2;
+            self->head.subset = -1;
+        }
     }
 }
 
@@ -1852,45 +1857,47 @@ static int hmmwv_vehicle_drive(hmmwv_vehicle *self, gic_real time, const gic_rea
         const gic_real t37 = t29 * t32 - t34 * t36;
         const gic_real t38 = t20 * t21 - t24 * t37 - t24 * t36;
         const gic_real t39 = t14 * t17 - t19 * t38 - t25 * t37 - t25 * t36;
-        const gic_real t40 = GIC_MIN(GIC_MAX((R(282.7433388230814) - fast[16]) * R(0.07073553026306459), R(0.0)), R(1.0));
-        const gic_real t41 = GIC_MIN(GIC_MAX(GIC_MAX(u[4], (R(83.7758040957278) - fast[16]) * R(0.05968310365946076)), R(0.0)), R(1.0)) * ((R(3.0) - (t40 + t40)) * (t40 * t40));
-        const gic_real t42 = fast[16] * R(9.549296585513721);
-        const gic_real t43 = t41 * gic_table_value(&hmmwv_vehicle_table[0], t42) + gic_table_value(&hmmwv_vehicle_table[1], t42);
-        const gic_real t44 = (fast[16] > GIC_R(0) ? t43 : GIC_MAX(t43, R(0.0)));
-        const gic_real t45 = (t6 > GIC_R(0) ? t11 : t10);
-        const gic_real t46 = R(7.78782) * (t39 - rate[0]);
-        const gic_real t47 = fast[0] * (R(7.78782) * t39);
-        const gic_real t48 = R(7.78782) * (t38 - rate[4]);
-        const gic_real t49 = fast[4] * (R(7.78782) * t38);
-        const gic_real t50 = R(7.78782) * (t37 - rate[8]);
-        const gic_real t51 = fast[8] * (R(7.78782) * t37);
-        const gic_real t52 = R(7.78782) * (t36 - rate[12]);
-        const gic_real t53 = fast[12] * (R(7.78782) * t36);
-        const gic_real t54 = (t44 - t45) * R(0.625);
-        const gic_real t55 = fast[16];
-        const gic_real t56 = gear[0];
+        const gic_real t40 = GIC_MIN(GIC_MAX(fast[16], R(0.0)), R(1.0));
+        const gic_real t41 = GIC_MIN(GIC_MAX((R(282.7433388230814) - fast[16]) * R(0.07073553026306459), R(0.0)), R(1.0));
+        const gic_real t42 = GIC_MIN(GIC_MAX(GIC_MAX(u[4], (R(83.7758040957278) - fast[16]) * R(0.05968310365946076)), R(0.0)), R(1.0)) * ((R(3.0) - (t41 + t41)) * (t41 * t41));
+        const gic_real t43 = fast[16] * R(9.549296585513721);
+        const gic_real t44 = t42 * gic_table_value(&hmmwv_vehicle_table[0], t43) + gic_table_value(&hmmwv_vehicle_table[1], t43);
+        const gic_real t45 = (R(3.0) - (t40 + t40)) * (t40 * t40) * GIC_MIN(t44, R(0.0));
+        const gic_real t46 = t45 + GIC_MAX(t44, R(0.0));
+        const gic_real t47 = (t6 > GIC_R(0) ? t11 : t10);
+        const gic_real t48 = R(7.78782) * (t39 - rate[0]);
+        const gic_real t49 = fast[0] * (R(7.78782) * t39);
+        const gic_real t50 = R(7.78782) * (t38 - rate[4]);
+        const gic_real t51 = fast[4] * (R(7.78782) * t38);
+        const gic_real t52 = R(7.78782) * (t37 - rate[8]);
+        const gic_real t53 = fast[8] * (R(7.78782) * t37);
+        const gic_real t54 = R(7.78782) * (t36 - rate[12]);
+        const gic_real t55 = fast[12] * (R(7.78782) * t36);
+        const gic_real t56 = (t46 - t47) * R(0.625);
+        const gic_real t57 = fast[16];
+        const gic_real t58 = gear[0];
         rate[0] = t39;
-        grip[6] = t46;
-        grip[26] = t47;
+        grip[6] = t48;
+        grip[26] = t49;
         rate[4] = t38;
-        grip[33] = t48;
-        grip[53] = t49;
+        grip[33] = t50;
+        grip[53] = t51;
         rate[8] = t37;
-        grip[60] = t50;
-        grip[80] = t51;
+        grip[60] = t52;
+        grip[80] = t53;
         rate[12] = t36;
-        grip[87] = t52;
-        grip[107] = t53;
-        rate[16] = t54;
+        grip[87] = t54;
+        grip[107] = t55;
+        rate[16] = t56;
         rate[17] = R(1.0);
-        watch[0] = t55;
-        watch[1] = t44;
-        watch[2] = t41;
-        watch[3] = t56;
+        watch[0] = t57;
+        watch[1] = t46;
+        watch[2] = t42;
+        watch[3] = t58;
         watch[4] = t3;
         watch[5] = t5;
         watch[6] = t12;
-        watch[7] = t45;
+        watch[7] = t47;
     }
     return GIC_OK;
 }
@@ -5181,6 +5188,12 @@ static const struct {
     {12, 4, R(1.0)}, /* tire_r_r */
 };
 
+/* S(s) / s of a speed relative to the low one: the slip of rolling begins with the speed. */
+static gic_real hmmwv_vehicle_rolling_share(gic_real s)
+{
+    return s < R(1.0) ? s * (R(3.0) - R(2.0) * s) : R(1.0) / s;
+}
+
 /* Fast states with which no wheel slips; the integrator's history is forgotten. */
 static int hmmwv_vehicle_any_roll(void *instance)
 {
@@ -5197,8 +5210,7 @@ static int hmmwv_vehicle_any_roll(void *instance)
         for (j = 0; j < hmmwv_vehicle_rolling[i].states; ++j)
             own[j] = R(0.0);
         own[0] = v_x / radius;
-        if (speed > hmmwv_vehicle_rolling[i].low_speed)
-            own[2] = v_y / speed;
+        own[2] = v_y * hmmwv_vehicle_rolling_share(speed / hmmwv_vehicle_rolling[i].low_speed) / hmmwv_vehicle_rolling[i].low_speed;
     }
     if (status == GIC_OK)
         gic_restart(self, time);
@@ -5206,6 +5218,20 @@ static int hmmwv_vehicle_any_roll(void *instance)
 }
 
 /* ---- changes of gear ----------------------------------------------------------------------------------------------------- */
+
+/* A limit that a step ends at in exact arithmetic is reached whatever rounding makes of the step: relative to a time; to
+ * 1 + the size of what is compared. */
+#define HMMWV_VEHICLE_ROUNDING (sizeof(gic_real) < sizeof(double) ? R(1e-4) : R(1e-9))
+
+static int hmmwv_vehicle_reached(gic_real time, gic_real limit)
+{
+    return time >= (R(1.0) - HMMWV_VEHICLE_ROUNDING) * limit;
+}
+
+static int hmmwv_vehicle_above(gic_real x, gic_real limit)
+{
+    return x - limit > HMMWV_VEHICLE_ROUNDING * (R(1.0) + GIC_FABS(limit));
+}
 
 /* After a step: 1 where the gear changes. */
 static int hmmwv_vehicle_any_shift(void *instance)
@@ -5220,7 +5246,7 @@ static int hmmwv_vehicle_any_shift(void *instance)
     const gic_real *const up = choice + 2, *const down = up + HMMWV_VEHICLE_FORWARD - 1;
     int32_t wanted, next = gears[0];
     (void)time, (void)x, (void)xd, (void)u, (void)p, (void)up, (void)down;
-    if (!(*age > duration) || hmmwv_vehicle_engage(self, gear) != GIC_OK)
+    if (!hmmwv_vehicle_reached(*age, duration) || hmmwv_vehicle_engage(self, gear) != GIC_OK)
         return 0;
     hmmwv_vehicle_gather(self, self->state);
     {
@@ -5236,13 +5262,13 @@ static int hmmwv_vehicle_any_shift(void *instance)
         choice[3] = R(261.79938779914943);
         choice[5] = R(125.66370614359172);
     }
-    wanted = choice[0] > R(0.5) ? 1 : choice[0] < R(-0.5) && HMMWV_VEHICLE_REVERSE ? -1 : 0;
+    wanted = hmmwv_vehicle_above(choice[0], R(0.5)) ? 1 : hmmwv_vehicle_above(-choice[0], R(0.5)) && HMMWV_VEHICLE_REVERSE ? -1 : 0;
     if (wanted != (next > 0) - (next < 0))
         next = wanted;
-    else if (next > 0 && *age > latency) {
-        if (next < HMMWV_VEHICLE_FORWARD && choice[1] > up[next - 1])
+    else if (next > 0 && hmmwv_vehicle_reached(*age, latency)) {
+        if (next < HMMWV_VEHICLE_FORWARD && hmmwv_vehicle_above(choice[1], up[next - 1]))
             ++next;
-        else if (next > 1 && choice[1] < down[next - 2])
+        else if (next > 1 && hmmwv_vehicle_above(-choice[1], -down[next - 2]))
             --next;
     }
     if (next == gears[0])
