@@ -230,6 +230,11 @@ static void make_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
     }
 }
 
+void subset_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
+{
+    make_rows(w, unknown, row, row_of);
+}
+
 /* Columns of the unknowns, [n][n]. */
 static void make_jacobian(const Work *w, const Row *row, const int *row_of, Ex *J)
 {
@@ -422,26 +427,6 @@ static void store_motion(Block *block, const Motion *m, int offset)
             block_store(block, part[p].e[i], "motion[%d]", offset + part[p].offset + i);
 }
 
-/* Rows are scaled to what a unit move of the subset's size changes in them at the design. */
-static void make_residual(Work *w, Formula *formula, const Row *row)
-{
-    Dag *dag = w->dag;
-    Ex worst = 0;
-    double scale[w->class->members];
-    for (int r = 0; r < w->n; ++r) {
-        for (int i = 0; i < w->class->members; ++i) {
-            double largest = 0;
-            for (int j = 0; j < w->n; ++j)
-                largest = fmax(largest, fabs(ex_value(dag, w->J[w->n * r + j], i * w->configurations)) /
-                                            (j % 6 < 3 ? w->size : 1));
-            scale[i] = 1 / (largest * w->size);
-        }
-        Ex value = ex_op(dag, OP_ABS, ex_mul(dag, ex_constant(dag, scale), row[r].value), 0, 0);
-        worst = r ? ex_op(dag, OP_MAX, worst, value, 0) : value;
-    }
-    block_store(&formula->residual, worst, "worst");
-}
-
 Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, const Class *class,
                   const double (*origin)[3], const Sampling *sampling)
 {
@@ -500,7 +485,7 @@ static Formula *formula_new(Work *w, bool closed)
     return formula;
 }
 
-/* The equations with the poses that were found, as residual and multipliers need them: [n]. */
+/* The equations with the poses that were found, as multipliers need them: [n]. */
 static Row *rows_from_memory(Work *w, const Formula *formula)
 {
     Row *row = pool_alloc(w->pool, (size_t)w->n * sizeof *row);
@@ -536,7 +521,7 @@ static void finish(Work *w, Formula *formula, Solve solve, const Factors *factor
     for (int i = 0; i < w->connections; ++i)
         memcpy(formula->across[i], w->connection[i].across, sizeof formula->across[i]);
     const Row *row = rows_from_memory(w, formula);
-    make_residual(w, formula, row);
+    subset_residual(w, formula);
     if (solve == SOLVE_REDUCED)
         subset_react(w, remembered, row, &formula->react);
     if (formula->closed && !formula->react.stores)

@@ -94,6 +94,12 @@ int subset_index(const Work *w, int subset);
 /* How an end of a connection moves, the unknowns moving as given. */
 const Motion *subset_motion(const Work *w, const Motion *unknown, End end);
 
+/* All rows [n] of the class with the unknowns moving as given; row_of [n]: the connection of each. */
+void subset_rows(Work *w, const Motion *unknown, Row *row, int *row_of);
+
+/* residual.c: the class's block `residual`; formula->motion and layout are there. */
+void subset_residual(Work *w, Formula *formula);
+
 /* held.c: put what joints to known bodies say into poses [bodies]: c and A where they follow, with `directions` also
  * which way hinges point; and make 0 what remains of the equations [n] of joints that c and A fulfil. */
 void subset_hold(Work *w, Motion *pose, bool directions);
