@@ -77,12 +77,12 @@
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #ifndef HMMWV_H
-#define HMMWV_H 0x20ee811b
+#define HMMWV_H 0x3b6061ed
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "hmmwv.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "hmmwv.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -91,7 +91,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV_ABI = 5,
+    HMMWV_ABI = 6,
     HMMWV_FREE_BASE = 1,
     HMMWV_STATES = 23,
     HMMWV_SLOW = 23,

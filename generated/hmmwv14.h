@@ -79,12 +79,12 @@
  *   outputs, when asked for                                  933      1137       4      4        19
  */
 #ifndef HMMWV14_H
-#define HMMWV14_H 0x13436b9d
+#define HMMWV14_H 0xb06f7c61
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "hmmwv14.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "hmmwv14.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -93,7 +93,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV14_ABI = 5,
+    HMMWV14_ABI = 6,
     HMMWV14_FREE_BASE = 1,
     HMMWV14_STATES = 23,
     HMMWV14_SLOW = 23,

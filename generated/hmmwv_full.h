@@ -77,12 +77,12 @@
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H
-#define HMMWV_FULL_H 0xec3ae9bd
+#define HMMWV_FULL_H 0x146fdb29
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "hmmwv_full.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "hmmwv_full.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -91,7 +91,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV_FULL_ABI = 5,
+    HMMWV_FULL_ABI = 6,
     HMMWV_FULL_FREE_BASE = 1,
     HMMWV_FULL_STATES = 23,
     HMMWV_FULL_SLOW = 23,

@@ -81,12 +81,12 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H 0x37026495
+#define HMMWV_TIRES_H 0x32d554c3
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "hmmwv_tires.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "hmmwv_tires.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -98,7 +98,7 @@ enum {
     HMMWV_TIRES_ROLLING = 4,
     HMMWV_TIRES_LINKS = 48,
     HMMWV_TIRES_GRIP = 27,
-    HMMWV_TIRES_ABI = 5,
+    HMMWV_TIRES_ABI = 6,
     HMMWV_TIRES_FREE_BASE = 1,
     HMMWV_TIRES_STATES = 37,
     HMMWV_TIRES_SLOW = 21,

@@ -81,12 +81,12 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TMEASY_H
-#define HMMWV_TMEASY_H 0x2c2f42f7
+#define HMMWV_TMEASY_H 0x10f2e139
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "hmmwv_tmeasy.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "hmmwv_tmeasy.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -98,7 +98,7 @@ enum {
     HMMWV_TMEASY_ROLLING = 4,
     HMMWV_TMEASY_LINKS = 48,
     HMMWV_TMEASY_GRIP = 27,
-    HMMWV_TMEASY_ABI = 5,
+    HMMWV_TMEASY_ABI = 6,
     HMMWV_TMEASY_FREE_BASE = 1,
     HMMWV_TMEASY_STATES = 37,
     HMMWV_TMEASY_SLOW = 21,

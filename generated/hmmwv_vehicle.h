@@ -82,12 +82,12 @@
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0x753da03b
+#define HMMWV_VEHICLE_H 0x5119f397
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "hmmwv_vehicle.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "hmmwv_vehicle.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -103,7 +103,7 @@ enum {
     HMMWV_VEHICLE_REVERSE = 1,
     HMMWV_VEHICLE_ENGINE = 16, /* engine.speed among the fast states */
     HMMWV_VEHICLE_GEAR = 1, /* transmission.gear in discrete[] */
-    HMMWV_VEHICLE_ABI = 5,
+    HMMWV_VEHICLE_ABI = 6,
     HMMWV_VEHICLE_FREE_BASE = 1,
     HMMWV_VEHICLE_STATES = 39,
     HMMWV_VEHICLE_SLOW = 21,

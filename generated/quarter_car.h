@@ -47,12 +47,12 @@
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #ifndef QUARTER_CAR_H
-#define QUARTER_CAR_H 0x03e77653
+#define QUARTER_CAR_H 0xec515121
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "quarter_car.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "quarter_car.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -61,7 +61,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    QUARTER_CAR_ABI = 5,
+    QUARTER_CAR_ABI = 6,
     QUARTER_CAR_FREE_BASE = 0,
     QUARTER_CAR_STATES = 4,
     QUARTER_CAR_SLOW = 4,

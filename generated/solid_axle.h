@@ -66,12 +66,12 @@
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H 0x3dab9155
+#define SOLID_AXLE_H 0x0058941f
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "solid_axle.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "solid_axle.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -80,7 +80,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    SOLID_AXLE_ABI = 5,
+    SOLID_AXLE_ABI = 6,
     SOLID_AXLE_FREE_BASE = 1,
     SOLID_AXLE_STATES = 23,
     SOLID_AXLE_SLOW = 23,

@@ -69,12 +69,12 @@
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H
-#define TRAILING_ARM_H 0xe7fa7daf
+#define TRAILING_ARM_H 0x09c1a53b
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "trailing_arm.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "trailing_arm.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -83,7 +83,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    TRAILING_ARM_ABI = 5,
+    TRAILING_ARM_ABI = 6,
     TRAILING_ARM_FREE_BASE = 1,
     TRAILING_ARM_STATES = 23,
     TRAILING_ARM_SLOW = 23,
