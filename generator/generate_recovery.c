@@ -165,7 +165,7 @@ void write_residuals(Generation *g, Text *out, int indent)
             line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
         line(out, indent, "%s_residual_%s(%s_k_%s[%d], &links, %s, one);", g->model->name, class->name, g->model->name,
              class->name, class_place(class, s), motion_text(g, s));
-        line(out, indent, "if (!(one[0] <= GIC_POSE_RESIDUAL(%s) && one[1] <= GIC_MOTION_RESIDUAL))",
+        line(out, indent, "if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(%s) && one[1] <= GIC_MOTION_RESIDUAL))",
              emit_number(g->pool, formula->distance));
         line(out, indent + 4, "bad = %d;", s);
         for (int i = 0; i < 2; ++i)

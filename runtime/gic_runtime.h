@@ -141,7 +141,7 @@ typedef struct gic_signal {
 /* What the emitted self-test measured at one state; all relative, rounding-size when the code is sound. Figures beyond
  * what FORMAT.md section 14 promises come with GIC_ERROR_RESIDUAL. */
 typedef struct gic_self_test {
-    gic_real constraint;     /* largest constraint residual, relative to the subset's size */
+    gic_real constraint;     /* largest sum of a subset's constraint residuals, relative to its size */
     gic_real motion;         /* of the constraints' first and second derivatives, relative to their terms */
     gic_real symmetry;       /* of the mass matrix built column by column by an independent path */
     gic_real smallest_pivot; /* of its Cholesky factorization, relative to the diagonal: > 0 means definite */
@@ -326,6 +326,11 @@ int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int s
  * (*switches counts it). Returns GIC_ERROR_ORIENTATION when `given` is not near unit length. e may be `given`. */
 #define gic_orientation GIC_NAME(gic_orientation)
 int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switches, gic_real e[4]);
+
+/* 1 where rates of positions and orientation are those of the velocities in the state: of the base, world frame and
+ * Euler parameters e[4], and of free coordinates. rate and state: slow_count numbers of each. */
+#define gic_rates_match GIC_NAME(gic_rates_match)
+int gic_rates_match(const gic_model *model, const gic_real *state, const gic_real e[4], const gic_real *rate);
 
 /* ---- tables -------------------------------------------------------------------------------------------- */
 

@@ -130,6 +130,8 @@ static int check(Instance *self, double time, const double *y, const double *e, 
     const TapeEngine *engine = tape_of(self);
     int status = check_constraints(self);
     self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&engine->code, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
     if (status == GIC_OK)
         status = tape_whole(self, engine->check, time, y, e, rate, NULL, engine->tau);
     for (int i = 0; status == GIC_OK && i < engine->formulation->plan->unknowns; ++i)

@@ -230,7 +230,8 @@ int tape_residual(Instance *self, double largest[2])
         links.array[CLASS_motion] = tape_array(self, engine->motion_offset) + plan->motion_offset[subset->body[0]];
         links.array[CLASS_worst] = one;
         tape_play(engine->class[subset->class].residual, engine->member[s], links.array, &none, engine->frame);
-        if (!(one[0] <= GIC_POSE_RESIDUAL(plan->formula[subset->class]->distance) && one[1] <= GIC_MOTION_RESIDUAL))
+        if (bad < 0 &&
+            !(one[0] <= GIC_POSE_RESIDUAL(plan->formula[subset->class]->distance) && one[1] <= GIC_MOTION_RESIDUAL))
             bad = s;
         largest[0] = GIC_MAX(largest[0], one[0]);
         largest[1] = GIC_MAX(largest[1], one[1]);
