@@ -50,7 +50,7 @@
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #ifndef ANDREWS_H
-#define ANDREWS_H 0xfbdb0e5d
+#define ANDREWS_H 0x59d15f3d
 
 #include "gic_runtime.h"
 
@@ -211,7 +211,8 @@ const char *andrews_status_condition(const andrews *self);
 void andrews_snapshot(const andrews *self, andrews *copy);
 void andrews_restore(andrews *self, const andrews *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
+ * not as well as promised; other functions check that too, now and then. */
 int andrews_self_test(andrews *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -71,7 +71,7 @@
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
-#define FIVE_LINK_H 0xa53b6559
+#define FIVE_LINK_H 0x65badb21
 
 #include "gic_runtime.h"
 
@@ -283,7 +283,8 @@ const char *five_link_status_condition(const five_link *self);
 void five_link_snapshot(const five_link *self, five_link *copy);
 void five_link_restore(five_link *self, const five_link *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
+ * not as well as promised; other functions check that too, now and then. */
 int five_link_self_test(five_link *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

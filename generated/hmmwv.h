@@ -77,7 +77,7 @@
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #ifndef HMMWV_H
-#define HMMWV_H 0x3b6061ed
+#define HMMWV_H 0x4f778ddd
 
 #include "gic_runtime.h"
 
@@ -283,7 +283,8 @@ const char *hmmwv_status_condition(const hmmwv *self);
 void hmmwv_snapshot(const hmmwv *self, hmmwv *copy);
 void hmmwv_restore(hmmwv *self, const hmmwv *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
+ * not as well as promised; other functions check that too, now and then. */
 int hmmwv_self_test(hmmwv *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -77,7 +77,7 @@
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H
-#define HMMWV_FULL_H 0x146fdb29
+#define HMMWV_FULL_H 0x256bd4a3
 
 #include "gic_runtime.h"
 
@@ -291,7 +291,8 @@ const char *hmmwv_full_status_condition(const hmmwv_full *self);
 void hmmwv_full_snapshot(const hmmwv_full *self, hmmwv_full *copy);
 void hmmwv_full_restore(hmmwv_full *self, const hmmwv_full *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
+ * not as well as promised; other functions check that too, now and then. */
 int hmmwv_full_self_test(hmmwv_full *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

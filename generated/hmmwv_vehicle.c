@@ -83,7 +83,7 @@
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0x5119f397
+#if HMMWV_VEHICLE_H != 0x9368ac4b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -178,16 +178,21 @@
  * their terms. They are rounding, in single precision near a singular configuration too. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
-#define GIC_MOTION_RESIDUAL (R(1e-2) + R(16.0) * R(GIC_RECOVERY_ERROR))
-#define GIC_BALANCE_RESIDUAL R(1e-3)
+#define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-5)
 #else
-#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-8), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
-#define GIC_MOTION_RESIDUAL (R(1e-8) + R(16.0) * R(GIC_RECOVERY_ERROR))
-#define GIC_BALANCE_RESIDUAL R(1e-8)
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-10), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-9) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-10)
 #endif
 
 /* Evaluations between two that are checked. */
 #define GIC_CHECK_EVERY 128
+
+/* By how much an error that tests plant is off. */
+#ifndef GIC_PLANT_BY
+#define GIC_PLANT_BY R(1e-3)
+#endif
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct hmmwv_vehicle_links {
@@ -253,7 +258,7 @@ static int hmmwv_vehicle_solve_rack(hmmwv_vehicle *self, const gic_real *GIC_RES
         inertia[12] = t20;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
-    motion[GIC_PLANT_MOTION] += R(1e-3);
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
 #endif
     ++self->head.newton_count;
     return GIC_OK;
@@ -435,7 +440,7 @@ static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_
         inertia[16] = t69;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
-    motion[GIC_PLANT_MOTION] += R(1e-3);
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
 #endif
     ++self->head.newton_count;
     return GIC_OK;
@@ -800,7 +805,7 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         inertia[16] = t220;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
-    motion[GIC_PLANT_MOTION] += R(1e-3);
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
 #endif
     ++self->head.newton_count;
     return GIC_OK;
@@ -1078,7 +1083,7 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
         inertia[21] = t96;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
-    motion[GIC_PLANT_MOTION] += R(1e-3);
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
 #endif
     ++self->head.newton_count;
     return GIC_OK;
@@ -2460,7 +2465,11 @@ static GIC_APART int hmmwv_vehicle_dynamics(hmmwv_vehicle *self, gic_real time, 
         rate[20] = t289;
     }
 #ifdef GIC_PLANT_RATE /* an error that tests plant */
-    rate[GIC_PLANT_RATE] += R(1e-3) + R(1e-3) * GIC_FABS(rate[GIC_PLANT_RATE]);
+#ifndef GIC_PLANT_AFTER
+#define GIC_PLANT_AFTER R(-1.0) /* s */
+#endif
+    if (time > GIC_PLANT_AFTER)
+        rate[GIC_PLANT_RATE] += GIC_PLANT_BY + GIC_PLANT_BY * GIC_FABS(rate[GIC_PLANT_RATE]);
 #endif
     return GIC_OK;
 }
@@ -3621,35 +3630,35 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_residual(const hmmwv_vehicle *self, 
     links.x[0] = self->x[4];
     links.rate[0] = self->xd[4];
     hmmwv_vehicle_residual_rack(hmmwv_vehicle_k_rack[0], &links, self->motion + 0, one);
-    if (!(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
         bad = 1;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     links.x[0] = self->x[0];
     links.rate[0] = self->xd[0];
     hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[0], &links, self->motion + 30, one);
-    if (!(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
         bad = 2;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     links.x[0] = self->x[1];
     links.rate[0] = self->xd[1];
     hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[1], &links, self->motion + 60, one);
-    if (!(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
         bad = 3;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     links.x[0] = self->x[2];
     links.rate[0] = self->xd[2];
     hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[2], &links, self->motion + 90, one);
-    if (!(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
         bad = 4;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     links.x[0] = self->x[3];
     links.rate[0] = self->xd[3];
     hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[3], &links, self->motion + 120, one);
-    if (!(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
         bad = 5;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
@@ -3660,7 +3669,7 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_residual(const hmmwv_vehicle *self, 
     links.x[1] = self->x[0];
     links.rate[1] = self->xd[0];
     hmmwv_vehicle_residual_wheel_f_l(hmmwv_vehicle_k_wheel_f_l[0], &links, self->motion + 150, one);
-    if (!(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638516)) && one[1] <= GIC_MOTION_RESIDUAL))
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638516)) && one[1] <= GIC_MOTION_RESIDUAL))
         bad = 6;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
@@ -3671,7 +3680,7 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_residual(const hmmwv_vehicle *self, 
     links.x[1] = self->x[1];
     links.rate[1] = self->xd[1];
     hmmwv_vehicle_residual_wheel_f_l(hmmwv_vehicle_k_wheel_f_l[1], &links, self->motion + 186, one);
-    if (!(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638516)) && one[1] <= GIC_MOTION_RESIDUAL))
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638516)) && one[1] <= GIC_MOTION_RESIDUAL))
         bad = 7;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
@@ -3679,7 +3688,7 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_residual(const hmmwv_vehicle *self, 
     links.x[0] = self->x[2];
     links.rate[0] = self->xd[2];
     hmmwv_vehicle_residual_wheel_r_l(hmmwv_vehicle_k_wheel_r_l[0], &links, self->motion + 222, one);
-    if (!(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
         bad = 8;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
@@ -3687,7 +3696,7 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_residual(const hmmwv_vehicle *self, 
     links.x[0] = self->x[3];
     links.rate[0] = self->xd[3];
     hmmwv_vehicle_residual_wheel_r_l(hmmwv_vehicle_k_wheel_r_l[1], &links, self->motion + 252, one);
-    if (!(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
         bad = 9;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
@@ -4429,6 +4438,8 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_check(hmmwv_vehicle *self, gic_real 
     gic_real tau[HMMWV_VEHICLE_UNKNOWN_ROOM], size[HMMWV_VEHICLE_UNKNOWN_ROOM];
     int i, status = hmmwv_vehicle_check_constraints(self);
     self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&hmmwv_vehicle_model, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
     if (status == GIC_OK)
         status = hmmwv_vehicle_balance(self, time, y, e, rate, tau, size);
     for (i = 0; status == GIC_OK && i < HMMWV_VEHICLE_UNKNOWNS; ++i)

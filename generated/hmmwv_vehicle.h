@@ -82,7 +82,7 @@
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0x5119f397
+#define HMMWV_VEHICLE_H 0x9368ac4b
 
 #include "gic_runtime.h"
 
@@ -388,7 +388,8 @@ const char *hmmwv_vehicle_status_condition(const hmmwv_vehicle *self);
 void hmmwv_vehicle_snapshot(const hmmwv_vehicle *self, hmmwv_vehicle *copy);
 void hmmwv_vehicle_restore(hmmwv_vehicle *self, const hmmwv_vehicle *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
+ * not as well as promised; other functions check that too, now and then. */
 int hmmwv_vehicle_self_test(hmmwv_vehicle *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -28,7 +28,7 @@
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #ifndef PENDULUM_H
-#define PENDULUM_H 0xb3775747
+#define PENDULUM_H 0x5cc70941
 
 #include "gic_runtime.h"
 
@@ -155,7 +155,8 @@ const char *pendulum_status_condition(const pendulum *self);
 void pendulum_snapshot(const pendulum *self, pendulum *copy);
 void pendulum_restore(pendulum *self, const pendulum *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
+ * not as well as promised; other functions check that too, now and then. */
 int pendulum_self_test(pendulum *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

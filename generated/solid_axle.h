@@ -66,7 +66,7 @@
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H 0x0058941f
+#define SOLID_AXLE_H 0xe60d8df9
 
 #include "gic_runtime.h"
 
@@ -275,7 +275,8 @@ const char *solid_axle_status_condition(const solid_axle *self);
 void solid_axle_snapshot(const solid_axle *self, solid_axle *copy);
 void solid_axle_restore(solid_axle *self, const solid_axle *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
+ * not as well as promised; other functions check that too, now and then. */
 int solid_axle_self_test(solid_axle *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */
