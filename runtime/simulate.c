@@ -138,6 +138,7 @@ int scene_outputs(const gic_model *model, const Scene *scene, const gic_head *se
         return GIC_OK;
     memcpy(copy, self, model->size);
     copy->grown = -1;
+    copy->unchecked = 0; /* what is shown is checked */
     return model->outputs(copy);
 }
 

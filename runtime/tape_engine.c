@@ -186,7 +186,6 @@ int tape_refresh(Instance *self, double e[4])
 {
     const gic_model *code = &tape_of(self)->code;
     const double time = tape_present(self);
-    self->head.unchecked = 0;
     return evaluate(self, time, tape_array(self, code->state_offset), e, tape_array(self, code->rate_offset));
 }
 

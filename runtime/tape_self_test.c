@@ -70,6 +70,7 @@ int tape_self_test(void *instance, gic_self_test *result)
     const gic_model *code = &engine->code;
     const int n = engine->formulation->plan->unknowns;
     double e[4], energy[3];
+    self->head.unchecked = 0;
     int status = tape_refresh(self, e);
     *result = (gic_self_test){.smallest_pivot = 1};
     if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
