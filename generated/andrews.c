@@ -2492,13 +2492,12 @@ static gic_real andrews_present(andrews *self)
     return time;
 }
 
-/* The present state and its rate, which someone looks at: they are checked. */
+/* The present state and its rate. */
 static int andrews_refresh(andrews *self, gic_real e[4])
 {
     gic_real result[ANDREWS_STATE_ROOM];
-    int i, status;
-    self->head.unchecked = 0;
-    status = andrews_evaluate(self, andrews_present(self), self->state, e, result);
+    int i;
+    const int status = andrews_evaluate(self, andrews_present(self), self->state, e, result);
     for (i = 0; status == GIC_OK && i < ANDREWS_STATES; ++i)
         self->rate[i] = result[i];
     return status;
@@ -3033,7 +3032,9 @@ GIC_COLD int andrews_self_test(andrews *self, gic_self_test *result)
     gic_real M[ANDREWS_UNKNOWN_ROOM][ANDREWS_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = andrews_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = andrews_refresh(self, e);
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = andrews_refresh(self, e);
     *result = none;
     if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
         (void)andrews_residual(self, residual);

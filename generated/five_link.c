@@ -4074,13 +4074,12 @@ static gic_real five_link_present(five_link *self)
     return time;
 }
 
-/* The present state and its rate, which someone looks at: they are checked. */
+/* The present state and its rate. */
 static int five_link_refresh(five_link *self, gic_real e[4])
 {
     gic_real result[FIVE_LINK_STATE_ROOM];
-    int i, status;
-    self->head.unchecked = 0;
-    status = five_link_evaluate(self, five_link_present(self), self->state, e, result);
+    int i;
+    const int status = five_link_evaluate(self, five_link_present(self), self->state, e, result);
     for (i = 0; status == GIC_OK && i < FIVE_LINK_STATES; ++i)
         self->rate[i] = result[i];
     return status;
@@ -5460,7 +5459,9 @@ GIC_COLD int five_link_self_test(five_link *self, gic_self_test *result)
     gic_real M[FIVE_LINK_UNKNOWN_ROOM][FIVE_LINK_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = five_link_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = five_link_refresh(self, e);
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = five_link_refresh(self, e);
     *result = none;
     if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
         (void)five_link_residual(self, residual);

@@ -5085,13 +5085,12 @@ static gic_real hmmwv14_present(hmmwv14 *self)
     return time;
 }
 
-/* The present state and its rate, which someone looks at: they are checked. */
+/* The present state and its rate. */
 static int hmmwv14_refresh(hmmwv14 *self, gic_real e[4])
 {
     gic_real result[HMMWV14_STATE_ROOM];
-    int i, status;
-    self->head.unchecked = 0;
-    status = hmmwv14_evaluate(self, hmmwv14_present(self), self->state, e, result);
+    int i;
+    const int status = hmmwv14_evaluate(self, hmmwv14_present(self), self->state, e, result);
     for (i = 0; status == GIC_OK && i < HMMWV14_STATES; ++i)
         self->rate[i] = result[i];
     return status;
@@ -7093,7 +7092,9 @@ GIC_COLD int hmmwv14_self_test(hmmwv14 *self, gic_self_test *result)
     gic_real M[HMMWV14_UNKNOWN_ROOM][HMMWV14_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = hmmwv14_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = hmmwv14_refresh(self, e);
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = hmmwv14_refresh(self, e);
     *result = none;
     if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
         (void)hmmwv14_residual(self, residual);

@@ -3988,13 +3988,12 @@ static gic_real hmmwv_full_present(hmmwv_full *self)
     return time;
 }
 
-/* The present state and its rate, which someone looks at: they are checked. */
+/* The present state and its rate. */
 static int hmmwv_full_refresh(hmmwv_full *self, gic_real e[4])
 {
     gic_real result[HMMWV_FULL_STATE_ROOM];
-    int i, status;
-    self->head.unchecked = 0;
-    status = hmmwv_full_evaluate(self, hmmwv_full_present(self), self->state, e, result);
+    int i;
+    const int status = hmmwv_full_evaluate(self, hmmwv_full_present(self), self->state, e, result);
     for (i = 0; status == GIC_OK && i < HMMWV_FULL_STATES; ++i)
         self->rate[i] = result[i];
     return status;
@@ -5538,7 +5537,9 @@ GIC_COLD int hmmwv_full_self_test(hmmwv_full *self, gic_self_test *result)
     gic_real M[HMMWV_FULL_UNKNOWN_ROOM][HMMWV_FULL_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = hmmwv_full_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = hmmwv_full_refresh(self, e);
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = hmmwv_full_refresh(self, e);
     *result = none;
     if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
         (void)hmmwv_full_residual(self, residual);

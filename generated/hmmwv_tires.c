@@ -4261,13 +4261,12 @@ static gic_real hmmwv_tires_present(hmmwv_tires *self)
     return time;
 }
 
-/* The present state and its rate, which someone looks at: they are checked. */
+/* The present state and its rate. */
 static int hmmwv_tires_refresh(hmmwv_tires *self, gic_real e[4])
 {
     gic_real result[HMMWV_TIRES_STATE_ROOM];
-    int i, status;
-    self->head.unchecked = 0;
-    status = hmmwv_tires_evaluate(self, hmmwv_tires_present(self), self->state, e, result);
+    int i;
+    const int status = hmmwv_tires_evaluate(self, hmmwv_tires_present(self), self->state, e, result);
     for (i = 0; status == GIC_OK && i < HMMWV_TIRES_STATES; ++i)
         self->rate[i] = result[i];
     return status;
@@ -5718,7 +5717,9 @@ GIC_COLD int hmmwv_tires_self_test(hmmwv_tires *self, gic_self_test *result)
     gic_real M[HMMWV_TIRES_UNKNOWN_ROOM][HMMWV_TIRES_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = hmmwv_tires_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = hmmwv_tires_refresh(self, e);
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = hmmwv_tires_refresh(self, e);
     *result = none;
     if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
         (void)hmmwv_tires_residual(self, residual);

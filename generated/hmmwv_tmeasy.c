@@ -4247,13 +4247,12 @@ static gic_real hmmwv_tmeasy_present(hmmwv_tmeasy *self)
     return time;
 }
 
-/* The present state and its rate, which someone looks at: they are checked. */
+/* The present state and its rate. */
 static int hmmwv_tmeasy_refresh(hmmwv_tmeasy *self, gic_real e[4])
 {
     gic_real result[HMMWV_TMEASY_STATE_ROOM];
-    int i, status;
-    self->head.unchecked = 0;
-    status = hmmwv_tmeasy_evaluate(self, hmmwv_tmeasy_present(self), self->state, e, result);
+    int i;
+    const int status = hmmwv_tmeasy_evaluate(self, hmmwv_tmeasy_present(self), self->state, e, result);
     for (i = 0; status == GIC_OK && i < HMMWV_TMEASY_STATES; ++i)
         self->rate[i] = result[i];
     return status;
@@ -5704,7 +5703,9 @@ GIC_COLD int hmmwv_tmeasy_self_test(hmmwv_tmeasy *self, gic_self_test *result)
     gic_real M[HMMWV_TMEASY_UNKNOWN_ROOM][HMMWV_TMEASY_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = hmmwv_tmeasy_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = hmmwv_tmeasy_refresh(self, e);
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = hmmwv_tmeasy_refresh(self, e);
     *result = none;
     if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
         (void)hmmwv_tmeasy_residual(self, residual);

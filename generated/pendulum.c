@@ -679,13 +679,12 @@ static gic_real pendulum_present(pendulum *self)
     return time;
 }
 
-/* The present state and its rate, which someone looks at: they are checked. */
+/* The present state and its rate. */
 static int pendulum_refresh(pendulum *self, gic_real e[4])
 {
     gic_real result[PENDULUM_STATE_ROOM];
-    int i, status;
-    self->head.unchecked = 0;
-    status = pendulum_evaluate(self, pendulum_present(self), self->state, e, result);
+    int i;
+    const int status = pendulum_evaluate(self, pendulum_present(self), self->state, e, result);
     for (i = 0; status == GIC_OK && i < PENDULUM_STATES; ++i)
         self->rate[i] = result[i];
     return status;
@@ -957,7 +956,9 @@ GIC_COLD int pendulum_self_test(pendulum *self, gic_self_test *result)
     gic_real M[PENDULUM_UNKNOWN_ROOM][PENDULUM_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = pendulum_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = pendulum_refresh(self, e);
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = pendulum_refresh(self, e);
     *result = none;
     if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
         (void)pendulum_residual(self, residual);

@@ -1413,13 +1413,12 @@ static gic_real quarter_car_present(quarter_car *self)
     return time;
 }
 
-/* The present state and its rate, which someone looks at: they are checked. */
+/* The present state and its rate. */
 static int quarter_car_refresh(quarter_car *self, gic_real e[4])
 {
     gic_real result[QUARTER_CAR_STATE_ROOM];
-    int i, status;
-    self->head.unchecked = 0;
-    status = quarter_car_evaluate(self, quarter_car_present(self), self->state, e, result);
+    int i;
+    const int status = quarter_car_evaluate(self, quarter_car_present(self), self->state, e, result);
     for (i = 0; status == GIC_OK && i < QUARTER_CAR_STATES; ++i)
         self->rate[i] = result[i];
     return status;
@@ -1832,7 +1831,9 @@ GIC_COLD int quarter_car_self_test(quarter_car *self, gic_self_test *result)
     gic_real M[QUARTER_CAR_UNKNOWN_ROOM][QUARTER_CAR_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = quarter_car_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = quarter_car_refresh(self, e);
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = quarter_car_refresh(self, e);
     *result = none;
     if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
         (void)quarter_car_residual(self, residual);

@@ -3991,13 +3991,12 @@ static gic_real solid_axle_present(solid_axle *self)
     return time;
 }
 
-/* The present state and its rate, which someone looks at: they are checked. */
+/* The present state and its rate. */
 static int solid_axle_refresh(solid_axle *self, gic_real e[4])
 {
     gic_real result[SOLID_AXLE_STATE_ROOM];
-    int i, status;
-    self->head.unchecked = 0;
-    status = solid_axle_evaluate(self, solid_axle_present(self), self->state, e, result);
+    int i;
+    const int status = solid_axle_evaluate(self, solid_axle_present(self), self->state, e, result);
     for (i = 0; status == GIC_OK && i < SOLID_AXLE_STATES; ++i)
         self->rate[i] = result[i];
     return status;
@@ -5268,7 +5267,9 @@ GIC_COLD int solid_axle_self_test(solid_axle *self, gic_self_test *result)
     gic_real M[SOLID_AXLE_UNKNOWN_ROOM][SOLID_AXLE_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = solid_axle_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = solid_axle_refresh(self, e);
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = solid_axle_refresh(self, e);
     *result = none;
     if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
         (void)solid_axle_residual(self, residual);

@@ -3501,13 +3501,12 @@ static gic_real trailing_arm_present(trailing_arm *self)
     return time;
 }
 
-/* The present state and its rate, which someone looks at: they are checked. */
+/* The present state and its rate. */
 static int trailing_arm_refresh(trailing_arm *self, gic_real e[4])
 {
     gic_real result[TRAILING_ARM_STATE_ROOM];
-    int i, status;
-    self->head.unchecked = 0;
-    status = trailing_arm_evaluate(self, trailing_arm_present(self), self->state, e, result);
+    int i;
+    const int status = trailing_arm_evaluate(self, trailing_arm_present(self), self->state, e, result);
     for (i = 0; status == GIC_OK && i < TRAILING_ARM_STATES; ++i)
         self->rate[i] = result[i];
     return status;
@@ -4872,7 +4871,9 @@ GIC_COLD int trailing_arm_self_test(trailing_arm *self, gic_self_test *result)
     gic_real M[TRAILING_ARM_UNKNOWN_ROOM][TRAILING_ARM_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = trailing_arm_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = trailing_arm_refresh(self, e);
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = trailing_arm_refresh(self, e);
     *result = none;
     if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
         (void)trailing_arm_residual(self, residual);
