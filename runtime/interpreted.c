@@ -222,7 +222,7 @@ int interpreted_load(Instance *self, double time)
 static int check(Instance *self)
 {
     const double pose_residual = 1e-8, balance_residual = 1e-8;
-    const int32_t every = 128;
+    const int32_t every = 200;
     gic_self_test found;
     world_self_test(context_of(self)->world, &found);
     self->head.residual = fmax(self->head.residual, found.constraint);

@@ -69,9 +69,9 @@ sed 's/ab3/rk4/' late.scene >late_rk4.scene
 for late in late late_rk4; do
     fails "$late" "$right" --engine cc --cc "$cc -O0" --general --cflags "-DGIC_PLANT_RATE=$spring -DGIC_PLANT_AFTER=0.5" \
         "$model" $late.scene
-    # no later than 128 evaluations on
+    # no later than 200 evaluations on
     time=$(sed -n 's/.*the run ends at t = \([0-9.]*\) s.*/\1/p' err)
-    awk "BEGIN { exit !($time > 0.5 && $time <= 0.5 + 130 * 0.005) }"
+    awk "BEGIN { exit !($time > 0.5 && $time <= 0.5 + 202 * 0.005) }"
     verdict $? "$late: found at $time s"
 done
 
