@@ -176,7 +176,7 @@
 #endif
 
 /* Evaluations between two that are checked. */
-#define GIC_CHECK_EVERY 128
+#define GIC_CHECK_EVERY 200
 
 /* By how much an error that tests plant is off. */
 #ifndef GIC_PLANT_BY
