@@ -71,7 +71,7 @@ for late in late late_rk4; do
         "$model" $late.scene
     # no later than 200 evaluations on
     time=$(sed -n 's/.*the run ends at t = \([0-9.]*\) s.*/\1/p' err)
-    awk "BEGIN { exit !($time > 0.5 && $time <= 0.5 + 202 * 0.005) }"
+    awk "BEGIN { exit !($time >= 0.5 && $time <= 0.5 + 202 * 0.005) }"
     verdict $? "$late: found at $time s"
 done
 
