@@ -86,9 +86,10 @@ tested := $(BUILD)/check/tested.a
 reference := $(patsubst %.c,$(BUILD)/%.o,$(filter-out tests/reference/main.c,$(wildcard tests/reference/*.c)))
 programs := $(basename $(notdir $(wildcard tests/*.c)))
 attacking := $(basename $(notdir $(wildcard tests/stress/*.c)))
+planted := gicrun_wrong_pose gicrun_wrong_velocity gicrun_wrong_acceleration gicrun_wrong_rate
 variants := test_runtime_float test_runtime_fast test_dual_float test_road_float test_road_fast
 
-test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) $(attacking) reference reference_long)
+test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) $(attacking) $(planted) reference reference_long)
 
 # an archive, for a test takes what it tests and no more
 $(tested): $(generator_objects) $(runtime_objects)
@@ -159,6 +160,19 @@ $(BUILD)/check/test_road_float $(BUILD)/check/test_road_fast: tests/test_road.c 
 $(addprefix $(BUILD)/check/,$(variants)):
 	@mkdir -p $(@D)
 	$(COMPILE) $(VARIANT) -MF $@.d -o $@ $(filter %.c,$^) $(LDFLAGS) -lcmocka -lm
+
+# gicrun with errors planted in what the engines tcc and tape compute, which checks must find: in a number of the motion of
+# every subset's first body (pose 0 to 11, accelerations from 18, unit velocities from 24), in a rate
+
+planting := jit tape_recover tape_engine
+$(BUILD)/check/gicrun_wrong_pose: PLANT := -DGIC_PLANT_MOTION=1
+$(BUILD)/check/gicrun_wrong_velocity: PLANT := -DGIC_PLANT_MOTION=24
+$(BUILD)/check/gicrun_wrong_acceleration: PLANT := -DGIC_PLANT_MOTION=18
+$(BUILD)/check/gicrun_wrong_rate: PLANT := -DGIC_PLANT_RATE=1
+$(planted:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/runtime/gicrun.o $(tested) $(planting:%=runtime/%.c)
+	@mkdir -p $@.o
+	for file in $(planting); do $(COMPILE) $(PLANT) -c -o $@.o/$$file.o runtime/$$file.c || exit 1; done
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/runtime/gicrun.o $(planting:%=$@.o/%.o) $(tested) $(LIBRARIES)
 
 # ---- attacks of `make stress`: tests/stress/*.c are tools of tests/stress/*.sh
 

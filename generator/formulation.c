@@ -41,6 +41,7 @@ void formulation_blocks(Pool *pool, Formulation *f)
     f->poses = poses_block(whole_new(pool, plan));
     f->inverse = inverse_block(whole_new(pool, plan));
     f->energy = energy_block(whole_new(pool, plan));
+    f->check = check_block(whole_new(pool, plan));
     f->wrenches = reduced ? wrenches_block(whole_new(pool, plan)) : NULL;
     f->wheels = f->model->fast_states ? wheels_formulate(pool, plan) : NULL;
 }

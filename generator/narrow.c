@@ -486,6 +486,7 @@ static void narrow_rest(Narrower *n)
     n->out->poses = narrow_block(n, n->whole, f->poses);
     n->out->inverse = narrow_block(n, n->whole, f->inverse);
     n->out->energy = narrow_block(n, n->whole, f->energy);
+    n->out->check = narrow_block(n, n->whole, f->check);
     n->out->wrenches = narrow_block(n, n->whole, f->wrenches);
     n->out->wheels = narrow_wheels(n);
 }
@@ -513,7 +514,7 @@ static void drop_inertia(Narrower *n)
 {
     const Formulation *f = n->out;
     const Sequence *sequence = n->plan->sequence;
-    const Block *const block[] = {f->dynamics, f->outputs, f->poses, f->inverse, f->energy, f->wrenches};
+    const Block *const block[] = {f->dynamics, f->outputs, f->poses, f->inverse, f->energy, f->check, f->wrenches};
     bool *read = pool_alloc(n->pool, (size_t)n->plan->inertia_size + 1);
     for (size_t i = 0; i < sizeof block / sizeof *block; ++i)
         if (block[i])
@@ -537,7 +538,7 @@ static void drop_inertia(Narrower *n)
 static void find_uses(Pool *pool, const Formulation *f, Narrowing *narrowing)
 {
     const Wheels none = {0}, *wheels = f->wheels ? f->wheels : &none;
-    const Block *const block[] = {f->dynamics, f->outputs,    f->poses,        f->inverse,     f->energy,
+    const Block *const block[] = {f->dynamics, f->outputs,    f->poses,        f->inverse,     f->energy,     f->check,
                                   f->wrenches, &wheels->link, &wheels->torque, &wheels->drive, &wheels->shift};
     for (size_t i = 0; i < sizeof block / sizeof *block; ++i) {
         if (!block[i] || !block[i]->dag)
