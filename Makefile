@@ -39,6 +39,9 @@ runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 # what gicgen reads scenes with
 scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_outputs scene_rest scene_rig scene_road \
     scene_road_file driver spline csv descriptor process gic_runtime gic_road)
+# what gicgen checks its blocks with
+checking_objects := $(patsubst %,$(BUILD)/runtime/%.o,world applied rolling tires driveline interpreted_outputs accelerate \
+    equations topology dense)
 
 .PHONY: all test test-programs list-tests stress demo bench generated debug fuzz deps install uninstall clean
 .DELETE_ON_ERROR:
@@ -46,7 +49,7 @@ scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_fact
 
 all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench
 
-$(BUILD)/gicgen: $(BUILD)/generator/main.o $(scene_objects) $(generator_objects)
+$(BUILD)/gicgen: $(BUILD)/generator/main.o $(scene_objects) $(checking_objects) $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lm
 
 $(BUILD)/gicrun: $(BUILD)/runtime/gicrun.o $(runtime_objects) $(generator_objects)

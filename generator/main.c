@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * gicgen: the command line. */
 #include "../runtime/gicrun.h"
+#include "validate.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -170,8 +171,11 @@ typedef struct Setting {
 static const Formulation *formulation_of(Pool *pool, const Model *model, const Sequence *sequence,
                                          const Options *options, const Setting *setting)
 {
-    if (!setting->facts)
-        return formulate(pool, model, sequence, options->solve, options->recovery);
+    if (!setting->facts) {
+        const Formulation *f = formulate(pool, model, sequence, options->solve, options->recovery);
+        formulation_validate(pool, f, NULL);
+        return f;
+    }
     return formulate_explained(pool, setting->drawn, model, sequence, options->solve, options->recovery,
                                setting->facts);
 }
