@@ -640,6 +640,7 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
     n->out = narrow_copy(n->pool, n->general, 1, sizeof *n->out);
     n->out->plan = n->plan;
     n->out->narrowing = n->narrowing;
+    n->out->general = n->general;
     narrow_subsets(n);
     give_whole(n);
     give_subsets(n);

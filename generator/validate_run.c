@@ -4,6 +4,7 @@
  * the way there is no matter, for what is found is judged by itself. */
 #include "validate_run.h"
 
+#include "mirror.h"
 #include "powertrain.h"
 #include "wheel.h"
 
@@ -54,20 +55,21 @@ static const Program *record(Run *run, const Block *block)
     return program;
 }
 
-/* Numbers of motions and inertias that no block stores, for they are always the same. */
-static void fill_settled(Run *run)
+/* Numbers of motions that no block stores, for they are always the same. Blocks don't read them from memory. */
+static void find_settled(Run *run)
 {
-    const Formulation *general = run->formulation;
     const Plan *plan = run->plan;
+    for (int i = 0; i < plan->motion_size; ++i)
+        run->settled[i] = NAN;
     for (int b = 1; b < run->model->bodies; ++b) {
         const int s = plan->sequence->body_subset[b];
         const Subset *subset = &plan->sequence->subset[s];
-        const Formula *formula = general->plan->formula[subset->class];
+        const Formula *formula = plan->formula[subset->class];
         const int member = class_place(&plan->sequence->class[subset->class], s);
         for (int i = 0; i < formula->layout.motion_size; ++i) {
             const Ex found = *motion_number(&formula->motion[subset_place(subset, b)], i);
-            for (int k = 0; formula_settled(formula, found) && k < STATES; ++k)
-                run->m[plan->motion_offset[b] + plan->stride[s] * i][k] = formula_value(formula, found, member);
+            if (formula_settled(formula, found))
+                run->settled[plan->motion_offset[b] + plan->stride[s] * i] = formula_value(formula, found, member);
         }
     }
 }
@@ -154,7 +156,8 @@ Run *run_new(Pool *pool, const Formulation *f, const gic_road *road)
                  .rate = rows(pool, states),
                  .out = rows(pool, model->output_components),
                  .pose = rows(pool, 7 * bodies),
-                 .tau = rows(pool, plan->unknowns)};
+                 .tau = rows(pool, plan->unknowns),
+                 .settled = pool_alloc(pool, ((size_t)plan->motion_size + 1) * sizeof(double))};
     struct RunPrograms *programs = run->programs = pool_alloc(pool, sizeof *programs);
     programs->arrays = PLAY_KNOWN + 2 * f->known_most;
     programs->array = pool_alloc(pool, (size_t)programs->arrays * sizeof *programs->array);
@@ -176,7 +179,8 @@ Run *run_new(Pool *pool, const Formulation *f, const gic_road *road)
     record_all(run);
     run->derived = rows(pool, plan->derived->count);
     run->frame = rows(pool, programs->rows);
-    fill_settled(run);
+    if (!f->general)
+        find_settled(run);
     find_design(run);
     return run;
 }
@@ -184,7 +188,8 @@ Run *run_new(Pool *pool, const Formulation *f, const gic_road *road)
 double run_motion(const Run *run, int body, int number, int state)
 {
     const int s = run->plan->sequence->body_subset[body];
-    return run->m[run->plan->motion_offset[body] + run->plan->stride[s] * number][state];
+    const int place = run->plan->motion_offset[body] + run->plan->stride[s] * number;
+    return isnan(run->settled[place]) ? run->m[place][state] : run->settled[place];
 }
 
 /* ---- playing --------------------------------------------------------------------------------------------------------
@@ -309,7 +314,7 @@ static void find_residual(Run *run)
     memset(run->residual, 0, sizeof run->residual);
     for (int s = 0; s < sequence->subsets; ++s) {
         const int class = sequence->subset[s].class;
-        if (class < 0)
+        if (class < 0 || narrowing_image(run->formulation->narrowing, s))
             continue;
         bind_subset(run, s);
         bind(run, PLAY_worst, &worst);
@@ -344,7 +349,7 @@ static void recover(Run *run)
                 programs->at[c][k] = piece == pieces ? to : from + (to - from) * piece / pieces;
             }
         for (int s = 0; s < run->plan->sequence->subsets; ++s)
-            if (run->plan->sequence->subset[s].class >= 0)
+            if (run->plan->sequence->subset[s].class >= 0 && !narrowing_image(run->formulation->narrowing, s))
                 solve_subset(run, s, piece == pieces);
     }
     find_residual(run);
@@ -392,6 +397,28 @@ static void engage(const Run *run, Values gear[GEAR_NUMBERS])
     }
 }
 
+static void mirror_row(Values *row, int at, int of, double sign)
+{
+    for (int k = 0; k < STATES; ++k)
+        row[at][k] = sign * row[of][k];
+}
+
+/* As the code copies what a wheel does from the one on the other side. */
+static void mirror_wheel(Run *run, int wheel, int leader)
+{
+    const Wheel *own = &run->model->wheel[wheel], *other = &run->model->wheel[leader];
+    const int at = GRIP_NUMBERS * wheel_rolling(run->model, wheel), of = GRIP_NUMBERS * wheel_rolling(run->model, leader);
+    for (int i = 0; i < wheel_fast_states(own); ++i)
+        mirror_row(run->rate + run->plan->states, own->fast + i, other->fast + i, wheel_fast_sign(i));
+    for (int i = 0; i < GRIP_NUMBERS; ++i)
+        if (i != GRIP_POINT + 1)
+            mirror_row(run->grip, at + i, of + i, wheel_grip_sign(i));
+    const Values *a = &run->link[LINK_NUMBERS * wheel_rolling(run->model, wheel) + LINK_C + 1];
+    const Values *b = &run->link[LINK_NUMBERS * wheel_rolling(run->model, leader) + LINK_C + 1];
+    for (int k = 0; k < STATES; ++k)
+        run->grip[at + GRIP_POINT + 1][k] = (*a)[k] + (*b)[k] - run->grip[of + GRIP_POINT + 1][k];
+}
+
 static void turn_wheels(Run *run)
 {
     const Wheels *wheels = run->formulation->wheels;
@@ -402,7 +429,8 @@ static void turn_wheels(Run *run)
     run_play(run, run->programs->torque, 0, "torques of wheels");
     for (int c = 0; c < wheels->classes; ++c)
         for (int i = 0; i < wheels->class[c].members; ++i)
-            play_wheel(run, c, i, wheels->class[c].member[i]);
+            if (!narrowing_wheel_image(run->formulation->narrowing, wheels->class[c].member[i]))
+                play_wheel(run, c, i, wheels->class[c].member[i]);
     if (run->programs->drive) {
         engage(run, gear);
         bind(run, PLAY_link, run->link);
@@ -413,6 +441,9 @@ static void turn_wheels(Run *run)
         bind(run, PLAY_gear, gear);
         run_play(run, run->programs->drive, 0, "powertrain");
     }
+    for (int w = 0; w < run->model->wheels; ++w)
+        if (narrowing_wheel_image(run->formulation->narrowing, w))
+            mirror_wheel(run, w, run->formulation->narrowing->wheel[w]);
     bind_whole(run);
 }
 
@@ -425,7 +456,7 @@ static void react(Run *run)
     const Plan *plan = run->plan;
     const Sequence *sequence = plan->sequence;
     const int onto = PLAY_KNOWN + run->formulation->known_most;
-    Values spare[6];
+    Values spare[6] = {{0}};
     for (int s = sequence->subsets - 1; s >= 0; --s) {
         const Subset *subset = &sequence->subset[s];
         if (subset->class < 0 || !run->reacts[s])
@@ -463,8 +494,35 @@ static void gather(Run *run)
         memcpy(run->e, run->y + 3, 4 * sizeof(Values));
 }
 
+/* What a block reads that no block has stored shows. */
+static void forget(Values *row, int count)
+{
+    for (int i = 0; i < count; ++i)
+        for (int k = 0; k < STATES; ++k)
+            row[i][k] = NAN;
+}
+
+static void forget_all(Run *run)
+{
+    const Formulation *f = run->formulation;
+    forget(run->m, run->plan->motion_size);
+    forget(run->n, run->plan->inertia_size);
+    forget(run->start, run->plan->start_size);
+    forget(run->lambda, run->plan->multipliers);
+    forget(run->rate, run->plan->states + run->model->fast_states);
+    forget(run->out, run->model->output_components);
+    forget(run->pose, 7 * run->model->bodies);
+    if (f->wheels) {
+        forget(run->link, f->wheels->links);
+        forget(run->grip, GRIP_NUMBERS * f->wheels->count);
+        forget(run->torque, 2 * f->wheels->count);
+        forget(run->watch, WATCH_NUMBERS);
+    }
+}
+
 void run_evaluate(Run *run)
 {
+    forget_all(run);
     memset(run->scenery.refused, 0, sizeof run->scenery.refused);
     memset(run->refused, 0, sizeof run->refused);
     memset(run->programs->ahead, 0, sizeof run->programs->ahead);
