@@ -21,6 +21,8 @@ typedef enum Kind {
     KIND_OUTPUT,
     KIND_POSES,
     KIND_INVERSE,
+    KIND_SCENE,
+    KIND_SCENE_OUTPUT,
     KINDS
 } Kind;
 
@@ -38,6 +40,8 @@ static const struct {
     [KIND_OUTPUT] = {"outputs", 1e-6},
     [KIND_POSES] = {"poses of bodies", 1e-8},
     [KIND_INVERSE] = {"the self-test's equations of motion", 1e-6},
+    [KIND_SCENE] = {"code for the scene has other rates than code for all", 1e-6},
+    [KIND_SCENE_OUTPUT] = {"code for the scene has other outputs than code for all", 1e-6},
 };
 
 /* The worst that was found, in shares of what is allowed. */
@@ -52,7 +56,8 @@ typedef struct Finding {
 typedef struct Comparison {
     Validator v;
     World *world;
-    int k;     /* column */
+    Run *scene; /* code for a scene at the same states; NULL: none */
+    int k;      /* column */
     int index; /* of the state */
     double *input, *parameter, *port, *fast, *out, *pose;
     int32_t gear[POWERTRAIN_DISCRETE];
@@ -514,6 +519,28 @@ static void compare_motion(Comparison *c)
     compare_fast(c);
 }
 
+/* What differences of an output are relative to. */
+static double output_scale(const Comparison *c, const Output *output, const double *value)
+{
+    double size = 0;
+    for (int j = 0; j < output->count; ++j)
+        size = fmax(size, fabs(value[j]));
+    if (output->type == OUTPUT_ACCELERATION)
+        size += c->swing;
+    else if (output->type == OUTPUT_VELOCITY || output->type == OUTPUT_ANGULAR_VELOCITY)
+        size += c->speed + 1e-3;
+    else if (output->type == OUTPUT_FORCE || output->type == OUTPUT_DRIVE_FORCE || output->type == OUTPUT_TIRE ||
+             output->type == OUTPUT_WHEEL)
+        size += c->push;
+    else if (output->type == OUTPUT_ENERGY)
+        size += c->push * (c->speed + c->world->size);
+    else if (output->type == OUTPUT_COORDINATE)
+        size += c->swing;
+    else
+        size += 1;
+    return size;
+}
+
 static void compare_outputs(Comparison *c)
 {
     const Model *model = c->v.model;
@@ -525,22 +552,7 @@ static void compare_outputs(Comparison *c)
         if (output->type == OUTPUT_REACTION || output->type == OUTPUT_ORIENTATION ||
             output->type == OUTPUT_ROLL_PITCH_YAW)
             continue;
-        double size = 0;
-        for (int j = 0; j < output->count; ++j)
-            size = fmax(size, fabs(c->out[at + j]));
-        if (output->type == OUTPUT_ACCELERATION)
-            size += c->swing;
-        else if (output->type == OUTPUT_VELOCITY || output->type == OUTPUT_ANGULAR_VELOCITY)
-            size += c->speed + 1e-3;
-        else if (output->type == OUTPUT_FORCE || output->type == OUTPUT_DRIVE_FORCE || output->type == OUTPUT_TIRE ||
-                 output->type == OUTPUT_WHEEL)
-            size += c->push;
-        else if (output->type == OUTPUT_ENERGY)
-            size += c->push * (c->speed + world->size);
-        else if (output->type == OUTPUT_COORDINATE)
-            size += c->swing;
-        else
-            size += 1;
+        const double size = output_scale(c, output, c->out + at);
         for (int j = 0; j < output->count; ++j)
             compare(c, KIND_OUTPUT, output->component[j], c->v.run->out[at + j][c->k] - c->out[at + j], size);
     }
@@ -569,6 +581,33 @@ static void compare_state(Comparison *c)
     compare_outputs(c);
 }
 
+/* Code for a scene against code for all at the same state. */
+static void compare_scene(Comparison *c)
+{
+    const Model *model = c->v.model;
+    const Run *all = c->v.run, *scene = c->scene;
+    const int states = all->plan->states;
+    double largest = 1;
+    for (int i = 0; i < states; ++i)
+        largest = fmax(largest, fabs(all->rate[i][c->k]));
+    for (int i = 0; i < states + model->fast_states; ++i) {
+        const double right = all->rate[i][c->k];
+        compare(c, KIND_SCENE, state_number(c->v.pool, all->formulation, i).name, scene->rate[i][c->k] - right,
+                i < states ? largest : fabs(right) + 1);
+    }
+    for (int i = 0, at = 0; i < model->outputs; at += model->output[i++].count) {
+        const Output *output = &model->output[i];
+        double value[OUTPUT_MAX_COMPONENTS];
+        for (int j = 0; j < output->count; ++j)
+            value[j] = all->out[at + j][c->k];
+        const double size = output_scale(c, output, value);
+        for (int j = 0; j < output->count; ++j)
+            compare(c, KIND_SCENE_OUTPUT, output->component[j], scene->out[at + j][c->k] - value[j], size);
+    }
+    for (int i = 0; i < 7 * model->bodies; ++i)
+        compare(c, KIND_SCENE_OUTPUT, model->body[i / 7].name, scene->pose[i][c->k] - all->pose[i][c->k], 1);
+}
+
 /* ---- all states -----------------------------------------------------------------------------------------------------
  */
 
@@ -594,12 +633,13 @@ static void say(const Comparison *c)
               worst->what, worst->value, worst->scale, worst->state);
 }
 
-static Comparison *comparison_new(Pool *pool, const Formulation *f)
+/* f: for all scenes. */
+static Comparison *comparison_new(Pool *pool, const Formulation *f, const gic_road *road)
 {
     const Model *model = f->model;
     Comparison *c = pool_alloc(pool, sizeof *c);
     const size_t number = sizeof(double);
-    *c = (Comparison){.v = {pool, model, run_new(pool, f, NULL)},
+    *c = (Comparison){.v = {.pool = pool, .model = model, .run = run_new(pool, f, road)},
                       .world = world_unsolved(pool, model, f->sequence),
                       .input = pool_alloc(pool, ((size_t)model->inputs + 1) * number),
                       .parameter = pool_alloc(pool, ((size_t)model->tunables + 1) * number),
@@ -610,27 +650,59 @@ static Comparison *comparison_new(Pool *pool, const Formulation *f)
     return c;
 }
 
+/* The columns of a scene's run are those of the run for all. */
+static void copy_state(const Run *from, Run *to)
+{
+    const Model *model = from->model;
+    const size_t row = sizeof(Values);
+    memcpy(to->y, from->y, row * (size_t)(from->plan->states + model->fast_states));
+    memcpy(to->u, from->u, row * (size_t)model->inputs);
+    memcpy(to->p, from->p, row * (size_t)model->tunables);
+    memcpy(to->port, from->port, row * 6 * (size_t)model->ports);
+    memcpy(to->gear, from->gear, row * POWERTRAIN_DISCRETE);
+    memcpy(to->time, from->time, row);
+}
+
+static void compare_column(Comparison *c)
+{
+    const Run *run = c->v.run;
+    if (run->refused[c->k]) {
+        ++c->left;
+        c->refused = c->refused ? c->refused : run->refused[c->k];
+        c->where = c->where ? c->where : run->where[c->k];
+        return;
+    }
+    ++c->compared;
+    compare_state(c);
+    if (c->scene && !c->scene->refused[c->k])
+        compare_scene(c);
+}
+
 void formulation_validate(Pool *pool, const Formulation *f, const Validation *scene)
 {
-    (void)scene;
-    Comparison *c = comparison_new(pool, f);
+    const Formulation *general = f->general ? f->general : f;
+    const char *why;
+    Comparison *c = comparison_new(pool, general, scene ? scene->road : NULL);
+    if (f->general) {
+        c->scene = run_new(pool, f, scene->road);
+        c->v.scene = scene;
+        c->v.facts = f->narrowing->facts;
+        c->v.mirror = f->narrowing->image ? mirror_find(pool, f->model, &why) : NULL;
+    }
+    kinks_find(&c->v);
     const int most = 48, states = 16 + 2 * f->model->coordinates;
     const int count = (states > most ? most : states + STATES - 1) / STATES * STATES;
     for (int first = 0; first < count; first += STATES) {
         for (int k = 0; k < STATES; ++k)
             state_place(&c->v, first + k, k);
         run_evaluate(c->v.run);
-        for (int k = 0; k < STATES; ++k) {
-            c->k = k;
-            c->index = first + k;
-            if (c->v.run->refused[k]) {
-                ++c->left;
-                c->refused = c->refused ? c->refused : c->v.run->refused[k];
-                c->where = c->where ? c->where : c->v.run->where[k];
-                continue;
-            }
-            ++c->compared;
-            compare_state(c);
+        if (c->scene) {
+            copy_state(c->v.run, c->scene);
+            run_evaluate(c->scene);
+        }
+        for (c->k = 0; c->k < STATES; ++c->k) {
+            c->index = first + c->k;
+            compare_column(c);
         }
     }
     say(c);

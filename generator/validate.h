@@ -34,17 +34,20 @@
 
 #include "../runtime/gic_runtime.h"
 
-/* validate.c: ends in diag_fail with "gicgen found an error of its own" where a check fails. inputs: of a scene, what
- * calls with values of all inputs at a time, and its road; NULL: any. */
+/* What a scene does, of a formulation for one: inputs at a time, its road, its duration, times at which inputs begin to
+ * move or stop [moments], and inputs that may have any value at any time [inputs]. */
 typedef struct Validation {
-    void (*inputs)(void *context, double time, double *input);
+    void (*inputs)(void *context, int32_t unused, double time, double *input);
     void *context;
-    const gic_road *road;
+    const gic_road *road; /* NULL: flat */
     double duration;
-    const double *moment; /* [moments] times at which something may change */
+    const double *moment;
     int moments;
+    const bool *free;
 } Validation;
 
+/* Ends in diag_fail with "gicgen found an error of its own" where a check fails. scene: NULL: the formulation is for all
+ * scenes. */
 void formulation_validate(Pool *pool, const Formulation *formulation, const Validation *scene);
 
 #endif

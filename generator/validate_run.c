@@ -413,8 +413,8 @@ static void mirror_wheel(Run *run, int wheel, int leader)
     for (int i = 0; i < GRIP_NUMBERS; ++i)
         if (i != GRIP_POINT + 1)
             mirror_row(run->grip, at + i, of + i, wheel_grip_sign(i));
-    const Values *a = &run->link[LINK_NUMBERS * wheel_rolling(run->model, wheel) + LINK_C + 1];
-    const Values *b = &run->link[LINK_NUMBERS * wheel_rolling(run->model, leader) + LINK_C + 1];
+    Values *a = &run->link[LINK_NUMBERS * wheel_rolling(run->model, wheel) + LINK_C + 1];
+    Values *b = &run->link[LINK_NUMBERS * wheel_rolling(run->model, leader) + LINK_C + 1];
     for (int k = 0; k < STATES; ++k)
         run->grip[at + GRIP_POINT + 1][k] = (*a)[k] + (*b)[k] - run->grip[of + GRIP_POINT + 1][k];
 }

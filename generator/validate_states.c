@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * States at which the validation looks: the design at rest, each coordinate alone at the ends of its range, corners,
  * and others anywhere in it; the base in attitudes that people write (quarter and half turns about each axis) and in any
- * other; rates, inputs and ports of 0, 1 and -1 and of general numbers. */
+ * other; rates, inputs and ports of 0, 1 and -1 and of general numbers; to both sides of numbers at which formulas may
+ * bend. Code for a scene is looked at at states, times and inputs that the scene can have. */
 #include "validate_work.h"
 
 #include "powertrain.h"
@@ -24,6 +25,121 @@ static const double attitude[ATTITUDES][4] = {
     {0.5, 0.5, 0.5, 0.5},
     {0, 0.70710678118654757, 0.70710678118654757, 0},
 };
+
+/* ---- kinks ----------------------------------------------------------------------------------------------------------
+ */
+
+enum { KINK_TIME, KINK_VALUE, KINK_RATE, KINK_INPUT, KINK_SPIN, KINK_SORTS };
+
+/* Numbers beside a variable: at[from of it .. to of it - 1] in the order of sorts and indices. */
+typedef struct Kink {
+    int sort, index;
+    double at;
+} Kink;
+
+struct Kinks {
+    int count;
+    Kink *kink;
+};
+
+/* Which of the variables a law reads, and its numbers. */
+typedef struct LawParts {
+    Pool *pool;
+    const Model *model;
+    int variables, numbers;
+    Kink *variable;
+    double *number;
+} LawParts;
+
+static void add_parts(LawParts *parts, const Law *law, int wheel)
+{
+    static const int sort[] = {
+        [LAW_INPUT] = KINK_INPUT, [LAW_VALUE] = KINK_VALUE, [LAW_RATE] = KINK_RATE, [LAW_TIME] = KINK_TIME};
+    switch (law->op) {
+    case LAW_NUMBER: *POOL_PUSH(parts->pool, parts->number, parts->numbers) = law->number; break;
+    case LAW_PARAMETER:
+        *POOL_PUSH(parts->pool, parts->number, parts->numbers) = parts->model->parameter[law->index].value;
+        break;
+    case LAW_INPUT:
+    case LAW_VALUE:
+    case LAW_RATE:
+    case LAW_TIME:
+        *POOL_PUSH(parts->pool, parts->variable, parts->variables) =
+            (Kink){sort[law->op], law->op == LAW_TIME ? 0 : law->index, 0};
+        break;
+    case LAW_LOCAL:
+        if (wheel >= 0)
+            *POOL_PUSH(parts->pool, parts->variable, parts->variables) = (Kink){KINK_SPIN, wheel, 0};
+        break;
+    case LAW_TABLE: {
+        const Table *table = &parts->model->table[law->index];
+        for (int i = 0; i < table->count; ++i)
+            *POOL_PUSH(parts->pool, parts->number, parts->numbers) = table->x[i];
+        break;
+    }
+    default: break;
+    }
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        add_parts(parts, law->arg[i], wheel);
+}
+
+static void add_kinks(Validator *v, const Law *law, int coordinate, int wheel)
+{
+    LawParts parts = {.pool = v->pool, .model = v->model};
+    if (!law)
+        return;
+    add_parts(&parts, law, wheel);
+    if (coordinate >= 0)
+        *POOL_PUSH(v->pool, parts.variable, parts.variables) = (Kink){KINK_VALUE, coordinate, 0};
+    for (int i = 0; i < parts.variables; ++i)
+        for (int j = 0; j < parts.numbers; ++j) {
+            parts.variable[i].at = parts.number[j];
+            *POOL_PUSH(v->pool, v->kinks->kink, v->kinks->count) = parts.variable[i];
+        }
+}
+
+void kinks_find(Validator *v)
+{
+    const Model *model = v->model;
+    v->kinks = pool_alloc(v->pool, sizeof *v->kinks);
+    for (int i = 0; i < model->forces; ++i) {
+        const Force *force = &model->force[i];
+        for (int j = 0; j < 6; ++j)
+            add_kinks(v, force->law[j], -1, -1);
+        add_kinks(v, force->low, force->coordinate, -1);
+        add_kinks(v, force->high, force->coordinate, -1);
+    }
+    for (int i = 0; i < model->wheels; ++i) {
+        add_kinks(v, model->wheel[i].drive, -1, i);
+        add_kinks(v, model->wheel[i].brake, -1, i);
+    }
+    if (model->powertrain) {
+        add_kinks(v, model->powertrain->throttle, -1, -1);
+        for (int i = 0; i < model->powertrain->differentials; ++i)
+            add_kinks(v, model->powertrain->differential[i].lock, -1, -1);
+    }
+    for (int i = 0; v->scene && i < v->scene->moments; ++i)
+        *POOL_PUSH(v->pool, v->kinks->kink, v->kinks->count) = (Kink){KINK_TIME, 0, v->scene->moment[i]};
+}
+
+/* A number a little to one side of a kink of that variable, or `otherwise`. */
+static double near_kink(const Validator *v, Random *random, int sort, int index, double otherwise)
+{
+    int count = 0;
+    for (int i = 0; i < v->kinks->count; ++i)
+        count += v->kinks->kink[i].sort == sort && v->kinks->kink[i].index == index;
+    if (!count || random_bits(random) % 2)
+        return otherwise;
+    int which = (int)(random_bits(random) % (unsigned)count);
+    for (int i = 0;; ++i)
+        if (v->kinks->kink[i].sort == sort && v->kinks->kink[i].index == index && !which--) {
+            const double at = v->kinks->kink[i].at, share = random_bits(random) % 2 ? 0.05 : -0.05;
+            return at + share * (at == 0 ? 1 : at) * random_uniform(random, 0, 1);
+        }
+}
+
+/* ---- numbers --------------------------------------------------------------------------------------------------------
+ */
 
 /* A number of size `most`: 0, 1, -1 or a half of it as often as any. */
 static double number(Random *random, double most)
@@ -66,6 +182,10 @@ static void place_coordinates(const Validator *v, Random *random, int index, int
             x = place(random, own, 2);
         if (!index)
             rate = 0;
+        if (index % 4 == 2) {
+            x = fmin(fmax(near_kink(v, random, KINK_VALUE, c, x), own->range[0]), own->range[1]);
+            rate = near_kink(v, random, KINK_RATE, c, rate);
+        }
         if (own->driven) {
             run->u[own->input][k] = x;
             run->u[own->input + 1][k] = rate;
@@ -109,7 +229,8 @@ static void place_fast(const Validator *v, Random *random, int index, int k)
         const Wheel *wheel = &model->wheel[i];
         if (wheel->tire < 0)
             continue;
-        fast[wheel->fast + FAST_SPIN][k] = index ? number(random, 10 / model->tire[wheel->tire].radius) : 0;
+        fast[wheel->fast + FAST_SPIN][k] =
+            index ? near_kink(v, random, KINK_SPIN, i, number(random, 10 / model->tire[wheel->tire].radius)) : 0;
         for (int s = FAST_SLIP_X; s < wheel_fast_states(wheel); ++s)
             fast[wheel->fast + s][k] = index ? number(random, s == FAST_BRAKE ? 0.01 : 0.3) : 0;
     }
@@ -131,9 +252,11 @@ static void place_inputs(const Validator *v, Random *random, int index, int k)
 {
     const Model *model = v->model;
     Run *run = v->run;
-    run->time[k] = index ? random_uniform(random, 0, 10) : 0;
-    for (int i = 0; i < model->inputs; ++i)
-        run->u[i][k] = model->input[i].initial + (index ? number(random, 1) : 0);
+    run->time[k] = index ? near_kink(v, random, KINK_TIME, 0, random_uniform(random, 0, 10)) : 0;
+    for (int i = 0; i < model->inputs; ++i) {
+        const double any = model->input[i].initial + number(random, 1);
+        run->u[i][k] = index ? near_kink(v, random, KINK_INPUT, i, any) : model->input[i].initial;
+    }
     for (int i = 0; i < 6 * model->ports; ++i)
         run->port[i][k] = index ? number(random, 100) : 0;
     for (int i = 0; i < model->parameters; ++i) {
@@ -142,6 +265,65 @@ static void place_inputs(const Validator *v, Random *random, int index, int k)
             run->p[own->index][k] =
                 own->geometric || index % 4 != 3 ? own->value : own->value * (1 + 0.1 * number(random, 1));
     }
+}
+
+/* ---- states of a scene ------------------------------------------------------------------------------------------------
+ */
+
+static void place_scene_inputs(const Validator *v, Random *random, int index, int k)
+{
+    const Facts *facts = v->facts;
+    const Model *model = v->model;
+    double input[model->inputs + 1];
+    double time = near_kink(v, random, KINK_TIME, 0, random_uniform(random, 0, v->scene->duration));
+    time = index ? fmin(fmax(time, 0), v->scene->duration) : 0;
+    for (int i = 0; i < model->inputs; ++i)
+        input[i] = facts->input[i];
+    v->scene->inputs(v->scene->context, 0, time, input);
+    v->run->time[k] = time;
+    for (int i = 0; i < model->inputs; ++i)
+        if (facts->fixed[i] || !v->scene->free[i])
+            v->run->u[i][k] = input[i];
+    for (int i = 0; i < 6 * model->ports && facts->idle; ++i)
+        v->run->port[i][k] = 0;
+    for (int i = 0; i < model->parameters && facts->parameter; ++i)
+        if (model->parameter[i].tunable)
+            v->run->p[model->parameter[i].index][k] = model->parameter[i].value;
+    for (int i = 0; i < POWERTRAIN_DISCRETE && facts->neutral; ++i)
+        v->run->gear[i][k] = 0;
+}
+
+/* The base moves in the plane y = 0 of its own; what is there on both sides is one's mirror image on the other. */
+static void place_even(const Validator *v, int k)
+{
+    const Model *model = v->model;
+    Run *run = v->run;
+    const Plan *plan = run->plan;
+    const int twist = 7 + plan->free_coordinates;
+    double *const odd[] = {run->y[4], run->y[6], run->y[twist + 1], run->y[twist + 3], run->y[twist + 5]};
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; ++i)
+        odd[i][k] = 0;
+    const double norm = hypot(run->y[3][k], run->y[5][k]);
+    run->y[3][k] = norm > 0.1 ? run->y[3][k] / norm : 1;
+    run->y[5][k] = norm > 0.1 ? run->y[5][k] / norm : 0;
+    for (int c = 0; c < model->coordinates; ++c) {
+        const int image = v->mirror->coordinate[c], state = plan->coordinate_state[c], rate = plan->coordinate_rate[c];
+        const double sign = v->mirror->sign[c];
+        if (state < 0)
+            continue;
+        if (image == c && sign < 0) {
+            run->y[state][k] = model->coordinate[c].design;
+            run->y[rate][k] = 0;
+        } else if (image < c) {
+            run->y[state][k] = sign * run->y[plan->coordinate_state[image]][k];
+            run->y[rate][k] = sign * run->y[plan->coordinate_rate[image]][k];
+        }
+    }
+    for (int i = 0; i < model->wheels; ++i)
+        for (int s = 0; model->wheel[i].tire >= 0 && v->mirror->wheel[i] < i && s < wheel_fast_states(&model->wheel[i]);
+             ++s)
+            run->y[plan->states + model->wheel[i].fast + s][k] =
+                wheel_fast_sign(s) * run->y[plan->states + model->wheel[v->mirror->wheel[i]].fast + s][k];
 }
 
 void state_place(const Validator *v, int index, int k)
@@ -153,4 +335,8 @@ void state_place(const Validator *v, int index, int k)
         place_base(v, &random, index, k);
     if (v->model->fast_states)
         place_fast(v, &random, index, k);
+    if (v->facts)
+        place_scene_inputs(v, &random, index, k);
+    if (v->mirror)
+        place_even(v, k);
 }
