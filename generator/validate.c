@@ -5,6 +5,8 @@
 
 #include "validate_work.h"
 
+#include "../runtime/gic_road.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +22,10 @@ typedef enum Kind {
     KIND_FAST,
     KIND_OUTPUT,
     KIND_POSES,
+    KIND_REACTION,
+    KIND_ATTITUDE,
     KIND_INVERSE,
+    KIND_FOLLOW,
     KIND_SCENE,
     KIND_SCENE_OUTPUT,
     KINDS
@@ -39,6 +44,9 @@ static const struct {
     [KIND_FAST] = {"rates of fast states", 1e-6},
     [KIND_OUTPUT] = {"outputs", 1e-6},
     [KIND_POSES] = {"poses of bodies", 1e-8},
+    [KIND_REACTION] = {"reactions of joints", 1e-6},
+    [KIND_ATTITUDE] = {"outputs of orientation", 1e-6},
+    [KIND_FOLLOW] = {"predicted poses or corrections of them that do not lead to the solution", 1e-2},
     [KIND_INVERSE] = {"the self-test's equations of motion", 1e-6},
     [KIND_SCENE] = {"code for the scene has other rates than code for all", 1e-6},
     [KIND_SCENE_OUTPUT] = {"code for the scene has other outputs than code for all", 1e-6},
@@ -57,6 +65,8 @@ typedef struct Comparison {
     Validator v;
     World *world;
     Run *scene; /* code for a scene at the same states; NULL: none */
+    Values *acc; /* [unknowns] for the self-test's equations of motion */
+    bool self_test;
     int k;      /* column */
     int index; /* of the state */
     double *input, *parameter, *port, *fast, *out, *pose;
@@ -364,7 +374,7 @@ static void compare_partials(Comparison *c)
             set_rate(world, b, c->twist[b], c->twist[b] + 3, x);
         memset(w, 0, sizeof *w * ((size_t)c->v.model->coordinates + 1));
         w[j] = 1;
-        compare_rows(c, KIND_PARTIAL, (const double(*)[BODY_Q])x, w, false, 1e-6 * world->size);
+        compare_rows(c, KIND_PARTIAL, (const double(*)[BODY_Q])x, w, false, 1e-3 * fmin(world->size, 1));
     }
 }
 
@@ -506,13 +516,13 @@ static void compare_motion(Comparison *c)
     for (int t = 0; t < c->world->ties; ++t)
         world_gamma(c->world, t);
     compare_rows(c, KIND_ACCELERATION, (const double(*)[BODY_Q])c->world->qdd, c->world->xdd, true,
-                 1e-6 * c->swing * fmin(c->world->size, 1));
+                 1e-3 * c->swing * fmin(c->world->size, 1));
     if (world_forces(c->world) != GIC_OK)
         return;
     find_push(c);
     find_balance(c, tau, scale, drive);
     for (int i = 0; i < n; ++i)
-        compare(c, KIND_MOTION, unknown_name(c, i), tau[i], scale[i] + 1e-9 * c->push);
+        compare(c, KIND_MOTION, unknown_name(c, i), tau[i], scale[i] + 1e-6 * c->push);
     for (int j = 0; j < c->v.model->coordinates; ++j)
         if (c->v.model->coordinate[j].driven)
             c->world->multiplier[c->world->tie[c->world->coordinate_tie[j]].first] = drive[j] / c->world->dual[j];
@@ -541,26 +551,107 @@ static double output_scale(const Comparison *c, const Output *output, const doub
     return size;
 }
 
-static void compare_outputs(Comparison *c)
+/* The rotation that roll, pitch and yaw say. */
+static void attitude_of(const double angle[3], double A[9])
+{
+    const double r[4] = {cos(angle[0] / 2), sin(angle[0] / 2), 0, 0}, p[4] = {cos(angle[1] / 2), 0, sin(angle[1] / 2), 0},
+                 y[4] = {cos(angle[2] / 2), 0, 0, sin(angle[2] / 2)};
+    double t[4], e[4];
+    euler_product(y, p, t);
+    euler_product(t, r, e);
+    mat_from_euler(e, A);
+}
+
+/* Angles and Euler parameters jump where the rotation does not: the rotations are compared. */
+static void compare_attitude(Comparison *c, Kind which, const Output *output, const double *value, const double *right)
+{
+    double A[9], B[9];
+    const bool angles = output->type == OUTPUT_ROLL_PITCH_YAW;
+    (angles ? attitude_of : mat_from_euler)(value, A);
+    (angles ? attitude_of : mat_from_euler)(right, B);
+    for (int i = 0; i < 9; ++i)
+        compare(c, which, output->name, A[i] - B[i], 1);
+}
+
+/* An output's components against what is right, at column k. */
+static void compare_output(Comparison *c, Kind which, const Output *output, Values *given, const double *right)
+{
+    double value[OUTPUT_MAX_COMPONENTS];
+    const double size = output_scale(c, output, right);
+    for (int j = 0; j < output->count; ++j)
+        value[j] = given[j][c->k];
+    if (output->type == OUTPUT_ORIENTATION || output->type == OUTPUT_ROLL_PITCH_YAW) {
+        compare_attitude(c, which == KIND_OUTPUT ? KIND_ATTITUDE : which, output, value, right);
+        return;
+    }
+    for (int j = 0; j < output->count; ++j)
+        compare(c, which, output->component[j], value[j] - right[j], size);
+}
+
+static void compare_outputs(Comparison *c, bool reactions)
 {
     const Model *model = c->v.model;
-    World *world = c->world;
-    double pose[7 * model->bodies];
-    world_outputs(world, c->out);
-    for (int i = 0, at = 0; i < model->outputs; at += model->output[i++].count) {
-        const Output *output = &model->output[i];
-        if (output->type == OUTPUT_REACTION || output->type == OUTPUT_ORIENTATION ||
-            output->type == OUTPUT_ROLL_PITCH_YAW)
-            continue;
-        const double size = output_scale(c, output, c->out + at);
-        for (int j = 0; j < output->count; ++j)
-            compare(c, KIND_OUTPUT, output->component[j], c->v.run->out[at + j][c->k] - c->out[at + j], size);
-    }
-    world_poses(world, pose);
-    for (int b = 0; b < model->bodies; ++b)
+    world_outputs(c->world, c->out);
+    for (int i = 0, at = 0; i < model->outputs; at += model->output[i++].count)
+        if ((model->output[i].type == OUTPUT_REACTION) == reactions)
+            compare_output(c, reactions ? KIND_REACTION : KIND_OUTPUT, &model->output[i], c->v.run->out + at, c->out + at);
+}
+
+static void compare_poses(Comparison *c)
+{
+    const Model *model = c->v.model;
+    double pose[7 * model->bodies], e[4], A[9], B[9];
+    world_poses(c->world, pose);
+    for (int b = 0; b < model->bodies; ++b) {
         for (int i = 0; i < 3; ++i)
             compare(c, KIND_POSES, model->body[b].name, c->v.run->pose[7 * b + i][c->k] - pose[7 * b + i],
-                    world->size + fabs(pose[7 * b + i]));
+                    c->world->size + fabs(pose[7 * b + i]));
+        for (int i = 0; i < 4; ++i)
+            e[i] = c->v.run->pose[7 * b + 3 + i][c->k];
+        mat_from_euler(e, A);
+        mat_from_euler(pose + 7 * b + 3, B);
+        for (int i = 0; i < 9; ++i)
+            compare(c, KIND_POSES, model->body[b].name, A[i] - B[i], 1);
+    }
+}
+
+/* Multipliers by the topology-based solver of the comparison engines. */
+static void compare_reactions(Comparison *c)
+{
+    if (!c->world->solver || world_forces(c->world) != GIC_OK)
+        return;
+    world_spread(c->world);
+    for (int t = 0; t < c->world->ties; ++t)
+        world_gamma(c->world, t);
+    if (world_accelerate(c->world) == GIC_OK)
+        compare_outputs(c, true);
+}
+
+/* The self-test's residual of the equations of motion at other accelerations. */
+static void compare_inverse(Comparison *c)
+{
+    const Run *run = c->v.run;
+    const Plan *plan = run->plan;
+    World *world = c->world;
+    const int n = plan->unknowns;
+    double a[3] = {0}, alpha[3] = {0}, own[3], tau[n + 1], scale[n + 1], drive[c->v.model->coordinates + 1];
+    for (int i = 0; c->v.model->free_base && i < 3; ++i) {
+        alpha[i] = c->acc[i][c->k];
+        own[i] = c->acc[3 + i][c->k];
+    }
+    if (c->v.model->free_base) {
+        apply3(world->A[BODY_BASE], own, a);
+        add3(a, c->v.model->gravity, a);
+    }
+    for (int j = 0; j < c->v.model->coordinates; ++j)
+        if (plan->coordinate_unknown[j] >= 0)
+            world->xdd[j] = c->acc[plan->coordinate_unknown[j]][c->k];
+    accelerate(c, a, alpha);
+    if (world_forces(world) != GIC_OK)
+        return;
+    find_balance(c, tau, scale, drive);
+    for (int i = 0; i < n; ++i)
+        compare(c, KIND_INVERSE, unknown_name(c, i), run->tau[i][c->k] - tau[i], scale[i] + 1e-6 * c->push);
 }
 
 static void compare_state(Comparison *c)
@@ -575,10 +666,24 @@ static void compare_state(Comparison *c)
         if (!world_rows(world, t))
             compare(c, KIND_POSE, tie_name(c, t), 1, 1);
     }
-    compare_rows(c, KIND_VELOCITY, (const double(*)[BODY_Q])world->qd, world->xd, false, 1e-6 * c->speed * world->size);
+    compare_rows(c, KIND_VELOCITY, (const double(*)[BODY_Q])world->qd, world->xd, false, 1e-3 * c->speed * fmin(world->size, 1));
     compare_partials(c);
     compare_motion(c);
-    compare_outputs(c);
+    compare_outputs(c, false);
+    compare_poses(c);
+    compare_reactions(c);
+    if (c->self_test)
+        compare_inverse(c);
+}
+
+/* The state of an engine that drives nothing and that no output shows stands still in code for a scene; -1: none. */
+static int idle_engine(const Comparison *c)
+{
+    const Model *model = c->v.model;
+    bool seen = !model->powertrain || !c->v.facts->neutral;
+    for (int i = 0; i < model->outputs; ++i)
+        seen = seen || model->output[i].type == OUTPUT_POWERTRAIN;
+    return seen ? -1 : c->v.run->plan->states + model->powertrain->fast + POWERTRAIN_SPEED;
 }
 
 /* Code for a scene against code for all at the same state. */
@@ -592,17 +697,15 @@ static void compare_scene(Comparison *c)
         largest = fmax(largest, fabs(all->rate[i][c->k]));
     for (int i = 0; i < states + model->fast_states; ++i) {
         const double right = all->rate[i][c->k];
+        if (i == idle_engine(c))
+            continue;
         compare(c, KIND_SCENE, state_number(c->v.pool, all->formulation, i).name, scene->rate[i][c->k] - right,
                 i < states ? largest : fabs(right) + 1);
     }
     for (int i = 0, at = 0; i < model->outputs; at += model->output[i++].count) {
-        const Output *output = &model->output[i];
-        double value[OUTPUT_MAX_COMPONENTS];
-        for (int j = 0; j < output->count; ++j)
-            value[j] = all->out[at + j][c->k];
-        const double size = output_scale(c, output, value);
-        for (int j = 0; j < output->count; ++j)
-            compare(c, KIND_SCENE_OUTPUT, output->component[j], scene->out[at + j][c->k] - value[j], size);
+        for (int j = 0; j < model->output[i].count; ++j)
+            c->out[at + j] = all->out[at + j][c->k];
+        compare_output(c, KIND_SCENE_OUTPUT, &model->output[i], scene->out + at, c->out + at);
     }
     for (int i = 0; i < 7 * model->bodies; ++i)
         compare(c, KIND_SCENE_OUTPUT, model->body[i / 7].name, scene->pose[i][c->k] - all->pose[i][c->k], 1);
@@ -646,7 +749,11 @@ static Comparison *comparison_new(Pool *pool, const Formulation *f, const gic_ro
                       .port = pool_alloc(pool, (6 * (size_t)model->ports + 1) * number),
                       .fast = pool_alloc(pool, ((size_t)model->fast_states + 1) * number),
                       .out = pool_alloc(pool, ((size_t)model->output_components + 1) * number),
+                      .acc = pool_alloc(pool, ((size_t)f->plan->unknowns + 1) * sizeof *c->acc),
                       .twist = pool_alloc(pool, (size_t)model->bodies * sizeof *c->twist)};
+    for (int i = 0; i < model->outputs; ++i)
+        if (model->output[i].type == OUTPUT_REACTION && !c->world->solver && !model_massless(model))
+            world_set_solver(pool, c->world, &topology_solver);
     return c;
 }
 
@@ -678,11 +785,80 @@ static void compare_column(Comparison *c)
         compare_scene(c);
 }
 
+/* A wavy road for models that are looked at without a scene, less than dry. */
+static const gic_road *any_road(Pool *pool)
+{
+    gic_road_sine *waves = pool_alloc(pool, sizeof *waves);
+    gic_road_patched *road = pool_alloc(pool, sizeof *road);
+    *waves = (gic_road_sine){{gic_sine_height, NULL}, 0.05, 3, 0.3, 0.7};
+    *road = (gic_road_patched){{gic_patched_height, gic_patched_friction}, &waves->head, 0.8, NULL, 0};
+    return &road->head;
+}
+
+/* Accelerations for the self-test's equations: those that were found, and some more. */
+static void choose_accelerations(Comparison *c)
+{
+    const Run *run = c->v.run;
+    const Plan *plan = run->plan;
+    const int twist = 7 + plan->free_coordinates;
+    Random random = {.state = 3};
+    for (int k = 0; k < STATES; ++k) {
+        for (int i = 0; c->v.model->free_base && i < 3; ++i) {
+            c->acc[i][k] = run->rate[twist + 3 + i][k] + random_uniform(&random, -1, 1);
+            c->acc[3 + i][k] = random_uniform(&random, -10, 10);
+        }
+        for (int j = 0; j < c->v.model->coordinates; ++j)
+            if (plan->coordinate_unknown[j] >= 0)
+                c->acc[plan->coordinate_unknown[j]][k] =
+                    run->rate[plan->coordinate_rate[j]][k] + random_uniform(&random, -1, 1);
+    }
+}
+
+/* A correction is to be much smaller than the one before it, and the first one of the second order of the move: a
+ * thousandth, so that the square of its square is 1e-12. */
+static void compare_corrections(void *context, int subset, Values size[3])
+{
+    Comparison *c = context;
+    const Sequence *sequence = c->v.run->plan->sequence;
+    const char *name = sequence->class[sequence->subset[subset].class].name;
+    const double rounding[3] = {0, 1e-10, 1e-24};
+    for (int k = 0; k < STATES; ++k)
+        for (int i = 1; i < 3 && !c->v.run->refused[k]; ++i) {
+            c->index = k;
+            compare(c, KIND_FOLLOW, name, size[i][k], size[i - 1][k] + rounding[i]);
+        }
+}
+
+static void compare_columns(Comparison *c, int first)
+{
+    Run *run = c->v.run;
+    for (int k = 0; k < STATES; ++k)
+        state_place(&c->v, first + k, k);
+    run_evaluate(run);
+    c->self_test = first == 0;
+    if (c->self_test) {
+        choose_accelerations(c);
+        run_inverse(run, c->acc);
+    }
+    if (c->scene) {
+        copy_state(run, c->scene);
+        run_evaluate(c->scene);
+    }
+    for (c->k = 0; c->k < STATES; ++c->k) {
+        c->index = first + c->k;
+        compare_column(c);
+    }
+    if (c->self_test)
+        run_follow(run, compare_corrections, c);
+}
+
 void formulation_validate(Pool *pool, const Formulation *f, const Validation *scene)
 {
     const Formulation *general = f->general ? f->general : f;
+    const int most = 48, states = 16 + 2 * f->model->coordinates;
+    const int count = (states > most ? most : states + STATES - 1) / STATES * STATES;
     const char *why;
-    Comparison *c = comparison_new(pool, general, scene ? scene->road : NULL);
+    Comparison *c = comparison_new(pool, general, scene ? scene->road : any_road(pool));
     if (f->general) {
         c->scene = run_new(pool, f, scene->road);
         c->v.scene = scene;
@@ -690,20 +866,7 @@ void formulation_validate(Pool *pool, const Formulation *f, const Validation *sc
         c->v.mirror = f->narrowing->image ? mirror_find(pool, f->model, &why) : NULL;
     }
     kinks_find(&c->v);
-    const int most = 48, states = 16 + 2 * f->model->coordinates;
-    const int count = (states > most ? most : states + STATES - 1) / STATES * STATES;
-    for (int first = 0; first < count; first += STATES) {
-        for (int k = 0; k < STATES; ++k)
-            state_place(&c->v, first + k, k);
-        run_evaluate(c->v.run);
-        if (c->scene) {
-            copy_state(c->v.run, c->scene);
-            run_evaluate(c->scene);
-        }
-        for (c->k = 0; c->k < STATES; ++c->k) {
-            c->index = first + c->k;
-            compare_column(c);
-        }
-    }
+    for (int first = 0; first < count; first += STATES)
+        compare_columns(c, first);
     say(c);
 }

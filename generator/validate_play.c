@@ -199,11 +199,11 @@ static void record_nodes(Recorder *r, const bool *needed)
         if (!needed[e] || node->level < LEVEL_VARIABLE)
             continue;
         if (node->op == OP_ROAD_PART) {
-            r->row[e] = r->row[node->arg[0]] + (int)node->arg[1];
+            r->row[e] = r->row[node->arg[0]] + (int)node->arg[1] * width_of(dag, node->arg[0]);
             continue;
         }
         r->row[e] = program->rows;
-        program->rows += node->op == OP_ROAD ? 3 : width_of(dag, (Ex)e);
+        program->rows += (node->op == OP_ROAD ? 3 : 1) * width_of(dag, (Ex)e);
         if (node->op != OP_INPUT)
             record_operation(r, (Ex)e);
         else if (node->wide)
@@ -249,14 +249,15 @@ const Program *play_record(Pool *pool, const Block *block, int knowns)
         out[s] = (value); \
     break
 
-static void play_road(const Scenery *scenery, const double *x, const double *y, Values *out)
+/* Height and slopes: three rows, `lanes` apart. */
+static void play_road(const Scenery *scenery, const double *x, const double *y, Values *out, int lanes)
 {
     for (int s = 0; s < STATES; ++s) {
         double road[3] = {0, 0, 0};
         if (scenery->road)
             scenery->road->height(scenery->road, 0, scenery->time[s], x[s], y[s], road);
         for (int i = 0; i < 3; ++i)
-            out[i][s] = road[i];
+            out[i * lanes][s] = road[i];
     }
 }
 
@@ -304,15 +305,25 @@ static void fold(const Operation *o, Values *frame)
     }
 }
 
-/* Operations that are no function of single numbers. */
-static void play_other(const Operation *o, const Scenery *scenery, Values *frame)
+/* Operations that ask for more than their arguments. */
+static void play_asking(const Operation *o, int lane, const Scenery *scenery, Values *frame)
 {
-    double *out = frame[o->out];
-    const double *a = frame[o->arg[0]], *b = frame[o->op == OP_ROAD || o->op == OP_FRICTION ? o->arg[1] : 0];
+    double *out = frame[o->out + lane];
+    const double *a = frame[o->arg[0] + lane * o->step[0]];
+    const double *b = o->op == OP_TABLE ? a : frame[o->arg[1] + lane * o->step[1]];
     switch (o->op) {
     case OP_TABLE: EACH(gic_table_value(&scenery->table[o->arg[1]], a[s]));
-    case OP_ROAD: play_road(scenery, a, b, &frame[o->out]); break;
+    case OP_ROAD: play_road(scenery, a, b, &frame[o->out + lane], o->lanes); break;
     case OP_FRICTION: EACH(friction(scenery, s, a[s], b[s]));
+    default: break;
+    }
+}
+
+/* Operations between lanes. */
+static void play_lanes(const Operation *o, Values *frame)
+{
+    double *out = frame[o->out];
+    switch (o->op) {
     case OP_LANE: EACH(frame[o->arg[0] + o->arg[1]][s]);
     case OP_LANE_SUM:
         memset(out, 0, sizeof(Values));
@@ -352,12 +363,15 @@ void play(const Program *program, int member, const Binding *array, Scenery *sce
         memcpy(frame[load->row], array[load->array].row[array[load->array].stride * load->index], sizeof(Values));
     }
     for (const Operation *o = program->operation, *end = o + program->operations; o < end; ++o) {
-        if (o->op > OP_POSITIVE) {
-            play_other(o, scenery, frame);
+        if (o->op >= OP_LANE) {
+            play_lanes(o, frame);
             continue;
         }
         for (int l = 0; l < o->lanes; ++l)
-            play_one(o->op, frame[o->arg[0] + l * o->step[0]], frame[o->arg[1] + l * o->step[1]],
+            if (o->op > OP_POSITIVE)
+                play_asking(o, l, scenery, frame);
+            else
+                play_one(o->op, frame[o->arg[0] + l * o->step[0]], frame[o->arg[1] + l * o->step[1]],
                      frame[o->arg[2] + l * o->step[2]], frame[o->out + l]);
     }
     play_tests(program, (const Values *)frame, scenery);

@@ -18,7 +18,7 @@ enum { CORRECTIONS = 10, PIECES = 48 };
 static const double longer = 4, settled = 1e-24, enough = 1e-15;
 
 typedef struct ClassPrograms {
-    const Program *solve, *residual, *react;
+    const Program *solve, *residual, *react, *predict, *chord;
 } ClassPrograms;
 
 typedef struct WheelPrograms {
@@ -102,7 +102,8 @@ static void record_all(Run *run)
     for (int c = 0; c < f->sequence->classes; ++c) {
         const Formula *formula = f->plan->formula[c];
         programs->class[c] = (ClassPrograms){record(run, &formula->solve), record(run, &formula->residual),
-                                             run->reacts ? record(run, &formula->react) : NULL};
+                                             run->reacts ? record(run, &formula->react) : NULL,
+                                             record(run, &formula->predict), record(run, &formula->chord)};
     }
     programs->dynamics = record(run, f->dynamics);
     programs->outputs = record(run, f->outputs);
@@ -549,4 +550,61 @@ void run_inverse(Run *run, Values *acc)
     bind_whole(run);
     bind(run, PLAY_acc, acc);
     run_play(run, run->programs->inverse, 0, "inverse");
+}
+
+/* ---- from one configuration to the next -----------------------------------------------------------------------------
+ */
+
+/* `change` of all coordinates, in shares of what is followed in one piece. */
+static void make_changes(Run *run, Values *change)
+{
+    const double share = 0.01;
+    Random random = {.state = 1};
+    for (int c = 0; c < run->model->coordinates; ++c)
+        for (int k = 0; k < STATES; ++k) {
+            change[c][k] = share * coordinate_piece(run->formulation, c) * random_uniform(&random, -1, 1);
+            run->programs->at[c][k] = run->x[c][k] + change[c][k];
+        }
+}
+
+void run_follow(Run *run, void (*found)(void *context, int subset, Values size[3]), void *context)
+{
+    const Plan *plan = run->plan;
+    const Sequence *sequence = plan->sequence;
+    struct RunPrograms *programs = run->programs;
+    Values *old = rows(run->pool, plan->start_size), *change = rows(run->pool, run->model->coordinates);
+    Values *own = rows(run->pool, run->formulation->dependence_most), size[3] = {{0}};
+    memcpy(old, run->start, (size_t)plan->start_size * sizeof *old);
+    make_changes(run, change);
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        if (subset->class < 0)
+            continue;
+        if (plan->formula[subset->class]->closed) {
+            solve_subset(run, s, true);
+            continue;
+        }
+        const Layout *layout = &plan->formula[subset->class]->layout;
+        const ClassPrograms *class = &programs->class[subset->class];
+        const int member = class_place(&sequence->class[subset->class], s), stride = plan->stride[s];
+        bind_subset(run, s);
+        for (int j = 0; j < subset->deps; ++j)
+            memcpy(own[j], change[subset->dep[j]], sizeof *own);
+        for (int b = 0; b < subset->bodies; ++b)
+            memcpy(programs->own + 7 * b, programs->q + 7 * subset->body[b], 7 * sizeof(Values));
+        bind(run, PLAY_change, own);
+        bind(run, PLAY_q, programs->own);
+        bind(run, PLAY_reach, &size[0]);
+        programs->array[PLAY_s] = (Binding){old + plan->start_offset[s] + stride * layout->start_S, stride};
+        programs->array[PLAY_f] = (Binding){old + plan->start_offset[s] + stride * layout->start_factors, stride};
+        run_play(run, class->predict, member, "prediction");
+        for (int i = 1; i < 3; ++i) {
+            bind(run, PLAY_step, &size[i]);
+            run_play(run, class->chord, member, "corrections");
+        }
+        found(context, s, size);
+        for (int b = 0; b < subset->bodies; ++b)
+            memcpy(programs->q + 7 * subset->body[b], programs->own + 7 * b, 7 * sizeof(Values));
+        solve_subset(run, s, true);
+    }
 }

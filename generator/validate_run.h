@@ -34,8 +34,12 @@ typedef struct Run {
 Run *run_new(Pool *pool, const Formulation *formulation, const gic_road *road);
 /* From y, u, p, port, gear and time all of the others. */
 void run_evaluate(Run *run);
-/* tau[] for other accelerations in acc [unknowns]. */
+/* tau[] for accelerations acc [unknowns], after run_evaluate(). */
 void run_inverse(Run *run, Values *acc);
+/* Prediction and corrections with old factors, as code takes them from the configuration that was evaluated to one
+ * nearby, after run_evaluate(), which has to be called again after it: calls `found` for every subset that follows with
+ * the squares of the size of the move and of two corrections. */
+void run_follow(Run *run, void (*found)(void *context, int subset, Values size[3]), void *context);
 /* A number of a body's motion: MOTION_C and so on, of a state. */
 double run_motion(const Run *run, int body, int number, int state);
 
