@@ -540,7 +540,7 @@ static double output_scale(const Comparison *c, const Output *output, const doub
     else if (output->type == OUTPUT_VELOCITY || output->type == OUTPUT_ANGULAR_VELOCITY)
         size += c->speed + 1e-3;
     else if (output->type == OUTPUT_FORCE || output->type == OUTPUT_DRIVE_FORCE || output->type == OUTPUT_TIRE ||
-             output->type == OUTPUT_WHEEL)
+             output->type == OUTPUT_WHEEL || output->type == OUTPUT_REACTION)
         size += c->push;
     else if (output->type == OUTPUT_ENERGY)
         size += c->push * (c->speed + c->world->size);
@@ -858,8 +858,8 @@ void formulation_validate(Pool *pool, const Formulation *f, const Validation *sc
     const int most = 48, states = 16 + 2 * f->model->coordinates;
     const int count = (states > most ? most : states + STATES - 1) / STATES * STATES;
     const char *why;
-    Comparison *c = comparison_new(pool, general, scene ? scene->road : any_road(pool));
-    if (f->general) {
+    Comparison *c = comparison_new(pool, general, f->general && scene ? scene->road : any_road(pool));
+    if (f->general && scene) {
         c->scene = run_new(pool, f, scene->road);
         c->v.scene = scene;
         c->v.facts = f->narrowing->facts;
