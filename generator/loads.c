@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Applied forces (FORMAT.md sections 7 and 8), body by body and as generalised forces. */
-#include "gicgen.h"
+#include "plant.h"
 
 #include <string.h>
 
@@ -103,7 +103,7 @@ static Ex spring_damper(Whole *whole, Loads *loads, const Force *force, Ex value
     Dag *dag = whole->dag;
     Ex extension = ex_sub(dag, value, whole_law(whole, force->free, NULL));
     Ex elastic = elastic_force(whole, loads, force, extension, rate);
-    Ex viscous = ex_mul(dag, whole_law(whole, force->damping, NULL), rate);
+    Ex viscous = ex_mul(dag, whole_law(whole, force->damping, NULL), planted("force") ? value : rate);
     loads->power = ex_sub(dag, loads->power, ex_mul(dag, viscous, rate));
     return ex_add(dag, elastic, viscous);
 }

@@ -3,6 +3,7 @@
  * into the blocks, and what generated code must check is written down. */
 #include "narrow_work.h"
 
+#include "plant.h"
 #include "powertrain.h"
 
 #include <math.h>
@@ -649,6 +650,7 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
     narrow_rest(n);
     drop_inertia(n);
     find_uses(n->out, n->narrowing);
+    plant_stores(n->out, "scene");
     return n->out;
 }
 
@@ -665,7 +667,7 @@ const Formulation *formulate_narrow(Pool *pool, const Model *model, const Sequen
     if (n.mirror)
         hold_odd(&n);
     const Formulation *out = narrow(&n, sequence, solve, recovery);
-    if (!n.mirror || narrow_is_even(&n))
+    if (!n.mirror || planted("mirror") || narrow_is_even(&n))
         return out;
     n.mirror = NULL;
     find_steady(&n);

@@ -19,7 +19,9 @@ typedef enum Kind {
     KIND_PARTIAL,
     KIND_ACCELERATION,
     KIND_MOTION,
+    KIND_RATE,
     KIND_FAST,
+    KIND_WHEEL,
     KIND_OUTPUT,
     KIND_POSES,
     KIND_REACTION,
@@ -41,7 +43,9 @@ static const struct {
     [KIND_PARTIAL] = {"S is not the derivative of the poses", 1e-7},
     [KIND_ACCELERATION] = {"accelerations that are not those of the velocities", 1e-6},
     [KIND_MOTION] = {"accelerations that do not solve the equations of motion", 1e-6},
+    [KIND_RATE] = {"rates of coordinates that are not their velocities", 1e-9},
     [KIND_FAST] = {"rates of fast states", 1e-6},
+    [KIND_WHEEL] = {"a wheel", 1e-6},
     [KIND_OUTPUT] = {"outputs", 1e-6},
     [KIND_POSES] = {"poses of bodies", 1e-8},
     [KIND_REACTION] = {"reactions of joints", 1e-6},
@@ -480,6 +484,23 @@ static void load(Comparison *c)
     }
 }
 
+/* Rates of coordinates and of the base's pose. */
+static void compare_rates(Comparison *c)
+{
+    const Model *model = c->v.model;
+    const Run *run = c->v.run;
+    const Plan *plan = run->plan;
+    const int twist = 7 + plan->free_coordinates;
+    for (int i = 0; i < model->coordinates; ++i)
+        if (plan->coordinate_state[i] >= 0)
+            compare(c, KIND_RATE, model->coordinate[i].name,
+                    run->rate[plan->coordinate_state[i]][c->k] - c->world->xd[i], 1 + fabs(c->world->xd[i]));
+    for (int i = 0; model->free_base && i < 7; ++i) {
+        const double right = i < 3 ? run->y[twist + i][c->k] : c->world->qd[BODY_BASE][i];
+        compare(c, KIND_RATE, base_state_name[i], run->rate[i][c->k] - right, 1 + fabs(right));
+    }
+}
+
 static void compare_fast(Comparison *c)
 {
     const Model *model = c->v.model;
@@ -487,6 +508,39 @@ static void compare_fast(Comparison *c)
     for (int i = 0; i < model->fast_states; ++i) {
         const double right = c->world->fast_rate[i], given = run->rate[run->plan->states + i][c->k];
         compare(c, KIND_FAST, "", given - right, fabs(right) + 1);
+    }
+}
+
+/* What the wheels with tires hand on, to their carriers and to set-up. */
+static void compare_grip(Comparison *c)
+{
+    const Model *model = c->v.model;
+    for (int i = 0; i < model->wheels; ++i) {
+        if (model->wheel[i].tire < 0)
+            continue;
+        const Rolling *r = &c->world->rolling[i];
+        Values *grip = c->v.run->grip + GRIP_NUMBERS * wheel_rolling(model, i);
+        const double force = 1 + sqrt(dot3(r->force, r->force));
+        const struct {
+            int number;
+            double right, scale;
+        } part[] = {
+            {GRIP_FORCE, r->force[0], force},
+            {GRIP_FORCE + 1, r->force[1], force},
+            {GRIP_FORCE + 2, r->force[2], force},
+            {GRIP_DRIVE, r->drive, 1 + fabs(r->drive)},
+            {GRIP_BRAKE, r->brake, 1 + fabs(r->brake)},
+            {GRIP_LOAD, r->fz, force},
+            {GRIP_DEFLECTION, r->deflection, 1},
+            {GRIP_HEIGHT, r->height, 1},
+            {GRIP_KAPPA, r->kappa, 1 + fabs(r->kappa)},
+            {GRIP_CAMBER, r->camber, 1},
+            {GRIP_SPEED_X, r->speed[0], 1 + fabs(r->speed[0])},
+            {GRIP_SPEED_Y, r->speed[1], 1 + fabs(r->speed[1])},
+            {GRIP_RADIUS, r->rolling_radius, 1},
+        };
+        for (size_t j = 0; j < sizeof part / sizeof *part; ++j)
+            compare(c, KIND_WHEEL, model->wheel[i].name, grip[part[j].number][c->k] - part[j].right, part[j].scale);
     }
 }
 
@@ -526,29 +580,40 @@ static void compare_motion(Comparison *c)
     for (int j = 0; j < c->v.model->coordinates; ++j)
         if (c->v.model->coordinate[j].driven)
             c->world->multiplier[c->world->tie[c->world->coordinate_tie[j]].first] = drive[j] / c->world->dual[j];
+    compare_rates(c);
     compare_fast(c);
+    compare_grip(c);
 }
 
-/* What differences of an output are relative to. */
-static double output_scale(const Comparison *c, const Output *output, const double *value)
+/* Which components of an output are forces, moments or torques; the others of the same are lengths, rates, slips. */
+static bool is_push(const Output *output, int component)
+{
+    switch (output->type) {
+    case OUTPUT_FORCE:
+    case OUTPUT_DRIVE_FORCE:
+    case OUTPUT_REACTION: return true;
+    case OUTPUT_WHEEL: return component == 0;
+    case OUTPUT_TIRE: return component < 5 || component >= 10;
+    default: return false;
+    }
+}
+
+/* What differences of a component of an output are relative to. */
+static double output_scale(const Comparison *c, const Output *output, const double *value, int component)
 {
     double size = 0;
     for (int j = 0; j < output->count; ++j)
         size = fmax(size, fabs(value[j]));
-    if (output->type == OUTPUT_ACCELERATION)
-        size += c->swing;
-    else if (output->type == OUTPUT_VELOCITY || output->type == OUTPUT_ANGULAR_VELOCITY)
-        size += c->speed + 1e-3;
-    else if (output->type == OUTPUT_FORCE || output->type == OUTPUT_DRIVE_FORCE || output->type == OUTPUT_TIRE ||
-             output->type == OUTPUT_WHEEL || output->type == OUTPUT_REACTION)
-        size += c->push;
-    else if (output->type == OUTPUT_ENERGY)
-        size += c->push * (c->speed + c->world->size);
-    else if (output->type == OUTPUT_COORDINATE)
-        size += c->swing;
-    else
-        size += 1;
-    return size;
+    if (is_push(output, component))
+        return size + (output->type == OUTPUT_WHEEL || output->type == OUTPUT_TIRE ? 1 : c->push);
+    switch (output->type) {
+    case OUTPUT_ACCELERATION: return size + c->swing;
+    case OUTPUT_VELOCITY:
+    case OUTPUT_ANGULAR_VELOCITY: return size + c->speed + 1e-3;
+    case OUTPUT_ENERGY: return size + c->push * (c->speed + c->world->size);
+    case OUTPUT_COORDINATE: return fabs(value[component]) + (component == 2 ? c->swing : 1);
+    default: return fabs(value[component]) + 1;
+    }
 }
 
 /* The rotation that roll, pitch and yaw say. */
@@ -577,7 +642,6 @@ static void compare_attitude(Comparison *c, Kind which, const Output *output, co
 static void compare_output(Comparison *c, Kind which, const Output *output, Values *given, const double *right)
 {
     double value[OUTPUT_MAX_COMPONENTS];
-    const double size = output_scale(c, output, right);
     for (int j = 0; j < output->count; ++j)
         value[j] = given[j][c->k];
     if (output->type == OUTPUT_ORIENTATION || output->type == OUTPUT_ROLL_PITCH_YAW) {
@@ -585,7 +649,7 @@ static void compare_output(Comparison *c, Kind which, const Output *output, Valu
         return;
     }
     for (int j = 0; j < output->count; ++j)
-        compare(c, which, output->component[j], value[j] - right[j], size);
+        compare(c, which, output->component[j], value[j] - right[j], output_scale(c, output, right, j));
 }
 
 static void compare_outputs(Comparison *c, bool reactions)
