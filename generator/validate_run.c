@@ -578,7 +578,7 @@ void run_follow(Run *run, void (*found)(void *context, int subset, Values size[3
     make_changes(run, change);
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
-        if (subset->class < 0)
+        if (subset->class < 0 || narrowing_image(run->formulation->narrowing, s))
             continue;
         if (plan->formula[subset->class]->closed) {
             solve_subset(run, s, true);
