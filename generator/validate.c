@@ -234,10 +234,76 @@ static void compare_columns(Comparison *c, int first)
         run_follow(c->scene, compare_corrections, c);
 }
 
+/* ---- other values of geometric parameters -----------------------------------------------------------------------------
+ */
+
+/* Numbers of the model as its tuning has them for these parameters. False: they are impossible. */
+static bool tune(const Model *model, const double *parameter)
+{
+    const Tuning *tuning = model->tuning;
+    Dag *dag = tuning->dag;
+    for (int i = 0; i < model->parameters; ++i) {
+        const Parameter *own = &model->parameter[i];
+        if (own->tunable)
+            ex_set_sample(dag, ex_input(dag, pool_print(dag->pool, "p[%d]", own->index), &own->value), 0,
+                          parameter[own->index]);
+    }
+    dag_evaluate(dag, 0, 1);
+    for (int i = 0; i < tuning->conditions; ++i) {
+        const double value = ex_value(dag, tuning->condition[i].value, 0);
+        if (!(tuning->condition[i].zero ? value >= 0 : value > 0))
+            return false;
+    }
+    for (int i = 0; i < tuning->numbers; ++i) {
+        const double value = ex_value(dag, tuning->number[i].formula, 0);
+        if (!isfinite(value))
+            return false;
+        *(double *)tuning->number[i].at = value;
+    }
+    return true;
+}
+
+/* The model's numbers are those of other parameters for a while. */
+static void compare_tuned(Comparison *c)
+{
+    const Model *model = c->v.model;
+    const Tuning *tuning = model->tuning;
+    if (!tuning)
+        return;
+    Random random = {.state = 5};
+    const size_t size = sizeof(double), numbers = (size_t)tuning->numbers + 1, tunables = (size_t)model->tunables + 1;
+    double *was = pool_alloc(c->v.pool, numbers * size), *changed = pool_alloc(c->v.pool, tunables * size);
+    double *standard = pool_alloc(c->v.pool, tunables * size);
+    const Ex rest = ex_input(tuning->dag, "rest", &(const double){0});
+    const double ahead = ex_value(tuning->dag, rest, 0);
+    for (int i = 0; i < tuning->numbers; ++i)
+        was[i] = *tuning->number[i].at;
+    for (int i = 0; i < model->parameters; ++i) {
+        const Parameter *own = &model->parameter[i];
+        const double share = 0.003 * random_uniform(&random, -1, 1);
+        if (own->tunable) {
+            standard[own->index] = own->value;
+            changed[own->index] = own->geometric ? own->value + share * (own->value == 0 ? 1 : own->value) : own->value;
+        }
+    }
+    ex_set_sample(tuning->dag, rest, 0, 0);
+    if (tune(model, changed)) {
+        world_adopt(c->world);
+        c->v.geometry = changed;
+        compare_columns(c, STATES);
+        c->v.geometry = NULL;
+    }
+    ex_set_sample(tuning->dag, rest, 0, ahead);
+    tune(model, standard);
+    for (int i = 0; i < tuning->numbers; ++i)
+        *(double *)tuning->number[i].at = was[i];
+    world_adopt(c->world);
+}
+
 void formulation_validate(Pool *pool, const Formulation *f, const Validation *scene)
 {
     const Formulation *general = f->general ? f->general : f;
-    const int most = 48, states = 16 + 2 * f->model->coordinates;
+    const int most = 96, states = 32 + 2 * f->model->coordinates;
     const int count = (states > most ? most : states + STATES - 1) / STATES * STATES;
     const char *why;
     Comparison *c = comparison_new(pool, general, f->general && scene ? scene->road : any_road(pool));
@@ -250,5 +316,7 @@ void formulation_validate(Pool *pool, const Formulation *f, const Validation *sc
     kinks_find(&c->v);
     for (int first = 0; first < count; first += STATES)
         compare_columns(c, first);
+    if (!c->scene)
+        compare_tuned(c);
     say(c);
 }

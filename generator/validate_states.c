@@ -261,9 +261,10 @@ static void place_inputs(const Validator *v, Random *random, int index, int k)
         run->port[i][k] = index ? number(random, 100) : 0;
     for (int i = 0; i < model->parameters; ++i) {
         const Parameter *own = &model->parameter[i];
-        if (own->tunable)
-            run->p[own->index][k] =
-                own->geometric || index % 4 != 3 ? own->value : own->value * (1 + 0.1 * number(random, 1));
+        if (own->tunable && own->geometric)
+            run->p[own->index][k] = v->geometry ? v->geometry[own->index] : own->value;
+        else if (own->tunable)
+            run->p[own->index][k] = index % 4 == 3 ? own->value * (1 + 0.1 * number(random, 1)) : own->value;
     }
 }
 

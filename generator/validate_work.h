@@ -15,6 +15,7 @@ typedef struct Validator {
     const Facts *facts;
     const Mirror *mirror; /* NULL: both sides are computed */
     struct Kinks *kinks;
+    const double *geometry; /* [tunables] values of geometric parameters, NULL: those of the file */
 } Validator;
 
 /* Where formulas may bend: numbers that stand in one with a time, a coordinate, its rate, an input or a spin. */

@@ -123,7 +123,7 @@ void world_adopt(World *world)
         tie->first = first;
     }
     set_size(world);
-    for (int b = world->first; b < world->bodies; ++b)
+    for (int b = world->first; b < world->bodies && world->equations; ++b)
         equations_mass(world->equations, b, world->model->body[b].mass, world->model->body[b].inertia);
     set_design(world, world->model->drawn);
 }
