@@ -61,16 +61,21 @@ $(BUILD)/gicsweep: $(sweep:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_obje
 $(BUILD)/gicbench: $(BUILD)/runtime/gicbench.o $(benchmark:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
-# gicgen with errors that can be planted, to see that its validation finds them: generator/plant.h
+# gicgen and gicrun with errors that can be planted, to see that their validation finds them: generator/plant.h
 planting := $(patsubst %,generator/%.o,plant formulation lanes narrow rows motion loads pack_vectors)
 $(BUILD)/planted/%.o: %.c
 	@mkdir -p $(@D)
 	$(COMPILE) -DGICGEN_PLANT -c -o $@ $<
 
-$(BUILD)/check/gicgen_planted: $(BUILD)/generator/main.o $(scene_objects) $(checking_objects) \
-    $(filter-out $(planting:%=$(BUILD)/%),$(generator_objects)) $(planting:%=$(BUILD)/planted/%)
+planted_objects := $(filter-out $(planting:%=$(BUILD)/%),$(generator_objects)) $(planting:%=$(BUILD)/planted/%)
+
+$(BUILD)/check/gicgen_planted: $(BUILD)/generator/main.o $(scene_objects) $(checking_objects) $(planted_objects)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lm
+
+$(BUILD)/check/gicrun_planted: $(BUILD)/runtime/gicrun.o $(runtime_objects) $(planted_objects)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 # the page says how the interpreted engines were compiled
 $(BUILD)/runtime/bench_machine.o: COMPILE += -DGICBENCH_FLAGS='"$(CFLAGS) -ffp-contract=off"'
@@ -102,7 +107,8 @@ programs := $(basename $(notdir $(wildcard tests/*.c)))
 attacking := $(basename $(notdir $(wildcard tests/stress/*.c)))
 variants := test_runtime_float test_runtime_fast test_dual_float test_road_float test_road_fast
 
-test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) $(attacking) reference gicgen_planted)
+test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) $(attacking) reference gicgen_planted \
+    gicrun_planted)
 
 # an archive, for a test takes what it tests and no more
 $(tested): $(generator_objects) $(runtime_objects)

@@ -203,7 +203,7 @@ static Row row_along(Dag *dag, const Link *link, int end, const Vector *u)
     Row row = {.value = ex_dot(dag, u->v, link->d)};
     add_rate(dag, &row, 1, &link->end[1], u->v, false);
     add_rate(dag, &row, 0, &link->end[0], u->v, true);
-    add_rate(dag, &row, end, u, link->d, planted("row"));
+    add_rate(dag, &row, end, u, link->d, false);
     Ex cross = ex_dot(dag, u->rate, link->rate);
     row.bias = ex_add(dag, ex_add(dag, ex_dot(dag, u->v, link->bias), ex_dot(dag, u->bias, link->d)),
                       ex_add(dag, cross, cross));
@@ -227,7 +227,7 @@ static Row row_length(Dag *dag, const Link *link, Ex square)
 {
     Row row = {.value = ex_mul(dag, ex_literal(dag, 0.5), ex_sub(dag, ex_dot(dag, link->d, link->d), square))};
     add_rate(dag, &row, 1, &link->end[1], link->d, false);
-    add_rate(dag, &row, 0, &link->end[0], link->d, true);
+    add_rate(dag, &row, 0, &link->end[0], link->d, !planted("row"));
     row.bias = ex_add(dag, ex_dot(dag, link->d, link->bias), ex_dot(dag, link->rate, planted("bias") ? link->d : link->rate));
     return row;
 }

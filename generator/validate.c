@@ -106,9 +106,14 @@ static void say(const Comparison *c)
     if (getenv("GICGEN_VALIDATION"))
         fprintf(stderr, "compared %d, left out %d: %s of %s\n", c->compared, c->left, c->refused ? c->refused : "-",
                 c->where ? c->where : "-");
+    const Place place = {c->v.model->source, 0, 0};
+    if (worst->share <= 1 && !c->compared)
+        diag_warn(place, "look at the ranges of the coordinates, and at what the self-test says",
+                  "the code could not be compared with anything: at each of %d states it ends in %s of '%s'", c->left,
+                  c->refused, c->where);
     if (worst->share <= 1)
         return;
-    diag_fail((Place){c->v.model->source, 0, 0},
+    diag_fail(place,
               "this is no mistake of yours, and no code is written. Please report it with the model file and this message",
               "gicgen found an error of its own: %s: '%s' is off by %.3g of %.3g (state %d)", kind[worst->kind].text,
               worst->what, worst->value, worst->scale, worst->state);
@@ -152,6 +157,8 @@ static void compare_column(Comparison *c)
 {
     const Run *run = c->v.run;
     if (run->refused[c->k]) {
+        if (c->index == 0 && run->refused[c->k] == run_lost)
+            compare(c, KIND_POSE, run->where[c->k], 1, 1);
         ++c->left;
         c->refused = c->refused ? c->refused : run->refused[c->k];
         c->where = c->where ? c->where : run->where[c->k];
@@ -273,18 +280,16 @@ static void compare_tuned(Comparison *c)
     Random random = {.state = 5};
     const size_t size = sizeof(double), numbers = (size_t)tuning->numbers + 1, tunables = (size_t)model->tunables + 1;
     double *was = pool_alloc(c->v.pool, numbers * size), *changed = pool_alloc(c->v.pool, tunables * size);
-    double *standard = pool_alloc(c->v.pool, tunables * size);
     const Ex rest = ex_input(tuning->dag, "rest", &(const double){0});
-    const double ahead = ex_value(tuning->dag, rest, 0);
+    const size_t values = (size_t)tuning->dag->nodes * (size_t)tuning->dag->samples * size;
+    double *value = memcpy(pool_alloc(c->v.pool, values), tuning->dag->value, values);
     for (int i = 0; i < tuning->numbers; ++i)
         was[i] = *tuning->number[i].at;
     for (int i = 0; i < model->parameters; ++i) {
         const Parameter *own = &model->parameter[i];
         const double share = 0.003 * random_uniform(&random, -1, 1);
-        if (own->tunable) {
-            standard[own->index] = own->value;
+        if (own->tunable)
             changed[own->index] = own->geometric ? own->value + share * (own->value == 0 ? 1 : own->value) : own->value;
-        }
     }
     ex_set_sample(tuning->dag, rest, 0, 0);
     if (tune(model, changed)) {
@@ -293,8 +298,7 @@ static void compare_tuned(Comparison *c)
         compare_columns(c, STATES);
         c->v.geometry = NULL;
     }
-    ex_set_sample(tuning->dag, rest, 0, ahead);
-    tune(model, standard);
+    memcpy(tuning->dag->value, value, values);
     for (int i = 0; i < tuning->numbers; ++i)
         *(double *)tuning->number[i].at = was[i];
     world_adopt(c->world);

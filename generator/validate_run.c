@@ -39,6 +39,8 @@ struct RunPrograms {
     Values turn[3], ahead, step, rest;
 };
 
+const char run_lost[] = "corrections that do not end";
+
 static Values *rows(Pool *pool, int count)
 {
     return pool_alloc(pool, ((size_t)count + 1) * sizeof(Values));
@@ -301,7 +303,7 @@ static void solve_subset(Run *run, int s, bool last)
     }
     for (int k = 0; k < STATES && last; ++k)
         if (!(programs->step[k] <= enough) && !run->refused[k]) {
-            run->refused[k] = "no convergence";
+            run->refused[k] = run_lost;
             run->where[k] = name;
         }
     for (int b = 0; b < subset->bodies; ++b)

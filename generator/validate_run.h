@@ -30,6 +30,8 @@ typedef struct Run {
     Values *frame;
 } Run;
 
+/* In refused[] where corrections find no pose. */
+extern const char run_lost[];
 /* Everything recorded. */
 Run *run_new(Pool *pool, const Formulation *formulation, const gic_road *road);
 /* From y, u, p, port, gear and time all of the others. */
