@@ -165,7 +165,8 @@ static void compare_column(Comparison *c)
         return;
     }
     ++c->compared;
-    compare_state(c);
+    if (!compare_state(c))
+        return;
     if (c->scene && !c->scene->refused[c->k])
         compare_scene(c);
 }

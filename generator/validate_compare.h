@@ -60,8 +60,9 @@ typedef struct Comparison {
 /* validate.c: remember a difference where it is the largest of its kind, relative to what is allowed. */
 void compare(Comparison *c, Kind which, const char *what, double difference, double scale);
 
-/* validate_compare.c: column c->k of c->v.run against the World. */
-void compare_state(Comparison *c);
+/* validate_compare.c: column c->k of c->v.run against the World. False: but for forces, which are no finite numbers
+ * there. */
+bool compare_state(Comparison *c);
 /* An output's components against what is right, at column c->k, after compare_state(). */
 void compare_output(Comparison *c, Kind which, const Output *output, Values *given, const double *right);
 /* Name of an unknown of the equations of motion. */
