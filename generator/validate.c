@@ -14,26 +14,26 @@
  * 1e-11 in the models and some hundred random vehicles, those of subsets that are as ill-conditioned as may count; an
  * error in a formula makes one of the size of what it is relative to. */
 static const struct {
-    const char *text;
+    const char *block, *text;
     double most;
 } kind[KINDS] = {
-    [KIND_ROTATION] = {"a rotation that is none", 1e-9},
-    [KIND_POSE] = {"poses that do not fit", 1e-8},
-    [KIND_VELOCITY] = {"velocities that are not those of the poses", 1e-7},
-    [KIND_PARTIAL] = {"S is not the derivative of the poses", 1e-7},
-    [KIND_ACCELERATION] = {"accelerations that are not those of the velocities", 1e-6},
-    [KIND_MOTION] = {"accelerations that do not solve the equations of motion", 1e-6},
-    [KIND_RATE] = {"rates of coordinates that are not their velocities", 1e-9},
-    [KIND_FAST] = {"rates of fast states", 1e-6},
-    [KIND_WHEEL] = {"a wheel", 1e-6},
-    [KIND_OUTPUT] = {"outputs", 1e-6},
-    [KIND_POSES] = {"poses of bodies", 1e-8},
-    [KIND_REACTION] = {"reactions of joints", 1e-6},
-    [KIND_ATTITUDE] = {"outputs of orientation", 1e-6},
-    [KIND_FOLLOW] = {"predicted poses or corrections of them that do not lead to the solution", 1e-2},
-    [KIND_INVERSE] = {"the self-test's equations of motion", 1e-6},
-    [KIND_SCENE] = {"code for the scene has other rates than code for all", 1e-6},
-    [KIND_SCENE_OUTPUT] = {"code for the scene has other outputs than code for all", 1e-6},
+    [KIND_ROTATION] = {"solve", "a rotation that is none", 1e-9},
+    [KIND_POSE] = {"solve", "poses that do not fit", 1e-8},
+    [KIND_VELOCITY] = {"solve", "velocities that are not those of the poses", 1e-7},
+    [KIND_PARTIAL] = {"solve", "S that is not the derivative of the poses", 1e-7},
+    [KIND_ACCELERATION] = {"solve", "accelerations that are not those of the velocities", 1e-6},
+    [KIND_MOTION] = {"dynamics", "accelerations that do not solve the equations of motion", 1e-6},
+    [KIND_RATE] = {"dynamics", "rates of coordinates that are not their velocities", 1e-9},
+    [KIND_FAST] = {"wheels", "rates of fast states that tires and powertrain do not have", 1e-6},
+    [KIND_WHEEL] = {"wheels", "a wheel that does not do what its tire does", 1e-6},
+    [KIND_OUTPUT] = {"outputs", "outputs that are not those of the motion", 1e-6},
+    [KIND_POSES] = {"poses", "poses of bodies that are not those of the motion", 1e-8},
+    [KIND_REACTION] = {"react", "reactions that do not hold the bodies", 1e-6},
+    [KIND_ATTITUDE] = {"outputs", "orientations that are not those of the motion", 1e-6},
+    [KIND_FOLLOW] = {"predict and chord", "corrections of poses that do not lead to the solution", 1e-2},
+    [KIND_INVERSE] = {"inverse", "equations of motion of the self-test that are not those of the bodies", 1e-6},
+    [KIND_SCENE] = {"code for the scene", "other rates than code for all scenes has", 1e-6},
+    [KIND_SCENE_OUTPUT] = {"code for the scene", "other outputs than code for all scenes has", 1e-6},
 };
 
 void compare(Comparison *c, Kind which, const char *what, double difference, double scale)
@@ -67,8 +67,7 @@ static void compare_scene(Comparison *c)
         const double right = all->rate[i][c->k];
         if (i == idle_engine(c))
             continue;
-        compare(c, KIND_SCENE, state_number(c->v.pool, all->formulation, i).name, scene->rate[i][c->k] - right,
-                i < states ? largest : fabs(right) + 1);
+        compare(c, KIND_SCENE, c->state_name[i], scene->rate[i][c->k] - right, i < states ? largest : fabs(right) + 1);
     }
     for (int i = 0; c->self_test && i < all->plan->unknowns; ++i)
         compare(c, KIND_SCENE, unknown_name(c, i), scene->tau[i][c->k] - all->tau[i][c->k],
@@ -113,10 +112,15 @@ static void say(const Comparison *c)
                   c->refused, c->where);
     if (worst->share <= 1)
         return;
+    const bool scene = worst->kind == KIND_SCENE || worst->kind == KIND_SCENE_OUTPUT;
     diag_fail(place,
-              "this is no mistake of yours, and no code is written. Please report it with the model file and this message",
-              "gicgen found an error of its own: %s: '%s' is off by %.3g of %.3g (state %d)", kind[worst->kind].text,
-              worst->what, worst->value, worst->scale, worst->state);
+              scene ? "this is no mistake of yours, and no such code is written or run: code for all scenes (gicrun "
+                      "--general) does without it. Please report it with the files of model and scene and this message"
+                    : "this is no mistake of yours, and no code is written or run; gicrun --engine gic does without "
+                      "it. Please report it with the model file, those that it includes, and this message",
+              "gicgen found an error of its own: %s: %s: at '%s' it is off by %.3g, of %.3g (state %d of the "
+              "validation, gicgen " GICGEN_VERSION ")",
+              kind[worst->kind].block, kind[worst->kind].text, worst->what, worst->value, worst->scale, worst->state);
 }
 
 /* f: for all scenes. */
@@ -125,6 +129,7 @@ static Comparison *comparison_new(Pool *pool, const Formulation *f, const gic_ro
     const Model *model = f->model;
     Comparison *c = pool_alloc(pool, sizeof *c);
     const size_t number = sizeof(double);
+    const int states = f->plan->states + model->fast_states;
     *c = (Comparison){.v = {.pool = pool, .model = model, .run = run_new(pool, f, road)},
                       .world = world_unsolved(pool, model, f->sequence),
                       .input = pool_alloc(pool, ((size_t)model->inputs + 1) * number),
@@ -132,8 +137,11 @@ static Comparison *comparison_new(Pool *pool, const Formulation *f, const gic_ro
                       .port = pool_alloc(pool, (6 * (size_t)model->ports + 1) * number),
                       .fast = pool_alloc(pool, ((size_t)model->fast_states + 1) * number),
                       .out = pool_alloc(pool, ((size_t)model->output_components + 1) * number),
+                      .state_name = pool_alloc(pool, ((size_t)states + 1) * sizeof *c->state_name),
                       .acc = pool_alloc(pool, ((size_t)f->plan->unknowns + 1) * sizeof *c->acc),
                       .twist = pool_alloc(pool, (size_t)model->bodies * sizeof *c->twist)};
+    for (int i = 0; i < states; ++i)
+        c->state_name[i] = state_number(pool, f, i).name;
     for (int i = 0; i < model->outputs; ++i)
         if (model->output[i].type == OUTPUT_REACTION && !c->world->solver && !model_massless(model))
             world_set_solver(pool, c->world, &topology_solver);
@@ -242,7 +250,8 @@ static void compare_columns(Comparison *c, int first)
         run_follow(c->scene, compare_corrections, c);
 }
 
-/* ---- other values of geometric parameters -----------------------------------------------------------------------------
+/* ---- other values of geometric parameters
+ * -----------------------------------------------------------------------------
  */
 
 /* Numbers of the model as its tuning has them for these parameters. False: they are impossible. */

@@ -117,7 +117,8 @@ static void place_body(Comparison *c, int b)
     c->speed = fmax(c->speed, sqrt(dot3(v, v)) + world->size * sqrt(dot3(omega, omega)));
 }
 
-/* ---- accelerations ----------------------------------------------------------------------------------------------------
+/* ---- accelerations
+ * ----------------------------------------------------------------------------------------------------
  */
 
 /* From the base's acceleration (world) and angular acceleration (world) and w'': of the centre of mass, as above. */
@@ -192,7 +193,8 @@ static void accelerate(Comparison *c, const double a[3], const double own_alpha[
         accelerate_body(c, b, a, alpha);
 }
 
-/* ---- equations --------------------------------------------------------------------------------------------------------
+/* ---- equations
+ * --------------------------------------------------------------------------------------------------------
  */
 
 static const char *tie_name(const Comparison *c, int index)
@@ -217,7 +219,8 @@ static double row_product(const Comparison *c, int index, int row, const double 
 }
 
 /* All ties at rates or accelerations x and w: what remains. gamma: with the quadratic terms. */
-static void compare_rows(Comparison *c, Kind which, const double (*x)[BODY_Q], const double *w, bool gamma, double floor)
+static void compare_rows(Comparison *c, Kind which, const double (*x)[BODY_Q], const double *w, bool gamma,
+                         double floor)
 {
     World *world = c->world;
     for (int t = 0; t < world->ties; ++t) {
@@ -426,7 +429,7 @@ static void compare_fast(Comparison *c)
     const Run *run = c->v.run;
     for (int i = 0; i < model->fast_states; ++i) {
         const double right = c->world->fast_rate[i], given = run->rate[run->plan->states + i][c->k];
-        compare(c, KIND_FAST, "", given - right, fabs(right) + 1);
+        compare(c, KIND_FAST, c->state_name[run->plan->states + i], given - right, fabs(right) + 1);
     }
 }
 
@@ -543,7 +546,8 @@ static double output_scale(const Comparison *c, const Output *output, const doub
 /* The rotation that roll, pitch and yaw say. */
 static void attitude_of(const double angle[3], double A[9])
 {
-    const double r[4] = {cos(angle[0] / 2), sin(angle[0] / 2), 0, 0}, p[4] = {cos(angle[1] / 2), 0, sin(angle[1] / 2), 0},
+    const double r[4] = {cos(angle[0] / 2), sin(angle[0] / 2), 0, 0},
+                 p[4] = {cos(angle[1] / 2), 0, sin(angle[1] / 2), 0},
                  y[4] = {cos(angle[2] / 2), 0, 0, sin(angle[2] / 2)};
     double t[4], e[4];
     euler_product(y, p, t);
@@ -584,7 +588,8 @@ static void compare_outputs(Comparison *c, bool reactions)
     world_outputs(c->world, c->out);
     for (int i = 0, at = 0; i < model->outputs; at += model->output[i++].count)
         if ((model->output[i].type == OUTPUT_REACTION) == reactions)
-            compare_output(c, reactions ? KIND_REACTION : KIND_OUTPUT, &model->output[i], c->v.run->out + at, c->out + at);
+            compare_output(c, reactions ? KIND_REACTION : KIND_OUTPUT, &model->output[i], c->v.run->out + at,
+                           c->out + at);
 }
 
 static void compare_poses(Comparison *c)
@@ -673,7 +678,8 @@ bool compare_state(Comparison *c)
         if (!world_rows(world, t))
             compare(c, KIND_POSE, tie_name(c, t), 1, 1);
     }
-    compare_rows(c, KIND_VELOCITY, (const double(*)[BODY_Q])world->qd, world->xd, false, 1e-3 * c->speed * fmin(world->size, 1));
+    compare_rows(c, KIND_VELOCITY, (const double(*)[BODY_Q])world->qd, world->xd, false,
+                 1e-3 * c->speed * fmin(world->size, 1));
     compare_partials(c);
     if (!forces_exist(c))
         return false;

@@ -42,14 +42,15 @@ typedef struct Finding {
 typedef struct Comparison {
     Validator v;
     World *world;
-    Run *scene; /* code for a scene at the same states; NULL: none */
+    Run *scene;  /* code for a scene at the same states; NULL: none */
     Values *acc; /* [unknowns] for the self-test's equations of motion */
     bool self_test;
-    int k;      /* column */
+    int k;     /* column */
     int index; /* of the state */
     double *input, *parameter, *port, *fast, *out, *pose;
     int32_t gear[POWERTRAIN_DISCRETE];
-    double (*twist)[6]; /* [bodies] r', omega of unit rates */
+    const char **state_name;          /* [states] */
+    double (*twist)[6];               /* [bodies] r', omega of unit rates */
     double speed, swing, push, watts; /* largest velocity, acceleration, force, sum of powers: below their rounding
                                          nothing counts */
     Finding worst[KINDS];

@@ -372,7 +372,7 @@ void play(const Program *program, int member, const Binding *array, Scenery *sce
                 play_asking(o, l, scenery, frame);
             else
                 play_one(o->op, frame[o->arg[0] + l * o->step[0]], frame[o->arg[1] + l * o->step[1]],
-                     frame[o->arg[2] + l * o->step[2]], frame[o->out + l]);
+                         frame[o->arg[2] + l * o->step[2]], frame[o->out + l]);
     }
     play_tests(program, (const Values *)frame, scenery);
     for (int i = 0; i < program->stores; ++i) {

@@ -32,9 +32,9 @@ struct RunPrograms {
     int rows; /* of a frame, at most */
     int arrays;
     Binding *array; /* of what is played now */
-    Values *q;         /* poses of all bodies, 7 a body */
-    Values *own;       /* of a subset's bodies */
-    Values *design;    /* the same at the design */
+    Values *q;      /* poses of all bodies, 7 a body */
+    Values *own;    /* of a subset's bodies */
+    Values *design; /* the same at the design */
     Values *x, *rate, *at, *acc, *hub, *force;
     Values turn[3], ahead, step, rest;
 };
@@ -358,7 +358,8 @@ static void recover(Run *run)
     find_residual(run);
 }
 
-/* ---- wheels with tires ------------------------------------------------------------------------------------------------
+/* ---- wheels with tires
+ * ------------------------------------------------------------------------------------------------
  */
 
 static void play_wheel(Run *run, int class, int member, int wheel)
@@ -410,7 +411,8 @@ static void mirror_row(Values *row, int at, int of, double sign)
 static void mirror_wheel(Run *run, int wheel, int leader)
 {
     const Wheel *own = &run->model->wheel[wheel], *other = &run->model->wheel[leader];
-    const int at = GRIP_NUMBERS * wheel_rolling(run->model, wheel), of = GRIP_NUMBERS * wheel_rolling(run->model, leader);
+    const int at = GRIP_NUMBERS * wheel_rolling(run->model, wheel),
+              of = GRIP_NUMBERS * wheel_rolling(run->model, leader);
     for (int i = 0; i < wheel_fast_states(own); ++i)
         mirror_row(run->rate + run->plan->states, own->fast + i, other->fast + i, wheel_fast_sign(i));
     for (int i = 0; i < GRIP_NUMBERS; ++i)
@@ -467,8 +469,8 @@ static void react(Run *run)
         bind_subset(run, s);
         bind(run, PLAY_w, run->lambda + plan->multiplier_offset[subset->body[0]]);
         const Layout *layout = &plan->formula[subset->class]->layout;
-        run->programs->array[PLAY_f] = (Binding){
-            run->start + plan->start_offset[s] + plan->stride[s] * layout->start_factors, plan->stride[s]};
+        run->programs->array[PLAY_f] =
+            (Binding){run->start + plan->start_offset[s] + plan->stride[s] * layout->start_factors, plan->stride[s]};
         for (int i = 0; i < subset->knowns; ++i) {
             const int body = subset->known[i];
             bind(run, onto + i,

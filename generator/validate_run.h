@@ -21,8 +21,8 @@ typedef struct Run {
 
     /* What blocks find: Plan says where; rate as y. */
     Values *e, *m, *n, *start, *lambda, *link, *grip, *watch, *torque, *rate, *out, *pose, *tau, *derived;
-    double *settled;                /* of m, NAN: in memory */
-    Values residual;                /* largest of all subsets */
+    double *settled;             /* of m, NAN: in memory */
+    Values residual;             /* largest of all subsets */
     const char *refused[STATES]; /* status, NULL: all went well */
     const char *where[STATES];   /* block that refused */
     struct RunPrograms *programs;

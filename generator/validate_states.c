@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * States at which the validation looks: the design at rest, each coordinate alone at the ends of its range, corners,
- * and others anywhere in it; the base in attitudes that people write (quarter and half turns about each axis) and in any
- * other; rates, inputs and ports of 0, 1 and -1 and of general numbers; to both sides of numbers at which formulas may
- * bend. Code for a scene is looked at at states, times and inputs that the scene can have. */
+ * and others anywhere in it; the base in attitudes that people write (quarter and half turns about each axis) and in
+ * any other; rates, inputs and ports of 0, 1 and -1 and of general numbers; to both sides of numbers at which formulas
+ * may bend. Code for a scene is looked at at states, times and inputs that the scene can have. */
 #include "validate_work.h"
 
 #include "powertrain.h"
@@ -238,10 +238,10 @@ static void place_fast(const Validator *v, Random *random, int index, int k)
         return;
     const Powertrain *powertrain = model->powertrain;
     for (int i = 0; i < POWERTRAIN_DISCRETE; ++i)
-        run->gear[i][k] = index ? (double)(int)(random_bits(random) %
-                                                (unsigned)(powertrain->reverse + 1 + powertrain->forward)) -
-                                      powertrain->reverse
-                                : powertrain->start_gear;
+        run->gear[i][k] =
+            index ? (double)(int)(random_bits(random) % (unsigned)(powertrain->reverse + 1 + powertrain->forward)) -
+                        powertrain->reverse
+                  : powertrain->start_gear;
     fast[powertrain->fast + POWERTRAIN_SPEED][k] =
         powertrain->idle + (index ? random_uniform(random, 0, 3 * powertrain->idle + 10) : 0);
     fast[powertrain->fast + POWERTRAIN_AGE][k] =
@@ -268,7 +268,8 @@ static void place_inputs(const Validator *v, Random *random, int index, int k)
     }
 }
 
-/* ---- states of a scene ------------------------------------------------------------------------------------------------
+/* ---- states of a scene
+ * ------------------------------------------------------------------------------------------------
  */
 
 static void place_scene_inputs(const Validator *v, Random *random, int index, int k)

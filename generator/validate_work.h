@@ -21,8 +21,8 @@ typedef struct Validator {
 /* Where formulas may bend: numbers that stand in one with a time, a coordinate, its rate, an input or a spin. */
 void kinks_find(Validator *v);
 
-/* validate_states.c: state `index` of those that are looked at, from 0, into column k of the run. Number 0 is the design
- * at rest. */
+/* validate_states.c: state `index` of those that are looked at, from 0, into column k of the run. Number 0 is the
+ * design at rest. */
 void state_place(const Validator *v, int index, int k);
 
 #endif
