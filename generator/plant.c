@@ -43,6 +43,7 @@ void plant_stores(const Formulation *f, const char *form)
     plant_block(form, "poses", f->poses);
     plant_block(form, "inverse", f->inverse);
     plant_block(form, "wrenches", f->wrenches);
+    plant_block(form, "energy", f->energy);
     for (int c = 0; c < f->sequence->classes; ++c) {
         const Formula *formula = f->plan->formula[c];
         plant_block(form, "solve", &formula->solve);
@@ -55,6 +56,7 @@ void plant_stores(const Formulation *f, const char *form)
     plant_block(form, "link", &f->wheels->link);
     plant_block(form, "torque", &f->wheels->torque);
     plant_block(form, "drive", f->model->powertrain ? &f->wheels->drive : NULL);
+    plant_block(form, "shift", f->model->powertrain ? &f->wheels->shift : NULL);
     for (int c = 0; c < f->wheels->classes; ++c) {
         plant_block(form, "contact", &f->wheels->class[c].contact);
         plant_block(form, "tire", &f->wheels->class[c].tire);

@@ -32,6 +32,8 @@ static const struct {
     [KIND_ATTITUDE] = {"outputs", "orientations that are not those of the motion", 1e-6},
     [KIND_FOLLOW] = {"predict and chord", "corrections of poses that do not lead to the solution", 1e-2},
     [KIND_INVERSE] = {"inverse", "equations of motion of the self-test that are not those of the bodies", 1e-6},
+    [KIND_ENERGY] = {"energy", "powers that are not those of the forces", 1e-6},
+    [KIND_SHIFT] = {"shift", "a choice of gears that is not that of its formulas", 1e-6},
     [KIND_SCENE] = {"code for the scene", "other rates than code for all scenes has", 1e-6},
     [KIND_SCENE_OUTPUT] = {"code for the scene", "other outputs than code for all scenes has", 1e-6},
 };

@@ -21,7 +21,8 @@
  * states as tires and powertrain have them contact, tire, balance, drive outputs, poses     each as the World has it
  *   wrenches, react    reactions as the topology-based solver has them
  *   predict, chord     the first correction is of second order in the move, the next one smaller
- *   inverse            the residual of the equations of motion at any accelerations
+ *   inverse, energy    the residual of the equations of motion at any accelerations; both sides of the power balance
+ *   shift              what a change of gear follows
  *   derive             models with geometric parameters at other values of them, too
  *
  * Code in lanes is looked at in the same way, its blocks with their rows of lanes. Code for one scene is compared with
@@ -29,9 +30,8 @@
  * sides alike where it computes one side for both, with numbers to both sides of thresholds in formulas. Batches, and
  * code in single precision, are printed from the same blocks.
  *
- * Not seen here: the printing of blocks as C (emit.c) and the templates, which tests compare with the tape; the energy
- * block and the choice of gears (shift); which of several poses that fit is found, for the way there is this file's
- * own.
+ * Not seen here: the printing of blocks as C (emit.c) and the templates, which tests compare with the tape; which of
+ * several poses that fit is found, for the way there is this file's own.
  *
  * Tolerances (validate.c) are relative to the magnitudes that were added up. A state at which a block refuses to go on
  * (a status), or at which forces are no numbers, is left out; GICGEN_VALIDATION in the environment prints how many

@@ -2,6 +2,8 @@
  * What blocks give at one state, compared with the definitions of joints, forces and outputs in world coordinates. */
 #include "validate_compare.h"
 
+#include "powertrain.h"
+
 #include "../runtime/small.h"
 
 #include <math.h>
@@ -486,6 +488,40 @@ static void find_push(Comparison *c)
             c->watts += fabs(world->rolling[i].power);
 }
 
+/* Growth of kinetic and potential energy, and the power of all else: both are that of dampers, tires and drives. drive:
+ * forces of drives [coordinates] */
+static void compare_energy(Comparison *c, const double *drive)
+{
+    const Run *run = c->v.run;
+    double right = c->world->power, scale = c->watts + fabs(run->energy[2][c->k]) + 1e-6;
+    for (int j = 0; j < c->v.model->coordinates; ++j)
+        if (c->v.model->coordinate[j].driven) {
+            right += drive[j] * c->world->xd[j];
+            scale += fabs(drive[j] * c->world->xd[j]);
+        }
+    for (int i = 0; i < 2; ++i)
+        compare(c, KIND_ENERGY, i ? "power" : "growth", run->energy[i][c->k] - right, scale);
+}
+
+/* What a change of gear follows. */
+static void compare_shift(Comparison *c)
+{
+    const Powertrain *powertrain = c->v.model->powertrain;
+    if (!powertrain)
+        return;
+    Values *choice = c->v.run->choice;
+    const int count = powertrain->forward - 1;
+    double right[2 * powertrain->forward];
+    right[CHOICE_SELECTOR] = powertrain->selector ? world_law(c->world, powertrain->selector, NULL) : 1;
+    right[CHOICE_TURBINE] = c->world->driveline.turbine_speed;
+    for (int i = 0; i < count; ++i) {
+        right[CHOICE_UP + i] = world_law(c->world, powertrain->up[i], NULL);
+        right[CHOICE_UP + count + i] = world_law(c->world, powertrain->down[i], NULL);
+    }
+    for (int i = 0; i < CHOICE_UP + 2 * count; ++i)
+        compare(c, KIND_SHIFT, "shift", choice[i][c->k] - right[i], 1 + fabs(right[i]));
+}
+
 static void compare_motion(Comparison *c)
 {
     const Run *run = c->v.run;
@@ -510,6 +546,8 @@ static void compare_motion(Comparison *c)
     compare_rates(c);
     compare_fast(c);
     compare_grip(c);
+    compare_energy(c, drive);
+    compare_shift(c);
 }
 
 /* Which components of an output are forces, moments or torques; the others of the same are lengths, rates, slips. */

@@ -24,6 +24,8 @@ typedef enum Kind {
     KIND_REACTION,
     KIND_ATTITUDE,
     KIND_INVERSE,
+    KIND_ENERGY,
+    KIND_SHIFT,
     KIND_FOLLOW,
     KIND_SCENE,
     KIND_SCENE_OUTPUT,

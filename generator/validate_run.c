@@ -28,7 +28,7 @@ typedef struct WheelPrograms {
 struct RunPrograms {
     ClassPrograms *class;
     WheelPrograms *wheel;
-    const Program *dynamics, *outputs, *poses, *inverse, *wrenches, *link, *torque, *drive, *derive;
+    const Program *dynamics, *outputs, *poses, *inverse, *wrenches, *link, *torque, *drive, *shift, *derive, *energy;
     int rows; /* of a frame, at most */
     int arrays;
     Binding *array; /* of what is played now */
@@ -111,6 +111,7 @@ static void record_all(Run *run)
     programs->outputs = record(run, f->outputs);
     programs->poses = record(run, f->poses);
     programs->inverse = record(run, f->inverse);
+    programs->energy = record(run, f->energy);
     if (run->reacts)
         programs->wrenches = record(run, f->wrenches);
     if (f->model->tuning)
@@ -127,6 +128,8 @@ static void record_all(Run *run)
     programs->torque = record(run, &f->wheels->torque);
     if (f->model->powertrain)
         programs->drive = record(run, &f->wheels->drive);
+    if (f->model->powertrain)
+        programs->shift = record(run, &f->wheels->shift);
 }
 
 Run *run_new(Pool *pool, const Formulation *f, const gic_road *road)
@@ -160,6 +163,8 @@ Run *run_new(Pool *pool, const Formulation *f, const gic_road *road)
                  .out = rows(pool, model->output_components),
                  .pose = rows(pool, 7 * bodies),
                  .tau = rows(pool, plan->unknowns),
+                 .energy = rows(pool, 3),
+                 .choice = rows(pool, model->powertrain ? 2 * model->powertrain->forward : 0),
                  .settled = pool_alloc(pool, ((size_t)plan->motion_size + 1) * sizeof(double))};
     struct RunPrograms *programs = run->programs = pool_alloc(pool, sizeof *programs);
     programs->arrays = PLAY_KNOWN + 2 * f->known_most;
@@ -232,6 +237,8 @@ static void bind_whole(Run *run)
     bind(run, PLAY_out, run->out);
     bind(run, PLAY_pose, run->pose);
     bind(run, PLAY_tau, run->tau);
+    bind(run, PLAY_energy, run->energy);
+    bind(run, PLAY_choice, run->choice);
     bind(run, PLAY_lambda, run->lambda);
     bind(run, PLAY_link, run->link);
     bind(run, PLAY_DERIVED, run->derived);
@@ -445,6 +452,7 @@ static void turn_wheels(Run *run)
         bind(run, PLAY_watch, run->watch);
         bind(run, PLAY_gear, gear);
         run_play(run, run->programs->drive, 0, "powertrain");
+        run_play(run, run->programs->shift, 0, "choice of gears");
     }
     for (int w = 0; w < run->model->wheels; ++w)
         if (narrowing_wheel_image(run->formulation->narrowing, w))
@@ -547,6 +555,7 @@ void run_evaluate(Run *run)
     }
     run_play(run, run->programs->outputs, 0, "outputs");
     run_play(run, run->programs->poses, 0, "poses");
+    run_play(run, run->programs->energy, 0, "energy");
 }
 
 void run_inverse(Run *run, Values *acc)

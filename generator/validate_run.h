@@ -20,7 +20,8 @@ typedef struct Run {
     Values time;
 
     /* What blocks find: Plan says where; rate as y. */
-    Values *e, *m, *n, *start, *lambda, *link, *grip, *watch, *torque, *rate, *out, *pose, *tau, *derived;
+    Values *e, *m, *n, *start, *lambda, *link, *grip, *watch, *torque, *rate, *out, *pose, *tau, *derived, *choice,
+        *energy;
     double *settled;             /* of m, NAN: in memory */
     Values residual;             /* largest of all subsets */
     const char *refused[STATES]; /* status, NULL: all went well */
