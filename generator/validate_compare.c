@@ -488,6 +488,27 @@ static void find_push(Comparison *c)
             c->watts += fabs(world->rolling[i].power);
 }
 
+/* Accelerations as the self-test has them: of the base in its own frame, less gravity. */
+static void compare_unknowns(Comparison *c)
+{
+    const Run *run = c->v.run;
+    const Plan *plan = run->plan;
+    const int twist = 7 + plan->free_coordinates;
+    double own[3], world[3];
+    for (int i = 0; c->v.model->free_base && i < 3; ++i)
+        world[i] = run->rate[twist + i][c->k] - c->v.model->gravity[i];
+    if (c->v.model->free_base)
+        apply3_transposed(c->world->A[BODY_BASE], world, own);
+    for (int i = 0; i < plan->unknowns; ++i) {
+        double right = 0;
+        if (c->v.model->free_base && i < 6)
+            right = i < 3 ? run->rate[twist + 3 + i][c->k] : own[i - 3];
+        for (int j = 0; j < c->v.model->coordinates; ++j)
+            right = plan->coordinate_unknown[j] == i ? c->world->xdd[j] : right;
+        compare(c, KIND_ENERGY, unknown_name(c, i), run->acc[i][c->k] - right, fabs(right) + c->swing);
+    }
+}
+
 /* Growth of kinetic and potential energy, and the power of all else: both are that of dampers, tires and drives. drive:
  * forces of drives [coordinates] */
 static void compare_energy(Comparison *c, const double *drive)
@@ -501,6 +522,7 @@ static void compare_energy(Comparison *c, const double *drive)
         }
     for (int i = 0; i < 2; ++i)
         compare(c, KIND_ENERGY, i ? "power" : "growth", run->energy[i][c->k] - right, scale);
+    compare_unknowns(c);
 }
 
 /* What a change of gear follows. */

@@ -35,7 +35,7 @@ struct RunPrograms {
     Values *q;      /* poses of all bodies, 7 a body */
     Values *own;    /* of a subset's bodies */
     Values *design; /* the same at the design */
-    Values *x, *rate, *at, *acc, *hub, *force;
+    Values *x, *rate, *at, *hub, *force;
     Values turn[3], ahead, step, rest;
 };
 
@@ -164,6 +164,7 @@ Run *run_new(Pool *pool, const Formulation *f, const gic_road *road)
                  .pose = rows(pool, 7 * bodies),
                  .tau = rows(pool, plan->unknowns),
                  .energy = rows(pool, 3),
+                 .acc = rows(pool, plan->unknowns),
                  .choice = rows(pool, model->powertrain ? 2 * model->powertrain->forward : 0),
                  .settled = pool_alloc(pool, ((size_t)plan->motion_size + 1) * sizeof(double))};
     struct RunPrograms *programs = run->programs = pool_alloc(pool, sizeof *programs);
@@ -175,7 +176,6 @@ Run *run_new(Pool *pool, const Formulation *f, const gic_road *road)
     programs->x = rows(pool, f->dependence_most);
     programs->rate = rows(pool, f->dependence_most);
     programs->at = rows(pool, model->coordinates);
-    programs->acc = rows(pool, plan->unknowns);
     programs->hub = rows(pool, HUB_NUMBERS);
     programs->force = rows(pool, TIRE_FORCES);
     gic_table *table = pool_alloc(pool, ((size_t)model->tables + 1) * sizeof *table);
@@ -233,7 +233,7 @@ static void bind_whole(Run *run)
     bind(run, PLAY_p, run->p);
     bind(run, PLAY_port, run->port);
     bind(run, PLAY_rate, run->rate);
-    bind(run, PLAY_acc, programs->acc);
+    bind(run, PLAY_acc, run->acc);
     bind(run, PLAY_out, run->out);
     bind(run, PLAY_pose, run->pose);
     bind(run, PLAY_tau, run->tau);

@@ -20,7 +20,7 @@ typedef struct Run {
     Values time;
 
     /* What blocks find: Plan says where; rate as y. */
-    Values *e, *m, *n, *start, *lambda, *link, *grip, *watch, *torque, *rate, *out, *pose, *tau, *derived, *choice,
+    Values *e, *m, *n, *start, *lambda, *link, *grip, *watch, *torque, *rate, *out, *pose, *tau, *derived, *choice, *acc,
         *energy;
     double *settled;             /* of m, NAN: in memory */
     Values residual;             /* largest of all subsets */

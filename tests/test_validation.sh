@@ -4,7 +4,8 @@
 # that are planted into formulas, and into what blocks store, are each found. Then there is a message and no file.
 #
 # A store is planted too large by a thousandth and that of its unit. Not asked for are stores that no other block reads:
-# inertia[] and motion[] that only a free base or an output would need, and torques that a powertrain replaces.
+# inertia[] and motion[] that only a free base or an output would need, torques that a powertrain replaces, and the sum that
+# the power balance is relative to.
 planted=$1
 gicrun=$2
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -65,8 +66,8 @@ found 'lanes:dynamics:rate[13]' --lanes 4 "$models/hmmwv.veh"
 sound --lanes 4 "$models/hmmwv.veh"
 
 # stores of all blocks; every reaction
-all_found all ':inertia' "$models/quarter_car.veh"
-all_found all ':(solve|poses|outputs):' --solve augmented "$models/hmmwv14.veh"
+all_found all ':inertia|energy.2' "$models/quarter_car.veh"
+all_found all ':(solve|poses|outputs):|energy.2' --solve augmented "$models/hmmwv14.veh"
 cp -r "$models" "$work/models"
 printf 'gicgen: 1\nmodel: tires\ninclude: hmmwv_tires.veh\noutputs: {of_ball: {type: reaction, joint: ball_f_l}}\n' \
     >"$work/models/tires.veh"
