@@ -179,6 +179,8 @@ static void compare_column(Comparison *c)
         return;
     if (c->scene && !c->scene->refused[c->k])
         compare_scene(c);
+    else if (c->scene && c->index == 0)
+        compare(c, KIND_SCENE, c->scene->where[c->k], 1, 1);
 }
 
 /* A wavy road for models that are looked at without a scene, less than dry. */
@@ -225,9 +227,22 @@ static void compare_corrections(void *context, int subset, Values size[3])
         }
 }
 
+/* Coordinates that never move in a scene: driven ones whose inputs stand still, and what is odd where both sides are
+ * alike. */
+static void find_held(const Comparison *c, bool *held)
+{
+    const Model *model = c->v.model;
+    for (int i = 0; i < model->coordinates; ++i) {
+        const bool odd = c->v.mirror && c->v.mirror->coordinate[i] == i && c->v.mirror->sign[i] < 0;
+        held[i] = odd || (model->coordinate[i].driven && c->v.facts && c->v.facts->fixed[model->coordinate[i].input]);
+    }
+}
+
 static void compare_columns(Comparison *c, int first)
 {
     Run *run = c->v.run;
+    bool held[c->v.model->coordinates + 1];
+    find_held(c, held);
     for (int k = 0; k < STATES; ++k)
         state_place(&c->v, first + k, k);
     run_evaluate(run);
@@ -247,9 +262,9 @@ static void compare_columns(Comparison *c, int first)
         compare_column(c);
     }
     if (c->self_test)
-        run_follow(run, compare_corrections, c);
+        run_follow(run, held, compare_corrections, c);
     if (c->self_test && c->scene)
-        run_follow(c->scene, compare_corrections, c);
+        run_follow(c->scene, held, compare_corrections, c);
 }
 
 /* ---- other values of geometric parameters

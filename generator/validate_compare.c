@@ -709,9 +709,11 @@ static void compare_inverse(Comparison *c)
         compare(c, KIND_INVERSE, unknown_name(c, i), run->tau[i][c->k] - tau[i], scale[i] + 1e-6 * c->push);
 }
 
-/* Are forces and rates of fast states numbers? Some formulas have none beyond what they are meant for. */
+/* Are forces and rates of fast states numbers? Some formulas have none beyond what they are meant for, and a wheel that
+ * lies flat on the road has no direction in which it would roll. */
 static bool forces_exist(Comparison *c)
 {
+    const double flat = 1.57;
     const World *world = c->world;
     double sum = 0;
     if (world_forces(c->world) != GIC_OK)
@@ -723,6 +725,9 @@ static bool forces_exist(Comparison *c)
         sum += world->along[i];
     for (int i = 0; i < c->v.model->fast_states; ++i)
         sum += world->fast_rate[i];
+    for (int i = 0; i < c->v.model->wheels; ++i)
+        if (c->v.model->wheel[i].tire >= 0 && !(fabs(world->rolling[i].camber) < flat))
+            return false;
     return isfinite(sum);
 }
 

@@ -569,18 +569,19 @@ void run_inverse(Run *run, Values *acc)
  */
 
 /* `change` of all coordinates, in shares of what is followed in one piece. */
-static void make_changes(Run *run, Values *change)
+static void make_changes(Run *run, const bool *held, Values *change)
 {
     const double share = 0.01;
     Random random = {.state = 1};
     for (int c = 0; c < run->model->coordinates; ++c)
         for (int k = 0; k < STATES; ++k) {
-            change[c][k] = share * coordinate_piece(run->formulation, c) * random_uniform(&random, -1, 1);
+            const double part = share * random_uniform(&random, -1, 1);
+            change[c][k] = held[c] ? 0 : part * coordinate_piece(run->formulation, c);
             run->programs->at[c][k] = run->x[c][k] + change[c][k];
         }
 }
 
-void run_follow(Run *run, void (*found)(void *context, int subset, Values size[3]), void *context)
+void run_follow(Run *run, const bool *held, void (*found)(void *context, int subset, Values size[3]), void *context)
 {
     const Plan *plan = run->plan;
     const Sequence *sequence = plan->sequence;
@@ -588,7 +589,7 @@ void run_follow(Run *run, void (*found)(void *context, int subset, Values size[3
     Values *old = rows(run->pool, plan->start_size), *change = rows(run->pool, run->model->coordinates);
     Values *own = rows(run->pool, run->formulation->dependence_most), size[3] = {{0}};
     memcpy(old, run->start, (size_t)plan->start_size * sizeof *old);
-    make_changes(run, change);
+    make_changes(run, held, change);
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
         if (subset->class < 0 || narrowing_image(run->formulation->narrowing, s))

@@ -20,8 +20,8 @@ typedef struct Run {
     Values time;
 
     /* What blocks find: Plan says where; rate as y. */
-    Values *e, *m, *n, *start, *lambda, *link, *grip, *watch, *torque, *rate, *out, *pose, *tau, *derived, *choice, *acc,
-        *energy;
+    Values *e, *m, *n, *start, *lambda, *link, *grip, *watch, *torque, *rate, *out, *pose, *tau, *derived, *choice,
+        *acc, *energy;
     double *settled;             /* of m, NAN: in memory */
     Values residual;             /* largest of all subsets */
     const char *refused[STATES]; /* status, NULL: all went well */
@@ -40,9 +40,9 @@ void run_evaluate(Run *run);
 /* tau[] for accelerations acc [unknowns], after run_evaluate(). */
 void run_inverse(Run *run, Values *acc);
 /* Prediction and corrections with old factors, as code takes them from the configuration that was evaluated to one
- * nearby, after run_evaluate(), which has to be called again after it: calls `found` for every subset that follows with
- * the squares of the size of the move and of two corrections. */
-void run_follow(Run *run, void (*found)(void *context, int subset, Values size[3]), void *context);
+ * nearby (coordinates that are held [coordinates] stay), after run_evaluate(), which has to be called again after it:
+ * calls `found` for every subset that follows with the squares of the size of the move and of two corrections. */
+void run_follow(Run *run, const bool *held, void (*found)(void *context, int subset, Values size[3]), void *context);
 /* A number of a body's motion: MOTION_C and so on, of a state. */
 double run_motion(const Run *run, int body, int number, int state);
 

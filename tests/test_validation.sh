@@ -9,6 +9,7 @@
 planted=$1
 gicrun=$2
 root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=tests/checking.sh
 . "$root/tests/checking.sh"
 models=$root/models
 code=$work/code.c
@@ -53,8 +54,8 @@ all_found() {
 # formulas: a sign in a row, a quadratic-velocity term, a damper that acts on its length, the image of a point that is only
 # one of a direction (hinges a unit apart)
 for what in row bias force; do
-    found $what "$models/hmmwv.veh"
-    found $what --lanes 4 "$models/hmmwv.veh"
+    found "$what" "$models/hmmwv.veh"
+    found "$what" --lanes 4 "$models/hmmwv.veh"
 done
 sound "$models/hmmwv.veh"
 found image "$root/tests/validation/pendulums.veh"
