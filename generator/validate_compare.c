@@ -514,7 +514,7 @@ static void compare_unknowns(Comparison *c)
 static void compare_energy(Comparison *c, const double *drive)
 {
     const Run *run = c->v.run;
-    double right = c->world->power, scale = c->watts + fabs(run->energy[2][c->k]) + 1e-6;
+    double right = c->world->power, scale = c->watts + fabs(run->energy[2][c->k]) + 1e-3 * (1 + c->push);
     for (int j = 0; j < c->v.model->coordinates; ++j)
         if (c->v.model->coordinate[j].driven) {
             right += drive[j] * c->world->xd[j];
