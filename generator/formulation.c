@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * All formulas of a model, and the numbers that go with them: what emission turns into text and what the tape runs. */
-#include "gicgen.h"
+#include "plant.h"
 
 #include <string.h>
 
@@ -65,6 +65,7 @@ const Formulation *formulate(Pool *pool, const Model *model, const Sequence *seq
         f->known_most = subset->knowns > f->known_most ? subset->knowns : f->known_most;
         f->dependence_most = subset->deps > f->dependence_most ? subset->deps : f->dependence_most;
     }
+    plant_stores(f, "all");
     return f;
 }
 

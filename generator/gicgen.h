@@ -382,6 +382,7 @@ typedef struct Formulation {
     const Wheels *wheels;            /* NULL: none has a tire */
     int known_most, dependence_most; /* knowns and deps of a subset, at most */
     const Narrowing *narrowing;      /* for one scene; NULL: for all */
+    const struct Formulation *general; /* for one scene: the same model's for all; NULL: for all */
 } Formulation;
 
 /* From an assembled model. Models that can't be formulated end in diag_fail. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Applied forces (FORMAT.md sections 7 and 8), body by body and as generalised forces. */
-#include "gicgen.h"
+#include "plant.h"
 
 #include <string.h>
 
@@ -134,7 +134,7 @@ static Ex spring_damper(Whole *whole, Loads *loads, const Force *force, Ex value
     Dag *dag = whole->dag;
     Ex free = whole_law(whole, force->free, NULL), extension = ex_sub(dag, value, free);
     Ex elastic = elastic_force(whole, loads, force, extension, rate);
-    Ex viscous = ex_mul(dag, whole_law(whole, force->damping, NULL), rate);
+    Ex viscous = ex_mul(dag, whole_law(whole, force->damping, NULL), planted("force") ? value : rate);
     set_terms(whole, loads, elastic, viscous);
     if (whole->sized && force->table < 0) { /* what the extension is the difference of */
         Ex length = ex_add(dag, magnitude(dag, value), magnitude(dag, free));

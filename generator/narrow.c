@@ -3,6 +3,7 @@
  * into the blocks, and what generated code must check is written down. */
 #include "narrow_work.h"
 
+#include "plant.h"
 #include "powertrain.h"
 
 #include <math.h>
@@ -647,6 +648,7 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
     n->out = narrow_copy(n->pool, n->general, 1, sizeof *n->out);
     n->out->plan = n->plan;
     n->out->narrowing = n->narrowing;
+    n->out->general = n->general;
     narrow_subsets(n);
     give_whole(n);
     give_subsets(n);
@@ -657,6 +659,7 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
     narrow_rest(n);
     drop_inertia(n);
     find_uses(n->pool, n->out, n->narrowing);
+    plant_stores(n->out, "scene");
     return n->out;
 }
 
@@ -673,7 +676,7 @@ const Formulation *formulate_narrow(Pool *pool, const Model *model, const Sequen
     if (n.mirror)
         hold_odd(&n);
     const Formulation *out = narrow(&n, sequence, solve, recovery);
-    const char *uneven = !n.mirror ? NULL : out ? narrow_uneven(&n) : narrow_unpaired(&n);
+    const char *uneven = !n.mirror || planted("mirror") ? NULL : out ? narrow_uneven(&n) : narrow_unpaired(&n);
     if (!uneven)
         return out;
     n.mirror = NULL;

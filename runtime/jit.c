@@ -4,6 +4,8 @@
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #include "gicrun.h"
 
+#include "../generator/validate.h"
+
 #include <errno.h>
 #include <libtcc.h>
 #include <math.h>
@@ -56,6 +58,7 @@ static const char *jit_text(Pool *pool, const Model *model, const EngineOptions 
     const Sequence *sequence = sequence_find(pool, model);
     const Formulation *formulation = formulate_narrow(pool, model_assemble(pool, model, sequence), sequence,
                                                       options->solve, options->recovery, options->facts);
+    formulation_validate(pool, formulation, options->validation);
     generate(pool, formulation, &style_direct, NULL, NULL, &c, &h);
     template_expand(pool, &text, NULL, "jit.c.in", model->name, NULL, insert, &sources);
     return text.s;

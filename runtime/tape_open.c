@@ -3,6 +3,7 @@
 #include "tape_engine.h"
 
 #include "../generator/powertrain.h"
+#include "../generator/validate.h"
 
 #include "../templates/bounds.c.in"
 
@@ -160,6 +161,7 @@ TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve, Recovery reco
 {
     const Sequence *sequence = sequence_find(pool, model);
     const Formulation *f = formulate(pool, model_assemble(pool, model, sequence), sequence, solve, recovery);
+    formulation_validate(pool, f, NULL);
     TapeEngine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (TapeEngine){.formulation = f,
                            .code = descriptor_new(pool, f->model, f->sequence),
