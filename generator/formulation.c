@@ -132,7 +132,7 @@ void body_design(const Formulation *f, int anchor, int body, double q[7])
             q[i] = ex_value(f->model->tuning->dag, c[i], 0);
         return;
     }
-    sampling_design(f->sampling, f->model, anchor, body, q);
+    sampling_design(f->sampling, f->model, f->plan->origin, anchor, body, q);
 }
 
 const char *subset_title(Pool *pool, const Model *model, const Subset *subset)

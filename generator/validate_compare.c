@@ -561,7 +561,7 @@ static void compare_motion(Comparison *c)
     find_push(c);
     find_balance(c, tau, scale, drive);
     for (int i = 0; i < n; ++i)
-        compare(c, KIND_MOTION, unknown_name(c, i), tau[i], scale[i] + 1e-6 * c->push);
+        compare(c, KIND_MOTION, unknown_name(c, i), tau[i], scale[i] + 1e-3 * c->push);
     for (int j = 0; j < c->v.model->coordinates; ++j)
         if (c->v.model->coordinate[j].driven)
             c->world->multiplier[c->world->tie[c->world->coordinate_tie[j]].first] = drive[j] / c->world->dual[j];
@@ -706,7 +706,7 @@ static void compare_inverse(Comparison *c)
     world_forces(world);
     find_balance(c, tau, scale, drive);
     for (int i = 0; i < n; ++i)
-        compare(c, KIND_INVERSE, unknown_name(c, i), run->tau[i][c->k] - tau[i], scale[i] + 1e-6 * c->push);
+        compare(c, KIND_INVERSE, unknown_name(c, i), run->tau[i][c->k] - tau[i], scale[i] + 1e-3 * c->push);
 }
 
 /* Are forces and rates of fast states numbers? Some formulas have none beyond what they are meant for, and a wheel that
