@@ -6238,7 +6238,7 @@ static int hmmwv_vehicle_any_shift(void *instance)
         choice[3] = R(261.79938779914943);
         choice[5] = R(125.66370614359172);
     }
-    wanted = hmmwv_vehicle_above(choice[0], R(0.5)) ? 1 : hmmwv_vehicle_above(-choice[0], R(0.5)) && HMMWV_VEHICLE_REVERSE ? -1 : 0;
+    wanted = hmmwv_vehicle_above(choice[0], R(0.5)) ? 1 : hmmwv_vehicle_above(-choice[0], R(0.5)) && HMMWV_VEHICLE_REVERSE != 0 ? -1 : 0;
     if (wanted != (next > 0) - (next < 0))
         next = wanted;
     else if (next > 0 && hmmwv_vehicle_reached(*age, latency)) {
