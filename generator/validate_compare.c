@@ -479,8 +479,13 @@ static void find_push(Comparison *c)
         for (int i = 0; i < 3; ++i)
             c->watts += fabs(f[i] * world->qd[b][i]) + fabs(f[3 + i] * world->omega[b][i]);
     }
-    for (int i = 0; i < c->v.model->forces; ++i)
+    for (int i = 0; i < c->v.model->forces; ++i) {
+        const Force *force = &c->v.model->force[i];
         c->push = fmax(c->push, fabs(world->element[i]));
+        /* a spring at its free length has the rounding of that */
+        if (force_is_spring(force) && force->table < 0)
+            c->push = fmax(c->push, fabs(world_law(world, force->stiffness, NULL)) * world->size);
+    }
     for (int i = 0; i < c->v.model->coordinates; ++i)
         c->watts += fabs(world->along[i] * world->xd[i]);
     for (int i = 0; i < c->v.model->wheels; ++i)
