@@ -201,7 +201,7 @@ static void make_motions(Work *w)
 
 const Motion *subset_motion(const Work *w, const Motion *unknown, End end)
 {
-    return end.unknown >= 0                  ? &unknown[end.unknown]
+    return end.unknown >= 0                               ? &unknown[end.unknown]
            : end.known >= 0 && (w->plain || !w->anchored) ? &w->known[end.known]
                                                           : &w->base;
 }

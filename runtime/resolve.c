@@ -125,8 +125,8 @@ struct Probe {
     double *speed, *gain; /* m/s; m/s^2, how much faster they became */
 };
 
-/* Each point once: code that checks itself looks the same ones up again. Where there is no memory for it a point is left
- * out. */
+/* Each point once: code that checks itself looks the same ones up again. Where there is no memory for it a point is
+ * left out. */
 static void seen_add(Seen *seen, double x, double y)
 {
     for (int i = 0; i < seen->count; ++i)
