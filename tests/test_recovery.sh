@@ -78,7 +78,8 @@ for angles in pendulum:angle trailing_arm:bar_f_l,bar_f_r,bar_r_l,bar_r_r andrew
     done
 done
 
-# One recovery after the other along a path through the ranges: the largest residual of the constraints.
+# One recovery after the other along a path through the ranges: the largest sum of the residuals of a subset's constraints,
+# which may be eight times what each pose may be off (FORMAT.md section 14).
 "$gicgen" --recovery newton "$models/five_link.veh" -o "$work/five_link.c"
 cat >"$work/path.c" <<'END'
 #include "five_link.c"
@@ -88,15 +89,15 @@ cat >"$work/path.c" <<'END'
 int main(void)
 {
     static five_link car;
-    gic_real state[FIVE_LINK_STATES], rate[FIVE_LINK_STATES], worst = 0, one;
+    gic_real state[FIVE_LINK_STATES], rate[FIVE_LINK_STATES], worst = 0, one[2];
     int status = five_link_setup(&car);
     for (int k = 0; k < 400 && status == GIC_OK; ++k) {
         memcpy(state, car.state, sizeof state);
         for (int i = FIVE_LINK_STATE_SPRING_F_L; i <= FIVE_LINK_STATE_RACK; ++i)
             state[i] += 0.02 * sin(0.1 * k + i);
         status = five_link_rhs(&car, 0, state, rate);
-        one = five_link_residual(&car);
-        worst = one > worst ? one : worst;
+        five_link_residual(&car, one);
+        worst = one[0] > worst ? one[0] : worst;
     }
     printf("%.3g\n", status == GIC_OK ? worst : 1.0);
     return 0;
@@ -196,7 +197,7 @@ done
 nearest=$(residual 0.0)
 for error in 1e-14 1e-9 1e-6 1e-3; do
     worst=$(residual $error)
-    same "poses within $error" yes "$(awk -v x="$worst" -v e=$error 'BEGIN { print (x <= e ? "yes" : x) }')"
+    same "poses within $error" yes "$(awk -v x="$worst" -v e=$error 'BEGIN { print (x != "" && x <= 8 * e ? "yes" : x) }')"
 done
 same "poses off by more than rounding" yes \
     "$(awk -v x="$worst" -v y="$nearest" 'BEGIN { print (x > 1000 * y ? "yes" : x " " y) }')"
