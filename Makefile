@@ -39,6 +39,9 @@ runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 # what gicgen reads scenes with
 scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_outputs scene_rest scene_rig scene_road \
     scene_road_file driver spline csv descriptor process gic_runtime gic_road)
+# what gicgen checks its blocks with
+checking_objects := $(patsubst %,$(BUILD)/runtime/%.o,world applied rolling tires driveline interpreted_outputs accelerate \
+    equations topology dense)
 
 .PHONY: all test test-programs list-tests stress demo bench generated debug fuzz deps install uninstall clean
 .DELETE_ON_ERROR:
@@ -46,7 +49,7 @@ scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_fact
 
 all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench
 
-$(BUILD)/gicgen: $(BUILD)/generator/main.o $(scene_objects) $(generator_objects)
+$(BUILD)/gicgen: $(BUILD)/generator/main.o $(scene_objects) $(checking_objects) $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lm
 
 $(BUILD)/gicrun: $(BUILD)/runtime/gicrun.o $(runtime_objects) $(generator_objects)
@@ -56,6 +59,22 @@ $(BUILD)/gicsweep: $(sweep:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_obje
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/gicbench: $(BUILD)/runtime/gicbench.o $(benchmark:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_objects)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
+
+# gicgen and gicrun with errors that can be planted, to see that their validation finds them: generator/plant.h
+planting := $(patsubst %,generator/%.o,plant formulation lanes narrow rows motion loads pack_vectors)
+$(BUILD)/planted/%.o: %.c
+	@mkdir -p $(@D)
+	$(COMPILE) -DGICGEN_PLANT -c -o $@ $<
+
+planted_objects := $(filter-out $(planting:%=$(BUILD)/%),$(generator_objects)) $(planting:%=$(BUILD)/planted/%)
+
+$(BUILD)/check/gicgen_planted: $(BUILD)/generator/main.o $(scene_objects) $(checking_objects) $(planted_objects)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lm
+
+$(BUILD)/check/gicrun_planted: $(BUILD)/runtime/gicrun.o $(runtime_objects) $(planted_objects)
+	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 # the page says how the interpreted engines were compiled
@@ -86,9 +105,11 @@ tested := $(BUILD)/check/tested.a
 reference := $(patsubst %.c,$(BUILD)/%.o,$(filter-out tests/reference/main.c,$(wildcard tests/reference/*.c)))
 programs := $(basename $(notdir $(wildcard tests/*.c)))
 attacking := $(basename $(notdir $(wildcard tests/stress/*.c)))
+planted := gicrun_wrong_pose gicrun_wrong_velocity gicrun_wrong_acceleration gicrun_wrong_rate
 variants := test_runtime_float test_runtime_fast test_dual_float test_road_float test_road_fast
 
-test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) $(attacking) reference reference_long)
+test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) $(attacking) $(planted) reference reference_long \
+    gicgen_planted gicrun_planted)
 
 # an archive, for a test takes what it tests and no more
 $(tested): $(generator_objects) $(runtime_objects)
@@ -159,6 +180,19 @@ $(BUILD)/check/test_road_float $(BUILD)/check/test_road_fast: tests/test_road.c 
 $(addprefix $(BUILD)/check/,$(variants)):
 	@mkdir -p $(@D)
 	$(COMPILE) $(VARIANT) -MF $@.d -o $@ $(filter %.c,$^) $(LDFLAGS) -lcmocka -lm
+
+# gicrun with errors planted in what the engines tcc and tape compute, which checks must find: in a number of the motion of
+# every subset's first body (pose 0 to 11, accelerations from 18, unit velocities from 24), in a rate
+
+planting := jit tape_recover tape_engine
+$(BUILD)/check/gicrun_wrong_pose: PLANT := -DGIC_PLANT_MOTION=1
+$(BUILD)/check/gicrun_wrong_velocity: PLANT := -DGIC_PLANT_MOTION=24
+$(BUILD)/check/gicrun_wrong_acceleration: PLANT := -DGIC_PLANT_MOTION=18
+$(BUILD)/check/gicrun_wrong_rate: PLANT := -DGIC_PLANT_RATE=1
+$(planted:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/runtime/gicrun.o $(tested) $(planting:%=runtime/%.c)
+	@mkdir -p $@.o
+	for file in $(planting); do $(COMPILE) $(PLANT) -c -o $@.o/$$file.o runtime/$$file.c || exit 1; done
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/runtime/gicrun.o $(planting:%=$@.o/%.o) $(tested) $(LIBRARIES)
 
 # ---- attacks of `make stress`: tests/stress/*.c are tools of tests/stress/*.sh
 

@@ -51,7 +51,7 @@
  */
 #include "andrews.h"
 
-#if ANDREWS_H != 0xc92a05e1
+#if ANDREWS_H != 0x57ae4b93
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -141,6 +141,27 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
+ * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
+ * their terms. They are rounding, in single precision near a singular configuration too. */
+#ifdef GIC_FLOAT
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-5)
+#else
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-10), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-9) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-10)
+#endif
+
+/* Evaluations between two that are checked. */
+#define GIC_CHECK_EVERY 200
+
+/* By how much an error that tests plant is off. */
+#ifndef GIC_PLANT_BY
+#define GIC_PLANT_BY R(1e-3)
+#endif
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct andrews_links {
@@ -197,24 +218,43 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
         const gic_real t17 = -t15;
         inertia[15] = t17;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real andrews_residual_K1(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void andrews_residual_K1(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
         const gic_real t1 = x[0] - R(-0.06171389001427645);
-        const gic_real t2 = GIC_COS(t1) * (R(0.061674723509842204) * motion[7] + R(0.9980963022073495) * motion[6]) - GIC_SIN(t1) * (R(0.061674723509842204) * motion[4] + R(0.9980963022073495) * motion[3]);
-        const gic_real t3 = GIC_MAX(R(0.0), GIC_FABS(t2));
-        worst = t3;
+        const gic_real t2 = GIC_COS(t1);
+        const gic_real t3 = R(0.061674723509842204) * motion[7] + R(0.9980963022073495) * motion[6];
+        const gic_real t4 = GIC_SIN(t1);
+        const gic_real t5 = R(0.061674723509842204) * motion[4] + R(0.9980963022073495) * motion[3];
+        const gic_real t6 = t4 * t3 + t2 * t5;
+        const gic_real t7 = GIC_FABS(t2 * t3 - t4 * t5) + (GIC_FABS(t6) - t6);
+        const gic_real t8 = t7 + GIC_FABS(motion[6] * motion[6] + motion[3] * motion[3] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(motion[7] * motion[7] + motion[4] * motion[4] - R(1.0));
+        const gic_real t10 = t9 + GIC_FABS(motion[6] * motion[7] + motion[3] * motion[4]) + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - R(1.0));
+        const gic_real t11 = GIC_FABS(motion[14]);
+        const gic_real t12 = (R(1.0) + GIC_FABS(-t6)) * GIC_FABS(rate[0]);
+        const gic_real t13 = t5 * motion[14];
+        const gic_real t14 = t3 * motion[14];
+        const gic_real t15 = rate[0] * (t4 * t13 - t2 * t14);
+        const gic_real t16 = t4 * (motion[14] * t13) - t2 * (motion[14] * t14) - (t15 + t15);
+        const gic_real t17 = GIC_FABS(t16) / (R(1e-30) + (t11 * t11 + t12 * t12));
+        const gic_real t18 = GIC_FABS(motion[14] - rate[0]) / (R(1e-30) + (t11 + t12)) + t17;
+        worst[0] = t10;
+        worst[1] = t18;
     }
-    return worst;
 }
 
 static const gic_real andrews_k_K2_K3[1][1] = {
@@ -602,6 +642,9 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             start[24] = R(0.0);
             start[25] = R(0.0);
         }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+        motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
@@ -620,24 +663,80 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
     return GIC_ERROR_NEWTON;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real andrews_residual_K2_K3(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void andrews_residual_K2_K3(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* K1 */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(GIC_MAX(R(0.0), GIC_FABS((motion[0] - R(0.006999999999999999) * m0[3]) * R(28.571428571428562))), GIC_FABS((motion[1] - R(0.006999999999999999) * m0[6]) * R(28.571428571428562)));
-        const gic_real t2 = motion[1] + R(-0.027999999999999997) * motion[6] - (R(0.03273) + R(-0.03500000000000001) * motion[37]);
-        const gic_real t3 = motion[0] + R(-0.027999999999999997) * motion[3] - (R(-0.03635) + R(-0.03500000000000001) * motion[34]);
-        const gic_real t4 = t2 * (R(-0.43971364724701895) * motion[37] + R(0.898138023036952) * motion[36]) + t3 * (R(-0.43971364724701895) * motion[34] + R(0.898138023036952) * motion[33]);
-        const gic_real t5 = GIC_MAX(GIC_MAX(GIC_MAX(GIC_MAX(t1, R(0.0)), R(0.0)), R(0.0)), GIC_FABS(t4 * R(28.57142857142856)));
-        const gic_real t6 = (R(0.8981380230369522) * motion[37] + R(0.43971364724701906) * motion[36]) * t2 + (R(0.8981380230369522) * motion[34] + R(0.43971364724701906) * motion[33]) * t3;
-        const gic_real t7 = GIC_MAX(t5, GIC_FABS(t6 * R(28.57142857142855)));
-        worst = t7;
+        const gic_real t1 = R(0.006999999999999999) * m0[3];
+        const gic_real t2 = R(0.006999999999999999) * m0[6];
+        const gic_real t3 = GIC_FABS((motion[0] - t1) * R(28.571428571428562)) + GIC_FABS((motion[1] - t2) * R(28.571428571428562));
+        const gic_real t4 = R(-0.027999999999999997) * motion[6];
+        const gic_real t5 = R(-0.03500000000000001) * motion[37];
+        const gic_real t6 = motion[1] + t4 - (R(0.03273) + t5);
+        const gic_real t7 = R(-0.43971364724701895) * motion[37] + R(0.898138023036952) * motion[36];
+        const gic_real t8 = R(-0.027999999999999997) * motion[3];
+        const gic_real t9 = R(-0.03500000000000001) * motion[34];
+        const gic_real t10 = motion[0] + t8 - (R(-0.03635) + t9);
+        const gic_real t11 = R(-0.43971364724701895) * motion[34] + R(0.898138023036952) * motion[33];
+        const gic_real t12 = t3 + GIC_FABS((t6 * t7 + t10 * t11) * R(28.57142857142856));
+        const gic_real t13 = R(0.8981380230369522) * motion[37] + R(0.43971364724701906) * motion[36];
+        const gic_real t14 = R(0.8981380230369522) * motion[34] + R(0.43971364724701906) * motion[33];
+        const gic_real t15 = t12 + GIC_FABS((t13 * t6 + t14 * t10) * R(28.57142857142855));
+        const gic_real t16 = t15 + GIC_FABS(motion[6] * motion[6] + motion[3] * motion[3] - R(1.0));
+        const gic_real t17 = t16 + GIC_FABS(motion[7] * motion[7] + motion[4] * motion[4] - R(1.0));
+        const gic_real t18 = t17 + GIC_FABS(motion[6] * motion[7] + motion[3] * motion[4]) + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - R(1.0));
+        const gic_real t19 = t18 + GIC_FABS(motion[36] * motion[36] + motion[33] * motion[33] - R(1.0));
+        const gic_real t20 = t19 + GIC_FABS(motion[37] * motion[37] + motion[34] * motion[34] - R(1.0));
+        const gic_real t21 = t20 + GIC_FABS(motion[36] * motion[37] + motion[33] * motion[34]) + GIC_FABS(motion[33] * motion[37] - motion[34] * motion[36] - R(1.0));
+        const gic_real t22 = GIC_FABS(R(28.571428571428562) * (t2 + motion[27])) + GIC_FABS(R(28.571428571428562) * (motion[28] - t1));
+        const gic_real t23 = t5 * t11 - t9 * t7 + (t6 * t11 - t10 * t7);
+        const gic_real t24 = t23 * motion[56] + (t8 * t7 - t4 * t11) * motion[26];
+        const gic_real t25 = GIC_FABS(R(28.57142857142856) * (t24 + t11 * motion[27] + t7 * motion[28]));
+        const gic_real t26 = t14 * t5 - t13 * t9 + (t14 * t6 - t13 * t10);
+        const gic_real t27 = t26 * motion[56] + (t13 * t8 - t14 * t4) * motion[26];
+        const gic_real t28 = GIC_FABS(R(28.57142857142855) * (t27 + t14 * motion[27] + t13 * motion[28]));
+        const gic_real t29 = R(28.571428571428562) * (GIC_FABS(motion[27]) + GIC_FABS(motion[28])) + GIC_FABS(motion[26]);
+        const gic_real t30 = R(1.0) + (t29 + GIC_FABS(motion[56]));
+        const gic_real t31 = GIC_FABS(motion[14] - rate[0] * motion[26]) + GIC_FABS(R(28.571428571428562) * (motion[15] - rate[0] * motion[27]));
+        const gic_real t32 = t31 + GIC_FABS(R(28.571428571428562) * (motion[16] - rate[0] * motion[28])) + GIC_FABS(motion[44] - rate[0] * motion[56]);
+        const gic_real t33 = R(28.571428571428562) * (GIC_FABS(motion[15]) + GIC_FABS(motion[16]));
+        const gic_real t34 = GIC_FABS(motion[14]);
+        const gic_real t35 = GIC_FABS(motion[44]);
+        const gic_real t36 = t30 * GIC_FABS(rate[0]);
+        const gic_real t37 = (t22 + t25 + t28) / (t30 + R(1e-30)) + t32 / (R(1e-30) + (t33 + t34 + t35 + t36));
+        const gic_real t38 = GIC_FABS(R(28.571428571428562) * (m0[14] * (m0[14] * t1) + motion[21])) + GIC_FABS(R(28.571428571428562) * (m0[14] * (m0[14] * t2) + motion[22]));
+        const gic_real t39 = t8 * motion[14];
+        const gic_real t40 = t9 * motion[44];
+        const gic_real t41 = motion[16] + t39 - t40;
+        const gic_real t42 = t11 * motion[44];
+        const gic_real t43 = t5 * motion[44];
+        const gic_real t44 = t4 * motion[14];
+        const gic_real t45 = t43 + (motion[15] - t44);
+        const gic_real t46 = t7 * motion[44];
+        const gic_real t47 = t41 * t42 - t45 * t46;
+        const gic_real t48 = t6 * (t11 * motion[50] - motion[44] * t46) - t10 * (motion[44] * t42 + t7 * motion[50]);
+        const gic_real t49 = motion[22] + (t8 * motion[20] - motion[14] * t44) - (t9 * motion[50] - motion[44] * t43);
+        const gic_real t50 = motion[44] * t40 + t5 * motion[50] + (motion[21] - (motion[14] * t39 + t4 * motion[20]));
+        const gic_real t51 = t47 + t47 + (t48 + (t7 * t49 + t11 * t50));
+        const gic_real t52 = t14 * motion[44];
+        const gic_real t53 = t13 * motion[44];
+        const gic_real t54 = t52 * t41 - t53 * t45;
+        const gic_real t55 = t6 * (t14 * motion[50] - motion[44] * t53) - t10 * (motion[44] * t52 + t13 * motion[50]);
+        const gic_real t56 = t54 + t54 + (t55 + (t13 * t49 + t14 * t50));
+        const gic_real t57 = t38 + GIC_FABS(t51 * R(28.57142857142856)) + GIC_FABS(t56 * R(28.57142857142855));
+        const gic_real t58 = R(28.571428571428562) * (GIC_FABS(motion[21]) + GIC_FABS(motion[22])) + GIC_FABS(motion[20]);
+        const gic_real t59 = t33 * t33 + t34 * t34 + t58 + (t35 * t35 + GIC_FABS(motion[50]));
+        const gic_real t60 = GIC_FABS(m0[14]);
+        const gic_real t61 = t57 / (R(1e-30) + (t59 + t60 * t60 + t36 * t36));
+        const gic_real t62 = t37 + t61;
+        worst[0] = t21;
+        worst[1] = t62;
     }
-    return worst;
 }
 
 static const gic_real andrews_k_K5_K4[2][17] = {
@@ -1311,6 +1410,9 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             start[19] = R(0.0);
             start[25] = R(0.0);
         }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+        motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
@@ -1329,28 +1431,121 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
     return GIC_ERROR_NEWTON;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real andrews_residual_K5_K4(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void andrews_residual_K5_K4(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* K3 */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = (motion[30] - (R(-0.06934) + (k[2] * motion[4] + k[3] * motion[3]))) * R(24.999999999999996);
-        const gic_real t2 = (motion[31] - (R(-0.00227) + (k[2] * motion[7] + k[3] * motion[6]))) * R(24.999999999999996);
-        const gic_real t3 = GIC_MAX(GIC_MAX(GIC_MAX(R(0.0), GIC_FABS(t1)), GIC_FABS(t2)), GIC_FABS(motion[32] * R(24.999999999999996)));
-        const gic_real t4 = motion[38] * (k[4] * motion[7] + k[5] * motion[6]) + motion[35] * (k[4] * motion[4] + k[5] * motion[3]);
-        const gic_real t5 = motion[38] * (k[6] * motion[7] + k[7] * motion[6]) + motion[35] * (k[6] * motion[4] + k[7] * motion[3]);
-        const gic_real t6 = GIC_MAX(GIC_MAX(t3, GIC_FABS(t4 * k[15])), GIC_FABS(t5 * k[16]));
-        const gic_real t7 = motion[31] + (k[0] * motion[37] + k[1] * motion[36]) - (R(-0.03500000000000001) * m0[7] + R(0.03273));
-        const gic_real t8 = motion[30] + (k[0] * motion[34] + k[1] * motion[33]) - (R(-0.03500000000000001) * m0[4] + R(-0.03635));
-        const gic_real t9 = (R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6]) * t7 + (R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3]) * t8;
-        const gic_real t10 = (R(0.8981380230369522) * m0[7] + R(0.43971364724701906) * m0[6]) * t7 + (R(0.8981380230369522) * m0[4] + R(0.43971364724701906) * m0[3]) * t8;
-        const gic_real t11 = GIC_MAX(GIC_MAX(t6, GIC_FABS(t9 * R(24.99999999999999))), GIC_FABS(t10 * R(24.999999999999982)));
-        worst = t11;
+        const gic_real t1 = GIC_FABS(motion[41]) - motion[41];
+        const gic_real t2 = k[2] * motion[4] + k[3] * motion[3];
+        const gic_real t3 = k[2] * motion[7] + k[3] * motion[6];
+        const gic_real t4 = GIC_FABS((motion[30] - (R(-0.06934) + t2)) * R(24.999999999999996)) + GIC_FABS((motion[31] - (R(-0.00227) + t3)) * R(24.999999999999996));
+        const gic_real t5 = k[4] * motion[7] + k[5] * motion[6];
+        const gic_real t6 = k[4] * motion[4] + k[5] * motion[3];
+        const gic_real t7 = t4 + GIC_FABS(motion[32] * R(24.999999999999996)) + GIC_FABS((motion[38] * t5 + motion[35] * t6) * k[15]);
+        const gic_real t8 = k[6] * motion[7] + k[7] * motion[6];
+        const gic_real t9 = k[6] * motion[4] + k[7] * motion[3];
+        const gic_real t10 = t7 + t1 + GIC_FABS((motion[38] * t8 + motion[35] * t9) * k[16]);
+        const gic_real t11 = R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6];
+        const gic_real t12 = k[0] * motion[37] + k[1] * motion[36];
+        const gic_real t13 = R(-0.03500000000000001) * m0[7];
+        const gic_real t14 = motion[31] + t12 - (t13 + R(0.03273));
+        const gic_real t15 = R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3];
+        const gic_real t16 = k[0] * motion[34] + k[1] * motion[33];
+        const gic_real t17 = R(-0.03500000000000001) * m0[4];
+        const gic_real t18 = motion[30] + t16 - (t17 + R(-0.03635));
+        const gic_real t19 = t1 + t10 + GIC_FABS((t11 * t14 + t15 * t18) * R(24.99999999999999));
+        const gic_real t20 = R(0.8981380230369522) * m0[7] + R(0.43971364724701906) * m0[6];
+        const gic_real t21 = R(0.8981380230369522) * m0[4] + R(0.43971364724701906) * m0[3];
+        const gic_real t22 = t19 + GIC_FABS((t20 * t14 + t21 * t18) * R(24.999999999999982));
+        const gic_real t23 = t22 + GIC_FABS(motion[6] * motion[6] + motion[3] * motion[3] - R(1.0));
+        const gic_real t24 = t23 + GIC_FABS(motion[7] * motion[7] + motion[4] * motion[4] - R(1.0));
+        const gic_real t25 = t24 + GIC_FABS(motion[6] * motion[7] + motion[3] * motion[4]) + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - R(1.0));
+        const gic_real t26 = motion[39] * motion[39] + (motion[36] * motion[36] + motion[33] * motion[33]) - R(1.0);
+        const gic_real t27 = motion[40] * motion[40] + (motion[37] * motion[37] + motion[34] * motion[34]) - R(1.0);
+        const gic_real t28 = GIC_FABS(motion[39] * motion[40] + (motion[36] * motion[37] + motion[33] * motion[34]));
+        const gic_real t29 = t25 + GIC_FABS(t26) + GIC_FABS(t27) + t28 + GIC_FABS(motion[36] * motion[40] - motion[37] * motion[39] - motion[35]);
+        const gic_real t30 = t29 + GIC_FABS(motion[34] * motion[39] - motion[33] * motion[40] - motion[38]);
+        const gic_real t31 = t30 + GIC_FABS(motion[33] * motion[37] - motion[34] * motion[36] - motion[41]);
+        const gic_real t32 = GIC_FABS(R(24.999999999999996) * (motion[57] + t3 * motion[26])) + GIC_FABS(R(24.999999999999996) * (motion[58] - t2 * motion[26]));
+        const gic_real t33 = motion[38] * t6;
+        const gic_real t34 = motion[35] * t5;
+        const gic_real t35 = (t33 - t34) * motion[26] - motion[41] * t5 * motion[54] + motion[41] * t6 * motion[55];
+        const gic_real t36 = t32 + GIC_FABS(k[15] * (t35 + (t34 - t33) * motion[56]));
+        const gic_real t37 = motion[38] * t9;
+        const gic_real t38 = motion[35] * t8;
+        const gic_real t39 = (t37 - t38) * motion[26] - motion[41] * t8 * motion[54] + motion[41] * t9 * motion[55];
+        const gic_real t40 = t36 + GIC_FABS(k[16] * (t39 + (t38 - t37) * motion[56]));
+        const gic_real t41 = t13 * t15 - t17 * t11 + (t15 * t14 - t11 * t18);
+        const gic_real t42 = k[0] * motion[40] + k[1] * motion[39];
+        const gic_real t43 = m0[26] * t41 - t11 * t42 * motion[54] + t15 * t42 * motion[55];
+        const gic_real t44 = t43 + (t11 * t16 - t15 * t12) * motion[56] + t15 * motion[57];
+        const gic_real t45 = t13 * t21 - t17 * t20 + (t21 * t14 - t20 * t18);
+        const gic_real t46 = m0[26] * t45 - t20 * t42 * motion[54] + t21 * t42 * motion[55];
+        const gic_real t47 = t46 + (t20 * t16 - t21 * t12) * motion[56] + t21 * motion[57];
+        const gic_real t48 = t40 + GIC_FABS(R(24.99999999999999) * (t44 + t11 * motion[58])) + GIC_FABS(R(24.999999999999982) * (t47 + t20 * motion[58]));
+        const gic_real t49 = R(24.999999999999996) * (GIC_FABS(motion[57]) + GIC_FABS(motion[58])) + (GIC_FABS(motion[54]) + GIC_FABS(motion[55]) + GIC_FABS(motion[56]));
+        const gic_real t50 = GIC_FABS(motion[26]) + t49 + GIC_FABS(m0[26]);
+        const gic_real t51 = GIC_FABS(motion[14] - rate[0] * motion[26]) + GIC_FABS(motion[42] - rate[0] * motion[54]);
+        const gic_real t52 = t51 + GIC_FABS(motion[43] - rate[0] * motion[55]) + GIC_FABS(motion[44] - rate[0] * motion[56]);
+        const gic_real t53 = t52 + GIC_FABS(R(24.999999999999996) * (motion[45] - rate[0] * motion[57])) + GIC_FABS(R(24.999999999999996) * (motion[46] - rate[0] * motion[58]));
+        const gic_real t54 = GIC_FABS(motion[14]);
+        const gic_real t55 = R(24.999999999999996) * (GIC_FABS(motion[45]) + GIC_FABS(motion[46]));
+        const gic_real t56 = GIC_FABS(motion[42]) + GIC_FABS(motion[43]) + GIC_FABS(motion[44]);
+        const gic_real t57 = t50 * GIC_FABS(rate[0]);
+        const gic_real t58 = t48 / (t50 + R(1e-30)) + t53 / (R(1e-30) + (t54 + (t55 + t56) + t57));
+        const gic_real t59 = R(24.999999999999996) * (motion[51] + (motion[14] * (t2 * motion[14]) + t3 * motion[20]));
+        const gic_real t60 = R(24.999999999999996) * (motion[52] - (t2 * motion[20] - motion[14] * (t3 * motion[14])));
+        const gic_real t61 = t6 * motion[14];
+        const gic_real t62 = motion[35] * motion[44] - motion[41] * motion[42];
+        const gic_real t63 = t5 * motion[14];
+        const gic_real t64 = motion[41] * motion[43] - motion[38] * motion[44];
+        const gic_real t65 = t61 * t62 - t63 * t64;
+        const gic_real t66 = motion[38] * (t6 * motion[20] - motion[14] * t63) - motion[35] * (motion[14] * t61 + t5 * motion[20]);
+        const gic_real t67 = motion[38] * motion[42] - motion[35] * motion[43];
+        const gic_real t68 = motion[44] * t64 - motion[42] * t67 + (motion[35] * motion[50] - motion[41] * motion[48]);
+        const gic_real t69 = motion[43] * t67 - motion[44] * t62 + (motion[41] * motion[49] - motion[38] * motion[50]);
+        const gic_real t70 = t65 + t65 + (t66 + (t5 * t68 + t6 * t69));
+        const gic_real t71 = GIC_FABS(t59) + GIC_FABS(t60) + GIC_FABS(t70 * k[15]);
+        const gic_real t72 = t9 * motion[14];
+        const gic_real t73 = t8 * motion[14];
+        const gic_real t74 = t72 * t62 - t73 * t64;
+        const gic_real t75 = motion[38] * (t9 * motion[20] - motion[14] * t73) - motion[35] * (motion[14] * t72 + t8 * motion[20]);
+        const gic_real t76 = t74 + t74 + (t75 + (t8 * t68 + t9 * t69));
+        const gic_real t77 = m0[14] * t15;
+        const gic_real t78 = t16 * motion[44] - t42 * motion[42];
+        const gic_real t79 = m0[14] * t17;
+        const gic_real t80 = motion[46] + t78 - t79;
+        const gic_real t81 = m0[14] * t11;
+        const gic_real t82 = m0[14] * t13;
+        const gic_real t83 = t42 * motion[43] - t12 * motion[44];
+        const gic_real t84 = t82 + (motion[45] + t83);
+        const gic_real t85 = t77 * t80 - t81 * t84;
+        const gic_real t86 = (m0[20] * t15 - m0[14] * t81) * t14 - (m0[20] * t11 + m0[14] * t77) * t18;
+        const gic_real t87 = t12 * motion[42] - t16 * motion[43];
+        const gic_real t88 = motion[44] * t83 - motion[42] * t87 + (t16 * motion[50] - t42 * motion[48]);
+        const gic_real t89 = motion[52] + t88 - (m0[20] * t17 - m0[14] * t82);
+        const gic_real t90 = motion[43] * t87 - motion[44] * t78 + (t42 * motion[49] - t12 * motion[50]);
+        const gic_real t91 = m0[20] * t13 + m0[14] * t79 + (motion[51] + t90);
+        const gic_real t92 = t85 + t85 + (t86 + (t11 * t89 + t15 * t91));
+        const gic_real t93 = t71 + GIC_FABS(t76 * k[16]) + GIC_FABS(t92 * R(24.99999999999999));
+        const gic_real t94 = m0[14] * t21;
+        const gic_real t95 = m0[14] * t20;
+        const gic_real t96 = t94 * t80 - t95 * t84;
+        const gic_real t97 = (m0[20] * t21 - m0[14] * t95) * t14 - (m0[20] * t20 + m0[14] * t94) * t18;
+        const gic_real t98 = t96 + t96 + (t97 + (t20 * t89 + t21 * t91));
+        const gic_real t99 = R(24.999999999999996) * (GIC_FABS(motion[51]) + GIC_FABS(motion[52])) + (GIC_FABS(motion[48]) + GIC_FABS(motion[49]) + GIC_FABS(motion[50]));
+        const gic_real t100 = t54 * t54 + GIC_FABS(motion[20]) + (t55 * t55 + t56 * t56 + t99);
+        const gic_real t101 = GIC_FABS(m0[14]);
+        const gic_real t102 = t100 + (t101 * t101 + GIC_FABS(m0[20])) + t57 * t57;
+        const gic_real t103 = t58 + (t93 + GIC_FABS(t98 * R(24.999999999999982))) / (R(1e-30) + t102);
+        worst[0] = t31;
+        worst[1] = t103;
     }
-    return worst;
 }
 
 /* ---- recovery of the whole vehicle, in computational sequence ------------------------------------------------ */
@@ -1476,6 +1671,8 @@ static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
         way[0] = gic_unwound(way[0]);
     for (i = 0; i < ANDREWS_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < andrews_piece[i]);
+    if (far)
+        self->head.unchecked = 0; /* a jump: no state that was checked is near */
     /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
      * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
     if (far || ANDREWS_FOLLOWED > 0) {
@@ -1566,6 +1763,13 @@ static GIC_APART int andrews_dynamics(andrews *self, gic_real time, const gic_re
         rate[0] = t10;
         rate[1] = t9;
     }
+#ifdef GIC_PLANT_RATE /* an error that tests plant */
+#ifndef GIC_PLANT_AFTER
+#define GIC_PLANT_AFTER R(-1.0) /* s */
+#endif
+    if (time > GIC_PLANT_AFTER)
+        rate[GIC_PLANT_RATE] += GIC_PLANT_BY + GIC_PLANT_BY * GIC_FABS(rate[GIC_PLANT_RATE]);
+#endif
     return GIC_OK;
 }
 
@@ -1982,6 +2186,282 @@ static void andrews_place(const andrews *self, const gic_real *y, const gic_real
     }
 }
 
+/* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
+
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
+ * whose are beyond what is promised, -1: there is none. */
+static GIC_COLD GIC_APART int andrews_residual(const andrews *self, gic_real largest[2])
+{
+    andrews_links links;
+    gic_real one[2];
+    int bad = -1;
+    (void)self, (void)one;
+    largest[0] = largest[1] = R(0.0);
+    links.cold = 0;
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    andrews_residual_K1(andrews_k_K1[0], &links, self->motion + 0, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.0863176909312428e-19)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 0;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    andrews_residual_K2_K3(andrews_k_K2_K3[0], &links, self->motion + 30, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.397541690079478)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 1;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 60;
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    andrews_residual_K5_K4(andrews_k_K5_K4[0], &links, self->motion + 90, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.7344286703407552)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 2;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 60;
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    andrews_residual_K5_K4(andrews_k_K5_K4[1], &links, self->motion + 150, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.7344286703407552)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 3;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    return bad;
+}
+
+/* tau: residual of the equations of motion at `rate`, body by body: another way than andrews_dynamics. size: magnitudes of
+ * the terms that it is the sum of. */
+static GIC_COLD GIC_APART int andrews_balance(const andrews *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *tau, gic_real *size)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    {
+        const gic_real t1 = m[7] * R(-6.776263578034403e-21) + m[6] * R(0.00092);
+        const gic_real t2 = m[4] * R(-6.776263578034403e-21) + m[3] * R(0.00092);
+        const gic_real t3 = m[14] * (m[14] * t2);
+        const gic_real t4 = m[14] * (m[14] * t1);
+        const gic_real t5 = t1 * ((t3 + rate[1] * t1) * R(0.04325)) + t2 * ((rate[1] * t2 - t4) * R(0.04325));
+        const gic_real t6 = m[33] * R(-0.0115);
+        const gic_real t7 = m[36] * R(-0.0115);
+        const gic_real t8 = m[52] + (m[50] * t6 - m[44] * (m[44] * t7));
+        const gic_real t9 = (t8 + rate[1] * (m[58] + m[56] * t6)) * R(0.00365);
+        const gic_real t10 = m[51] - (m[44] * (m[44] * t6) + m[50] * t7);
+        const gic_real t11 = (t10 + rate[1] * (m[57] - m[56] * t7)) * R(0.00365);
+        const gic_real t12 = R(4.41e-07) * (m[50] + m[56] * rate[1]) + (t6 * t9 - t7 * t11);
+        const gic_real t13 = rate[1] * R(2.194e-06) + t5 + (m[58] * t9 + m[57] * t11 + m[56] * t12);
+        const gic_real t14 = m[67] * R(-0.018740000000000003) + m[66] * R(0.010430000000000002);
+        const gic_real t15 = m[64] * R(-0.018740000000000003) + m[63] * R(0.010430000000000002);
+        const gic_real t16 = m[74] * (m[74] * t15) + m[80] * t14;
+        const gic_real t17 = m[80] * t15 - m[74] * (m[74] * t14);
+        const gic_real t18 = t14 * ((t16 + rate[1] * (m[86] * t14)) * R(0.02373)) + t15 * ((t17 + rate[1] * (m[86] * t15)) * R(0.02373));
+        const gic_real t19 = t13 + m[86] * (R(5.255e-06) * (m[80] + m[86] * rate[1]) + t18);
+        const gic_real t20 = m[130] * R(-0.005789999999999998) + m[129] * R(1.3010426069826053e-18);
+        const gic_real t21 = m[127] * R(-0.005789999999999998) + m[126] * R(1.3010426069826053e-18);
+        const gic_real t22 = m[133] * t20 - m[134] * t21;
+        const gic_real t23 = m[124] * R(-0.005789999999999998) + m[123] * R(1.3010426069826053e-18);
+        const gic_real t24 = m[132] * t21 - m[133] * t23;
+        const gic_real t25 = m[134] * t22 - m[132] * t24 + (m[140] * t23 - m[138] * t20);
+        const gic_real t26 = m[142] + t25;
+        const gic_real t27 = t26 + rate[1] * (m[148] + (m[146] * t23 - m[144] * t20));
+        const gic_real t28 = t27 * R(0.00706);
+        const gic_real t29 = m[134] * t23 - m[132] * t20;
+        const gic_real t30 = m[133] * t24 - m[134] * t29 + (m[139] * t20 - m[140] * t21);
+        const gic_real t31 = m[141] + t30;
+        const gic_real t32 = t31 + rate[1] * (m[147] + (m[145] * t20 - m[146] * t21));
+        const gic_real t33 = t32 * R(0.00706);
+        const gic_real t34 = m[128] * R(5.667e-07);
+        const gic_real t35 = m[127] * R(5.667e-07);
+        const gic_real t36 = m[126] * R(5.667e-07);
+        const gic_real t37 = m[131] * t34 + (m[130] * t35 + m[129] * t36);
+        const gic_real t38 = m[128] * t34 + (m[127] * t35 + m[126] * t36);
+        const gic_real t39 = m[125] * R(5.667e-07);
+        const gic_real t40 = m[124] * R(5.667e-07);
+        const gic_real t41 = m[123] * R(5.667e-07);
+        const gic_real t42 = m[128] * t39 + (m[127] * t40 + m[126] * t41);
+        const gic_real t43 = m[134] * t37 + (m[133] * t38 + m[132] * t42);
+        const gic_real t44 = m[131] * t39 + (m[130] * t40 + m[129] * t41);
+        const gic_real t45 = m[125] * t39 + (m[124] * t40 + m[123] * t41);
+        const gic_real t46 = m[134] * t44 + (m[133] * t42 + m[132] * t45);
+        const gic_real t47 = m[131] * (m[131] * R(5.667e-07)) + (m[130] * (m[130] * R(5.667e-07)) + m[129] * (m[129] * R(5.667e-07)));
+        const gic_real t48 = m[140] + m[146] * rate[1];
+        const gic_real t49 = m[139] + m[145] * rate[1];
+        const gic_real t50 = m[138] + m[144] * rate[1];
+        const gic_real t51 = m[132] * t43 - m[133] * t46 + (t47 * t48 + (t37 * t49 + t44 * t50));
+        const gic_real t52 = m[134] * t47 + (m[133] * t37 + m[132] * t44);
+        const gic_real t53 = m[134] * t46 - m[132] * t52 + (t37 * t48 + (t38 * t49 + t42 * t50));
+        const gic_real t54 = m[132] * t29 - m[133] * t22 + (m[138] * t21 - m[139] * t23);
+        const gic_real t55 = (t54 + rate[1] * (m[144] * t21 - m[145] * t23)) * R(0.00706);
+        const gic_real t56 = m[133] * t52 - m[134] * t43 + (t44 * t48 + (t42 * t49 + t45 * t50));
+        const gic_real t57 = m[145] * (t53 + (t20 * t33 - t23 * t55)) + m[144] * (t56 + (t21 * t55 - t20 * t28));
+        const gic_real t58 = m[146] * (t51 + (t23 * t28 - t21 * t33)) + t57;
+        const gic_real t59 = m[97] * R(0.009160000000000003) + m[96] * R(0.023080000000000007);
+        const gic_real t60 = m[94] * R(0.009160000000000003) + m[93] * R(0.023080000000000007);
+        const gic_real t61 = m[104] * (m[104] * t60) + m[110] * t59;
+        const gic_real t62 = m[110] * t60 - m[104] * (m[104] * t59);
+        const gic_real t63 = t59 * ((t61 + rate[1] * (m[116] * t59)) * R(0.0705)) + t60 * ((t62 + rate[1] * (m[116] * t60)) * R(0.0705));
+        const gic_real t64 = t19 + (m[148] * t28 + m[147] * t33 + t58) + m[116] * (R(1.169e-05) * (m[110] + m[116] * rate[1]) + t63);
+        const gic_real t65 = m[190] * R(-4.336808689942018e-19) + m[189] * R(0.005790000000000001);
+        const gic_real t66 = m[187] * R(-4.336808689942018e-19) + m[186] * R(0.005790000000000001);
+        const gic_real t67 = m[193] * t65 - m[194] * t66;
+        const gic_real t68 = m[184] * R(-4.336808689942018e-19) + m[183] * R(0.005790000000000001);
+        const gic_real t69 = m[192] * t66 - m[193] * t68;
+        const gic_real t70 = m[194] * t67 - m[192] * t69 + (m[200] * t68 - m[198] * t65);
+        const gic_real t71 = m[202] + t70;
+        const gic_real t72 = t71 + rate[1] * (m[208] + (m[206] * t68 - m[204] * t65));
+        const gic_real t73 = R(0.00706) * t72;
+        const gic_real t74 = m[194] * t68 - m[192] * t65;
+        const gic_real t75 = m[193] * t69 - m[194] * t74 + (m[199] * t65 - m[200] * t66);
+        const gic_real t76 = m[201] + t75;
+        const gic_real t77 = t76 + rate[1] * (m[207] + (m[205] * t65 - m[206] * t66));
+        const gic_real t78 = R(0.00706) * t77;
+        const gic_real t79 = m[188] * R(5.667e-07);
+        const gic_real t80 = m[187] * R(5.667e-07);
+        const gic_real t81 = m[186] * R(5.667e-07);
+        const gic_real t82 = m[191] * t79 + (m[190] * t80 + m[189] * t81);
+        const gic_real t83 = m[188] * t79 + (m[187] * t80 + m[186] * t81);
+        const gic_real t84 = m[185] * R(5.667e-07);
+        const gic_real t85 = m[184] * R(5.667e-07);
+        const gic_real t86 = m[183] * R(5.667e-07);
+        const gic_real t87 = m[188] * t84 + (m[187] * t85 + m[186] * t86);
+        const gic_real t88 = m[194] * t82 + (m[193] * t83 + m[192] * t87);
+        const gic_real t89 = m[191] * t84 + (m[190] * t85 + m[189] * t86);
+        const gic_real t90 = m[185] * t84 + (m[184] * t85 + m[183] * t86);
+        const gic_real t91 = m[194] * t89 + (m[193] * t87 + m[192] * t90);
+        const gic_real t92 = m[191] * (m[191] * R(5.667e-07)) + (m[190] * (m[190] * R(5.667e-07)) + m[189] * (m[189] * R(5.667e-07)));
+        const gic_real t93 = m[200] + m[206] * rate[1];
+        const gic_real t94 = m[199] + m[205] * rate[1];
+        const gic_real t95 = m[198] + m[204] * rate[1];
+        const gic_real t96 = m[192] * t88 - m[193] * t91 + (t92 * t93 + (t82 * t94 + t89 * t95));
+        const gic_real t97 = m[194] * t92 + (m[193] * t82 + m[192] * t89);
+        const gic_real t98 = m[194] * t91 - m[192] * t97 + (t82 * t93 + (t83 * t94 + t87 * t95));
+        const gic_real t99 = m[192] * t74 - m[193] * t67 + (m[198] * t66 - m[199] * t68);
+        const gic_real t100 = R(0.00706) * (t99 + rate[1] * (m[204] * t66 - m[205] * t68));
+        const gic_real t101 = m[193] * t97 - m[194] * t88 + (t89 * t93 + (t87 * t94 + t90 * t95));
+        const gic_real t102 = m[205] * (t98 + (t65 * t78 - t68 * t100)) + m[204] * (t101 + (t66 * t100 - t65 * t73));
+        const gic_real t103 = m[206] * (t96 + (t68 * t73 - t66 * t78)) + t102;
+        const gic_real t104 = m[157] * R(-0.01228) + m[156] * R(-0.004489999999999999);
+        const gic_real t105 = m[154] * R(-0.01228) + m[153] * R(-0.004489999999999999);
+        const gic_real t106 = m[164] * (m[164] * t105) + m[170] * t104;
+        const gic_real t107 = m[170] * t105 - m[164] * (m[164] * t104);
+        const gic_real t108 = t104 * ((t106 + rate[1] * (m[176] * t104)) * R(0.05498)) + t105 * ((t107 + rate[1] * (m[176] * t105)) * R(0.05498));
+        const gic_real t109 = t64 + (m[208] * t73 + m[207] * t78 + t103) + m[176] * (R(1.912e-05) * (m[170] + m[176] * rate[1]) + t108);
+        const gic_real t110 = m[67] * R(-0.018000000000000002) + m[66] * R(0.020000000000000004);
+        const gic_real t111 = m[64] * R(-0.018000000000000002) + m[63] * R(0.020000000000000004);
+        const gic_real t112 = R(-0.03635) + t111 - R(0.014);
+        const gic_real t113 = R(0.03273) + t110 - R(0.072);
+        const gic_real t114 = GIC_SQRT(t113 * t113 + t112 * t112);
+        const gic_real t115 = (t114 - R(0.07785)) * R(4530.0);
+        const gic_real t116 = R(1.0) / t114 * t115;
+        const gic_real t117 = m[86] * (t110 * (t112 * t116) - t111 * (t113 * t116));
+        const gic_real t118 = GIC_FABS(t1) + GIC_FABS(t2);
+        const gic_real t119 = GIC_FABS(m[14]);
+        const gic_real t120 = t119 * t119;
+        const gic_real t121 = t120 * t118 + (GIC_FABS(-t4) + GIC_FABS(-t3));
+        const gic_real t122 = GIC_FABS(rate[1]);
+        const gic_real t123 = t118 * (R(0.04325) * (t121 + t118 * t122)) + (t120 + t122) * R(6.582000000000001e-06);
+        const gic_real t124 = GIC_FABS(m[56]);
+        const gic_real t125 = GIC_FABS(t7) + GIC_FABS(t6);
+        const gic_real t126 = GIC_FABS(m[44]);
+        const gic_real t127 = t126 * t126;
+        const gic_real t128 = t127 * (GIC_FABS(m[31] + t7) + GIC_FABS(m[30] + t6));
+        const gic_real t129 = t122 * t124;
+        const gic_real t130 = t128 + (GIC_FABS(t8) + GIC_FABS(t10)) + t129 * t125;
+        const gic_real t131 = GIC_FABS(m[58]) + GIC_FABS(m[57]);
+        const gic_real t132 = R(0.00365) * (t130 + t122 * t131);
+        const gic_real t133 = t125 * t132 + (t127 + GIC_FABS(m[50]) + t129) * R(1.3229999999999999e-06);
+        const gic_real t134 = GIC_FABS(m[86]);
+        const gic_real t135 = (GIC_FABS(t115) + R(4530.0) * (R(0.07785) + GIC_FABS(t114))) * (GIC_FABS(t110) + GIC_FABS(t111));
+        const gic_real t136 = GIC_FABS(t14) + GIC_FABS(t15);
+        const gic_real t137 = GIC_FABS(m[74]);
+        const gic_real t138 = t137 * t137;
+        const gic_real t139 = t138 * (GIC_FABS(R(0.03273) + t14) + GIC_FABS(R(-0.03635) + t15));
+        const gic_real t140 = t122 * t134;
+        const gic_real t141 = t139 + (GIC_FABS(t17) + GIC_FABS(-t16)) + t140 * t136;
+        const gic_real t142 = t136 * (R(0.02373) * t141) + (t138 + GIC_FABS(m[80]) + t140) * R(1.5765e-05);
+        const gic_real t143 = R(0.033) + t123 + t124 * t133 + t131 * t132 + t134 * (t135 + t142);
+        const gic_real t144 = GIC_FABS(m[146]) + GIC_FABS(m[145]) + GIC_FABS(m[144]);
+        const gic_real t145 = GIC_FABS(t20) + GIC_FABS(t21) + GIC_FABS(t23);
+        const gic_real t146 = GIC_FABS(m[134]) + GIC_FABS(m[133]) + GIC_FABS(m[132]);
+        const gic_real t147 = t146 * t146;
+        const gic_real t148 = GIC_FABS(m[122] + t20) + GIC_FABS(m[121] + t21) + GIC_FABS(m[120] + t23);
+        const gic_real t149 = t147 * t148 + (GIC_FABS(t54) + GIC_FABS(t26) + GIC_FABS(t31));
+        const gic_real t150 = t122 * t144;
+        const gic_real t151 = GIC_FABS(m[148]) + GIC_FABS(m[147]);
+        const gic_real t152 = R(0.00706) * (t149 + t150 * t145 + t122 * t151);
+        const gic_real t153 = t147 + (GIC_FABS(m[140]) + GIC_FABS(m[139]) + GIC_FABS(m[138]));
+        const gic_real t154 = t143 + t144 * (t145 * t152 + (t153 + t150) * R(1.7001e-06));
+        const gic_real t155 = GIC_FABS(m[116]);
+        const gic_real t156 = GIC_FABS(t59) + GIC_FABS(t60);
+        const gic_real t157 = GIC_FABS(m[104]);
+        const gic_real t158 = t157 * t157;
+        const gic_real t159 = t158 * (GIC_FABS(R(-0.00227) + t59) + GIC_FABS(R(-0.06934) + t60));
+        const gic_real t160 = t122 * t155;
+        const gic_real t161 = t159 + (GIC_FABS(t62) + GIC_FABS(-t61)) + t160 * t156;
+        const gic_real t162 = t156 * (R(0.0705) * t161) + (t158 + GIC_FABS(m[110]) + t160) * R(3.507e-05);
+        const gic_real t163 = GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]);
+        const gic_real t164 = GIC_FABS(t65) + GIC_FABS(t66) + GIC_FABS(t68);
+        const gic_real t165 = GIC_FABS(m[194]) + GIC_FABS(m[193]) + GIC_FABS(m[192]);
+        const gic_real t166 = t165 * t165;
+        const gic_real t167 = GIC_FABS(m[182] + t65) + GIC_FABS(m[181] + t66) + GIC_FABS(m[180] + t68);
+        const gic_real t168 = t166 * t167 + (GIC_FABS(t99) + GIC_FABS(t71) + GIC_FABS(t76));
+        const gic_real t169 = t122 * t163;
+        const gic_real t170 = GIC_FABS(m[208]) + GIC_FABS(m[207]);
+        const gic_real t171 = R(0.00706) * (t168 + t169 * t164 + t122 * t170);
+        const gic_real t172 = t166 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t173 = t154 + t151 * t152 + t155 * t162 + t163 * (t164 * t171 + R(1.7001e-06) * (t172 + t169));
+        const gic_real t174 = GIC_FABS(m[176]);
+        const gic_real t175 = GIC_FABS(t104) + GIC_FABS(t105);
+        const gic_real t176 = GIC_FABS(m[164]);
+        const gic_real t177 = t176 * t176;
+        const gic_real t178 = t177 * (GIC_FABS(R(-0.00227) + t104) + GIC_FABS(R(-0.06934) + t105));
+        const gic_real t179 = t122 * t174;
+        const gic_real t180 = t178 + (GIC_FABS(t107) + GIC_FABS(-t106)) + t179 * t175;
+        const gic_real t181 = t175 * (R(0.05498) * t180) + (t177 + GIC_FABS(m[170]) + t179) * R(5.736e-05);
+        const gic_real t182 = t109 - (R(0.033) + t117);
+        const gic_real t183 = t173 + t170 * t171 + t174 * t181;
+        tau[0] = t182;
+        size[0] = t183;
+    }
+    return GIC_OK;
+}
+
+/* The motions that were recovered last, against all constraints. */
+static GIC_COLD int andrews_check_constraints(andrews *self)
+{
+    gic_real largest[2];
+    const int bad = andrews_residual(self, largest);
+    self->head.residual = GIC_MAX(self->head.residual, largest[0]);
+    if (bad < 0)
+        return GIC_OK;
+    self->head.subset = bad;
+    self->recovered = 0;
+    return GIC_ERROR_RESIDUAL;
+}
+
+/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+static GIC_COLD GIC_APART int andrews_check(andrews *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate)
+{
+    gic_real tau[ANDREWS_UNKNOWN_ROOM], size[ANDREWS_UNKNOWN_ROOM];
+    int i, status = andrews_check_constraints(self);
+    self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&andrews_model, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        status = andrews_balance(self, time, y, e, rate, tau, size);
+    for (i = 0; status == GIC_OK && i < ANDREWS_UNKNOWNS; ++i)
+        if (!(GIC_FABS(tau[i]) <= GIC_BALANCE_RESIDUAL * size[i]))
+            status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        self->head.unchecked = GIC_CHECK_EVERY;
+    return status;
+}
+
 /* ---- the functions of andrews.h ------------------------------------------------------------------------------------ */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
@@ -2004,6 +2484,7 @@ static int andrews_locate(andrews *self, gic_real time, const gic_real *y, gic_r
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
 static int andrews_evaluate(andrews *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[ANDREWS_STATE_ROOM])
 {
+    const int32_t flip = self->head.flip;
     int status = andrews_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
@@ -2011,6 +2492,11 @@ static int andrews_evaluate(andrews *self, gic_real time, const gic_real *y, gic
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
     if (status == GIC_OK && !GIC_FINITE(rate + ANDREWS_TWIST, ANDREWS_STATES - ANDREWS_TWIST))
         status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && --self->head.unchecked < 0) {
+        status = andrews_check(self, time, y, e, rate);
+        if (status != GIC_OK)
+            self->head.flip = flip; /* what was found is no start */
+    }
     return self->head.status = status;
 }
 
@@ -2085,7 +2571,13 @@ int andrews_outputs(andrews *self)
 int andrews_poses(andrews *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = andrews_locate(self, andrews_present(self), self->state, e);
+    const int32_t flip = self->head.flip;
+    int status = andrews_locate(self, andrews_present(self), self->state, e);
+    if (status == GIC_OK) {
+        status = self->head.status = andrews_check_constraints(self);
+        if (status != GIC_OK)
+            self->head.flip = flip;
+    }
     if (status == GIC_OK)
         andrews_place(self, self->state, e, pose);
     return status;
@@ -2268,6 +2760,8 @@ int andrews_setup_with(andrews *self, const gic_real *parameter)
     andrews_gather(self, self->state);
     if (status == GIC_OK)
         status = andrews_recover(self, turn, 0);
+    if (status == GIC_OK)
+        status = andrews_check_constraints(self);
     return self->head.status = status;
 }
 
@@ -2582,41 +3076,21 @@ static GIC_COLD int andrews_energy(const andrews *self, gic_real time, const gic
     return GIC_OK;
 }
 
-/* Largest constraint residual of all subsets, relative to their sizes. */
-static GIC_COLD gic_real andrews_residual(const andrews *self)
-{
-    const gic_real *const start = self->start[self->head.flip];
-    andrews_links links;
-    gic_real largest = R(0.0), one = R(0.0);
-    (void)start;
-    (void)one;
-    links.cold = 0;
-    links.x[0] = start[0];
-    one = andrews_residual_K1(andrews_k_K1[0], &links, self->motion + 0);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.x[0] = start[0];
-    one = andrews_residual_K2_K3(andrews_k_K2_K3[0], &links, self->motion + 30);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 60;
-    links.x[0] = start[0];
-    one = andrews_residual_K5_K4(andrews_k_K5_K4[0], &links, self->motion + 90);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 60;
-    links.x[0] = start[0];
-    one = andrews_residual_K5_K4(andrews_k_K5_K4[1], &links, self->motion + 150);
-    largest = GIC_MAX(largest, one);
-    return largest;
-}
-
 GIC_COLD int andrews_self_test(andrews *self, gic_self_test *result)
 {
     gic_real e[4], acc[ANDREWS_UNKNOWN_ROOM], unit[ANDREWS_UNKNOWN_ROOM], tau0[ANDREWS_UNKNOWN_ROOM], tau[ANDREWS_UNKNOWN_ROOM];
-    gic_real M[ANDREWS_UNKNOWN_ROOM][ANDREWS_UNKNOWN_ROOM], energy[3], scale;
+    gic_real M[ANDREWS_UNKNOWN_ROOM][ANDREWS_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = andrews_time(self);
-    const gic_self_test none = {R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = andrews_refresh(self, e);
+    const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = andrews_refresh(self, e);
     *result = none;
+    if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
+        (void)andrews_residual(self, residual);
+        result->constraint = residual[0];
+        result->motion = residual[1];
+    }
     for (i = 0; i < ANDREWS_UNKNOWNS; ++i)
         unit[i] = R(0.0);
     if (status == GIC_OK)
@@ -2625,7 +3099,6 @@ GIC_COLD int andrews_self_test(andrews *self, gic_self_test *result)
         status = andrews_inverse(self, time, self->state, e, unit, tau0);
     if (status != GIC_OK)
         return self->head.status = status;
-    result->constraint = andrews_residual(self);
     result->energy = GIC_FABS(energy[0] - energy[1]) / (energy[2] > R(0.0) ? energy[2] : R(1.0));
 
     /* the mass matrix column by column: what a unit acceleration adds to the residual */
@@ -2703,6 +3176,14 @@ static int andrews_any_self_test(void *self, gic_self_test *result)
     return andrews_self_test((andrews *)self, result);
 }
 
+static int andrews_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
+{
+    gic_real e[4];
+    const gic_real *turn;
+    const int status = andrews_orient((andrews *)self, state, e, &turn);
+    return status == GIC_OK ? andrews_check((andrews *)self, time, state, e, rate) : status;
+}
+
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define andrews_any_march NULL
 #else
@@ -2772,4 +3253,5 @@ const gic_model andrews_model = {
     NULL,
     NULL,
     NULL,
+    andrews_any_check,
 };

@@ -72,7 +72,7 @@
  */
 #include "five_link.h"
 
-#if FIVE_LINK_H != 0xabcd6959
+#if FIVE_LINK_H != 0x3f5b3067
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -162,6 +162,27 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
+ * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
+ * their terms. They are rounding, in single precision near a singular configuration too. */
+#ifdef GIC_FLOAT
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-5)
+#else
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-10), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-9) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-10)
+#endif
+
+/* Evaluations between two that are checked. */
+#define GIC_CHECK_EVERY 200
+
+/* By how much an error that tests plant is off. */
+#ifndef GIC_PLANT_BY
+#define GIC_PLANT_BY R(1e-3)
+#endif
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct five_link_links {
@@ -226,22 +247,27 @@ static int five_link_solve_rack(five_link *self, const gic_real *GIC_RESTRICT k,
         const gic_real t20 = t1 * t16 - R(0.4919654879999997) * t12;
         inertia[12] = t20;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real five_link_residual_rack(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void five_link_residual_rack(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
-        worst = t1;
+        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        worst[0] = t2;
+        worst[1] = t1;
     }
-    return worst;
 }
 
 static const gic_real five_link_k_lca_f_l[2][12] = {
@@ -375,25 +401,45 @@ static int five_link_solve_lca_f_l(five_link *self, const gic_real *GIC_RESTRICT
         const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
         inertia[21] = t71;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real five_link_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void five_link_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = R(0.01121887479261392) * motion[11] + k[10] * motion[10] - R(0.19748500000000002);
-        const gic_real t2 = k[8] + (R(0.01121887479261392) * motion[8] + k[10] * motion[7]) - k[11];
-        const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * R(7.892375927523102)));
-        worst = t4;
+        const gic_real t1 = R(0.01121887479261392) * motion[11] + k[10] * motion[10];
+        const gic_real t2 = t1 - R(0.19748500000000002);
+        const gic_real t3 = R(0.01121887479261392) * motion[8] + k[10] * motion[7];
+        const gic_real t4 = k[8] + t3 - k[11];
+        const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
+        const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.25954049989094174) + R(0.06335227878037952);
+        const gic_real t7 = R(2.0) / t6;
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t13 = t11 * GIC_FABS(rate[0]);
+        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
+        const gic_real t15 = t3 * motion[12];
+        const gic_real t16 = t1 * motion[12];
+        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
+        worst[0] = t9;
+        worst[1] = t20;
     }
-    return worst;
 }
 
 static const gic_real five_link_k_wheel_r_l[2][10] = {
@@ -1206,6 +1252,9 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             q[5] = t321;
             q[6] = t322;
         }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+        motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
@@ -1224,58 +1273,173 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
     return GIC_ERROR_NEWTON;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real five_link_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void five_link_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
         const gic_real t1 = motion[1] - k[0];
         const gic_real t2 = motion[0] - R(-1.465699);
         const gic_real t3 = motion[2] * motion[2] + (t1 * t1 + t2 * t2) - R(0.26866948516099987);
-        const gic_real t4 = R(0.33401) * motion[11];
-        const gic_real t5 = k[1] * motion[10];
-        const gic_real t6 = motion[2] + (t4 + t5) - R(0.22759419999999997);
-        const gic_real t7 = R(0.33401) * motion[8];
-        const gic_real t8 = k[1] * motion[7];
-        const gic_real t9 = motion[1] + (t7 + t8) - k[5];
-        const gic_real t10 = R(0.33401) * motion[5];
-        const gic_real t11 = k[1] * motion[4];
-        const gic_real t12 = motion[0] + (t10 + t11) - R(-1.3398547);
-        const gic_real t13 = t6 * t6 + (t9 * t9 + t12 * t12) - R(0.14467861041253996);
-        const gic_real t14 = R(-0.06000000000000005) * motion[9];
-        const gic_real t15 = motion[2] + (t4 + (t5 + t14)) - R(0.22376380000000007);
-        const gic_real t16 = R(-0.06000000000000005) * motion[6];
-        const gic_real t17 = motion[1] + (t7 + (t8 + t16)) - k[4];
-        const gic_real t18 = R(-0.06000000000000005) * motion[3];
-        const gic_real t19 = motion[0] + (t10 + (t11 + t18)) - R(-1.6118633);
-        const gic_real t20 = t15 * t15 + (t17 * t17 + t19 * t19) - R(0.06942663884414002);
-        const gic_real t21 = GIC_MAX(GIC_MAX(GIC_FABS(t3 * R(3.0080998013071767)), GIC_FABS(t13 * R(5.086075547236922))), GIC_FABS(t20 * R(5.689680703650635)));
-        const gic_real t22 = motion[2] + (R(0.10883900000000002) * motion[11] + (k[2] * motion[10] + R(0.10472159999999997) * motion[9]));
-        const gic_real t23 = t22 - R(0.058674000000000004);
-        const gic_real t24 = motion[1] + (R(0.10883900000000002) * motion[8] + (k[2] * motion[7] + R(0.10472159999999997) * motion[6]));
-        const gic_real t25 = t24 - k[6];
-        const gic_real t26 = motion[0] + (R(0.10883900000000002) * motion[5] + (k[2] * motion[4] + R(0.10472159999999997) * motion[3]));
-        const gic_real t27 = t26 - R(-1.465699);
-        const gic_real t28 = t23 * t23 + (t25 * t25 + t27 * t27) - R(0.1714924505628);
-        const gic_real t29 = motion[2] + t14;
-        const gic_real t30 = motion[1] + t16 - k[0];
-        const gic_real t31 = motion[0] + t18 - R(-1.912231);
-        const gic_real t32 = t29 * t29 + (t30 * t30 + t31 * t31) - R(0.29615964100099984);
-        const gic_real t33 = GIC_MAX(GIC_MAX(t21, GIC_FABS(t28 * R(3.56041159777218))), GIC_FABS(t32 * R(3.0080998013071767)));
-        const gic_real t34 = motion[2] + (R(0.079756) * motion[11] + (k[3] * motion[10] + R(-0.16944599999999999) * motion[9]));
-        const gic_real t35 = t34 - R(0.32308800000000004);
-        const gic_real t36 = motion[1] + (R(0.079756) * motion[8] + (k[3] * motion[7] + R(-0.16944599999999999) * motion[6]));
-        const gic_real t37 = t36 - k[7];
-        const gic_real t38 = motion[0] + (R(0.079756) * motion[5] + (k[3] * motion[4] + R(-0.16944599999999999) * motion[3]));
-        const gic_real t39 = t38 - R(-1.792851);
-        const gic_real t40 = t35 * t35 + (t37 * t37 + t39 * t39) - x[0] * x[0];
-        const gic_real t41 = GIC_MAX(t33, GIC_FABS(t40 * R(3.9900129128371713)));
-        worst = t41;
+        const gic_real t4 = (GIC_FABS(t2) + GIC_FABS(t1) + GIC_FABS(motion[2])) * R(0.3467025903407703);
+        const gic_real t5 = R(2.0) / (t4 + R(0.16621788937412377));
+        const gic_real t6 = R(0.33401) * motion[11];
+        const gic_real t7 = k[1] * motion[10];
+        const gic_real t8 = t6 + t7;
+        const gic_real t9 = motion[2] + t8 - R(0.22759419999999997);
+        const gic_real t10 = R(0.33401) * motion[8];
+        const gic_real t11 = k[1] * motion[7];
+        const gic_real t12 = t10 + t11;
+        const gic_real t13 = motion[1] + t12 - k[5];
+        const gic_real t14 = R(0.33401) * motion[5];
+        const gic_real t15 = k[1] * motion[4];
+        const gic_real t16 = t14 + t15;
+        const gic_real t17 = motion[0] + t16 - R(-1.3398547);
+        const gic_real t18 = t9 * t9 + (t13 * t13 + t17 * t17) - R(0.14467861041253996);
+        const gic_real t19 = R(0.3467025903407703) * (GIC_FABS(t17) + GIC_FABS(t13) + GIC_FABS(t9));
+        const gic_real t20 = R(2.0) / (t19 + R(0.09830762350190249));
+        const gic_real t21 = GIC_FABS(R(0.5) * t3 * t5) + GIC_FABS(R(0.5) * t18 * t20);
+        const gic_real t22 = R(-0.06000000000000005) * motion[9];
+        const gic_real t23 = t6 + (t7 + t22);
+        const gic_real t24 = motion[2] + t23 - R(0.22376380000000007);
+        const gic_real t25 = R(-0.06000000000000005) * motion[6];
+        const gic_real t26 = t10 + (t11 + t25);
+        const gic_real t27 = motion[1] + t26 - k[4];
+        const gic_real t28 = R(-0.06000000000000005) * motion[3];
+        const gic_real t29 = t14 + (t15 + t28);
+        const gic_real t30 = motion[0] + t29 - R(-1.6118633);
+        const gic_real t31 = t24 * t24 + (t27 * t27 + t30 * t30) - R(0.06942663884414002);
+        const gic_real t32 = R(0.3467025903407703) * (GIC_FABS(t30) + GIC_FABS(t27) + GIC_FABS(t24));
+        const gic_real t33 = R(2.0) / (t32 + R(0.08787839354134373));
+        const gic_real t34 = R(0.10883900000000002) * motion[11] + (k[2] * motion[10] + R(0.10472159999999997) * motion[9]);
+        const gic_real t35 = motion[2] + t34 - R(0.058674000000000004);
+        const gic_real t36 = R(0.10883900000000002) * motion[8] + (k[2] * motion[7] + R(0.10472159999999997) * motion[6]);
+        const gic_real t37 = motion[1] + t36 - k[6];
+        const gic_real t38 = R(0.10883900000000002) * motion[5] + (k[2] * motion[4] + R(0.10472159999999997) * motion[3]);
+        const gic_real t39 = motion[0] + t38 - R(-1.465699);
+        const gic_real t40 = t35 * t35 + (t37 * t37 + t39 * t39) - R(0.1714924505628);
+        const gic_real t41 = R(0.3467025903407703) * (GIC_FABS(t39) + GIC_FABS(t37) + GIC_FABS(t35));
+        const gic_real t42 = R(2.0) / (t41 + R(0.1404332016873723));
+        const gic_real t43 = t21 + GIC_FABS(R(0.5) * t31 * t33) + GIC_FABS(R(0.5) * t40 * t42);
+        const gic_real t44 = motion[2] + t22;
+        const gic_real t45 = motion[1] + t25 - k[0];
+        const gic_real t46 = motion[0] + t28 - R(-1.912231);
+        const gic_real t47 = t44 * t44 + (t45 * t45 + t46 * t46) - R(0.29615964100099984);
+        const gic_real t48 = R(0.3467025903407703) * (GIC_FABS(t46) + GIC_FABS(t45) + GIC_FABS(t44));
+        const gic_real t49 = R(2.0) / (R(0.16621788937412377) + t48);
+        const gic_real t50 = R(0.079756) * motion[11] + (k[3] * motion[10] + R(-0.16944599999999999) * motion[9]);
+        const gic_real t51 = motion[2] + t50 - R(0.32308800000000004);
+        const gic_real t52 = R(0.079756) * motion[8] + (k[3] * motion[7] + R(-0.16944599999999999) * motion[6]);
+        const gic_real t53 = motion[1] + t52 - k[7];
+        const gic_real t54 = R(0.079756) * motion[5] + (k[3] * motion[4] + R(-0.16944599999999999) * motion[3]);
+        const gic_real t55 = motion[0] + t54 - R(-1.792851);
+        const gic_real t56 = t51 * t51 + (t53 * t53 + t55 * t55) - x[0] * x[0];
+        const gic_real t57 = R(0.3467025903407703) * (GIC_FABS(t55) + GIC_FABS(t53) + GIC_FABS(t51));
+        const gic_real t58 = R(2.0) / (t57 + R(0.1253128776579487));
+        const gic_real t59 = t43 + GIC_FABS(R(0.5) * t47 * t49) + GIC_FABS(R(0.5) * t56 * t58);
+        const gic_real t60 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
+        const gic_real t61 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t62 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
+        const gic_real t63 = t59 + GIC_FABS(t60) + GIC_FABS(t61) + t62 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
+        const gic_real t64 = t63 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
+        const gic_real t65 = t64 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t66 = t5 * (t2 * motion[27] + t1 * motion[28] + motion[2] * motion[29]);
+        const gic_real t67 = (t12 * t9 - t8 * t13) * motion[24] + (t8 * t17 - t16 * t9) * motion[25];
+        const gic_real t68 = t67 + (t16 * t13 - t12 * t17) * motion[26] + t17 * motion[27];
+        const gic_real t69 = GIC_FABS(t20 * (t68 + t13 * motion[28] + t9 * motion[29]));
+        const gic_real t70 = (t26 * t24 - t23 * t27) * motion[24] + (t23 * t30 - t29 * t24) * motion[25];
+        const gic_real t71 = t70 + (t29 * t27 - t26 * t30) * motion[26] + t30 * motion[27];
+        const gic_real t72 = GIC_FABS(t33 * (t71 + t27 * motion[28] + t24 * motion[29]));
+        const gic_real t73 = (t36 * t35 - t34 * t37) * motion[24] + (t34 * t39 - t38 * t35) * motion[25];
+        const gic_real t74 = t73 + (t38 * t37 - t36 * t39) * motion[26] + t39 * motion[27];
+        const gic_real t75 = GIC_FABS(t42 * (t74 + t37 * motion[28] + t35 * motion[29]));
+        const gic_real t76 = (t25 * t44 - t22 * t45) * motion[24] + (t22 * t46 - t28 * t44) * motion[25];
+        const gic_real t77 = t76 + (t28 * t45 - t25 * t46) * motion[26] + t46 * motion[27];
+        const gic_real t78 = GIC_FABS(t49 * (t77 + t45 * motion[28] + t44 * motion[29]));
+        const gic_real t79 = (t52 * t51 - t50 * t53) * motion[24] - x[0] + (t50 * t55 - t54 * t51) * motion[25];
+        const gic_real t80 = t79 + (t54 * t53 - t52 * t55) * motion[26] + t55 * motion[27];
+        const gic_real t81 = GIC_FABS(t58 * (t80 + t53 * motion[28] + t51 * motion[29]));
+        const gic_real t82 = GIC_FABS(t66) + t69 + t72 + t75 + t78 + t81;
+        const gic_real t83 = R(2.884316494483386) * (GIC_FABS(motion[27]) + GIC_FABS(motion[28]) + GIC_FABS(motion[29]));
+        const gic_real t84 = t83 + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
+        const gic_real t85 = t84 + GIC_FABS(-(x[0] * t58));
+        const gic_real t86 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(motion[13] - rate[0] * motion[25]);
+        const gic_real t87 = t86 + GIC_FABS(motion[14] - rate[0] * motion[26]) + GIC_FABS(R(2.884316494483386) * (motion[15] - rate[0] * motion[27]));
+        const gic_real t88 = t87 + GIC_FABS(R(2.884316494483386) * (motion[16] - rate[0] * motion[28])) + GIC_FABS(R(2.884316494483386) * (motion[17] - rate[0] * motion[29]));
+        const gic_real t89 = R(2.884316494483386) * (GIC_FABS(motion[15]) + GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t90 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t91 = t85 * GIC_FABS(rate[0]);
+        const gic_real t92 = t82 / (t85 + R(1e-30)) + t88 / (R(1e-30) + (t89 + t90 + t91));
+        const gic_real t93 = motion[17] * motion[17] + (motion[16] * motion[16] + motion[15] * motion[15]) + (motion[2] * motion[23] + (t1 * motion[22] + t2 * motion[21]));
+        const gic_real t94 = t12 * motion[12] - t16 * motion[13];
+        const gic_real t95 = motion[17] + t94;
+        const gic_real t96 = t16 * motion[14] - t8 * motion[12];
+        const gic_real t97 = motion[16] + t96;
+        const gic_real t98 = t8 * motion[13] - t12 * motion[14];
+        const gic_real t99 = motion[15] + t98;
+        const gic_real t100 = motion[12] * t96 - motion[13] * t98 + (t12 * motion[18] - t16 * motion[19]);
+        const gic_real t101 = motion[14] * t98 - motion[12] * t94 + (t16 * motion[20] - t8 * motion[18]);
+        const gic_real t102 = motion[13] * t94 - motion[14] * t96 + (t8 * motion[19] - t12 * motion[20]);
+        const gic_real t103 = t9 * (motion[23] + t100) + (t13 * (motion[22] + t101) + t17 * (motion[21] + t102));
+        const gic_real t104 = t95 * t95 + (t97 * t97 + t99 * t99) + t103;
+        const gic_real t105 = t26 * motion[12] - t29 * motion[13];
+        const gic_real t106 = motion[17] + t105;
+        const gic_real t107 = t29 * motion[14] - t23 * motion[12];
+        const gic_real t108 = motion[16] + t107;
+        const gic_real t109 = t23 * motion[13] - t26 * motion[14];
+        const gic_real t110 = motion[15] + t109;
+        const gic_real t111 = motion[12] * t107 - motion[13] * t109 + (t26 * motion[18] - t29 * motion[19]);
+        const gic_real t112 = motion[14] * t109 - motion[12] * t105 + (t29 * motion[20] - t23 * motion[18]);
+        const gic_real t113 = motion[13] * t105 - motion[14] * t107 + (t23 * motion[19] - t26 * motion[20]);
+        const gic_real t114 = t24 * (motion[23] + t111) + (t27 * (motion[22] + t112) + t30 * (motion[21] + t113));
+        const gic_real t115 = t106 * t106 + (t108 * t108 + t110 * t110) + t114;
+        const gic_real t116 = GIC_FABS(t93 * t5) + GIC_FABS(t104 * t20) + GIC_FABS(t115 * t33);
+        const gic_real t117 = t36 * motion[12] - t38 * motion[13];
+        const gic_real t118 = motion[17] + t117;
+        const gic_real t119 = t38 * motion[14] - t34 * motion[12];
+        const gic_real t120 = motion[16] + t119;
+        const gic_real t121 = t34 * motion[13] - t36 * motion[14];
+        const gic_real t122 = motion[15] + t121;
+        const gic_real t123 = motion[12] * t119 - motion[13] * t121 + (t36 * motion[18] - t38 * motion[19]);
+        const gic_real t124 = motion[14] * t121 - motion[12] * t117 + (t38 * motion[20] - t34 * motion[18]);
+        const gic_real t125 = motion[13] * t117 - motion[14] * t119 + (t34 * motion[19] - t36 * motion[20]);
+        const gic_real t126 = t35 * (motion[23] + t123) + (t37 * (motion[22] + t124) + t39 * (motion[21] + t125));
+        const gic_real t127 = t118 * t118 + (t120 * t120 + t122 * t122) + t126;
+        const gic_real t128 = t25 * motion[12] - t28 * motion[13];
+        const gic_real t129 = motion[17] + t128;
+        const gic_real t130 = t28 * motion[14] - t22 * motion[12];
+        const gic_real t131 = motion[16] + t130;
+        const gic_real t132 = t22 * motion[13] - t25 * motion[14];
+        const gic_real t133 = motion[15] + t132;
+        const gic_real t134 = motion[12] * t130 - motion[13] * t132 + (t25 * motion[18] - t28 * motion[19]);
+        const gic_real t135 = motion[14] * t132 - motion[12] * t128 + (t28 * motion[20] - t22 * motion[18]);
+        const gic_real t136 = motion[13] * t128 - motion[14] * t130 + (t22 * motion[19] - t25 * motion[20]);
+        const gic_real t137 = t44 * (motion[23] + t134) + (t45 * (motion[22] + t135) + t46 * (motion[21] + t136));
+        const gic_real t138 = t129 * t129 + (t131 * t131 + t133 * t133) + t137;
+        const gic_real t139 = t116 + GIC_FABS(t127 * t42) + GIC_FABS(t138 * t49);
+        const gic_real t140 = t52 * motion[12] - t54 * motion[13];
+        const gic_real t141 = motion[17] + t140;
+        const gic_real t142 = t54 * motion[14] - t50 * motion[12];
+        const gic_real t143 = motion[16] + t142;
+        const gic_real t144 = t50 * motion[13] - t52 * motion[14];
+        const gic_real t145 = motion[15] + t144;
+        const gic_real t146 = motion[12] * t142 - motion[13] * t144 + (t52 * motion[18] - t54 * motion[19]);
+        const gic_real t147 = motion[14] * t144 - motion[12] * t140 + (t54 * motion[20] - t50 * motion[18]);
+        const gic_real t148 = motion[13] * t140 - motion[14] * t142 + (t50 * motion[19] - t52 * motion[20]);
+        const gic_real t149 = t51 * (motion[23] + t146) + (t53 * (motion[22] + t147) + t55 * (motion[21] + t148));
+        const gic_real t150 = t141 * t141 + (t143 * t143 + t145 * t145) + t149;
+        const gic_real t151 = R(2.884316494483386) * (GIC_FABS(motion[21]) + GIC_FABS(motion[22]) + GIC_FABS(motion[23]));
+        const gic_real t152 = t151 + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t153 = t89 * t89 + t90 * t90 + t152 + t91 * t91;
+        const gic_real t154 = (t139 + GIC_FABS((t150 - rate[0] * rate[0]) * t58)) / (R(1e-30) + t153);
+        const gic_real t155 = t92 + t154;
+        worst[0] = t65;
+        worst[1] = t155;
     }
-    return worst;
 }
 
 static const gic_real five_link_k_wheel_f_l[2][15] = {
@@ -1600,40 +1764,120 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t222 = t216 + (t114 + t201);
         inertia[4] = t222;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real five_link_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void five_link_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (k[0] * m1[7] + k[2]))));
-        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]));
-        const gic_real t3 = t2 - R(0.05422899999999997);
-        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t5 = t4 - (k[1] + m0[1]);
-        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]));
-        const gic_real t7 = t6 - R(1.438648);
-        const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
-        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS(R(2.928075656552032) * (motion[2] - k[0] * m1[10]))), GIC_FABS(t8 * R(3.9285226675160785)));
-        const gic_real t10 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]));
-        const gic_real t11 = t10 - R(0.23411769999999998);
-        const gic_real t12 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t13 = t12 - k[3];
-        const gic_real t14 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]));
-        const gic_real t15 = t14 - R(1.593883);
-        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
-        const gic_real t17 = R(0.21526024724178433) * t11 + (k[4] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
-        const gic_real t18 = GIC_MAX(GIC_MAX(t9, GIC_FABS(t16 * R(5.571891251504317))), GIC_FABS(t17 * R(3.029396354366955)));
-        worst = t18;
+        const gic_real t1 = k[0] * m1[7];
+        const gic_real t2 = k[0] * m1[10];
+        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[1] - (t1 + k[2]))) + GIC_FABS(R(2.928075656552032) * (motion[2] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]);
+        const gic_real t5 = motion[2] + t4 - R(0.05422899999999997);
+        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]);
+        const gic_real t7 = motion[1] + t6;
+        const gic_real t8 = k[1] + m0[1];
+        const gic_real t9 = t7 - t8;
+        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t11 = R(1.653405) + t10 - R(1.438648);
+        const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
+        const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824065);
+        const gic_real t14 = R(2.0) / (t13 + R(0.12727430698933434));
+        const gic_real t15 = R(0.33360360000000006) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]);
+        const gic_real t16 = motion[2] + t15 - R(0.23411769999999998);
+        const gic_real t17 = R(0.33360360000000006) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]);
+        const gic_real t18 = motion[1] + t17 - k[3];
+        const gic_real t19 = R(0.33360360000000006) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t20 = R(1.653405) + t19 - R(1.593883);
+        const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
+        const gic_real t22 = R(0.3415212300824065) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
+        const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331868));
+        const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
+        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
+        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
+        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
+        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
+        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t33 = t6 * t5 - t4 * t9;
+        const gic_real t34 = t4 * t11 - t10 * t5;
+        const gic_real t35 = t10 * t9 - t6 * t11;
+        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t37 = t17 * t16 - t15 * t18;
+        const gic_real t38 = t15 * t20 - t19 * t16;
+        const gic_real t39 = t19 * t18 - t17 * t20;
+        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t41 = R(0.21526024724178433) * t17 - k[4] * t15;
+        const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
+        const gic_real t43 = k[4] * t19 - R(0.9665541626242249) * t17;
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
+        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
+        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[35] - m1[24] * t1));
+        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
+        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
+        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[4] * motion[34];
+        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
+        const gic_real t53 = t52 + GIC_FABS(m1[24]);
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
+        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[17] - rate[1] * motion[35]));
+        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t60 = t46 * GIC_FABS(rate[0]);
+        const gic_real t61 = t53 * GIC_FABS(rate[1]);
+        const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
+        const gic_real t63 = R(2.928075656552032) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
+        const gic_real t64 = R(2.928075656552032) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
+        const gic_real t65 = t6 * motion[12] - t10 * motion[13];
+        const gic_real t66 = motion[17] + t65;
+        const gic_real t67 = t10 * motion[14] - t4 * motion[12];
+        const gic_real t68 = motion[16] + t67 - m0[16];
+        const gic_real t69 = t4 * motion[13] - t6 * motion[14];
+        const gic_real t70 = motion[12] * t67 - motion[13] * t69 + (t6 * motion[18] - t10 * motion[19]);
+        const gic_real t71 = motion[14] * t69 - motion[12] * t65 + (t10 * motion[20] - t4 * motion[18]);
+        const gic_real t72 = motion[13] * t65 - motion[14] * t67 + (t4 * motion[19] - t6 * motion[20]);
+        const gic_real t73 = t5 * (motion[23] + t70) + (t9 * (motion[22] + t71) + t11 * t72);
+        const gic_real t74 = t66 * t66 + (t68 * t68 + t69 * t69) + t73;
+        const gic_real t75 = GIC_FABS(t63) + GIC_FABS(t64) + GIC_FABS(t74 * t14);
+        const gic_real t76 = t17 * motion[12] - t19 * motion[13];
+        const gic_real t77 = motion[17] + t76;
+        const gic_real t78 = t19 * motion[14] - t15 * motion[12];
+        const gic_real t79 = motion[16] + t78;
+        const gic_real t80 = t15 * motion[13] - t17 * motion[14];
+        const gic_real t81 = motion[12] * t78 - motion[13] * t80 + (t17 * motion[18] - t19 * motion[19]);
+        const gic_real t82 = motion[23] + t81;
+        const gic_real t83 = motion[14] * t80 - motion[12] * t76 + (t19 * motion[20] - t15 * motion[18]);
+        const gic_real t84 = motion[22] + t83;
+        const gic_real t85 = motion[13] * t76 - motion[14] * t78 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t86 = t77 * t77 + (t79 * t79 + t80 * t80) + (t16 * t82 + (t18 * t84 + t20 * t85));
+        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) * R(2.559750693852431);
+        const gic_real t88 = R(2.928075656552032) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t89 = R(2.928075656552032) * GIC_FABS(m0[16]);
+        const gic_real t90 = t58 * t58 + t59 * t59 + t88 + t89 * t89;
+        const gic_real t91 = GIC_FABS(m1[12]);
+        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[18])) + t60 * t60;
+        const gic_real t93 = (t75 + GIC_FABS(t86 * t23) + GIC_FABS(t87)) / (R(1e-30) + (t92 + t61 * t61));
+        const gic_real t94 = t62 + t93;
+        worst[0] = t32;
+        worst[1] = t94;
     }
-    return worst;
 }
 
 /* ---- recovery of the whole vehicle, in computational sequence ------------------------------------------------ */
@@ -1805,6 +2049,8 @@ static int five_link_recover(five_link *self, const gic_real turn[3], int cold)
         way[i] = self->x[i] - self->start[first][i];
     for (i = 0; i < FIVE_LINK_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < five_link_piece[i]);
+    if (far)
+        self->head.unchecked = 0; /* a jump: no state that was checked is near */
     /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
      * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
     if (far || FIVE_LINK_FOLLOWED > 0) {
@@ -2312,6 +2558,13 @@ static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gi
         rate[11] = t364;
         rate[22] = t333;
     }
+#ifdef GIC_PLANT_RATE /* an error that tests plant */
+#ifndef GIC_PLANT_AFTER
+#define GIC_PLANT_AFTER R(-1.0) /* s */
+#endif
+    if (time > GIC_PLANT_AFTER)
+        rate[GIC_PLANT_RATE] += GIC_PLANT_BY + GIC_PLANT_BY * GIC_FABS(rate[GIC_PLANT_RATE]);
+#endif
     return GIC_OK;
 }
 
@@ -3138,6 +3391,817 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
     }
 }
 
+/* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
+
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
+ * whose are beyond what is promised, -1: there is none. */
+static GIC_COLD GIC_APART int five_link_residual(const five_link *self, gic_real largest[2])
+{
+    five_link_links links;
+    gic_real one[2];
+    int bad = -1;
+    (void)self, (void)one;
+    largest[0] = largest[1] = R(0.0);
+    links.cold = 0;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    five_link_residual_rack(five_link_k_rack[0], &links, self->motion + 0, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 1;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    five_link_residual_lca_f_l(five_link_k_lca_f_l[0], &links, self->motion + 30, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496358)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 2;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[1];
+    links.rate[0] = self->xd[1];
+    five_link_residual_lca_f_l(five_link_k_lca_f_l[1], &links, self->motion + 60, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496358)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 3;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[2];
+    links.rate[0] = self->xd[2];
+    five_link_residual_wheel_r_l(five_link_k_wheel_r_l[0], &links, self->motion + 90, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.21414967387648)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 4;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[3];
+    links.rate[0] = self->xd[3];
+    five_link_residual_wheel_r_l(five_link_k_wheel_r_l[1], &links, self->motion + 120, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.21414967387648)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 5;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 30;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[0];
+    links.rate[1] = self->xd[0];
+    five_link_residual_wheel_f_l(five_link_k_wheel_f_l[0], &links, self->motion + 150, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 6;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 60;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[1];
+    links.rate[1] = self->xd[1];
+    five_link_residual_wheel_f_l(five_link_k_wheel_f_l[1], &links, self->motion + 186, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 7;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    return bad;
+}
+
+/* tau: residual of the equations of motion at `rate`, body by body: another way than five_link_dynamics. size: magnitudes of
+ * the terms that it is the sum of. */
+static GIC_COLD GIC_APART int five_link_balance(const five_link *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *tau, gic_real *size)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    {
+        const gic_real t1 = y[17] * R(3570.2);
+        const gic_real t2 = y[16] * R(2955.66);
+        const gic_real t3 = e[2] + e[2];
+        const gic_real t4 = e[3] * t3;
+        const gic_real t5 = e[1] + e[1];
+        const gic_real t6 = e[0] * t5;
+        const gic_real t7 = t4 + t6;
+        const gic_real t8 = rate[14] - R(-9.81);
+        const gic_real t9 = e[1] * t5;
+        const gic_real t10 = e[3] + e[3];
+        const gic_real t11 = e[3] * t10;
+        const gic_real t12 = R(1.0) - (t9 + t11);
+        const gic_real t13 = e[2] * t5;
+        const gic_real t14 = e[0] * t10;
+        const gic_real t15 = t13 - t14;
+        const gic_real t16 = t7 * t8 + (t12 * rate[13] + t15 * rate[12]);
+        const gic_real t17 = y[16] * R(0.056);
+        const gic_real t18 = y[16] * R(0.21300000000000008);
+        const gic_real t19 = y[15] * t17 + y[17] * t18 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
+        const gic_real t20 = t16 + t19;
+        const gic_real t21 = y[16] * t1 - y[17] * t2 + rate[15] * R(1078.52) - t20 * R(444.4287600000002);
+        const gic_real t22 = e[2] * t3;
+        const gic_real t23 = R(1.0) - (t9 + t22);
+        const gic_real t24 = t4 - t6;
+        const gic_real t25 = e[1] * t10;
+        const gic_real t26 = e[0] * t3;
+        const gic_real t27 = t25 + t26;
+        const gic_real t28 = t23 * t8 + (t24 * rate[13] + t27 * rate[12]);
+        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
+        const gic_real t30 = R(0.05422899999999997) * y[16] - m[1] * y[17];
+        const gic_real t31 = y[15] * t29 - y[16] * t30 + (m[1] * rate[15] - R(1.438648) * rate[16]);
+        const gic_real t32 = t28 + t31;
+        const gic_real t33 = t32 * R(9.072);
+        const gic_real t34 = m[1] * y[15] - R(1.438648) * y[16];
+        const gic_real t35 = y[17] * t30 - y[15] * t34 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
+        const gic_real t36 = rate[22] + (t16 + t35);
+        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
+        const gic_real t38 = m[38] * R(0.8938);
+        const gic_real t39 = m[37] * R(0.4469);
+        const gic_real t40 = m[41] * t38 + m[40] * t39;
+        const gic_real t41 = y[17] * t37 + y[16] * t40;
+        const gic_real t42 = m[38] * t38 + m[37] * t39;
+        const gic_real t43 = y[17] * t40 + y[16] * t42;
+        const gic_real t44 = y[16] * t41 - y[17] * t43 + R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]);
+        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
+        const gic_real t47 = m[42] * t46;
+        const gic_real t48 = m[48] * t45 - m[42] * t47;
+        const gic_real t49 = R(1.688965) * y[17];
+        const gic_real t50 = t49 - y[15] * t46 - t47 - t47;
+        const gic_real t51 = R(0.307086) + t45;
+        const gic_real t52 = y[16] * t46 - y[17] * t51;
+        const gic_real t53 = R(1.688965) * rate[16];
+        const gic_real t54 = y[15] * t50 - y[16] * t52 + (rate[15] * t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[18] * (m[54] * t45);
+        const gic_real t56 = t55 * R(23.965);
+        const gic_real t57 = m[42] * t45;
+        const gic_real t58 = R(1.688965) * y[16];
+        const gic_real t59 = t57 + (t57 + (y[15] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[17];
+        const gic_real t61 = y[17] * t52 - y[15] * t59 + (t60 - rate[15] * t46);
+        const gic_real t62 = m[42] * t57 + m[48] * t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[18] * (m[54] * t46);
+        const gic_real t64 = t63 * R(23.965);
+        const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
+        const gic_real t66 = t21 + (rate[15] + (m[1] * t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
+        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
+        const gic_real t68 = m[68] * R(0.8938);
+        const gic_real t69 = m[67] * R(0.4469);
+        const gic_real t70 = m[71] * t68 + m[70] * t69;
+        const gic_real t71 = y[17] * t67 + y[16] * t70;
+        const gic_real t72 = m[68] * t68 + m[67] * t69;
+        const gic_real t73 = y[17] * t70 + y[16] * t72;
+        const gic_real t74 = y[16] * t71 - y[17] * t73 + R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]);
+        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
+        const gic_real t77 = m[72] * t76;
+        const gic_real t78 = m[78] * t75 - m[72] * t77;
+        const gic_real t79 = t49 - y[15] * t76 - t77 - t77;
+        const gic_real t80 = R(-0.307086) + t75;
+        const gic_real t81 = y[16] * t76 - y[17] * t80;
+        const gic_real t82 = y[15] * t79 - y[16] * t81 + (rate[15] * t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[19] * (m[84] * t75);
+        const gic_real t84 = R(23.965) * t83;
+        const gic_real t85 = m[72] * t75;
+        const gic_real t86 = t85 + (t85 + (y[15] * t80 - t58));
+        const gic_real t87 = y[17] * t81 - y[15] * t86 + (t60 - rate[15] * t76);
+        const gic_real t88 = m[72] * t85 + m[78] * t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[19] * (m[84] * t76);
+        const gic_real t90 = R(23.965) * t89;
+        const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
+        const gic_real t92 = m[163] + y[16];
+        const gic_real t93 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
+        const gic_real t94 = m[164] + y[17];
+        const gic_real t95 = m[158] * R(4.7728205);
+        const gic_real t96 = m[157] * R(7.58122);
+        const gic_real t97 = m[156] * R(4.8947505);
+        const gic_real t98 = m[161] * t95 + (m[160] * t96 + m[159] * t97);
+        const gic_real t99 = m[155] * R(4.7728205);
+        const gic_real t100 = m[154] * R(7.58122);
+        const gic_real t101 = m[153] * R(4.8947505);
+        const gic_real t102 = m[161] * t99 + (m[160] * t100 + m[159] * t101);
+        const gic_real t103 = m[162] + y[15];
+        const gic_real t104 = t93 * t94 + (t98 * t92 + t102 * t103);
+        const gic_real t105 = m[158] * t95 + (m[157] * t96 + m[156] * t97);
+        const gic_real t106 = m[158] * t99 + (m[157] * t100 + m[156] * t101);
+        const gic_real t107 = t98 * t94 + (t105 * t92 + t106 * t103);
+        const gic_real t108 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
+        const gic_real t109 = t108 + m[182] * rate[18];
+        const gic_real t110 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
+        const gic_real t111 = t110 + m[181] * rate[18];
+        const gic_real t112 = m[155] * t99 + (m[154] * t100 + m[153] * t101);
+        const gic_real t113 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
+        const gic_real t114 = t113 + m[180] * rate[18];
+        const gic_real t115 = t92 * t104 - t94 * t107 + (t102 * t109 + (t106 * t111 + t112 * t114));
+        const gic_real t116 = m[158] * R(0.09182100000000004);
+        const gic_real t117 = m[156] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[157] * R(0.08910630000000008));
+        const gic_real t119 = m[155] * R(0.09182100000000004);
+        const gic_real t120 = m[153] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[154] * R(0.08910630000000008));
+        const gic_real t122 = m[161] * R(0.09182100000000004);
+        const gic_real t123 = m[159] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[160] * R(0.08910630000000008));
+        const gic_real t125 = m[164] * t121 - m[162] * t124;
+        const gic_real t126 = m[163] * t124 - m[164] * t118;
+        const gic_real t127 = m[162] * t125 - m[163] * t126 + (m[168] * t118 - m[169] * t121);
+        const gic_real t128 = m[173] + t127;
+        const gic_real t129 = m[166] + t125;
+        const gic_real t130 = R(1.653405) + t121;
+        const gic_real t131 = m[152] + t124;
+        const gic_real t132 = t129 + (t129 + (y[17] * t130 - y[15] * t131));
+        const gic_real t133 = m[151] + t118;
+        const gic_real t134 = t126 + (t126 + (y[16] * t131 - y[17] * t133));
+        const gic_real t135 = y[15] * t132 - y[16] * t134 + (rate[15] * t133 - rate[16] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + rate[22] * (m[174] * t118 - m[175] * t121);
+        const gic_real t137 = t136 + rate[18] * (m[185] + (m[180] * t118 - m[181] * t121));
+        const gic_real t138 = t137 * R(90.555);
+        const gic_real t139 = m[162] * t118 - m[163] * t121;
+        const gic_real t140 = m[164] * t126 - m[162] * t139 + (m[170] * t121 - m[168] * t124);
+        const gic_real t141 = m[172] + t140;
+        const gic_real t142 = m[167] + t139;
+        const gic_real t143 = t142 + (t142 + (y[15] * t133 - y[16] * t130));
+        const gic_real t144 = y[17] * t134 - y[15] * t143 + (rate[17] * t130 - rate[15] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + rate[22] * (m[176] * t121 - m[174] * t124);
+        const gic_real t146 = t145 + rate[18] * (m[184] + (m[182] * t121 - m[180] * t124));
+        const gic_real t147 = t146 * R(90.555);
+        const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[151] * t138 - m[152] * t147));
+        const gic_real t150 = m[199] + y[16];
+        const gic_real t151 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
+        const gic_real t152 = m[200] + y[17];
+        const gic_real t153 = m[194] * R(4.7728205);
+        const gic_real t154 = m[193] * R(7.58122);
+        const gic_real t155 = m[192] * R(4.8947505);
+        const gic_real t156 = m[197] * t153 + (m[196] * t154 + m[195] * t155);
+        const gic_real t157 = m[191] * R(4.7728205);
+        const gic_real t158 = m[190] * R(7.58122);
+        const gic_real t159 = m[189] * R(4.8947505);
+        const gic_real t160 = m[197] * t157 + (m[196] * t158 + m[195] * t159);
+        const gic_real t161 = m[198] + y[15];
+        const gic_real t162 = t151 * t152 + (t156 * t150 + t160 * t161);
+        const gic_real t163 = m[194] * t153 + (m[193] * t154 + m[192] * t155);
+        const gic_real t164 = m[194] * t157 + (m[193] * t158 + m[192] * t159);
+        const gic_real t165 = t156 * t152 + (t163 * t150 + t164 * t161);
+        const gic_real t166 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
+        const gic_real t167 = t166 + m[218] * rate[19];
+        const gic_real t168 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
+        const gic_real t169 = t168 + m[217] * rate[19];
+        const gic_real t170 = m[191] * t157 + (m[190] * t158 + m[189] * t159);
+        const gic_real t171 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
+        const gic_real t172 = t171 + m[216] * rate[19];
+        const gic_real t173 = t150 * t162 - t152 * t165 + (t160 * t167 + (t164 * t169 + t170 * t172));
+        const gic_real t174 = m[194] * R(0.09182100000000004);
+        const gic_real t175 = m[192] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[193] * R(-0.08910630000000008));
+        const gic_real t177 = m[191] * R(0.09182100000000004);
+        const gic_real t178 = m[189] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[190] * R(-0.08910630000000008));
+        const gic_real t180 = m[197] * R(0.09182100000000004);
+        const gic_real t181 = m[195] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[196] * R(-0.08910630000000008));
+        const gic_real t183 = m[200] * t179 - m[198] * t182;
+        const gic_real t184 = m[199] * t182 - m[200] * t176;
+        const gic_real t185 = m[198] * t183 - m[199] * t184 + (m[204] * t176 - m[205] * t179);
+        const gic_real t186 = m[209] + t185;
+        const gic_real t187 = m[202] + t183;
+        const gic_real t188 = R(1.653405) + t179;
+        const gic_real t189 = m[188] + t182;
+        const gic_real t190 = t187 + (t187 + (y[17] * t188 - y[15] * t189));
+        const gic_real t191 = m[187] + t176;
+        const gic_real t192 = t184 + (t184 + (y[16] * t189 - y[17] * t191));
+        const gic_real t193 = y[15] * t190 - y[16] * t192 + (rate[15] * t191 - rate[16] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + rate[22] * (m[210] * t176 - m[211] * t179);
+        const gic_real t195 = t194 + rate[19] * (m[221] + (m[216] * t176 - m[217] * t179));
+        const gic_real t196 = R(90.555) * t195;
+        const gic_real t197 = m[198] * t176 - m[199] * t179;
+        const gic_real t198 = m[200] * t184 - m[198] * t197 + (m[206] * t179 - m[204] * t182);
+        const gic_real t199 = m[208] + t198;
+        const gic_real t200 = m[203] + t197;
+        const gic_real t201 = t200 + (t200 + (y[15] * t191 - y[16] * t188));
+        const gic_real t202 = y[17] * t192 - y[15] * t201 + (rate[17] * t188 - rate[15] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + rate[22] * (m[212] * t179 - m[210] * t182);
+        const gic_real t204 = t203 + rate[19] * (m[220] + (m[218] * t179 - m[216] * t182));
+        const gic_real t205 = R(90.555) * t204;
+        const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
+        const gic_real t207 = m[103] + y[16];
+        const gic_real t208 = m[101] * (m[101] * R(4.7728205)) + (m[100] * (m[100] * R(7.58122)) + m[99] * (m[99] * R(4.8947505)));
+        const gic_real t209 = m[104] + y[17];
+        const gic_real t210 = m[98] * R(4.7728205);
+        const gic_real t211 = m[97] * R(7.58122);
+        const gic_real t212 = m[96] * R(4.8947505);
+        const gic_real t213 = m[101] * t210 + (m[100] * t211 + m[99] * t212);
+        const gic_real t214 = m[95] * R(4.7728205);
+        const gic_real t215 = m[94] * R(7.58122);
+        const gic_real t216 = m[93] * R(4.8947505);
+        const gic_real t217 = m[101] * t214 + (m[100] * t215 + m[99] * t216);
+        const gic_real t218 = m[102] + y[15];
+        const gic_real t219 = t208 * t209 + (t213 * t207 + t217 * t218);
+        const gic_real t220 = m[98] * t210 + (m[97] * t211 + m[96] * t212);
+        const gic_real t221 = m[98] * t214 + (m[97] * t215 + m[96] * t216);
+        const gic_real t222 = t213 * t209 + (t220 * t207 + t221 * t218);
+        const gic_real t223 = m[110] + (rate[17] + (m[103] * y[15] - m[102] * y[16])) + m[116] * rate[20];
+        const gic_real t224 = m[109] + (rate[16] + (m[102] * y[17] - m[104] * y[15])) + m[115] * rate[20];
+        const gic_real t225 = m[95] * t214 + (m[94] * t215 + m[93] * t216);
+        const gic_real t226 = m[108] + (rate[15] + (m[104] * y[16] - m[103] * y[17])) + m[114] * rate[20];
+        const gic_real t227 = t207 * t219 - t209 * t222 + (t217 * t223 + (t221 * t224 + t225 * t226));
+        const gic_real t228 = m[98] * R(0.09182100000000004);
+        const gic_real t229 = m[96] * R(-0.030000000000000027);
+        const gic_real t230 = t228 + (t229 + m[97] * R(0.08910630000000008));
+        const gic_real t231 = m[95] * R(0.09182100000000004);
+        const gic_real t232 = m[93] * R(-0.030000000000000027);
+        const gic_real t233 = t231 + (t232 + m[94] * R(0.08910630000000008));
+        const gic_real t234 = m[101] * R(0.09182100000000004);
+        const gic_real t235 = m[99] * R(-0.030000000000000027);
+        const gic_real t236 = t234 + (t235 + m[100] * R(0.08910630000000008));
+        const gic_real t237 = m[104] * t233 - m[102] * t236;
+        const gic_real t238 = m[103] * t236 - m[104] * t230;
+        const gic_real t239 = m[102] * t237 - m[103] * t238 + (m[108] * t230 - m[109] * t233);
+        const gic_real t240 = m[113] + t239;
+        const gic_real t241 = m[106] + t237;
+        const gic_real t242 = m[90] + t233;
+        const gic_real t243 = m[92] + t236;
+        const gic_real t244 = t241 + (t241 + (y[17] * t242 - y[15] * t243));
+        const gic_real t245 = m[105] + t238;
+        const gic_real t246 = m[91] + t230;
+        const gic_real t247 = t245 + (t245 + (y[16] * t243 - y[17] * t246));
+        const gic_real t248 = y[15] * t244 - y[16] * t247 + (rate[15] * t246 - rate[16] * t242);
+        const gic_real t249 = t240 + (t28 + t248) + rate[20] * (m[119] + (m[114] * t230 - m[115] * t233));
+        const gic_real t250 = R(90.555) * t249;
+        const gic_real t251 = m[102] * t230 - m[103] * t233;
+        const gic_real t252 = m[104] * t238 - m[102] * t251 + (m[110] * t233 - m[108] * t236);
+        const gic_real t253 = m[112] + t252;
+        const gic_real t254 = m[107] + t251;
+        const gic_real t255 = t254 + (t254 + (y[15] * t246 - y[16] * t242));
+        const gic_real t256 = y[17] * t247 - y[15] * t255 + (rate[17] * t242 - rate[15] * t243);
+        const gic_real t257 = t253 + (t16 + t256) + rate[20] * (m[118] + (m[116] * t233 - m[114] * t236));
+        const gic_real t258 = R(90.555) * t257;
+        const gic_real t259 = t227 + (t230 * t250 - t236 * t258);
+        const gic_real t260 = t149 + (t206 + (m[187] * t196 - m[188] * t205)) + (t259 + (m[91] * t250 - m[92] * t258));
+        const gic_real t261 = m[133] + y[16];
+        const gic_real t262 = m[131] * (m[131] * R(4.7728205)) + (m[130] * (m[130] * R(7.58122)) + m[129] * (m[129] * R(4.8947505)));
+        const gic_real t263 = m[134] + y[17];
+        const gic_real t264 = m[128] * R(4.7728205);
+        const gic_real t265 = m[127] * R(7.58122);
+        const gic_real t266 = m[126] * R(4.8947505);
+        const gic_real t267 = m[131] * t264 + (m[130] * t265 + m[129] * t266);
+        const gic_real t268 = m[125] * R(4.7728205);
+        const gic_real t269 = m[124] * R(7.58122);
+        const gic_real t270 = m[123] * R(4.8947505);
+        const gic_real t271 = m[131] * t268 + (m[130] * t269 + m[129] * t270);
+        const gic_real t272 = m[132] + y[15];
+        const gic_real t273 = t262 * t263 + (t267 * t261 + t271 * t272);
+        const gic_real t274 = m[128] * t264 + (m[127] * t265 + m[126] * t266);
+        const gic_real t275 = m[128] * t268 + (m[127] * t269 + m[126] * t270);
+        const gic_real t276 = t267 * t263 + (t274 * t261 + t275 * t272);
+        const gic_real t277 = m[140] + (rate[17] + (m[133] * y[15] - m[132] * y[16])) + m[146] * rate[21];
+        const gic_real t278 = m[139] + (rate[16] + (m[132] * y[17] - m[134] * y[15])) + m[145] * rate[21];
+        const gic_real t279 = m[125] * t268 + (m[124] * t269 + m[123] * t270);
+        const gic_real t280 = m[138] + (rate[15] + (m[134] * y[16] - m[133] * y[17])) + m[144] * rate[21];
+        const gic_real t281 = t261 * t273 - t263 * t276 + (t271 * t277 + (t275 * t278 + t279 * t280));
+        const gic_real t282 = m[128] * R(0.09182100000000004);
+        const gic_real t283 = m[126] * R(-0.030000000000000027);
+        const gic_real t284 = t282 + (t283 + m[127] * R(-0.08910630000000008));
+        const gic_real t285 = m[125] * R(0.09182100000000004);
+        const gic_real t286 = m[123] * R(-0.030000000000000027);
+        const gic_real t287 = t285 + (t286 + m[124] * R(-0.08910630000000008));
+        const gic_real t288 = m[131] * R(0.09182100000000004);
+        const gic_real t289 = m[129] * R(-0.030000000000000027);
+        const gic_real t290 = t288 + (t289 + m[130] * R(-0.08910630000000008));
+        const gic_real t291 = m[134] * t287 - m[132] * t290;
+        const gic_real t292 = m[133] * t290 - m[134] * t284;
+        const gic_real t293 = m[132] * t291 - m[133] * t292 + (m[138] * t284 - m[139] * t287);
+        const gic_real t294 = m[143] + t293;
+        const gic_real t295 = m[136] + t291;
+        const gic_real t296 = m[120] + t287;
+        const gic_real t297 = m[122] + t290;
+        const gic_real t298 = t295 + (t295 + (y[17] * t296 - y[15] * t297));
+        const gic_real t299 = m[135] + t292;
+        const gic_real t300 = m[121] + t284;
+        const gic_real t301 = t299 + (t299 + (y[16] * t297 - y[17] * t300));
+        const gic_real t302 = y[15] * t298 - y[16] * t301 + (rate[15] * t300 - rate[16] * t296);
+        const gic_real t303 = t294 + (t28 + t302) + rate[21] * (m[149] + (m[144] * t284 - m[145] * t287));
+        const gic_real t304 = R(90.555) * t303;
+        const gic_real t305 = m[132] * t284 - m[133] * t287;
+        const gic_real t306 = m[134] * t292 - m[132] * t305 + (m[140] * t287 - m[138] * t290);
+        const gic_real t307 = m[142] + t306;
+        const gic_real t308 = m[137] + t305;
+        const gic_real t309 = t308 + (t308 + (y[15] * t300 - y[16] * t296));
+        const gic_real t310 = y[17] * t301 - y[15] * t309 + (rate[17] * t296 - rate[15] * t297);
+        const gic_real t311 = t307 + (t16 + t310) + rate[21] * (m[148] + (m[146] * t287 - m[144] * t290));
+        const gic_real t312 = R(90.555) * t311;
+        const gic_real t313 = t281 + (t284 * t304 - t290 * t312);
+        const gic_real t314 = t282 + (m[127] * R(-0.12319000000000002) + t283);
+        const gic_real t315 = t285 + (m[124] * R(-0.12319000000000002) + t286);
+        const gic_real t316 = m[121] + t314;
+        const gic_real t317 = m[120] + t315;
+        const gic_real t318 = m[137] + (m[132] * t314 - m[133] * t315) + (y[15] * t316 - y[16] * t317);
+        const gic_real t319 = t288 + (m[130] * R(-0.12319000000000002) + t289);
+        const gic_real t320 = m[122] + t319;
+        const gic_real t321 = m[136] + (m[134] * t315 - m[132] * t319) + (y[17] * t317 - y[15] * t320);
+        const gic_real t322 = t13 + t14;
+        const gic_real t323 = m[135] + (m[133] * t319 - m[134] * t314) + (y[16] * t320 - y[17] * t316);
+        const gic_real t324 = y[13] + (t24 * t318 + (t12 * t321 + t322 * t323));
+        const gic_real t325 = R(1.0) - (t22 + t11);
+        const gic_real t326 = y[0] + (t27 * t320 + (t15 * t316 + t325 * t317));
+        const gic_real t327 = y[1] + (t24 * t320 + (t12 * t316 + t322 * t317));
+        gic_real road328[3];
+        if (!five_link_road_height(self, time, t326, t327, road328))
+            return GIC_ERROR_ROAD;
+        const gic_real t329 = y[12] + (t27 * t318 + (t15 * t321 + t325 * t323));
+        const gic_real t330 = t25 - t26;
+        const gic_real t331 = y[14] + (t23 * t318 + (t7 * t321 + t330 * t323));
+        const gic_real t332 = t324 * road328[2] + t329 * road328[1] - t331;
+        const gic_real t333 = y[2] + (t23 * t320 + (t7 * t316 + t330 * t317));
+        const gic_real t334 = R(0.4699) + road328[0] - t333;
+        const gic_real t335 = GIC_MIN(GIC_MAX(R(100.0) * t334, R(0.0)), R(1.0));
+        const gic_real t336 = t332 * (R(500.0) * ((R(3.0) - (t335 + t335)) * (t335 * t335)));
+        const gic_real t337 = GIC_MAX(t336 + R(283000.0) * t334, R(0.0));
+        const gic_real t338 = t23 * t337;
+        const gic_real t339 = t7 * t337;
+        const gic_real t340 = t314 * t338 - t319 * t339;
+        const gic_real t341 = t228 + (m[97] * R(0.12319000000000002) + t229);
+        const gic_real t342 = t231 + (m[94] * R(0.12319000000000002) + t232);
+        const gic_real t343 = m[91] + t341;
+        const gic_real t344 = m[90] + t342;
+        const gic_real t345 = m[107] + (m[102] * t341 - m[103] * t342) + (y[15] * t343 - y[16] * t344);
+        const gic_real t346 = t234 + (m[100] * R(0.12319000000000002) + t235);
+        const gic_real t347 = m[92] + t346;
+        const gic_real t348 = m[106] + (m[104] * t342 - m[102] * t346) + (y[17] * t344 - y[15] * t347);
+        const gic_real t349 = m[105] + (m[103] * t346 - m[104] * t341) + (y[16] * t347 - y[17] * t343);
+        const gic_real t350 = y[13] + (t24 * t345 + (t12 * t348 + t322 * t349));
+        const gic_real t351 = y[0] + (t27 * t347 + (t15 * t343 + t325 * t344));
+        const gic_real t352 = y[1] + (t24 * t347 + (t12 * t343 + t322 * t344));
+        gic_real road353[3];
+        if (!five_link_road_height(self, time, t351, t352, road353))
+            return GIC_ERROR_ROAD;
+        const gic_real t354 = y[12] + (t27 * t345 + (t15 * t348 + t325 * t349));
+        const gic_real t355 = y[14] + (t23 * t345 + (t7 * t348 + t330 * t349));
+        const gic_real t356 = t350 * road353[2] + t354 * road353[1] - t355;
+        const gic_real t357 = y[2] + (t23 * t347 + (t7 * t343 + t330 * t344));
+        const gic_real t358 = R(0.4699) + road353[0] - t357;
+        const gic_real t359 = GIC_MIN(GIC_MAX(R(100.0) * t358, R(0.0)), R(1.0));
+        const gic_real t360 = t356 * (R(500.0) * ((R(3.0) - (t359 + t359)) * (t359 * t359)));
+        const gic_real t361 = GIC_MAX(t360 + R(283000.0) * t358, R(0.0));
+        const gic_real t362 = t23 * t361;
+        const gic_real t363 = t7 * t361;
+        const gic_real t364 = t341 * t362 - t346 * t363;
+        const gic_real t365 = t174 + (m[193] * R(-0.12319000000000002) + t175);
+        const gic_real t366 = t177 + (m[190] * R(-0.12319000000000002) + t178);
+        const gic_real t367 = m[187] + t365;
+        const gic_real t368 = R(1.653405) + t366;
+        const gic_real t369 = m[203] + (m[198] * t365 - m[199] * t366) + (y[15] * t367 - y[16] * t368);
+        const gic_real t370 = t180 + (m[196] * R(-0.12319000000000002) + t181);
+        const gic_real t371 = m[188] + t370;
+        const gic_real t372 = m[202] + (m[200] * t366 - m[198] * t370) + (y[17] * t368 - y[15] * t371);
+        const gic_real t373 = m[199] * t370 - m[200] * t365 + (y[16] * t371 - y[17] * t367);
+        const gic_real t374 = y[13] + (t24 * t369 + (t12 * t372 + t322 * t373));
+        const gic_real t375 = y[0] + (t27 * t371 + (t15 * t367 + t325 * t368));
+        const gic_real t376 = y[1] + (t24 * t371 + (t12 * t367 + t322 * t368));
+        gic_real road377[3];
+        if (!five_link_road_height(self, time, t375, t376, road377))
+            return GIC_ERROR_ROAD;
+        const gic_real t378 = y[12] + (t27 * t369 + (t15 * t372 + t325 * t373));
+        const gic_real t379 = y[14] + (t23 * t369 + (t7 * t372 + t330 * t373));
+        const gic_real t380 = t374 * road377[2] + t378 * road377[1] - t379;
+        const gic_real t381 = y[2] + (t23 * t371 + (t7 * t367 + t330 * t368));
+        const gic_real t382 = R(0.4699) + road377[0] - t381;
+        const gic_real t383 = GIC_MIN(GIC_MAX(R(100.0) * t382, R(0.0)), R(1.0));
+        const gic_real t384 = t380 * (R(500.0) * ((R(3.0) - (t383 + t383)) * (t383 * t383)));
+        const gic_real t385 = GIC_MAX(t384 + R(283000.0) * t382, R(0.0));
+        const gic_real t386 = t23 * t385;
+        const gic_real t387 = t7 * t385;
+        const gic_real t388 = t365 * t386 - t370 * t387;
+        const gic_real t389 = t116 + (m[157] * R(0.12319000000000002) + t117);
+        const gic_real t390 = t119 + (m[154] * R(0.12319000000000002) + t120);
+        const gic_real t391 = m[151] + t389;
+        const gic_real t392 = R(1.653405) + t390;
+        const gic_real t393 = m[167] + (m[162] * t389 - m[163] * t390) + (y[15] * t391 - y[16] * t392);
+        const gic_real t394 = t122 + (m[160] * R(0.12319000000000002) + t123);
+        const gic_real t395 = m[152] + t394;
+        const gic_real t396 = m[166] + (m[164] * t390 - m[162] * t394) + (y[17] * t392 - y[15] * t395);
+        const gic_real t397 = m[163] * t394 - m[164] * t389 + (y[16] * t395 - y[17] * t391);
+        const gic_real t398 = y[13] + (t24 * t393 + (t12 * t396 + t322 * t397));
+        const gic_real t399 = y[0] + (t27 * t395 + (t15 * t391 + t325 * t392));
+        const gic_real t400 = y[1] + (t24 * t395 + (t12 * t391 + t322 * t392));
+        gic_real road401[3];
+        if (!five_link_road_height(self, time, t399, t400, road401))
+            return GIC_ERROR_ROAD;
+        const gic_real t402 = y[12] + (t27 * t393 + (t15 * t396 + t325 * t397));
+        const gic_real t403 = y[14] + (t23 * t393 + (t7 * t396 + t330 * t397));
+        const gic_real t404 = t398 * road401[2] + t402 * road401[1] - t403;
+        const gic_real t405 = y[2] + (t23 * t395 + (t7 * t391 + t330 * t392));
+        const gic_real t406 = road401[0] + R(0.4699) - t405;
+        const gic_real t407 = GIC_MIN(GIC_MAX(t406 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t408 = t404 * ((R(3.0) - (t407 + t407)) * (t407 * t407) * R(500.0));
+        const gic_real t409 = GIC_MAX(t408 + t406 * R(283000.0), R(0.0));
+        const gic_real t410 = t23 * t409;
+        const gic_real t411 = t7 * t409;
+        const gic_real t412 = t389 * t410 - t394 * t411;
+        const gic_real t413 = t412 + (m[151] * t410 - m[152] * t411) + (m[187] * t386 - m[188] * t387);
+        const gic_real t414 = t364 + (t388 + t413 + (m[91] * t362 - m[92] * t363));
+        const gic_real t415 = t260 + (t313 + (m[121] * t304 - m[122] * t312)) - (t340 + (t414 + (m[121] * t338 - m[122] * t339)));
+        const gic_real t416 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t330);
+        const gic_real t417 = t330 * t8 + (t322 * rate[13] + t325 * rate[12]);
+        const gic_real t418 = t416 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t417));
+        const gic_real t419 = GIC_FABS(y[17]) + GIC_FABS(y[16]) + GIC_FABS(y[15]);
+        const gic_real t420 = GIC_FABS(rate[17]) + GIC_FABS(rate[16]) + GIC_FABS(rate[15]);
+        const gic_real t421 = t419 * t419 + t420;
+        const gic_real t422 = t418 + t421 * R(0.2690000000000001);
+        const gic_real t423 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[1]));
+        const gic_real t424 = GIC_FABS(rate[22]);
+        const gic_real t425 = t418 + t421 * t423 + t419 * GIC_FABS(m[16]) + t424;
+        const gic_real t426 = R(9.072) * t425;
+        const gic_real t427 = t422 * R(561.2738800000002) + t421 * R(7604.379999999999) + (R(3.0) * t421 + t423 * t426);
+        const gic_real t428 = GIC_FABS(t46);
+        const gic_real t429 = t428 + GIC_FABS(t45);
+        const gic_real t430 = t419 + GIC_FABS(m[42]);
+        const gic_real t431 = t420 + t430 * t430;
+        const gic_real t432 = t418 + t431 * (R(1.688965) + (t428 + GIC_FABS(t51))) + t419 * (GIC_FABS(t57) + GIC_FABS(-t47));
+        const gic_real t433 = GIC_FABS(rate[18]);
+        const gic_real t434 = GIC_FABS(m[54]);
+        const gic_real t435 = t433 * t434;
+        const gic_real t436 = t432 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t435 * t429;
+        const gic_real t437 = R(23.965) * t436;
+        const gic_real t438 = t429 * t437 + (t431 + GIC_FABS(m[48]) + t435) * R(1.7876);
+        const gic_real t439 = GIC_FABS(t76);
+        const gic_real t440 = t439 + GIC_FABS(t75);
+        const gic_real t441 = t419 + GIC_FABS(m[72]);
+        const gic_real t442 = t420 + t441 * t441;
+        const gic_real t443 = t418 + t442 * (R(1.688965) + (t439 + GIC_FABS(t80))) + t419 * (GIC_FABS(t85) + GIC_FABS(-t77));
+        const gic_real t444 = GIC_FABS(rate[19]);
+        const gic_real t445 = GIC_FABS(m[84]);
+        const gic_real t446 = t444 * t445;
+        const gic_real t447 = t443 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t446 * t440;
+        const gic_real t448 = R(23.965) * t447;
+        const gic_real t449 = t440 * t448 + R(1.7876) * (t442 + GIC_FABS(m[78]) + t446);
+        const gic_real t450 = t427 + (t438 + t436 * R(47.835362215)) + (t449 + R(47.835362215) * t447);
+        const gic_real t451 = (R(0.4699) + (GIC_FABS(t405) + GIC_FABS(road401[0]))) * R(283000.0);
+        const gic_real t452 = GIC_FABS(t408) + GIC_FABS(t451);
+        const gic_real t453 = t452 * (GIC_FABS(t394) + GIC_FABS(t389) + GIC_FABS(t390));
+        const gic_real t454 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
+        const gic_real t455 = t419 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t456 = t420 + t455 * t455;
+        const gic_real t457 = t456 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
+        const gic_real t458 = t419 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
+        const gic_real t459 = m[163] * t139 - m[164] * t125 + (m[169] * t124 - m[170] * t118);
+        const gic_real t460 = t418 + t457 + t458 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t459));
+        const gic_real t461 = GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]);
+        const gic_real t462 = t424 * t461;
+        const gic_real t463 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t464 = t433 * t463;
+        const gic_real t465 = GIC_FABS(m[185]) + GIC_FABS(m[184]);
+        const gic_real t466 = t460 + t462 * t454 + t454 * t464 + t433 * t465;
+        const gic_real t467 = R(90.555) * t466;
+        const gic_real t468 = t456 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t469 = t453 + (t454 * t467 + (t468 + t462 + t464) * R(17.248790999999997));
+        const gic_real t470 = t452 + t467;
+        const gic_real t471 = t469 + t470 * (R(1.653405) + (GIC_FABS(m[152]) + GIC_FABS(m[151])));
+        const gic_real t472 = R(283000.0) * (R(0.4699) + (GIC_FABS(t381) + GIC_FABS(road377[0])));
+        const gic_real t473 = GIC_FABS(t384) + GIC_FABS(t472);
+        const gic_real t474 = t473 * (GIC_FABS(t370) + GIC_FABS(t365) + GIC_FABS(t366));
+        const gic_real t475 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
+        const gic_real t476 = t419 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t477 = t420 + t476 * t476;
+        const gic_real t478 = t477 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
+        const gic_real t479 = t419 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
+        const gic_real t480 = m[199] * t197 - m[200] * t183 + (m[205] * t182 - m[206] * t176);
+        const gic_real t481 = t418 + t478 + t479 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t480));
+        const gic_real t482 = GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]);
+        const gic_real t483 = t424 * t482;
+        const gic_real t484 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t485 = t444 * t484;
+        const gic_real t486 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t487 = t481 + t483 * t475 + t475 * t485 + t444 * t486;
+        const gic_real t488 = R(90.555) * t487;
+        const gic_real t489 = t477 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t490 = t474 + (t475 * t488 + R(17.248790999999997) * (t489 + t483 + t485));
+        const gic_real t491 = t473 + t488;
+        const gic_real t492 = t490 + t491 * (R(1.653405) + (GIC_FABS(m[188]) + GIC_FABS(m[187])));
+        const gic_real t493 = R(283000.0) * (R(0.4699) + (GIC_FABS(t357) + GIC_FABS(road353[0])));
+        const gic_real t494 = GIC_FABS(t360) + GIC_FABS(t493);
+        const gic_real t495 = t494 * (GIC_FABS(t346) + GIC_FABS(t341) + GIC_FABS(t342));
+        const gic_real t496 = GIC_FABS(t236) + GIC_FABS(t230) + GIC_FABS(t233);
+        const gic_real t497 = t419 + (GIC_FABS(m[104]) + GIC_FABS(m[103]) + GIC_FABS(m[102]));
+        const gic_real t498 = t420 + t497 * t497;
+        const gic_real t499 = t498 * (GIC_FABS(t243) + GIC_FABS(t246) + GIC_FABS(t242));
+        const gic_real t500 = t419 * (GIC_FABS(t254) + GIC_FABS(t241) + GIC_FABS(t245));
+        const gic_real t501 = m[103] * t251 - m[104] * t237 + (m[109] * t236 - m[110] * t230);
+        const gic_real t502 = m[111] + t501;
+        const gic_real t503 = t418 + t499 + t500 + (GIC_FABS(t240) + GIC_FABS(t253) + GIC_FABS(t502));
+        const gic_real t504 = GIC_FABS(rate[20]);
+        const gic_real t505 = GIC_FABS(m[116]) + GIC_FABS(m[115]) + GIC_FABS(m[114]);
+        const gic_real t506 = t504 * t505;
+        const gic_real t507 = GIC_FABS(m[119]) + GIC_FABS(m[118]) + GIC_FABS(m[117]);
+        const gic_real t508 = R(90.555) * (t503 + t506 * t496 + t504 * t507);
+        const gic_real t509 = t498 + (GIC_FABS(m[110]) + GIC_FABS(m[109]) + GIC_FABS(m[108]));
+        const gic_real t510 = t495 + (t496 * t508 + R(17.248790999999997) * (t509 + t506));
+        const gic_real t511 = t494 + t508;
+        const gic_real t512 = t511 * (GIC_FABS(m[92]) + GIC_FABS(m[91]) + GIC_FABS(m[90]));
+        const gic_real t513 = R(283000.0) * (R(0.4699) + (GIC_FABS(t333) + GIC_FABS(road328[0])));
+        const gic_real t514 = GIC_FABS(t336) + GIC_FABS(t513);
+        const gic_real t515 = t514 * (GIC_FABS(t319) + GIC_FABS(t314) + GIC_FABS(t315));
+        const gic_real t516 = GIC_FABS(t290) + GIC_FABS(t284) + GIC_FABS(t287);
+        const gic_real t517 = t419 + (GIC_FABS(m[134]) + GIC_FABS(m[133]) + GIC_FABS(m[132]));
+        const gic_real t518 = t420 + t517 * t517;
+        const gic_real t519 = t518 * (GIC_FABS(t297) + GIC_FABS(t300) + GIC_FABS(t296));
+        const gic_real t520 = t419 * (GIC_FABS(t308) + GIC_FABS(t295) + GIC_FABS(t299));
+        const gic_real t521 = m[133] * t305 - m[134] * t291 + (m[139] * t290 - m[140] * t284);
+        const gic_real t522 = m[141] + t521;
+        const gic_real t523 = t418 + t519 + t520 + (GIC_FABS(t294) + GIC_FABS(t307) + GIC_FABS(t522));
+        const gic_real t524 = GIC_FABS(rate[21]);
+        const gic_real t525 = GIC_FABS(m[146]) + GIC_FABS(m[145]) + GIC_FABS(m[144]);
+        const gic_real t526 = t524 * t525;
+        const gic_real t527 = GIC_FABS(m[149]) + GIC_FABS(m[148]) + GIC_FABS(m[147]);
+        const gic_real t528 = R(90.555) * (t523 + t526 * t516 + t524 * t527);
+        const gic_real t529 = t518 + (GIC_FABS(m[140]) + GIC_FABS(m[139]) + GIC_FABS(m[138]));
+        const gic_real t530 = t515 + (t516 * t528 + R(17.248790999999997) * (t529 + t526));
+        const gic_real t531 = t514 + t528;
+        const gic_real t532 = t531 * (GIC_FABS(m[122]) + GIC_FABS(m[121]) + GIC_FABS(m[120]));
+        const gic_real t533 = t450 + t471 + t492 + (t510 + t512) + (t530 + t532);
+        const gic_real t534 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
+        const gic_real t535 = t417 + (rate[16] * R(0.21300000000000008) - (y[17] * t534 + y[16] * t17));
+        const gic_real t536 = y[16] * t34 - y[17] * t29 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
+        const gic_real t537 = t417 + t536;
+        const gic_real t538 = t537 * R(9.072);
+        const gic_real t539 = y[16] * t59 - y[17] * t50 + (rate[16] * t46 - rate[17] * t51);
+        const gic_real t540 = t417 + t539;
+        const gic_real t541 = t540 * R(23.965);
+        const gic_real t542 = y[16] * t86 - y[17] * t79 + (rate[16] * t76 - rate[17] * t80);
+        const gic_real t543 = t417 + t542;
+        const gic_real t544 = R(23.965) * t543;
+        const gic_real t545 = y[16] * t143 - y[17] * t132 + (rate[16] * t131 - rate[17] * t133);
+        const gic_real t546 = t459 + (t417 + t545) + rate[22] * (m[175] * t124 - m[176] * t118);
+        const gic_real t547 = (t546 + rate[18] * (m[181] * t124 - m[182] * t118)) * R(90.555);
+        const gic_real t548 = y[16] * t201 - y[17] * t190 + (rate[16] * t189 - rate[17] * t191);
+        const gic_real t549 = t480 + (t417 + t548) + rate[22] * (m[211] * t182 - m[212] * t176);
+        const gic_real t550 = R(90.555) * (t549 + rate[19] * (m[217] * t182 - m[218] * t176));
+        const gic_real t551 = t535 * R(2086.52) + t538 + t541 + t544 + t547 + t550;
+        const gic_real t552 = y[16] * t255 - y[17] * t244 + (rate[16] * t243 - rate[17] * t246);
+        const gic_real t553 = t502 + (t417 + t552) + rate[20] * (m[117] + (m[115] * t236 - m[116] * t230));
+        const gic_real t554 = R(90.555) * t553;
+        const gic_real t555 = y[16] * t309 - y[17] * t298 + (rate[16] * t297 - rate[17] * t300);
+        const gic_real t556 = t522 + (t417 + t555) + rate[21] * (m[147] + (m[145] * t290 - m[146] * t284));
+        const gic_real t557 = R(90.555) * t556;
+        const gic_real t558 = t330 * t337;
+        const gic_real t559 = t330 * t361;
+        const gic_real t560 = t330 * t409;
+        const gic_real t561 = t330 * t385;
+        const gic_real t562 = t551 + t554 + t557 - (t558 + (t559 + (t560 + t561)));
+        const gic_real t563 = R(2086.52) * t422 + t426 + t437 + t448 + t470 + t491;
+        const gic_real t564 = t563 + t511 + t531;
+        const gic_real t565 = y[15] * R(1078.52);
+        const gic_real t566 = t28 + (y[15] * t534 - y[16] * t18 - rate[16] * R(0.056));
+        const gic_real t567 = y[17] * t565 - y[15] * t1 + rate[16] * R(2955.66) + (t535 * R(444.4287600000002) - t566 * R(116.84512));
+        const gic_real t568 = m[42] + y[15];
+        const gic_real t569 = R(0.4469) * t568;
+        const gic_real t570 = rate[17] - m[42] * y[16];
+        const gic_real t571 = rate[16] + m[42] * y[17];
+        const gic_real t572 = y[17] * t569 - t568 * t41 + (t40 * t570 + t42 * t571);
+        const gic_real t573 = t567 + (rate[16] + (t537 * R(0.4919654879999997) - t32 * R(13.051414655999999))) + (t572 + t46 * t541 - t55 * R(40.476046225));
+        const gic_real t574 = m[72] + y[15];
+        const gic_real t575 = R(0.4469) * t574;
+        const gic_real t576 = rate[17] - m[72] * y[16];
+        const gic_real t577 = rate[16] + m[72] * y[17];
+        const gic_real t578 = y[17] * t575 - t574 * t71 + (t70 * t576 + t72 * t577);
+        const gic_real t579 = t102 * t94 + (t106 * t92 + t112 * t103);
+        const gic_real t580 = t94 * t579 - t103 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
+        const gic_real t581 = t580 + (t124 * t547 - t121 * t138);
+        const gic_real t582 = t573 + (t578 + t76 * t544 - R(40.476046225) * t83) + (t581 + (m[152] * t547 - t137 * R(149.724089775)));
+        const gic_real t583 = t160 * t152 + (t164 * t150 + t170 * t161);
+        const gic_real t584 = t152 * t583 - t161 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
+        const gic_real t585 = t584 + (t182 * t550 - t179 * t196);
+        const gic_real t586 = t217 * t209 + (t221 * t207 + t225 * t218);
+        const gic_real t587 = t209 * t586 - t218 * t219 + (t213 * t223 + (t220 * t224 + t221 * t226));
+        const gic_real t588 = t587 + (t236 * t554 - t233 * t250);
+        const gic_real t589 = t582 + (t585 + (m[188] * t550 - R(149.724089775) * t195)) + (t588 + (m[92] * t554 - m[90] * t250));
+        const gic_real t590 = t271 * t263 + (t275 * t261 + t279 * t272);
+        const gic_real t591 = t263 * t590 - t272 * t273 + (t267 * t277 + (t274 * t278 + t275 * t280));
+        const gic_real t592 = t591 + (t290 * t557 - t287 * t304);
+        const gic_real t593 = t319 * t558 - t315 * t338;
+        const gic_real t594 = t346 * t559 - t342 * t362;
+        const gic_real t595 = t370 * t561 - t366 * t386;
+        const gic_real t596 = t394 * t560 - t390 * t410;
+        const gic_real t597 = t596 + (m[152] * t560 - R(1.653405) * t410) + (m[188] * t561 - R(1.653405) * t386);
+        const gic_real t598 = t594 + (t595 + t597 + (m[92] * t559 - m[90] * t362));
+        const gic_real t599 = t589 + (t592 + (m[122] * t557 - m[120] * t304)) - (t593 + (t598 + (m[122] * t558 - m[120] * t338)));
+        const gic_real t600 = t36 * R(9.072);
+        const gic_real t601 = t20 * R(2086.52) + t600 + t64 + t90 + t147 + t205;
+        const gic_real t602 = t601 + t258 + t312 - (t339 + (t363 + (t411 + t387)));
+        const gic_real t603 = y[15] * t2 - y[16] * t565 + rate[17] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t604 = t568 * t43 - y[16] * t569 + (t37 * t570 + t40 * t571);
+        const gic_real t605 = t604 - t45 * t541 + (t63 * R(40.476046225) - t540 * R(7.359315990000001));
+        const gic_real t606 = t603 + (rate[17] + (t36 * R(13.051414655999999) - m[1] * t538)) + t605;
+        const gic_real t607 = t574 * t73 - y[16] * t575 + (t67 * t576 + t70 * t577);
+        const gic_real t608 = t607 - t75 * t544 + (R(40.476046225) * t89 - t543 * R(-7.359315990000001));
+        const gic_real t609 = t103 * t107 - t92 * t579 + (t93 * t109 + (t98 * t111 + t102 * t114));
+        const gic_real t610 = t609 + (t121 * t147 - t118 * t547);
+        const gic_real t611 = t606 + t608 + (t610 + (t146 * R(149.724089775) - m[151] * t547));
+        const gic_real t612 = t161 * t165 - t150 * t583 + (t151 * t167 + (t156 * t169 + t160 * t172));
+        const gic_real t613 = t612 + (t179 * t205 - t176 * t550);
+        const gic_real t614 = t218 * t222 - t207 * t586 + (t208 * t223 + (t213 * t224 + t217 * t226));
+        const gic_real t615 = t614 + (t233 * t258 - t230 * t554);
+        const gic_real t616 = t611 + (t613 + (R(149.724089775) * t204 - m[187] * t550)) + (t615 + (m[90] * t258 - m[91] * t554));
+        const gic_real t617 = t272 * t276 - t261 * t590 + (t262 * t277 + (t267 * t278 + t271 * t280));
+        const gic_real t618 = t617 + (t287 * t312 - t284 * t557);
+        const gic_real t619 = t315 * t339 - t314 * t558;
+        const gic_real t620 = t342 * t363 - t341 * t559;
+        const gic_real t621 = t366 * t387 - t365 * t561;
+        const gic_real t622 = t390 * t411 - t389 * t560;
+        const gic_real t623 = t622 + (R(1.653405) * t411 - m[151] * t560) + (R(1.653405) * t387 - m[187] * t561);
+        const gic_real t624 = t620 + (t621 + t623 + (m[90] * t363 - m[91] * t559));
+        const gic_real t625 = t616 + (t618 + (m[120] * t312 - m[121] * t557)) - (t619 + (t624 + (m[120] * t339 - m[121] * t558)));
+        const gic_real t626 = t566 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
+        const gic_real t627 = t626 + t250 + t304 - (t338 + (t362 + (t410 + t386)));
+        const gic_real t628 = m[185] * t138 + m[184] * t147 + (m[182] * t610 + (m[181] * t581 + m[180] * t148));
+        const gic_real t629 = m[185] * t410 + m[184] * t411 + (m[182] * t622 + (m[181] * t596 + m[180] * t412));
+        const gic_real t630 = (x[0] - R(0.31907)) * R(167070.9);
+        const gic_real t631 = xd[0] * R(17490.8);
+        const gic_real t632 = GIC_FABS(t631) + GIC_FABS(t630) + R(167070.9) * (R(0.31907) + GIC_FABS(x[0]));
+        const gic_real t633 = t632 + t434 * t438 + t463 * t469 + t465 * t470;
+        const gic_real t634 = m[221] * t196 + m[220] * t205 + (m[218] * t613 + (m[217] * t585 + m[216] * t206));
+        const gic_real t635 = m[221] * t386 + m[220] * t387 + (m[218] * t621 + (m[217] * t595 + m[216] * t388));
+        const gic_real t636 = R(167070.9) * (x[1] - R(0.31907));
+        const gic_real t637 = xd[1] * R(17490.8);
+        const gic_real t638 = GIC_FABS(t637) + GIC_FABS(t636) + R(167070.9) * (R(0.31907) + GIC_FABS(x[1]));
+        const gic_real t639 = t638 + t445 * t449 + t484 * t490 + t486 * t491;
+        const gic_real t640 = m[119] * t250 + (m[118] * t258 + m[117] * t554) + (m[116] * t615 + (m[115] * t588 + m[114] * t259));
+        const gic_real t641 = m[119] * t362 + (m[118] * t363 + m[117] * t559) + (m[116] * t620 + (m[115] * t594 + m[114] * t364));
+        const gic_real t642 = (x[2] - R(0.4321)) * R(89500.0);
+        const gic_real t643 = xd[2] * R(6010.0);
+        const gic_real t644 = GIC_FABS(t643) + GIC_FABS(t642) + R(89500.0) * (R(0.4321) + GIC_FABS(x[2]));
+        const gic_real t645 = m[149] * t304 + (m[148] * t312 + m[147] * t557) + (m[146] * t618 + (m[145] * t592 + m[144] * t313));
+        const gic_real t646 = m[149] * t338 + (m[148] * t339 + m[147] * t558) + (m[146] * t619 + (m[145] * t593 + m[144] * t340));
+        const gic_real t647 = R(89500.0) * (x[3] - R(0.4321));
+        const gic_real t648 = xd[3] * R(6010.0);
+        const gic_real t649 = GIC_FABS(t648) + GIC_FABS(t647) + R(89500.0) * (R(0.4321) + GIC_FABS(x[3]));
+        const gic_real t650 = t600 + (m[176] * t610 + (m[175] * t581 + m[174] * t148));
+        const gic_real t651 = t650 + (m[212] * t613 + (m[211] * t585 + m[210] * t206));
+        const gic_real t652 = x[4] * R(100000.0);
+        const gic_real t653 = xd[4] * R(12000.0);
+        const gic_real t654 = m[176] * t622 + (m[175] * t596 + m[174] * t412) - (t652 + t653);
+        const gic_real t655 = t654 + (m[212] * t621 + (m[211] * t595 + m[210] * t388));
+        const gic_real t656 = GIC_FABS(t653) + GIC_FABS(t652) + R(100000.0) * GIC_FABS(x[4]);
+        const gic_real t657 = m[54] * t65 + t628 - (t629 - (t630 + t631));
+        const gic_real t658 = m[84] * t91 + t634 - (t635 - (t636 + t637));
+        const gic_real t659 = t640 - (t641 - (t642 + t643));
+        const gic_real t660 = t644 + t505 * t510 + t507 * t511;
+        const gic_real t661 = t645 - (t646 - (t647 + t648));
+        const gic_real t662 = t649 + t525 * t530 + t527 * t531;
+        const gic_real t663 = t651 - t655;
+        const gic_real t664 = t656 + t426 + t461 * t469 + t482 * t490;
+        tau[0] = t415;
+        size[0] = t533;
+        tau[3] = t562;
+        size[3] = t564;
+        tau[1] = t599;
+        size[1] = t533;
+        tau[4] = t602;
+        size[4] = t564;
+        tau[2] = t625;
+        size[2] = t533;
+        tau[5] = t627;
+        size[5] = t564;
+        tau[6] = t657;
+        size[6] = t633;
+        tau[7] = t658;
+        size[7] = t639;
+        tau[8] = t659;
+        size[8] = t660;
+        tau[9] = t661;
+        size[9] = t662;
+        tau[10] = t663;
+        size[10] = t664;
+    }
+    return GIC_OK;
+}
+
+/* The motions that were recovered last, against all constraints. */
+static GIC_COLD int five_link_check_constraints(five_link *self)
+{
+    gic_real largest[2];
+    const int bad = five_link_residual(self, largest);
+    self->head.residual = GIC_MAX(self->head.residual, largest[0]);
+    if (bad < 0)
+        return GIC_OK;
+    self->head.subset = bad;
+    self->recovered = 0;
+    return GIC_ERROR_RESIDUAL;
+}
+
+/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+static GIC_COLD GIC_APART int five_link_check(five_link *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate)
+{
+    gic_real tau[FIVE_LINK_UNKNOWN_ROOM], size[FIVE_LINK_UNKNOWN_ROOM];
+    int i, status = five_link_check_constraints(self);
+    self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&five_link_model, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        status = five_link_balance(self, time, y, e, rate, tau, size);
+    for (i = 0; status == GIC_OK && i < FIVE_LINK_UNKNOWNS; ++i)
+        if (!(GIC_FABS(tau[i]) <= GIC_BALANCE_RESIDUAL * size[i]))
+            status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        self->head.unchecked = GIC_CHECK_EVERY;
+    return status;
+}
+
 /* ---- the functions of five_link.h ------------------------------------------------------------------------------------ */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
@@ -3160,6 +4224,7 @@ static int five_link_locate(five_link *self, gic_real time, const gic_real *y, g
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
 static int five_link_evaluate(five_link *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[FIVE_LINK_STATE_ROOM])
 {
+    const int32_t flip = self->head.flip;
     int status = five_link_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
@@ -3167,6 +4232,11 @@ static int five_link_evaluate(five_link *self, gic_real time, const gic_real *y,
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
     if (status == GIC_OK && !GIC_FINITE(rate + FIVE_LINK_TWIST, FIVE_LINK_STATES - FIVE_LINK_TWIST))
         status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && --self->head.unchecked < 0) {
+        status = five_link_check(self, time, y, e, rate);
+        if (status != GIC_OK)
+            self->head.flip = flip; /* what was found is no start */
+    }
     return self->head.status = status;
 }
 
@@ -3241,7 +4311,13 @@ int five_link_outputs(five_link *self)
 int five_link_poses(five_link *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = five_link_locate(self, five_link_present(self), self->state, e);
+    const int32_t flip = self->head.flip;
+    int status = five_link_locate(self, five_link_present(self), self->state, e);
+    if (status == GIC_OK) {
+        status = self->head.status = five_link_check_constraints(self);
+        if (status != GIC_OK)
+            self->head.flip = flip;
+    }
     if (status == GIC_OK)
         five_link_place(self, self->state, e, pose);
     return status;
@@ -3520,6 +4596,8 @@ int five_link_setup_with(five_link *self, const gic_real *parameter)
     five_link_gather(self, self->state);
     if (status == GIC_OK)
         status = five_link_recover(self, turn, 0);
+    if (status == GIC_OK)
+        status = five_link_check_constraints(self);
     return self->head.status = status;
 }
 
@@ -4585,53 +5663,21 @@ static GIC_COLD int five_link_energy(const five_link *self, gic_real time, const
     return GIC_OK;
 }
 
-/* Largest constraint residual of all subsets, relative to their sizes. */
-static GIC_COLD gic_real five_link_residual(const five_link *self)
-{
-    const gic_real *const start = self->start[self->head.flip];
-    five_link_links links;
-    gic_real largest = R(0.0), one = R(0.0);
-    (void)start;
-    (void)one;
-    links.cold = 0;
-    links.x[0] = start[4];
-    one = five_link_residual_rack(five_link_k_rack[0], &links, self->motion + 0);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[0];
-    one = five_link_residual_lca_f_l(five_link_k_lca_f_l[0], &links, self->motion + 30);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[1];
-    one = five_link_residual_lca_f_l(five_link_k_lca_f_l[1], &links, self->motion + 60);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[2];
-    one = five_link_residual_wheel_r_l(five_link_k_wheel_r_l[0], &links, self->motion + 90);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[3];
-    one = five_link_residual_wheel_r_l(five_link_k_wheel_r_l[1], &links, self->motion + 120);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = start[4];
-    links.x[1] = start[0];
-    one = five_link_residual_wheel_f_l(five_link_k_wheel_f_l[0], &links, self->motion + 150);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = start[4];
-    links.x[1] = start[1];
-    one = five_link_residual_wheel_f_l(five_link_k_wheel_f_l[1], &links, self->motion + 186);
-    largest = GIC_MAX(largest, one);
-    return largest;
-}
-
 GIC_COLD int five_link_self_test(five_link *self, gic_self_test *result)
 {
     gic_real e[4], acc[FIVE_LINK_UNKNOWN_ROOM], unit[FIVE_LINK_UNKNOWN_ROOM], tau0[FIVE_LINK_UNKNOWN_ROOM], tau[FIVE_LINK_UNKNOWN_ROOM];
-    gic_real M[FIVE_LINK_UNKNOWN_ROOM][FIVE_LINK_UNKNOWN_ROOM], energy[3], scale;
+    gic_real M[FIVE_LINK_UNKNOWN_ROOM][FIVE_LINK_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = five_link_time(self);
-    const gic_self_test none = {R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = five_link_refresh(self, e);
+    const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = five_link_refresh(self, e);
     *result = none;
+    if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
+        (void)five_link_residual(self, residual);
+        result->constraint = residual[0];
+        result->motion = residual[1];
+    }
     for (i = 0; i < FIVE_LINK_UNKNOWNS; ++i)
         unit[i] = R(0.0);
     if (status == GIC_OK)
@@ -4640,7 +5686,6 @@ GIC_COLD int five_link_self_test(five_link *self, gic_self_test *result)
         status = five_link_inverse(self, time, self->state, e, unit, tau0);
     if (status != GIC_OK)
         return self->head.status = status;
-    result->constraint = five_link_residual(self);
     result->energy = GIC_FABS(energy[0] - energy[1]) / (energy[2] > R(0.0) ? energy[2] : R(1.0));
 
     /* the mass matrix column by column: what a unit acceleration adds to the residual */
@@ -4718,6 +5763,14 @@ static int five_link_any_self_test(void *self, gic_self_test *result)
     return five_link_self_test((five_link *)self, result);
 }
 
+static int five_link_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
+{
+    gic_real e[4];
+    const gic_real *turn;
+    const int status = five_link_orient((five_link *)self, state, e, &turn);
+    return status == GIC_OK ? five_link_check((five_link *)self, time, state, e, rate) : status;
+}
+
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define five_link_any_march NULL
 #else
@@ -4787,4 +5840,5 @@ const gic_model five_link_model = {
     NULL,
     NULL,
     NULL,
+    five_link_any_check,
 };

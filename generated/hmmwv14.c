@@ -80,7 +80,7 @@
  */
 #include "hmmwv14.h"
 
-#if HMMWV14_H != 0xaca2e981
+#if HMMWV14_H != 0x2658322d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -170,6 +170,27 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
+ * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
+ * their terms. They are rounding, in single precision near a singular configuration too. */
+#ifdef GIC_FLOAT
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-5)
+#else
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-10), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-9) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-10)
+#endif
+
+/* Evaluations between two that are checked. */
+#define GIC_CHECK_EVERY 200
+
+/* By how much an error that tests plant is off. */
+#ifndef GIC_PLANT_BY
+#define GIC_PLANT_BY R(1e-3)
+#endif
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct hmmwv14_links {
@@ -234,22 +255,27 @@ static int hmmwv14_solve_rack(hmmwv14 *self, const gic_real *GIC_RESTRICT k, con
         const gic_real t20 = t1 * t16 - R(0.4919654879999997) * t12;
         inertia[12] = t20;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv14_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv14_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
-        worst = t1;
+        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        worst[0] = t2;
+        worst[1] = t1;
     }
-    return worst;
 }
 
 static const gic_real hmmwv14_k_lca_f_l[4][28] = {
@@ -260,7 +286,7 @@ static const gic_real hmmwv14_k_lca_f_l[4][28] = {
         R(-209.35663216526908), R(51.576600771841136), R(-51.57660077184113), R(209.35663216526908),
         R(-0.20269199999999993), R(0.19748500000000002), R(3.0379110359107786e-06), R(0.24689200985615367),
         R(0.307086), R(40.476046225), R(-8.917091066652828), R(1.688965),
-        R(0.01121887479261392), R(0.2403881036540444), R(0.509778), R(7.8923759275231005),
+        R(0.01121887479261392), R(0.2403881036540444), R(0.509778), R(0.06335227878037954),
     },
     { /* lca_f_r */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
@@ -269,7 +295,7 @@ static const gic_real hmmwv14_k_lca_f_l[4][28] = {
         R(-209.35663216526908), R(-51.576600771841136), R(51.57660077184113), R(209.35663216526908),
         R(0.20269199999999993), R(0.19748500000000002), R(3.0379110359107786e-06), R(-0.24689200985615367),
         R(-0.307086), R(40.476046225), R(8.917091066652828), R(1.688965),
-        R(0.01121887479261392), R(-0.2403881036540444), R(-0.509778), R(7.8923759275231005),
+        R(0.01121887479261392), R(-0.2403881036540444), R(-0.509778), R(0.06335227878037954),
     },
     { /* lca_r_l */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
@@ -278,7 +304,7 @@ static const gic_real hmmwv14_k_lca_f_l[4][28] = {
         R(-161.8167759548846), R(39.864795135905354), R(-39.86479513590535), R(161.8167759548846),
         R(-0.19448779999999993), R(0.2564892), R(-3.0379110358344508e-06), R(0.246867347245056),
         R(0.307086), R(-40.476046225), R(-7.181825051954384), R(-1.688965),
-        R(0.011218874792613923), R(0.24038810365404442), R(0.5015738), R(6.355965194292885),
+        R(0.011218874792613923), R(0.24038810365404442), R(0.5015738), R(0.07866625834404464),
     },
     { /* lca_r_r */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
@@ -287,7 +313,7 @@ static const gic_real hmmwv14_k_lca_f_l[4][28] = {
         R(-161.8167759548846), R(-39.864795135905354), R(39.86479513590535), R(161.8167759548846),
         R(0.19448779999999993), R(0.2564892), R(-3.0379110358344508e-06), R(-0.246867347245056),
         R(-0.307086), R(-40.476046225), R(7.181825051954384), R(-1.688965),
-        R(0.011218874792613923), R(-0.24038810365404442), R(-0.5015738), R(6.355965194292885),
+        R(0.011218874792613923), R(-0.24038810365404442), R(-0.5015738), R(0.07866625834404464),
     },
 };
 
@@ -409,28 +435,48 @@ static int hmmwv14_solve_lca_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, 
         const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
         inertia[21] = t71;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv14_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv14_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10] - k[17];
-        const gic_real t2 = k[20] + (k[24] * motion[8] + k[25] * motion[7]) - k[26];
-        const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[27]));
-        worst = t4;
+        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10];
+        const gic_real t2 = t1 - k[17];
+        const gic_real t3 = k[24] * motion[8] + k[25] * motion[7];
+        const gic_real t4 = k[20] + t3 - k[26];
+        const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
+        const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.2595404998909418) + k[27];
+        const gic_real t7 = R(2.0) / t6;
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t13 = t11 * GIC_FABS(rate[0]);
+        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
+        const gic_real t15 = t3 * motion[12];
+        const gic_real t16 = t1 * motion[12];
+        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
+        worst[0] = t9;
+        worst[1] = t20;
     }
-    return worst;
 }
 
-static const gic_real hmmwv14_k_uca_f_l_wheel_f_l[2][37] = {
+static const gic_real hmmwv14_k_uca_f_l_wheel_f_l[2][40] = {
     { /* uca_f_l */
         R(0.49375935710120966), R(0.448437), R(0.307086), R(0.4618482),
         R(0.030306109019851125), R(0.016670304030389483), R(-0.1394133303209898), R(0.2653454901360133),
@@ -441,7 +487,7 @@ static const gic_real hmmwv14_k_uca_f_l_wheel_f_l[2][37] = {
         R(4.242021150632486), R(2.588574822512031), R(0.608667505195622), R(7.53722278326882),
         R(0.03459480000000004), R(0.08910630000000008), R(0.13607944895268467), R(0.625988943493614),
         R(-1.611745315918301e-17), R(-0.6413253729952063), R(3.503662751904028e-18), R(-0.07099299999999997),
-        R(0.2667481144968474),
+        R(0.2667481144968474), R(-3.469446951953614e-18), R(-0.13607944895268467), R(-0.03030610901985113),
     },
     { /* uca_f_r */
         R(-0.49375935710120966), R(-0.448437), R(-0.307086), R(-0.4618482),
@@ -453,7 +499,7 @@ static const gic_real hmmwv14_k_uca_f_l_wheel_f_l[2][37] = {
         R(-4.242021150632486), R(-2.588574822512031), R(-0.608667505195622), R(-7.53722278326882),
         R(-0.03459480000000004), R(-0.08910630000000008), R(-0.13607944895268467), R(-0.625988943493614),
         R(1.611745315918301e-17), R(0.6413253729952063), R(-3.503662751904028e-18), R(0.07099299999999997),
-        R(-0.2667481144968474),
+        R(-0.2667481144968474), R(3.469446951953614e-18), R(0.13607944895268467), R(0.03030610901985113),
     },
 };
 
@@ -973,42 +1019,145 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t412 = -t228;
         motion[31] = t412;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv14_residual_uca_f_l_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv14_residual_uca_f_l_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = motion[36] + (R(0.33360360000000006) * motion[41] + (k[35] * motion[40] + R(-0.017475200000000024) * motion[39]));
-        const gic_real t2 = t1 - (R(1.5309008) + (R(1.1338201752909144e-08) * motion[5] + (R(0.06298224285030377) + k[36] * motion[4])));
-        const gic_real t3 = motion[37] + (R(0.33360360000000006) * motion[44] + (k[35] * motion[43] + R(-0.017475200000000024) * motion[42]));
-        const gic_real t4 = t3 - (k[3] + (R(1.1338201752909144e-08) * motion[8] + (k[10] + k[36] * motion[7])));
-        const gic_real t5 = GIC_MAX(GIC_MAX(R(2.802930201523222e-17), GIC_FABS(R(2.928075656552032) * t2)), GIC_FABS(R(2.928075656552032) * t4));
-        const gic_real t6 = motion[38] + (R(0.33360360000000006) * motion[47] + (k[35] * motion[46] + R(-0.017475200000000024) * motion[45]));
-        const gic_real t7 = t6 - (R(0.22009100000000004) + (R(1.1338201752909144e-08) * motion[11] + (R(0.014026708168106437) + k[36] * motion[10])));
-        const gic_real t8 = GIC_MAX(GIC_MAX(t5, GIC_FABS(R(2.928075656552032) * t7)), GIC_FABS(R(2.928075656552032) * (motion[36] - R(1.653405))));
-        const gic_real t9 = GIC_MAX(t8, GIC_FABS(R(2.928075656552032) * (motion[37] - (k[0] * m1[7] + k[2]))));
-        const gic_real t10 = motion[38] + (R(0.10177780000000003) * motion[47] + (k[28] * motion[46] + R(-0.14025880000000002) * motion[45]));
-        const gic_real t11 = t10 - R(0.05422899999999997);
-        const gic_real t12 = motion[37] + (R(0.10177780000000003) * motion[44] + (k[28] * motion[43] + R(-0.14025880000000002) * motion[42]));
-        const gic_real t13 = t12 - (k[1] + m0[1]);
-        const gic_real t14 = motion[36] + (R(0.10177780000000003) * motion[41] + (k[28] * motion[40] + R(-0.14025880000000002) * motion[39]));
-        const gic_real t15 = t14 - R(1.438648);
-        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.14941089924212003);
-        const gic_real t17 = GIC_MAX(GIC_MAX(t9, GIC_FABS(R(2.928075656552032) * (motion[38] - k[0] * m1[10]))), GIC_FABS(t16 * R(3.9285226675160785)));
-        worst = t17;
+        const gic_real t1 = R(0.33360360000000006) * motion[41] + (k[35] * motion[40] + R(-0.017475200000000024) * motion[39]);
+        const gic_real t2 = R(1.1338201752909144e-08) * motion[5] + (R(0.06298224285030377) + k[36] * motion[4]);
+        const gic_real t3 = R(2.8917913700660266e-17) + GIC_FABS(R(2.928075656552032) * (motion[36] + t1 - (R(1.5309008) + t2)));
+        const gic_real t4 = R(0.33360360000000006) * motion[44] + (k[35] * motion[43] + R(-0.017475200000000024) * motion[42]);
+        const gic_real t5 = R(1.1338201752909144e-08) * motion[8] + (k[10] + k[36] * motion[7]);
+        const gic_real t6 = t3 + GIC_FABS(R(2.928075656552032) * (motion[37] + t4 - (k[3] + t5)));
+        const gic_real t7 = R(0.33360360000000006) * motion[47] + (k[35] * motion[46] + R(-0.017475200000000024) * motion[45]);
+        const gic_real t8 = R(1.1338201752909144e-08) * motion[11] + (R(0.014026708168106437) + k[36] * motion[10]);
+        const gic_real t9 = t6 + GIC_FABS(R(2.928075656552032) * (motion[38] + t7 - (R(0.22009100000000004) + t8)));
+        const gic_real t10 = k[0] * m1[7];
+        const gic_real t11 = t9 + GIC_FABS(R(2.928075656552032) * (motion[36] - R(1.653405))) + GIC_FABS(R(2.928075656552032) * (motion[37] - (t10 + k[2])));
+        const gic_real t12 = k[0] * m1[10];
+        const gic_real t13 = R(0.10177780000000003) * motion[47] + (k[28] * motion[46] + R(-0.14025880000000002) * motion[45]);
+        const gic_real t14 = motion[38] + t13 - R(0.05422899999999997);
+        const gic_real t15 = R(0.10177780000000003) * motion[44] + (k[28] * motion[43] + R(-0.14025880000000002) * motion[42]);
+        const gic_real t16 = motion[37] + t15;
+        const gic_real t17 = k[1] + m0[1];
+        const gic_real t18 = t16 - t17;
+        const gic_real t19 = R(0.10177780000000003) * motion[41] + (k[28] * motion[40] + R(-0.14025880000000002) * motion[39]);
+        const gic_real t20 = motion[36] + t19 - R(1.438648);
+        const gic_real t21 = t14 * t14 + (t18 * t18 + t20 * t20) - R(0.14941089924212003);
+        const gic_real t22 = (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t14)) * R(0.3415212300824065);
+        const gic_real t23 = R(2.0) / (t22 + R(0.12727430698933434));
+        const gic_real t24 = t11 + GIC_FABS(R(2.928075656552032) * (motion[38] - t12)) + GIC_FABS(R(0.5) * t21 * t23);
+        const gic_real t25 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t26 = GIC_FABS(R(0.21526024724178433) * motion[10] + (k[6] * motion[7] + R(0.9665541626242249) * motion[4]));
+        const gic_real t27 = t24 + GIC_FABS(t25) + t26 + GIC_FABS(k[6] * motion[10] - R(0.21526024724178433) * motion[7] - motion[5]);
+        const gic_real t28 = t27 + GIC_FABS(R(0.21526024724178433) * motion[4] - R(0.9665541626242249) * motion[10] - motion[8]);
+        const gic_real t29 = t28 + GIC_FABS(R(0.9665541626242249) * motion[7] - k[6] * motion[4] - motion[11]);
+        const gic_real t30 = motion[45] * motion[45] + (motion[42] * motion[42] + motion[39] * motion[39]) - R(1.0);
+        const gic_real t31 = motion[46] * motion[46] + (motion[43] * motion[43] + motion[40] * motion[40]) - R(1.0);
+        const gic_real t32 = GIC_FABS(motion[45] * motion[46] + (motion[42] * motion[43] + motion[39] * motion[40]));
+        const gic_real t33 = t29 + GIC_FABS(t30) + GIC_FABS(t31) + t32 + GIC_FABS(motion[42] * motion[46] - motion[43] * motion[45] - motion[41]);
+        const gic_real t34 = t33 + GIC_FABS(motion[40] * motion[45] - motion[39] * motion[46] - motion[44]);
+        const gic_real t35 = t34 + GIC_FABS(motion[39] * motion[43] - motion[40] * motion[42] - motion[47]);
+        const gic_real t36 = R(1.0244995213749308) * (R(-0.2173831508800009) * motion[24] + k[37] * motion[25] + R(0.9760863515660297) * motion[26]);
+        const gic_real t37 = R(1.0098620328900394) * (k[38] * motion[24] + R(-0.9902342769914658) * motion[25] + k[39] * motion[26]);
+        const gic_real t38 = t5 * motion[26] - t8 * motion[25] + t7 * motion[61] - t4 * motion[62];
+        const gic_real t39 = GIC_FABS(t36) + GIC_FABS(t37) + GIC_FABS(R(2.928075656552032) * t38);
+        const gic_real t40 = t8 * motion[24] - t2 * motion[26] - t7 * motion[60] + t1 * motion[62];
+        const gic_real t41 = t2 * motion[25] - t5 * motion[24] + t4 * motion[60] - t1 * motion[61];
+        const gic_real t42 = t39 + GIC_FABS(R(2.928075656552032) * t40) + GIC_FABS(R(2.928075656552032) * t41);
+        const gic_real t43 = t15 * t14 - t13 * t18;
+        const gic_real t44 = t13 * t20 - t19 * t14;
+        const gic_real t45 = t19 * t18 - t15 * t20;
+        const gic_real t46 = t17 - t16 + t43 * motion[60] + t44 * motion[61] + t45 * motion[62];
+        const gic_real t47 = GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]) + (GIC_FABS(motion[60]) + GIC_FABS(motion[61]) + GIC_FABS(motion[62]));
+        const gic_real t48 = R(2.928075656552032) + t47;
+        const gic_real t49 = R(1.0244995213749308) * (R(-0.2173831508800009) * motion[30] + k[37] * motion[31] + R(0.9760863515660297) * motion[32]);
+        const gic_real t50 = R(1.0098620328900394) * (k[38] * motion[30] + R(-0.9902342769914658) * motion[31] + k[39] * motion[32]);
+        const gic_real t51 = t5 * motion[32] - t8 * motion[31] + t7 * motion[67] - t4 * motion[68];
+        const gic_real t52 = GIC_FABS(t49) + GIC_FABS(t50) + GIC_FABS(R(2.928075656552032) * t51);
+        const gic_real t53 = t8 * motion[30] - t2 * motion[32] - t7 * motion[66] + t1 * motion[68];
+        const gic_real t54 = t2 * motion[31] - t5 * motion[30] + t4 * motion[66] - t1 * motion[67];
+        const gic_real t55 = t52 + GIC_FABS(R(2.928075656552032) * (motion[70] + t53)) + GIC_FABS(R(2.928075656552032) * (motion[71] + t54));
+        const gic_real t56 = t55 + GIC_FABS(R(2.928075656552032) * (m1[24] * t12 + motion[70])) + GIC_FABS(R(2.928075656552032) * (motion[71] - m1[24] * t10));
+        const gic_real t57 = t43 * motion[66] + t44 * motion[67] + t45 * motion[68] + t18 * motion[70];
+        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[70]) + GIC_FABS(motion[71])) + (GIC_FABS(motion[66]) + GIC_FABS(motion[67]) + GIC_FABS(motion[68]));
+        const gic_real t59 = GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]) + t58;
+        const gic_real t60 = t59 + GIC_FABS(m1[24]);
+        const gic_real t61 = (t56 + GIC_FABS(t23 * (t57 + t14 * motion[71]))) / (R(1e-30) + t60);
+        const gic_real t62 = (t42 + GIC_FABS(t23 * t46)) / (t48 + R(1e-30)) + t61;
+        const gic_real t63 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
+        const gic_real t64 = t63 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
+        const gic_real t65 = t64 + GIC_FABS(motion[48] - rate[0] * motion[60] - rate[1] * motion[66]);
+        const gic_real t66 = t65 + GIC_FABS(motion[49] - rate[0] * motion[61] - rate[1] * motion[67]);
+        const gic_real t67 = t66 + GIC_FABS(motion[50] - rate[0] * motion[62] - rate[1] * motion[68]);
+        const gic_real t68 = t67 + GIC_FABS(R(2.928075656552032) * (motion[52] - rate[1] * motion[70])) + GIC_FABS(R(2.928075656552032) * (motion[53] - rate[1] * motion[71]));
+        const gic_real t69 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t70 = R(2.928075656552032) * (GIC_FABS(motion[52]) + GIC_FABS(motion[53]));
+        const gic_real t71 = GIC_FABS(motion[48]) + GIC_FABS(motion[49]) + GIC_FABS(motion[50]);
+        const gic_real t72 = t48 * GIC_FABS(rate[0]);
+        const gic_real t73 = t60 * GIC_FABS(rate[1]);
+        const gic_real t74 = t68 / (R(1e-30) + (t69 + (t70 + t71) + t72 + t73));
+        const gic_real t75 = R(0.9665541626242249) * motion[14] - R(0.21526024724178433) * motion[12];
+        const gic_real t76 = R(0.21526024724178433) * motion[13] - k[6] * motion[14];
+        const gic_real t77 = motion[12] * t75 - motion[13] * t76 + (k[6] * motion[18] - R(0.9665541626242249) * motion[19]);
+        const gic_real t78 = k[6] * motion[12] - R(0.9665541626242249) * motion[13];
+        const gic_real t79 = motion[14] * t76 - motion[12] * t78 + (R(0.9665541626242249) * motion[20] - R(0.21526024724178433) * motion[18]);
+        const gic_real t80 = motion[13] * t78 - motion[14] * t75 + (R(0.21526024724178433) * motion[19] - k[6] * motion[20]);
+        const gic_real t81 = (k[4] * t77 + (R(0.9902342769914657) * t79 + k[30] * t80)) * R(1.0244995213749308);
+        const gic_real t82 = GIC_FABS(t81) + GIC_FABS((R(0.9760863515660297) * t77 + R(-0.2173831508800009) * t80) * R(1.0098620328900394));
+        const gic_real t83 = t4 * motion[48] - t1 * motion[49];
+        const gic_real t84 = t1 * motion[50] - t7 * motion[48];
+        const gic_real t85 = motion[49] * t83 - motion[50] * t84 + (t7 * motion[55] - t4 * motion[56]);
+        const gic_real t86 = t5 * motion[12] - t2 * motion[13];
+        const gic_real t87 = t2 * motion[14] - t8 * motion[12];
+        const gic_real t88 = motion[13] * t86 - motion[14] * t87 + (t8 * motion[19] - t5 * motion[20]);
+        const gic_real t89 = t7 * motion[49] - t4 * motion[50];
+        const gic_real t90 = motion[50] * t89 - motion[48] * t83 + (t1 * motion[56] - t7 * motion[54]);
+        const gic_real t91 = t8 * motion[13] - t5 * motion[14];
+        const gic_real t92 = motion[14] * t91 - motion[12] * t86 + (t2 * motion[20] - t8 * motion[18]);
+        const gic_real t93 = t82 + GIC_FABS(R(2.928075656552032) * (t85 - t88)) + GIC_FABS(R(2.928075656552032) * (motion[58] + t90 - t92));
+        const gic_real t94 = motion[48] * t84 - motion[49] * t89 + (t4 * motion[54] - t1 * motion[55]);
+        const gic_real t95 = motion[12] * t87 - motion[13] * t91 + (t5 * motion[18] - t2 * motion[19]);
+        const gic_real t96 = R(2.928075656552032) * (m1[12] * (m1[12] * t10) + m1[18] * t12 + motion[58]);
+        const gic_real t97 = t93 + GIC_FABS(R(2.928075656552032) * (motion[59] + t94 - t95)) + GIC_FABS(t96);
+        const gic_real t98 = R(2.928075656552032) * (motion[59] - (m1[18] * t10 - m1[12] * (m1[12] * t12)));
+        const gic_real t99 = t15 * motion[48] - t19 * motion[49];
+        const gic_real t100 = motion[53] + t99;
+        const gic_real t101 = t19 * motion[50] - t13 * motion[48];
+        const gic_real t102 = motion[52] + t101 - m0[16];
+        const gic_real t103 = t13 * motion[49] - t15 * motion[50];
+        const gic_real t104 = motion[48] * t101 - motion[49] * t103 + (t15 * motion[54] - t19 * motion[55]);
+        const gic_real t105 = motion[50] * t103 - motion[48] * t99 + (t19 * motion[56] - t13 * motion[54]);
+        const gic_real t106 = motion[49] * t99 - motion[50] * t101 + (t13 * motion[55] - t15 * motion[56]);
+        const gic_real t107 = t14 * (motion[59] + t104) + (t18 * (motion[58] + t105) + t20 * t106);
+        const gic_real t108 = t100 * t100 + (t102 * t102 + t103 * t103) + t107;
+        const gic_real t109 = t69 * t69 + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t110 = R(2.928075656552032) * (GIC_FABS(motion[58]) + GIC_FABS(motion[59])) + (GIC_FABS(motion[54]) + GIC_FABS(motion[55]) + GIC_FABS(motion[56]));
+        const gic_real t111 = R(2.928075656552032) * GIC_FABS(m0[16]);
+        const gic_real t112 = t109 + (t70 * t70 + t71 * t71 + t110) + t111 * t111;
+        const gic_real t113 = GIC_FABS(m1[12]);
+        const gic_real t114 = t112 + (t113 * t113 + GIC_FABS(m1[18])) + t72 * t72;
+        const gic_real t115 = (t97 + GIC_FABS(t98) + GIC_FABS(t108 * t23)) / (R(1e-30) + (t114 + t73 * t73));
+        const gic_real t116 = t62 + t74 + t115;
+        worst[0] = t35;
+        worst[1] = t116;
     }
-    return worst;
 }
 
-static const gic_real hmmwv14_k_uca_r_l_wheel_r_l[2][37] = {
+static const gic_real hmmwv14_k_uca_r_l_wheel_r_l[2][40] = {
     { /* uca_r_l */
         R(0.49375935710120966), R(0.307086), R(0.462153), R(-1.0776391091961054e-05),
         R(0.00013586973959622088), R(0.0007653408717829899), R(0.25350090091806393), R(1.0),
@@ -1019,7 +1168,7 @@ static const gic_real hmmwv14_k_uca_r_l_wheel_r_l[2][37] = {
         R(-3.8439880158316875), R(2.5884314861658844), R(0.608845322047573), R(7.749562845920435),
         R(0.03459480000000004), R(0.08910630000000008), R(-0.0007652649994718039), R(1.0777459518844495e-05),
         R(1.694234349117567e-21), R(0.0007654167516165472), R(1.6940663906555304e-21), R(-0.07099299999999997),
-        R(0.253605357573192),
+        R(0.253605357573192), R(-1.6940658945086007e-21), R(0.0007652649994718038), R(1.0776391091961054e-05),
     },
     { /* uca_r_r */
         R(-0.49375935710120966), R(-0.307086), R(-0.462153), R(1.0776391091961054e-05),
@@ -1031,7 +1180,7 @@ static const gic_real hmmwv14_k_uca_r_l_wheel_r_l[2][37] = {
         R(3.8439880158316875), R(-2.5884314861658844), R(-0.608845322047573), R(-7.749562845920435),
         R(-0.03459480000000004), R(-0.08910630000000008), R(0.0007652649994718039), R(-1.0777459518844495e-05),
         R(-1.694234349117567e-21), R(-0.0007654167516165472), R(-1.6940663906555304e-21), R(0.07099299999999997),
-        R(-0.253605357573192),
+        R(-0.253605357573192), R(1.6940658945086007e-21), R(-0.0007652649994718038), R(-1.0776391091961054e-05),
     },
 };
 
@@ -1472,35 +1621,121 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t349 = t303 + t305;
         inertia[22] = t349;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv14_residual_uca_r_l_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv14_residual_uca_r_l_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = motion[30] + (R(0.33401) * motion[35] + k[35] * motion[34]) - (R(-1.475859) + (R(2.8645315225742096e-09) * motion[5] + (R(-0.17745448389306268) + k[36] * motion[4])));
-        const gic_real t2 = motion[31] + (R(0.33401) * motion[38] + k[35] * motion[37]) - (k[2] + (R(2.8645315225742096e-09) * motion[8] + (k[9] + k[36] * motion[7])));
-        const gic_real t3 = GIC_MAX(GIC_MAX(R(1.734723984031263e-18), GIC_FABS(R(2.928503331078754) * t1)), GIC_FABS(R(2.928503331078754) * t2));
-        const gic_real t4 = motion[32] + (R(0.33401) * motion[41] + k[35] * motion[40]) - (R(0.22567900000000007) + (R(2.8645315225742096e-09) * motion[11] + (R(-0.0024988976639120503) + k[36] * motion[10])));
-        const gic_real t5 = GIC_MAX(GIC_MAX(t3, GIC_FABS(R(2.928503331078754) * t4)), GIC_FABS(R(2.928503331078754) * (motion[30] - R(-1.653405))));
-        const gic_real t6 = GIC_MAX(t5, GIC_FABS(R(2.928503331078754) * (motion[31] - (k[0] * m0[7] + k[1]))));
-        const gic_real t7 = motion[32] + (R(0.10883900000000002) * motion[41] + (k[28] * motion[40] + R(0.1347216) * motion[39]));
-        const gic_real t8 = t7 - R(0.058674000000000004);
-        const gic_real t9 = motion[31] + (R(0.10883900000000002) * motion[38] + (k[28] * motion[37] + R(0.1347216) * motion[36]));
-        const gic_real t10 = t9 - k[19];
-        const gic_real t11 = motion[30] + (R(0.10883900000000002) * motion[35] + (k[28] * motion[34] + R(0.1347216) * motion[33]));
-        const gic_real t12 = t11 - R(-1.465699);
-        const gic_real t13 = t8 * t8 + (t10 * t10 + t12 * t12) - R(0.1714924505628);
-        const gic_real t14 = GIC_MAX(GIC_MAX(t6, GIC_FABS(R(2.928503331078754) * (motion[32] - k[0] * m0[10]))), GIC_FABS(t13 * R(3.614956002238164)));
-        worst = t14;
+        const gic_real t1 = R(0.33401) * motion[35] + k[35] * motion[34];
+        const gic_real t2 = R(2.8645315225742096e-09) * motion[5] + (R(-0.17745448389306268) + k[36] * motion[4]);
+        const gic_real t3 = R(1.9249811512335512e-18) + GIC_FABS(R(2.928503331078754) * (motion[30] + t1 - (R(-1.475859) + t2)));
+        const gic_real t4 = R(0.33401) * motion[38] + k[35] * motion[37];
+        const gic_real t5 = R(2.8645315225742096e-09) * motion[8] + (k[9] + k[36] * motion[7]);
+        const gic_real t6 = t3 + GIC_FABS(R(2.928503331078754) * (motion[31] + t4 - (k[2] + t5)));
+        const gic_real t7 = R(0.33401) * motion[41] + k[35] * motion[40];
+        const gic_real t8 = R(2.8645315225742096e-09) * motion[11] + (R(-0.0024988976639120503) + k[36] * motion[10]);
+        const gic_real t9 = t6 + GIC_FABS(R(2.928503331078754) * (motion[32] + t7 - (R(0.22567900000000007) + t8)));
+        const gic_real t10 = k[0] * m0[7];
+        const gic_real t11 = t9 + GIC_FABS(R(2.928503331078754) * (motion[30] - R(-1.653405))) + GIC_FABS(R(2.928503331078754) * (motion[31] - (t10 + k[1])));
+        const gic_real t12 = k[0] * m0[10];
+        const gic_real t13 = R(0.10883900000000002) * motion[41] + (k[28] * motion[40] + R(0.1347216) * motion[39]);
+        const gic_real t14 = motion[32] + t13 - R(0.058674000000000004);
+        const gic_real t15 = R(0.10883900000000002) * motion[38] + (k[28] * motion[37] + R(0.1347216) * motion[36]);
+        const gic_real t16 = motion[31] + t15 - k[19];
+        const gic_real t17 = R(0.10883900000000002) * motion[35] + (k[28] * motion[34] + R(0.1347216) * motion[33]);
+        const gic_real t18 = motion[30] + t17 - R(-1.465699);
+        const gic_real t19 = t14 * t14 + (t16 * t16 + t18 * t18) - R(0.1714924505628);
+        const gic_real t20 = (GIC_FABS(t18) + GIC_FABS(t16) + GIC_FABS(t14)) * R(0.34147135480007684);
+        const gic_real t21 = R(2.0) / (t20 + R(0.13831426985291936));
+        const gic_real t22 = t11 + GIC_FABS(R(2.928503331078754) * (motion[32] - t12)) + GIC_FABS(R(0.5) * t19 * t21);
+        const gic_real t23 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t24 = GIC_FABS(R(0.014080507566174662) * motion[10] + (k[5] * motion[7] + R(0.9999005718370345) * motion[4]));
+        const gic_real t25 = t22 + R(2.220446049250313e-16) + GIC_FABS(t23) + t24 + GIC_FABS(k[5] * motion[10] - R(0.014080507566174662) * motion[7] - motion[5]);
+        const gic_real t26 = t25 + GIC_FABS(R(0.014080507566174662) * motion[4] - R(0.9999005718370345) * motion[10] - motion[8]);
+        const gic_real t27 = t26 + GIC_FABS(R(0.9999005718370345) * motion[7] - k[5] * motion[4] - motion[11]);
+        const gic_real t28 = motion[39] * motion[39] + (motion[36] * motion[36] + motion[33] * motion[33]) - R(1.0);
+        const gic_real t29 = motion[40] * motion[40] + (motion[37] * motion[37] + motion[34] * motion[34]) - R(1.0);
+        const gic_real t30 = GIC_FABS(motion[39] * motion[40] + (motion[36] * motion[37] + motion[33] * motion[34]));
+        const gic_real t31 = t27 + GIC_FABS(t28) + GIC_FABS(t29) + t30 + GIC_FABS(motion[36] * motion[40] - motion[37] * motion[39] - motion[35]);
+        const gic_real t32 = t31 + GIC_FABS(motion[34] * motion[39] - motion[33] * motion[40] - motion[38]);
+        const gic_real t33 = t32 + GIC_FABS(motion[33] * motion[37] - motion[34] * motion[36] - motion[41]);
+        const gic_real t34 = R(1.0000991451474173) * (R(-0.014080511689981543) * motion[24] + k[37] * motion[25] + R(0.9999008646813683) * motion[26]);
+        const gic_real t35 = R(1.000000292873454) * (k[38] * motion[24] + R(-0.9999997071266318) * motion[25] + k[39] * motion[26]);
+        const gic_real t36 = t5 * motion[26] - t8 * motion[25] + t7 * motion[55] - t4 * motion[56];
+        const gic_real t37 = GIC_FABS(t34) + GIC_FABS(t35) + GIC_FABS(R(2.928503331078754) * t36);
+        const gic_real t38 = t8 * motion[24] - t2 * motion[26] - t7 * motion[54] + t1 * motion[56];
+        const gic_real t39 = t2 * motion[25] - t5 * motion[24] + t4 * motion[54] - t1 * motion[55];
+        const gic_real t40 = t37 + GIC_FABS(R(2.928503331078754) * (motion[58] + t38)) + GIC_FABS(R(2.928503331078754) * (motion[59] + t39));
+        const gic_real t41 = t40 + GIC_FABS(R(2.928503331078754) * (m0[24] * t12 + motion[58])) + GIC_FABS(R(2.928503331078754) * (motion[59] - m0[24] * t10));
+        const gic_real t42 = (t15 * t14 - t13 * t16) * motion[54] + (t13 * t18 - t17 * t14) * motion[55];
+        const gic_real t43 = t42 + (t17 * t16 - t15 * t18) * motion[56] + t16 * motion[58];
+        const gic_real t44 = R(2.928503331078754) * (GIC_FABS(motion[58]) + GIC_FABS(motion[59])) + (GIC_FABS(motion[54]) + GIC_FABS(motion[55]) + GIC_FABS(motion[56]));
+        const gic_real t45 = GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]) + t44;
+        const gic_real t46 = t45 + GIC_FABS(m0[24]);
+        const gic_real t47 = (t41 + GIC_FABS(t21 * (t43 + t14 * motion[59]))) / (t46 + R(1e-30));
+        const gic_real t48 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(motion[13] - rate[0] * motion[25]);
+        const gic_real t49 = t48 + GIC_FABS(motion[14] - rate[0] * motion[26]) + GIC_FABS(motion[42] - rate[0] * motion[54]);
+        const gic_real t50 = t49 + GIC_FABS(motion[43] - rate[0] * motion[55]) + GIC_FABS(motion[44] - rate[0] * motion[56]);
+        const gic_real t51 = t50 + GIC_FABS(R(2.928503331078754) * (motion[46] - rate[0] * motion[58])) + GIC_FABS(R(2.928503331078754) * (motion[47] - rate[0] * motion[59]));
+        const gic_real t52 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t53 = R(2.928503331078754) * (GIC_FABS(motion[46]) + GIC_FABS(motion[47]));
+        const gic_real t54 = GIC_FABS(motion[42]) + GIC_FABS(motion[43]) + GIC_FABS(motion[44]);
+        const gic_real t55 = t46 * GIC_FABS(rate[0]);
+        const gic_real t56 = t47 + t51 / (R(1e-30) + (t52 + (t53 + t54) + t55));
+        const gic_real t57 = R(0.9999005718370345) * motion[14] - R(0.014080507566174662) * motion[12];
+        const gic_real t58 = R(0.014080507566174662) * motion[13] - k[5] * motion[14];
+        const gic_real t59 = motion[12] * t57 - motion[13] * t58 + (k[5] * motion[18] - R(0.9999005718370345) * motion[19]);
+        const gic_real t60 = k[5] * motion[12] - R(0.9999005718370345) * motion[13];
+        const gic_real t61 = motion[14] * t58 - motion[12] * t60 + (R(0.9999005718370345) * motion[20] - R(0.014080507566174662) * motion[18]);
+        const gic_real t62 = motion[13] * t60 - motion[14] * t57 + (R(0.014080507566174662) * motion[19] - k[5] * motion[20]);
+        const gic_real t63 = (k[3] * t59 + (R(0.9999997071266321) * t61 + k[30] * t62)) * R(1.0000991451474173);
+        const gic_real t64 = GIC_FABS(t63) + GIC_FABS((R(0.9999008646813683) * t59 + R(-0.014080511689981543) * t62) * R(1.000000292873454));
+        const gic_real t65 = t4 * motion[42] - t1 * motion[43];
+        const gic_real t66 = t1 * motion[44] - t7 * motion[42];
+        const gic_real t67 = motion[43] * t65 - motion[44] * t66 + (t7 * motion[49] - t4 * motion[50]);
+        const gic_real t68 = t5 * motion[12] - t2 * motion[13];
+        const gic_real t69 = t2 * motion[14] - t8 * motion[12];
+        const gic_real t70 = motion[13] * t68 - motion[14] * t69 + (t8 * motion[19] - t5 * motion[20]);
+        const gic_real t71 = t7 * motion[43] - t4 * motion[44];
+        const gic_real t72 = motion[44] * t71 - motion[42] * t65 + (t1 * motion[50] - t7 * motion[48]);
+        const gic_real t73 = t8 * motion[13] - t5 * motion[14];
+        const gic_real t74 = motion[14] * t73 - motion[12] * t68 + (t2 * motion[20] - t8 * motion[18]);
+        const gic_real t75 = t64 + GIC_FABS(R(2.928503331078754) * (t67 - t70)) + GIC_FABS(R(2.928503331078754) * (motion[52] + t72 - t74));
+        const gic_real t76 = motion[42] * t66 - motion[43] * t71 + (t4 * motion[48] - t1 * motion[49]);
+        const gic_real t77 = motion[12] * t69 - motion[13] * t73 + (t5 * motion[18] - t2 * motion[19]);
+        const gic_real t78 = R(2.928503331078754) * (m0[12] * (m0[12] * t10) + m0[18] * t12 + motion[52]);
+        const gic_real t79 = t75 + GIC_FABS(R(2.928503331078754) * (motion[53] + t76 - t77)) + GIC_FABS(t78);
+        const gic_real t80 = R(2.928503331078754) * (motion[53] - (m0[18] * t10 - m0[12] * (m0[12] * t12)));
+        const gic_real t81 = t15 * motion[42] - t17 * motion[43];
+        const gic_real t82 = motion[47] + t81;
+        const gic_real t83 = t17 * motion[44] - t13 * motion[42];
+        const gic_real t84 = motion[46] + t83;
+        const gic_real t85 = t13 * motion[43] - t15 * motion[44];
+        const gic_real t86 = motion[42] * t83 - motion[43] * t85 + (t15 * motion[48] - t17 * motion[49]);
+        const gic_real t87 = motion[44] * t85 - motion[42] * t81 + (t17 * motion[50] - t13 * motion[48]);
+        const gic_real t88 = motion[43] * t81 - motion[44] * t83 + (t13 * motion[49] - t15 * motion[50]);
+        const gic_real t89 = t14 * (motion[53] + t86) + (t16 * (motion[52] + t87) + t18 * t88);
+        const gic_real t90 = t82 * t82 + (t84 * t84 + t85 * t85) + t89;
+        const gic_real t91 = t52 * t52 + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t92 = R(2.928503331078754) * (GIC_FABS(motion[52]) + GIC_FABS(motion[53])) + (GIC_FABS(motion[48]) + GIC_FABS(motion[49]) + GIC_FABS(motion[50]));
+        const gic_real t93 = GIC_FABS(m0[12]);
+        const gic_real t94 = t91 + (t53 * t53 + t54 * t54 + t92) + (t93 * t93 + GIC_FABS(m0[18]));
+        const gic_real t95 = (t79 + GIC_FABS(t80) + GIC_FABS(t90 * t21)) / (R(1e-30) + (t94 + t55 * t55));
+        const gic_real t96 = t56 + t95;
+        worst[0] = t33;
+        worst[1] = t96;
     }
-    return worst;
 }
 
 /* ---- recovery of the whole vehicle, in computational sequence ------------------------------------------------ */
@@ -1704,6 +1939,8 @@ static int hmmwv14_recover(hmmwv14 *self, const gic_real turn[3], int cold)
         way[i] = self->x[i] - self->start[first][i];
     for (i = 0; i < HMMWV14_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < hmmwv14_piece[i]);
+    if (far)
+        self->head.unchecked = 0; /* a jump: no state that was checked is near */
     /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
      * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
     if (far || HMMWV14_FOLLOWED > 0) {
@@ -2293,6 +2530,13 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         rate[11] = t446;
         rate[22] = t415;
     }
+#ifdef GIC_PLANT_RATE /* an error that tests plant */
+#ifndef GIC_PLANT_AFTER
+#define GIC_PLANT_AFTER R(-1.0) /* s */
+#endif
+    if (time > GIC_PLANT_AFTER)
+        rate[GIC_PLANT_RATE] += GIC_PLANT_BY + GIC_PLANT_BY * GIC_FABS(rate[GIC_PLANT_RATE]);
+#endif
     return GIC_OK;
 }
 
@@ -3590,6 +3834,1276 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
     }
 }
 
+/* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
+
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
+ * whose are beyond what is promised, -1: there is none. */
+static GIC_COLD GIC_APART int hmmwv14_residual(const hmmwv14 *self, gic_real largest[2])
+{
+    hmmwv14_links links;
+    gic_real one[2];
+    int bad = -1;
+    (void)self, (void)one;
+    largest[0] = largest[1] = R(0.0);
+    links.cold = 0;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    hmmwv14_residual_rack(hmmwv14_k_rack[0], &links, self->motion + 0, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 1;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[0], &links, self->motion + 30, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 2;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[1];
+    links.rate[0] = self->xd[1];
+    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[1], &links, self->motion + 60, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 3;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[2];
+    links.rate[0] = self->xd[2];
+    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[2], &links, self->motion + 90, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 4;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[3];
+    links.rate[0] = self->xd[3];
+    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[3], &links, self->motion + 120, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 5;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 30;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[0];
+    links.rate[1] = self->xd[0];
+    hmmwv14_residual_uca_f_l_wheel_f_l(hmmwv14_k_uca_f_l_wheel_f_l[0], &links, self->motion + 150, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 6;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 60;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[1];
+    links.rate[1] = self->xd[1];
+    hmmwv14_residual_uca_f_l_wheel_f_l(hmmwv14_k_uca_f_l_wheel_f_l[1], &links, self->motion + 222, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 7;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 90;
+    links.x[0] = self->x[2];
+    links.rate[0] = self->xd[2];
+    hmmwv14_residual_uca_r_l_wheel_r_l(hmmwv14_k_uca_r_l_wheel_r_l[0], &links, self->motion + 294, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 8;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 120;
+    links.x[0] = self->x[3];
+    links.rate[0] = self->xd[3];
+    hmmwv14_residual_uca_r_l_wheel_r_l(hmmwv14_k_uca_r_l_wheel_r_l[1], &links, self->motion + 354, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 9;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    return bad;
+}
+
+/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv14_dynamics. size: magnitudes of
+ * the terms that it is the sum of. */
+static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *tau, gic_real *size)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    {
+        const gic_real t1 = y[17] * R(3570.2);
+        const gic_real t2 = y[16] * R(2955.66);
+        const gic_real t3 = e[2] + e[2];
+        const gic_real t4 = e[3] * t3;
+        const gic_real t5 = e[1] + e[1];
+        const gic_real t6 = e[0] * t5;
+        const gic_real t7 = t4 + t6;
+        const gic_real t8 = rate[14] - R(-9.81);
+        const gic_real t9 = e[1] * t5;
+        const gic_real t10 = e[3] + e[3];
+        const gic_real t11 = e[3] * t10;
+        const gic_real t12 = R(1.0) - (t9 + t11);
+        const gic_real t13 = e[2] * t5;
+        const gic_real t14 = e[0] * t10;
+        const gic_real t15 = t13 - t14;
+        const gic_real t16 = t7 * t8 + (t12 * rate[13] + t15 * rate[12]);
+        const gic_real t17 = y[16] * R(0.056);
+        const gic_real t18 = y[16] * R(0.21300000000000008);
+        const gic_real t19 = y[15] * t17 + y[17] * t18 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
+        const gic_real t20 = t16 + t19;
+        const gic_real t21 = y[16] * t1 - y[17] * t2 + rate[15] * R(1078.52) - t20 * R(444.4287600000002);
+        const gic_real t22 = e[2] * t3;
+        const gic_real t23 = R(1.0) - (t9 + t22);
+        const gic_real t24 = t4 - t6;
+        const gic_real t25 = e[1] * t10;
+        const gic_real t26 = e[0] * t3;
+        const gic_real t27 = t25 + t26;
+        const gic_real t28 = t23 * t8 + (t24 * rate[13] + t27 * rate[12]);
+        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
+        const gic_real t30 = R(0.05422899999999997) * y[16] - m[1] * y[17];
+        const gic_real t31 = y[15] * t29 - y[16] * t30 + (m[1] * rate[15] - R(1.438648) * rate[16]);
+        const gic_real t32 = t28 + t31;
+        const gic_real t33 = t32 * R(9.072);
+        const gic_real t34 = m[1] * y[15] - R(1.438648) * y[16];
+        const gic_real t35 = y[17] * t30 - y[15] * t34 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
+        const gic_real t36 = rate[22] + (t16 + t35);
+        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
+        const gic_real t38 = m[38] * R(0.8938);
+        const gic_real t39 = m[37] * R(0.4469);
+        const gic_real t40 = m[41] * t38 + m[40] * t39;
+        const gic_real t41 = y[17] * t37 + y[16] * t40;
+        const gic_real t42 = m[38] * t38 + m[37] * t39;
+        const gic_real t43 = y[17] * t40 + y[16] * t42;
+        const gic_real t44 = y[16] * t41 - y[17] * t43 + R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]);
+        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
+        const gic_real t47 = m[42] * t46;
+        const gic_real t48 = m[48] * t45 - m[42] * t47;
+        const gic_real t49 = R(1.688965) * y[17];
+        const gic_real t50 = t49 - y[15] * t46 - t47 - t47;
+        const gic_real t51 = R(0.307086) + t45;
+        const gic_real t52 = y[16] * t46 - y[17] * t51;
+        const gic_real t53 = R(1.688965) * rate[16];
+        const gic_real t54 = y[15] * t50 - y[16] * t52 + (rate[15] * t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[18] * (m[54] * t45);
+        const gic_real t56 = t55 * R(23.965);
+        const gic_real t57 = m[42] * t45;
+        const gic_real t58 = R(1.688965) * y[16];
+        const gic_real t59 = t57 + (t57 + (y[15] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[17];
+        const gic_real t61 = y[17] * t52 - y[15] * t59 + (t60 - rate[15] * t46);
+        const gic_real t62 = m[42] * t57 + m[48] * t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[18] * (m[54] * t46);
+        const gic_real t64 = t63 * R(23.965);
+        const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
+        const gic_real t66 = t21 + (rate[15] + (m[1] * t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
+        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
+        const gic_real t68 = m[68] * R(0.8938);
+        const gic_real t69 = m[67] * R(0.4469);
+        const gic_real t70 = m[71] * t68 + m[70] * t69;
+        const gic_real t71 = y[17] * t67 + y[16] * t70;
+        const gic_real t72 = m[68] * t68 + m[67] * t69;
+        const gic_real t73 = y[17] * t70 + y[16] * t72;
+        const gic_real t74 = y[16] * t71 - y[17] * t73 + R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]);
+        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
+        const gic_real t77 = m[72] * t76;
+        const gic_real t78 = m[78] * t75 - m[72] * t77;
+        const gic_real t79 = t49 - y[15] * t76 - t77 - t77;
+        const gic_real t80 = R(-0.307086) + t75;
+        const gic_real t81 = y[16] * t76 - y[17] * t80;
+        const gic_real t82 = y[15] * t79 - y[16] * t81 + (rate[15] * t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[19] * (m[84] * t75);
+        const gic_real t84 = R(23.965) * t83;
+        const gic_real t85 = m[72] * t75;
+        const gic_real t86 = t85 + (t85 + (y[15] * t80 - t58));
+        const gic_real t87 = y[17] * t81 - y[15] * t86 + (t60 - rate[15] * t76);
+        const gic_real t88 = m[72] * t85 + m[78] * t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[19] * (m[84] * t76);
+        const gic_real t90 = R(23.965) * t89;
+        const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
+        const gic_real t92 = m[199] + y[16];
+        const gic_real t93 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
+        const gic_real t94 = m[200] + y[17];
+        const gic_real t95 = m[194] * R(4.7728205);
+        const gic_real t96 = m[193] * R(7.58122);
+        const gic_real t97 = m[192] * R(4.8947505);
+        const gic_real t98 = m[197] * t95 + (m[196] * t96 + m[195] * t97);
+        const gic_real t99 = m[191] * R(4.7728205);
+        const gic_real t100 = m[190] * R(7.58122);
+        const gic_real t101 = m[189] * R(4.8947505);
+        const gic_real t102 = m[197] * t99 + (m[196] * t100 + m[195] * t101);
+        const gic_real t103 = m[198] + y[15];
+        const gic_real t104 = t93 * t94 + (t98 * t92 + t102 * t103);
+        const gic_real t105 = m[194] * t95 + (m[193] * t96 + m[192] * t97);
+        const gic_real t106 = m[194] * t99 + (m[193] * t100 + m[192] * t101);
+        const gic_real t107 = t98 * t94 + (t105 * t92 + t106 * t103);
+        const gic_real t108 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
+        const gic_real t109 = t108 + m[218] * rate[18];
+        const gic_real t110 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
+        const gic_real t111 = t110 + m[217] * rate[18];
+        const gic_real t112 = m[191] * t99 + (m[190] * t100 + m[189] * t101);
+        const gic_real t113 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
+        const gic_real t114 = t113 + m[216] * rate[18];
+        const gic_real t115 = t92 * t104 - t94 * t107 + (t102 * t109 + (t106 * t111 + t112 * t114));
+        const gic_real t116 = m[194] * R(0.09182100000000004);
+        const gic_real t117 = m[192] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[193] * R(0.08910630000000008));
+        const gic_real t119 = m[191] * R(0.09182100000000004);
+        const gic_real t120 = m[189] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[190] * R(0.08910630000000008));
+        const gic_real t122 = m[197] * R(0.09182100000000004);
+        const gic_real t123 = m[195] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[196] * R(0.08910630000000008));
+        const gic_real t125 = m[200] * t121 - m[198] * t124;
+        const gic_real t126 = m[199] * t124 - m[200] * t118;
+        const gic_real t127 = m[198] * t125 - m[199] * t126 + (m[204] * t118 - m[205] * t121);
+        const gic_real t128 = m[209] + t127;
+        const gic_real t129 = m[202] + t125;
+        const gic_real t130 = m[186] + t121;
+        const gic_real t131 = m[188] + t124;
+        const gic_real t132 = t129 + (t129 + (y[17] * t130 - y[15] * t131));
+        const gic_real t133 = m[187] + t118;
+        const gic_real t134 = t126 + (t126 + (y[16] * t131 - y[17] * t133));
+        const gic_real t135 = y[15] * t132 - y[16] * t134 + (rate[15] * t133 - rate[16] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + rate[22] * (m[210] * t118 - m[211] * t121);
+        const gic_real t137 = t136 + rate[18] * (m[221] + (m[216] * t118 - m[217] * t121));
+        const gic_real t138 = t137 * R(90.555);
+        const gic_real t139 = m[198] * t118 - m[199] * t121;
+        const gic_real t140 = m[200] * t126 - m[198] * t139 + (m[206] * t121 - m[204] * t124);
+        const gic_real t141 = m[208] + t140;
+        const gic_real t142 = m[203] + t139;
+        const gic_real t143 = t142 + (t142 + (y[15] * t133 - y[16] * t130));
+        const gic_real t144 = y[17] * t134 - y[15] * t143 + (rate[17] * t130 - rate[15] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + rate[22] * (m[212] * t121 - m[210] * t124);
+        const gic_real t146 = t145 + rate[18] * (m[220] + (m[218] * t121 - m[216] * t124));
+        const gic_real t147 = t146 * R(90.555);
+        const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[187] * t138 - m[188] * t147));
+        const gic_real t150 = m[271] + y[16];
+        const gic_real t151 = m[269] * (m[269] * R(4.7728205)) + (m[268] * (m[268] * R(7.58122)) + m[267] * (m[267] * R(4.8947505)));
+        const gic_real t152 = m[272] + y[17];
+        const gic_real t153 = m[266] * R(4.7728205);
+        const gic_real t154 = m[265] * R(7.58122);
+        const gic_real t155 = m[264] * R(4.8947505);
+        const gic_real t156 = m[269] * t153 + (m[268] * t154 + m[267] * t155);
+        const gic_real t157 = m[263] * R(4.7728205);
+        const gic_real t158 = m[262] * R(7.58122);
+        const gic_real t159 = m[261] * R(4.8947505);
+        const gic_real t160 = m[269] * t157 + (m[268] * t158 + m[267] * t159);
+        const gic_real t161 = m[270] + y[15];
+        const gic_real t162 = t151 * t152 + (t156 * t150 + t160 * t161);
+        const gic_real t163 = m[266] * t153 + (m[265] * t154 + m[264] * t155);
+        const gic_real t164 = m[266] * t157 + (m[265] * t158 + m[264] * t159);
+        const gic_real t165 = t156 * t152 + (t163 * t150 + t164 * t161);
+        const gic_real t166 = m[278] + (rate[17] + (m[271] * y[15] - m[270] * y[16])) + m[284] * rate[22];
+        const gic_real t167 = t166 + m[290] * rate[19];
+        const gic_real t168 = m[277] + (rate[16] + (m[270] * y[17] - m[272] * y[15])) + m[283] * rate[22];
+        const gic_real t169 = t168 + m[289] * rate[19];
+        const gic_real t170 = m[263] * t157 + (m[262] * t158 + m[261] * t159);
+        const gic_real t171 = m[276] + (rate[15] + (m[272] * y[16] - m[271] * y[17])) + m[282] * rate[22];
+        const gic_real t172 = t171 + m[288] * rate[19];
+        const gic_real t173 = t150 * t162 - t152 * t165 + (t160 * t167 + (t164 * t169 + t170 * t172));
+        const gic_real t174 = m[266] * R(0.09182100000000004);
+        const gic_real t175 = m[264] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[265] * R(-0.08910630000000008));
+        const gic_real t177 = m[263] * R(0.09182100000000004);
+        const gic_real t178 = m[261] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[262] * R(-0.08910630000000008));
+        const gic_real t180 = m[269] * R(0.09182100000000004);
+        const gic_real t181 = m[267] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[268] * R(-0.08910630000000008));
+        const gic_real t183 = m[272] * t179 - m[270] * t182;
+        const gic_real t184 = m[271] * t182 - m[272] * t176;
+        const gic_real t185 = m[270] * t183 - m[271] * t184 + (m[276] * t176 - m[277] * t179);
+        const gic_real t186 = m[281] + t185;
+        const gic_real t187 = m[274] + t183;
+        const gic_real t188 = m[258] + t179;
+        const gic_real t189 = m[260] + t182;
+        const gic_real t190 = t187 + (t187 + (y[17] * t188 - y[15] * t189));
+        const gic_real t191 = m[259] + t176;
+        const gic_real t192 = t184 + (t184 + (y[16] * t189 - y[17] * t191));
+        const gic_real t193 = y[15] * t190 - y[16] * t192 + (rate[15] * t191 - rate[16] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + rate[22] * (m[282] * t176 - m[283] * t179);
+        const gic_real t195 = t194 + rate[19] * (m[293] + (m[288] * t176 - m[289] * t179));
+        const gic_real t196 = R(90.555) * t195;
+        const gic_real t197 = m[270] * t176 - m[271] * t179;
+        const gic_real t198 = m[272] * t184 - m[270] * t197 + (m[278] * t179 - m[276] * t182);
+        const gic_real t199 = m[280] + t198;
+        const gic_real t200 = m[275] + t197;
+        const gic_real t201 = t200 + (t200 + (y[15] * t191 - y[16] * t188));
+        const gic_real t202 = y[17] * t192 - y[15] * t201 + (rate[17] * t188 - rate[15] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + rate[22] * (m[284] * t179 - m[282] * t182);
+        const gic_real t204 = t203 + rate[19] * (m[292] + (m[290] * t179 - m[288] * t182));
+        const gic_real t205 = R(90.555) * t204;
+        const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
+        const gic_real t207 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
+        const gic_real t208 = m[98] * R(0.8938);
+        const gic_real t209 = m[97] * R(0.4469);
+        const gic_real t210 = m[101] * t208 + m[100] * t209;
+        const gic_real t211 = y[17] * t207 + y[16] * t210;
+        const gic_real t212 = m[98] * t208 + m[97] * t209;
+        const gic_real t213 = y[17] * t210 + y[16] * t212;
+        const gic_real t214 = y[16] * t211 - y[17] * t213 + R(0.4469) * (m[108] + rate[15] + m[114] * rate[20]);
+        const gic_real t215 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
+        const gic_real t216 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
+        const gic_real t217 = m[102] * t216;
+        const gic_real t218 = m[108] * t215 - m[102] * t217;
+        const gic_real t219 = R(-1.688965) * y[17];
+        const gic_real t220 = t219 - y[15] * t216 - t217 - t217;
+        const gic_real t221 = R(0.307086) + t215;
+        const gic_real t222 = y[16] * t216 - y[17] * t221;
+        const gic_real t223 = R(-1.688965) * rate[16];
+        const gic_real t224 = y[15] * t220 - y[16] * t222 + (rate[15] * t221 - t223);
+        const gic_real t225 = t218 + (t28 + t224) + rate[20] * (m[114] * t215);
+        const gic_real t226 = R(23.965) * t225;
+        const gic_real t227 = m[102] * t215;
+        const gic_real t228 = R(-1.688965) * y[16];
+        const gic_real t229 = t227 + (t227 + (y[15] * t221 - t228));
+        const gic_real t230 = R(-1.688965) * rate[17];
+        const gic_real t231 = y[17] * t222 - y[15] * t229 + (t230 - rate[15] * t216);
+        const gic_real t232 = m[102] * t227 + m[108] * t216;
+        const gic_real t233 = t16 + t231 - t232 - rate[20] * (m[114] * t216);
+        const gic_real t234 = R(23.965) * t233;
+        const gic_real t235 = t214 + (t215 * t226 - t216 * t234);
+        const gic_real t236 = t149 + (t206 + (m[259] * t196 - m[260] * t205)) + (t235 + R(7.359315990000001) * t225);
+        const gic_real t237 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
+        const gic_real t238 = m[128] * R(0.8938);
+        const gic_real t239 = m[127] * R(0.4469);
+        const gic_real t240 = m[131] * t238 + m[130] * t239;
+        const gic_real t241 = y[17] * t237 + y[16] * t240;
+        const gic_real t242 = m[128] * t238 + m[127] * t239;
+        const gic_real t243 = y[17] * t240 + y[16] * t242;
+        const gic_real t244 = y[16] * t241 - y[17] * t243 + R(0.4469) * (m[138] + rate[15] + m[144] * rate[21]);
+        const gic_real t245 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
+        const gic_real t246 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
+        const gic_real t247 = m[132] * t246;
+        const gic_real t248 = m[138] * t245 - m[132] * t247;
+        const gic_real t249 = t219 - y[15] * t246 - t247 - t247;
+        const gic_real t250 = R(-0.307086) + t245;
+        const gic_real t251 = y[16] * t246 - y[17] * t250;
+        const gic_real t252 = y[15] * t249 - y[16] * t251 + (rate[15] * t250 - t223);
+        const gic_real t253 = t248 + (t28 + t252) + rate[21] * (m[144] * t245);
+        const gic_real t254 = R(23.965) * t253;
+        const gic_real t255 = m[132] * t245;
+        const gic_real t256 = t255 + (t255 + (y[15] * t250 - t228));
+        const gic_real t257 = y[17] * t251 - y[15] * t256 + (t230 - rate[15] * t246);
+        const gic_real t258 = m[132] * t255 + m[138] * t246;
+        const gic_real t259 = t16 + t257 - t258 - rate[21] * (m[144] * t246);
+        const gic_real t260 = R(23.965) * t259;
+        const gic_real t261 = t244 + (t245 * t254 - t246 * t260);
+        const gic_real t262 = m[337] + y[16];
+        const gic_real t263 = m[335] * (m[335] * R(4.7728205)) + (m[334] * (m[334] * R(7.58122)) + m[333] * (m[333] * R(4.8947505)));
+        const gic_real t264 = m[338] + y[17];
+        const gic_real t265 = m[332] * R(4.7728205);
+        const gic_real t266 = m[331] * R(7.58122);
+        const gic_real t267 = m[330] * R(4.8947505);
+        const gic_real t268 = m[335] * t265 + (m[334] * t266 + m[333] * t267);
+        const gic_real t269 = m[329] * R(4.7728205);
+        const gic_real t270 = m[328] * R(7.58122);
+        const gic_real t271 = m[327] * R(4.8947505);
+        const gic_real t272 = m[335] * t269 + (m[334] * t270 + m[333] * t271);
+        const gic_real t273 = m[336] + y[15];
+        const gic_real t274 = t263 * t264 + (t268 * t262 + t272 * t273);
+        const gic_real t275 = m[332] * t265 + (m[331] * t266 + m[330] * t267);
+        const gic_real t276 = m[332] * t269 + (m[331] * t270 + m[330] * t271);
+        const gic_real t277 = t268 * t264 + (t275 * t262 + t276 * t273);
+        const gic_real t278 = m[344] + (rate[17] + (m[337] * y[15] - m[336] * y[16])) + m[350] * rate[20];
+        const gic_real t279 = m[343] + (rate[16] + (m[336] * y[17] - m[338] * y[15])) + m[349] * rate[20];
+        const gic_real t280 = m[329] * t269 + (m[328] * t270 + m[327] * t271);
+        const gic_real t281 = m[342] + (rate[15] + (m[338] * y[16] - m[337] * y[17])) + m[348] * rate[20];
+        const gic_real t282 = t262 * t274 - t264 * t277 + (t272 * t278 + (t276 * t279 + t280 * t281));
+        const gic_real t283 = m[332] * R(0.09182100000000004);
+        const gic_real t284 = t283 + m[331] * R(0.08910630000000008);
+        const gic_real t285 = m[329] * R(0.09182100000000004);
+        const gic_real t286 = t285 + m[328] * R(0.08910630000000008);
+        const gic_real t287 = m[335] * R(0.09182100000000004);
+        const gic_real t288 = t287 + m[334] * R(0.08910630000000008);
+        const gic_real t289 = m[338] * t286 - m[336] * t288;
+        const gic_real t290 = m[337] * t288 - m[338] * t284;
+        const gic_real t291 = m[336] * t289 - m[337] * t290 + (m[342] * t284 - m[343] * t286);
+        const gic_real t292 = m[347] + t291;
+        const gic_real t293 = m[340] + t289;
+        const gic_real t294 = m[324] + t286;
+        const gic_real t295 = m[326] + t288;
+        const gic_real t296 = t293 + (t293 + (y[17] * t294 - y[15] * t295));
+        const gic_real t297 = m[325] + t284;
+        const gic_real t298 = t290 + (t290 + (y[16] * t295 - y[17] * t297));
+        const gic_real t299 = y[15] * t296 - y[16] * t298 + (rate[15] * t297 - rate[16] * t294);
+        const gic_real t300 = t292 + (t28 + t299) + rate[20] * (m[353] + (m[348] * t284 - m[349] * t286));
+        const gic_real t301 = R(90.555) * t300;
+        const gic_real t302 = m[336] * t284 - m[337] * t286;
+        const gic_real t303 = m[338] * t290 - m[336] * t302 + (m[344] * t286 - m[342] * t288);
+        const gic_real t304 = m[346] + t303;
+        const gic_real t305 = m[341] + t302;
+        const gic_real t306 = t305 + (t305 + (y[15] * t297 - y[16] * t294));
+        const gic_real t307 = y[17] * t298 - y[15] * t306 + (rate[17] * t294 - rate[15] * t295);
+        const gic_real t308 = t304 + (t16 + t307) + rate[20] * (m[352] + (m[350] * t286 - m[348] * t288));
+        const gic_real t309 = R(90.555) * t308;
+        const gic_real t310 = t282 + (t284 * t301 - t288 * t309);
+        const gic_real t311 = t236 + (t261 + R(-7.359315990000001) * t253) + (t310 + (m[325] * t301 - m[326] * t309));
+        const gic_real t312 = m[397] + y[16];
+        const gic_real t313 = m[395] * (m[395] * R(4.7728205)) + (m[394] * (m[394] * R(7.58122)) + m[393] * (m[393] * R(4.8947505)));
+        const gic_real t314 = m[398] + y[17];
+        const gic_real t315 = m[392] * R(4.7728205);
+        const gic_real t316 = m[391] * R(7.58122);
+        const gic_real t317 = m[390] * R(4.8947505);
+        const gic_real t318 = m[395] * t315 + (m[394] * t316 + m[393] * t317);
+        const gic_real t319 = m[389] * R(4.7728205);
+        const gic_real t320 = m[388] * R(7.58122);
+        const gic_real t321 = m[387] * R(4.8947505);
+        const gic_real t322 = m[395] * t319 + (m[394] * t320 + m[393] * t321);
+        const gic_real t323 = m[396] + y[15];
+        const gic_real t324 = t313 * t314 + (t318 * t312 + t322 * t323);
+        const gic_real t325 = m[392] * t315 + (m[391] * t316 + m[390] * t317);
+        const gic_real t326 = m[392] * t319 + (m[391] * t320 + m[390] * t321);
+        const gic_real t327 = t318 * t314 + (t325 * t312 + t326 * t323);
+        const gic_real t328 = m[404] + (rate[17] + (m[397] * y[15] - m[396] * y[16])) + m[410] * rate[21];
+        const gic_real t329 = m[403] + (rate[16] + (m[396] * y[17] - m[398] * y[15])) + m[409] * rate[21];
+        const gic_real t330 = m[389] * t319 + (m[388] * t320 + m[387] * t321);
+        const gic_real t331 = m[402] + (rate[15] + (m[398] * y[16] - m[397] * y[17])) + m[408] * rate[21];
+        const gic_real t332 = t312 * t324 - t314 * t327 + (t322 * t328 + (t326 * t329 + t330 * t331));
+        const gic_real t333 = m[392] * R(0.09182100000000004);
+        const gic_real t334 = t333 + m[391] * R(-0.08910630000000008);
+        const gic_real t335 = m[389] * R(0.09182100000000004);
+        const gic_real t336 = t335 + m[388] * R(-0.08910630000000008);
+        const gic_real t337 = m[395] * R(0.09182100000000004);
+        const gic_real t338 = t337 + m[394] * R(-0.08910630000000008);
+        const gic_real t339 = m[398] * t336 - m[396] * t338;
+        const gic_real t340 = m[397] * t338 - m[398] * t334;
+        const gic_real t341 = m[396] * t339 - m[397] * t340 + (m[402] * t334 - m[403] * t336);
+        const gic_real t342 = m[407] + t341;
+        const gic_real t343 = m[400] + t339;
+        const gic_real t344 = m[384] + t336;
+        const gic_real t345 = m[386] + t338;
+        const gic_real t346 = t343 + (t343 + (y[17] * t344 - y[15] * t345));
+        const gic_real t347 = m[385] + t334;
+        const gic_real t348 = t340 + (t340 + (y[16] * t345 - y[17] * t347));
+        const gic_real t349 = y[15] * t346 - y[16] * t348 + (rate[15] * t347 - rate[16] * t344);
+        const gic_real t350 = t342 + (t28 + t349) + rate[21] * (m[413] + (m[408] * t334 - m[409] * t336));
+        const gic_real t351 = R(90.555) * t350;
+        const gic_real t352 = m[396] * t334 - m[397] * t336;
+        const gic_real t353 = m[398] * t340 - m[396] * t352 + (m[404] * t336 - m[402] * t338);
+        const gic_real t354 = m[406] + t353;
+        const gic_real t355 = m[401] + t352;
+        const gic_real t356 = t355 + (t355 + (y[15] * t347 - y[16] * t344));
+        const gic_real t357 = y[17] * t348 - y[15] * t356 + (rate[17] * t344 - rate[15] * t345);
+        const gic_real t358 = t354 + (t16 + t357) + rate[21] * (m[412] + (m[410] * t336 - m[408] * t338));
+        const gic_real t359 = R(90.555) * t358;
+        const gic_real t360 = t332 + (t334 * t351 - t338 * t359);
+        const gic_real t361 = m[163] + y[16];
+        const gic_real t362 = m[161] * (m[161] * R(0.06276)) + (m[160] * (m[160] * R(0.03138)) + R(0.0014540542454566034));
+        const gic_real t363 = m[164] + y[17];
+        const gic_real t364 = m[158] * R(0.06276);
+        const gic_real t365 = m[157] * R(0.03138);
+        const gic_real t366 = m[161] * t364 + (m[160] * t365 + R(-0.0009417184427870059));
+        const gic_real t367 = m[155] * R(0.06276);
+        const gic_real t368 = m[154] * R(0.03138);
+        const gic_real t369 = m[161] * t367 + (m[160] * t368 + R(0.0065289443900383055));
+        const gic_real t370 = m[162] + y[15];
+        const gic_real t371 = t362 * t363 + (t366 * t361 + t369 * t370);
+        const gic_real t372 = m[158] * t364 + (m[157] * t365 + R(0.0006099040859419237));
+        const gic_real t373 = m[158] * t367 + (m[157] * t368 + R(-0.004228471780362703));
+        const gic_real t374 = t366 * t363 + (t372 * t361 + t373 * t370);
+        const gic_real t375 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
+        const gic_real t376 = t375 + m[182] * rate[18];
+        const gic_real t377 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
+        const gic_real t378 = t377 + m[181] * rate[18];
+        const gic_real t379 = m[155] * t367 + (m[154] * t368 + R(0.029316041668601474));
+        const gic_real t380 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
+        const gic_real t381 = t380 + m[180] * rate[18];
+        const gic_real t382 = t361 * t371 - t363 * t374 + (t369 * t376 + (t373 * t378 + t379 * t381));
+        const gic_real t383 = m[158] * R(8.518978193491379e-06) + (m[157] * R(0.1333626625632361) + R(-0.004544539087734648));
+        const gic_real t384 = m[155] * R(8.518978193491379e-06) + (m[154] * R(0.1333626625632361) + R(0.031507339809937016));
+        const gic_real t385 = m[161] * R(8.518978193491379e-06) + (m[160] * R(0.1333626625632361) + R(0.007016966063240429));
+        const gic_real t386 = m[164] * t384 - m[162] * t385;
+        const gic_real t387 = m[163] * t385 - m[164] * t383;
+        const gic_real t388 = m[162] * t386 - m[163] * t387 + (m[168] * t383 - m[169] * t384);
+        const gic_real t389 = R(1.5309008) + t384;
+        const gic_real t390 = R(0.22009100000000004) + t385;
+        const gic_real t391 = t386 + (t386 + (y[17] * t389 - y[15] * t390));
+        const gic_real t392 = R(0.4618482) + t383;
+        const gic_real t393 = t387 + (t387 + (y[16] * t390 - y[17] * t392));
+        const gic_real t394 = y[15] * t391 - y[16] * t393 + (rate[15] * t392 - rate[16] * t389);
+        const gic_real t395 = t388 + (t28 + t394) + rate[22] * (m[174] * t383 - m[175] * t384);
+        const gic_real t396 = t395 + rate[18] * (m[180] * t383 - m[181] * t384);
+        const gic_real t397 = t396 * R(5.813);
+        const gic_real t398 = m[162] * t383 - m[163] * t384;
+        const gic_real t399 = m[164] * t387 - m[162] * t398 + (m[170] * t384 - m[168] * t385);
+        const gic_real t400 = t398 + (t398 + (y[15] * t392 - y[16] * t389));
+        const gic_real t401 = y[17] * t393 - y[15] * t400 + (rate[17] * t389 - rate[15] * t390);
+        const gic_real t402 = t399 + (t16 + t401) + rate[22] * (m[176] * t384 - m[174] * t385);
+        const gic_real t403 = t402 + rate[18] * (m[182] * t384 - m[180] * t385);
+        const gic_real t404 = t403 * R(5.813);
+        const gic_real t405 = t382 + (t383 * t397 - t385 * t404);
+        const gic_real t406 = t311 + (t360 + (m[385] * t351 - m[386] * t359)) + (t405 + (t396 * R(2.6847235865999997) - t403 * R(1.2793889830000003)));
+        const gic_real t407 = m[235] + y[16];
+        const gic_real t408 = m[233] * (m[233] * R(0.06276)) + (R(0.0014540542454566034) + m[232] * (m[232] * R(0.03138)));
+        const gic_real t409 = m[236] + y[17];
+        const gic_real t410 = m[230] * R(0.06276);
+        const gic_real t411 = m[229] * R(0.03138);
+        const gic_real t412 = m[233] * t410 + (m[232] * t411 + R(0.0009417184427870059));
+        const gic_real t413 = m[227] * R(0.06276);
+        const gic_real t414 = m[226] * R(0.03138);
+        const gic_real t415 = m[233] * t413 + (R(0.0065289443900383055) + m[232] * t414);
+        const gic_real t416 = m[234] + y[15];
+        const gic_real t417 = t408 * t409 + (t412 * t407 + t415 * t416);
+        const gic_real t418 = m[230] * t410 + (R(0.0006099040859419237) + m[229] * t411);
+        const gic_real t419 = m[230] * t413 + (m[229] * t414 + R(0.004228471780362703));
+        const gic_real t420 = t412 * t409 + (t418 * t407 + t419 * t416);
+        const gic_real t421 = m[242] + (rate[17] + (m[235] * y[15] - m[234] * y[16])) + m[248] * rate[22];
+        const gic_real t422 = t421 + m[254] * rate[19];
+        const gic_real t423 = m[241] + (rate[16] + (m[234] * y[17] - m[236] * y[15])) + m[247] * rate[22];
+        const gic_real t424 = t423 + m[253] * rate[19];
+        const gic_real t425 = m[227] * t413 + (R(0.029316041668601474) + m[226] * t414);
+        const gic_real t426 = m[240] + (rate[15] + (m[236] * y[16] - m[235] * y[17])) + m[246] * rate[22];
+        const gic_real t427 = t426 + m[252] * rate[19];
+        const gic_real t428 = t407 * t417 - t409 * t420 + (t415 * t422 + (t419 * t424 + t425 * t427));
+        const gic_real t429 = m[230] * R(8.518978193491379e-06) + (m[229] * R(-0.1333626625632361) + R(0.004544539087734648));
+        const gic_real t430 = m[227] * R(8.518978193491379e-06) + (R(0.031507339809937016) + m[226] * R(-0.1333626625632361));
+        const gic_real t431 = m[233] * R(8.518978193491379e-06) + (R(0.007016966063240429) + m[232] * R(-0.1333626625632361));
+        const gic_real t432 = m[236] * t430 - m[234] * t431;
+        const gic_real t433 = m[235] * t431 - m[236] * t429;
+        const gic_real t434 = m[234] * t432 - m[235] * t433 + (m[240] * t429 - m[241] * t430);
+        const gic_real t435 = R(1.5309008) + t430;
+        const gic_real t436 = R(0.22009100000000004) + t431;
+        const gic_real t437 = t432 + (t432 + (y[17] * t435 - y[15] * t436));
+        const gic_real t438 = R(-0.4618482) + t429;
+        const gic_real t439 = t433 + (t433 + (y[16] * t436 - y[17] * t438));
+        const gic_real t440 = y[15] * t437 - y[16] * t439 + (rate[15] * t438 - rate[16] * t435);
+        const gic_real t441 = t434 + (t28 + t440) + rate[22] * (m[246] * t429 - m[247] * t430);
+        const gic_real t442 = t441 + rate[19] * (m[252] * t429 - m[253] * t430);
+        const gic_real t443 = R(5.813) * t442;
+        const gic_real t444 = m[234] * t429 - m[235] * t430;
+        const gic_real t445 = m[236] * t433 - m[234] * t444 + (m[242] * t430 - m[240] * t431);
+        const gic_real t446 = t444 + (t444 + (y[15] * t438 - y[16] * t435));
+        const gic_real t447 = y[17] * t439 - y[15] * t446 + (rate[17] * t435 - rate[15] * t436);
+        const gic_real t448 = t445 + (t16 + t447) + rate[22] * (m[248] * t430 - m[246] * t431);
+        const gic_real t449 = t448 + rate[19] * (m[254] * t430 - m[252] * t431);
+        const gic_real t450 = R(5.813) * t449;
+        const gic_real t451 = t428 + (t429 * t443 - t431 * t450);
+        const gic_real t452 = m[307] + y[16];
+        const gic_real t453 = m[305] * (m[305] * R(0.06276)) + (m[304] * (m[304] * R(0.03138)) + R(6.221420556416178e-06));
+        const gic_real t454 = m[308] + y[17];
+        const gic_real t455 = m[302] * R(0.06276);
+        const gic_real t456 = m[301] * R(0.03138);
+        const gic_real t457 = m[305] * t455 + (m[304] * t456 + R(3.3816305342675644e-07));
+        const gic_real t458 = m[299] * R(0.06276);
+        const gic_real t459 = m[298] * R(0.03138);
+        const gic_real t460 = m[305] * t458 + (m[304] * t459 + R(0.00044180239545791184));
+        const gic_real t461 = m[306] + y[15];
+        const gic_real t462 = t453 * t454 + (t457 * t452 + t460 * t461);
+        const gic_real t463 = m[302] * t455 + (m[301] * t456 + R(1.838072987767614e-08));
+        const gic_real t464 = m[302] * t458 + (m[301] * t459 + R(2.4014008650359553e-05));
+        const gic_real t465 = t457 * t454 + (t463 * t452 + t464 * t461);
+        const gic_real t466 = m[314] + (rate[17] + (m[307] * y[15] - m[306] * y[16])) + m[320] * rate[20];
+        const gic_real t467 = m[313] + (rate[16] + (m[306] * y[17] - m[308] * y[15])) + m[319] * rate[20];
+        const gic_real t468 = m[299] * t458 + (m[298] * t459 + R(0.0313737601987137));
+        const gic_real t469 = m[312] + (rate[15] + (m[308] * y[16] - m[307] * y[17])) + m[318] * rate[20];
+        const gic_real t470 = t452 * t462 - t454 * t465 + (t460 * t466 + (t464 * t467 + t468 * t469));
+        const gic_real t471 = m[302] * R(-1.232760342215547e-05) + (m[301] * R(0.1268157381236126) + R(-6.79134666217616e-05));
+        const gic_real t472 = m[299] * R(-1.232760342215547e-05) + (m[298] * R(0.1268157381236126) + R(-0.0887274110323348));
+        const gic_real t473 = m[305] * R(-1.232760342215547e-05) + (m[304] * R(0.1268157381236126) + R(-0.0012494512130067036));
+        const gic_real t474 = m[308] * t472 - m[306] * t473;
+        const gic_real t475 = m[307] * t473 - m[308] * t471;
+        const gic_real t476 = m[306] * t474 - m[307] * t475 + (m[312] * t471 - m[313] * t472);
+        const gic_real t477 = R(-1.475859) + t472;
+        const gic_real t478 = R(0.22567900000000007) + t473;
+        const gic_real t479 = t474 + (t474 + (y[17] * t477 - y[15] * t478));
+        const gic_real t480 = R(0.462153) + t471;
+        const gic_real t481 = t475 + (t475 + (y[16] * t478 - y[17] * t480));
+        const gic_real t482 = y[15] * t479 - y[16] * t481 + (rate[15] * t480 - rate[16] * t477);
+        const gic_real t483 = t476 + (t28 + t482) + rate[20] * (m[318] * t471 - m[319] * t472);
+        const gic_real t484 = R(5.813) * t483;
+        const gic_real t485 = m[306] * t471 - m[307] * t472;
+        const gic_real t486 = m[308] * t475 - m[306] * t485 + (m[314] * t472 - m[312] * t473);
+        const gic_real t487 = t485 + (t485 + (y[15] * t480 - y[16] * t477));
+        const gic_real t488 = y[17] * t481 - y[15] * t487 + (rate[17] * t477 - rate[15] * t478);
+        const gic_real t489 = t486 + (t16 + t488) + rate[20] * (m[320] * t472 - m[318] * t473);
+        const gic_real t490 = R(5.813) * t489;
+        const gic_real t491 = t470 + (t471 * t484 - t473 * t490);
+        const gic_real t492 = t406 + (t451 + (t442 * R(-2.6847235865999997) - R(1.2793889830000003) * t449)) + (t491 + (t483 * R(2.6864953889999996) - t489 * R(1.3118720270000004)));
+        const gic_real t493 = m[367] + y[16];
+        const gic_real t494 = m[365] * (m[365] * R(0.06276)) + (R(6.221420556416178e-06) + m[364] * (m[364] * R(0.03138)));
+        const gic_real t495 = m[368] + y[17];
+        const gic_real t496 = m[362] * R(0.06276);
+        const gic_real t497 = m[361] * R(0.03138);
+        const gic_real t498 = m[365] * t496 + (m[364] * t497 + R(-3.3816305342675644e-07));
+        const gic_real t499 = m[359] * R(0.06276);
+        const gic_real t500 = m[358] * R(0.03138);
+        const gic_real t501 = m[365] * t499 + (R(0.00044180239545791184) + m[364] * t500);
+        const gic_real t502 = m[366] + y[15];
+        const gic_real t503 = t494 * t495 + (t498 * t493 + t501 * t502);
+        const gic_real t504 = m[362] * t496 + (R(1.838072987767614e-08) + m[361] * t497);
+        const gic_real t505 = m[362] * t499 + (m[361] * t500 + R(-2.4014008650359553e-05));
+        const gic_real t506 = t498 * t495 + (t504 * t493 + t505 * t502);
+        const gic_real t507 = m[374] + (rate[17] + (m[367] * y[15] - m[366] * y[16])) + m[380] * rate[21];
+        const gic_real t508 = m[373] + (rate[16] + (m[366] * y[17] - m[368] * y[15])) + m[379] * rate[21];
+        const gic_real t509 = m[359] * t499 + (R(0.0313737601987137) + m[358] * t500);
+        const gic_real t510 = m[372] + (rate[15] + (m[368] * y[16] - m[367] * y[17])) + m[378] * rate[21];
+        const gic_real t511 = t493 * t503 - t495 * t506 + (t501 * t507 + (t505 * t508 + t509 * t510));
+        const gic_real t512 = m[362] * R(-1.232760342215547e-05) + (m[361] * R(-0.1268157381236126) + R(6.79134666217616e-05));
+        const gic_real t513 = m[359] * R(-1.232760342215547e-05) + (R(-0.0887274110323348) + m[358] * R(-0.1268157381236126));
+        const gic_real t514 = m[365] * R(-1.232760342215547e-05) + (R(-0.0012494512130067036) + m[364] * R(-0.1268157381236126));
+        const gic_real t515 = m[368] * t513 - m[366] * t514;
+        const gic_real t516 = m[367] * t514 - m[368] * t512;
+        const gic_real t517 = m[366] * t515 - m[367] * t516 + (m[372] * t512 - m[373] * t513);
+        const gic_real t518 = R(-1.475859) + t513;
+        const gic_real t519 = R(0.22567900000000007) + t514;
+        const gic_real t520 = t515 + (t515 + (y[17] * t518 - y[15] * t519));
+        const gic_real t521 = R(-0.462153) + t512;
+        const gic_real t522 = t516 + (t516 + (y[16] * t519 - y[17] * t521));
+        const gic_real t523 = y[15] * t520 - y[16] * t522 + (rate[15] * t521 - rate[16] * t518);
+        const gic_real t524 = t517 + (t28 + t523) + rate[21] * (m[378] * t512 - m[379] * t513);
+        const gic_real t525 = R(5.813) * t524;
+        const gic_real t526 = m[366] * t512 - m[367] * t513;
+        const gic_real t527 = m[368] * t516 - m[366] * t526 + (m[374] * t513 - m[372] * t514);
+        const gic_real t528 = t526 + (t526 + (y[15] * t521 - y[16] * t518));
+        const gic_real t529 = y[17] * t522 - y[15] * t528 + (rate[17] * t518 - rate[15] * t519);
+        const gic_real t530 = t527 + (t16 + t529) + rate[21] * (m[380] * t513 - m[378] * t514);
+        const gic_real t531 = R(5.813) * t530;
+        const gic_real t532 = t511 + (t512 * t525 - t514 * t531);
+        const gic_real t533 = t333 + m[391] * R(-0.12319000000000002);
+        const gic_real t534 = t335 + m[388] * R(-0.12319000000000002);
+        const gic_real t535 = m[385] + t533;
+        const gic_real t536 = m[384] + t534;
+        const gic_real t537 = m[401] + (m[396] * t533 - m[397] * t534) + (y[15] * t535 - y[16] * t536);
+        const gic_real t538 = t337 + m[394] * R(-0.12319000000000002);
+        const gic_real t539 = m[386] + t538;
+        const gic_real t540 = m[400] + (m[398] * t534 - m[396] * t538) + (y[17] * t536 - y[15] * t539);
+        const gic_real t541 = t13 + t14;
+        const gic_real t542 = m[397] * t538 - m[398] * t533 + (y[16] * t539 - y[17] * t535);
+        const gic_real t543 = y[13] + (t24 * t537 + (t12 * t540 + t541 * t542));
+        const gic_real t544 = R(1.0) - (t22 + t11);
+        const gic_real t545 = y[0] + (t27 * t539 + (t15 * t535 + t544 * t536));
+        const gic_real t546 = y[1] + (t24 * t539 + (t12 * t535 + t541 * t536));
+        gic_real road547[3];
+        if (!hmmwv14_road_height(self, time, t545, t546, road547))
+            return GIC_ERROR_ROAD;
+        const gic_real t548 = y[12] + (t27 * t537 + (t15 * t540 + t544 * t542));
+        const gic_real t549 = t25 - t26;
+        const gic_real t550 = y[14] + (t23 * t537 + (t7 * t540 + t549 * t542));
+        const gic_real t551 = t543 * road547[2] + t548 * road547[1] - t550;
+        const gic_real t552 = y[2] + (t23 * t539 + (t7 * t535 + t549 * t536));
+        const gic_real t553 = R(0.4699) + road547[0] - t552;
+        const gic_real t554 = GIC_MIN(GIC_MAX(R(100.0) * t553, R(0.0)), R(1.0));
+        const gic_real t555 = t551 * (R(500.0) * ((R(3.0) - (t554 + t554)) * (t554 * t554)));
+        const gic_real t556 = GIC_MAX(t555 + R(283000.0) * t553, R(0.0));
+        const gic_real t557 = t23 * t556;
+        const gic_real t558 = t7 * t556;
+        const gic_real t559 = t533 * t557 - t538 * t558;
+        const gic_real t560 = t283 + m[331] * R(0.12319000000000002);
+        const gic_real t561 = t285 + m[328] * R(0.12319000000000002);
+        const gic_real t562 = m[325] + t560;
+        const gic_real t563 = m[324] + t561;
+        const gic_real t564 = m[341] + (m[336] * t560 - m[337] * t561) + (y[15] * t562 - y[16] * t563);
+        const gic_real t565 = t287 + m[334] * R(0.12319000000000002);
+        const gic_real t566 = m[326] + t565;
+        const gic_real t567 = m[340] + (m[338] * t561 - m[336] * t565) + (y[17] * t563 - y[15] * t566);
+        const gic_real t568 = m[337] * t565 - m[338] * t560 + (y[16] * t566 - y[17] * t562);
+        const gic_real t569 = y[13] + (t24 * t564 + (t12 * t567 + t541 * t568));
+        const gic_real t570 = y[0] + (t27 * t566 + (t15 * t562 + t544 * t563));
+        const gic_real t571 = y[1] + (t24 * t566 + (t12 * t562 + t541 * t563));
+        gic_real road572[3];
+        if (!hmmwv14_road_height(self, time, t570, t571, road572))
+            return GIC_ERROR_ROAD;
+        const gic_real t573 = y[12] + (t27 * t564 + (t15 * t567 + t544 * t568));
+        const gic_real t574 = y[14] + (t23 * t564 + (t7 * t567 + t549 * t568));
+        const gic_real t575 = t569 * road572[2] + t573 * road572[1] - t574;
+        const gic_real t576 = y[2] + (t23 * t566 + (t7 * t562 + t549 * t563));
+        const gic_real t577 = R(0.4699) + road572[0] - t576;
+        const gic_real t578 = GIC_MIN(GIC_MAX(R(100.0) * t577, R(0.0)), R(1.0));
+        const gic_real t579 = t575 * (R(500.0) * ((R(3.0) - (t578 + t578)) * (t578 * t578)));
+        const gic_real t580 = GIC_MAX(t579 + R(283000.0) * t577, R(0.0));
+        const gic_real t581 = t23 * t580;
+        const gic_real t582 = t7 * t580;
+        const gic_real t583 = t560 * t581 - t565 * t582;
+        const gic_real t584 = m[131] * R(0.01939183545039609) + m[130] * R(-0.23915941563573181);
+        const gic_real t585 = m[128] * R(0.01939183545039609) + m[127] * R(-0.23915941563573181);
+        const gic_real t586 = R(-0.307086) + t585 - R(-0.4977892);
+        const gic_real t587 = t584 - R(0.32313880000000006);
+        const gic_real t588 = R(1.0) / GIC_SQRT(t587 * t587 + (R(4.633797183999867e-05) + t586 * t586));
+        const gic_real t589 = t588 * (m[132] * t585 * t587 - m[132] * t584 * t586);
+        const gic_real t590 = R(24780.4) * t589;
+        const gic_real t591 = t588 * t590;
+        const gic_real t592 = t586 * t591;
+        const gic_real t593 = t587 * t591;
+        const gic_real t594 = t584 * t592 - t585 * t593;
+        const gic_real t595 = m[101] * R(0.01939183545039609) + m[100] * R(0.23915941563573181);
+        const gic_real t596 = m[98] * R(0.01939183545039609) + m[97] * R(0.23915941563573181);
+        const gic_real t597 = R(0.307086) + t596 - R(0.4977892);
+        const gic_real t598 = t595 - R(0.32313880000000006);
+        const gic_real t599 = R(1.0) / GIC_SQRT(t598 * t598 + (R(4.633797183999867e-05) + t597 * t597));
+        const gic_real t600 = t599 * (m[102] * t596 * t598 - m[102] * t595 * t597);
+        const gic_real t601 = t600 * R(24780.4);
+        const gic_real t602 = t599 * t601;
+        const gic_real t603 = t597 * t602;
+        const gic_real t604 = t598 * t602;
+        const gic_real t605 = t595 * t603 - t596 * t604;
+        const gic_real t606 = t174 + (m[265] * R(-0.12319000000000002) + t175);
+        const gic_real t607 = t177 + (m[262] * R(-0.12319000000000002) + t178);
+        const gic_real t608 = m[259] + t606;
+        const gic_real t609 = m[258] + t607;
+        const gic_real t610 = m[275] + (m[270] * t606 - m[271] * t607) + (y[15] * t608 - y[16] * t609);
+        const gic_real t611 = t180 + (m[268] * R(-0.12319000000000002) + t181);
+        const gic_real t612 = m[260] + t611;
+        const gic_real t613 = m[274] + (m[272] * t607 - m[270] * t611) + (y[17] * t609 - y[15] * t612);
+        const gic_real t614 = m[271] * t611 - m[272] * t606 + (y[16] * t612 - y[17] * t608);
+        const gic_real t615 = y[13] + (t24 * t610 + (t12 * t613 + t541 * t614));
+        const gic_real t616 = y[0] + (t27 * t612 + (t15 * t608 + t544 * t609));
+        const gic_real t617 = y[1] + (t24 * t612 + (t12 * t608 + t541 * t609));
+        gic_real road618[3];
+        if (!hmmwv14_road_height(self, time, t616, t617, road618))
+            return GIC_ERROR_ROAD;
+        const gic_real t619 = y[12] + (t27 * t610 + (t15 * t613 + t544 * t614));
+        const gic_real t620 = y[14] + (t23 * t610 + (t7 * t613 + t549 * t614));
+        const gic_real t621 = t615 * road618[2] + t619 * road618[1] - t620;
+        const gic_real t622 = y[2] + (t23 * t612 + (t7 * t608 + t549 * t609));
+        const gic_real t623 = R(0.4699) + road618[0] - t622;
+        const gic_real t624 = GIC_MIN(GIC_MAX(R(100.0) * t623, R(0.0)), R(1.0));
+        const gic_real t625 = t621 * (R(500.0) * ((R(3.0) - (t624 + t624)) * (t624 * t624)));
+        const gic_real t626 = GIC_MAX(t625 + R(283000.0) * t623, R(0.0));
+        const gic_real t627 = t23 * t626;
+        const gic_real t628 = t7 * t626;
+        const gic_real t629 = t606 * t627 - t611 * t628;
+        const gic_real t630 = t116 + (m[193] * R(0.12319000000000002) + t117);
+        const gic_real t631 = t119 + (m[190] * R(0.12319000000000002) + t120);
+        const gic_real t632 = m[187] + t630;
+        const gic_real t633 = m[186] + t631;
+        const gic_real t634 = m[203] + (m[198] * t630 - m[199] * t631) + (y[15] * t632 - y[16] * t633);
+        const gic_real t635 = t122 + (m[196] * R(0.12319000000000002) + t123);
+        const gic_real t636 = m[188] + t635;
+        const gic_real t637 = m[202] + (m[200] * t631 - m[198] * t635) + (y[17] * t633 - y[15] * t636);
+        const gic_real t638 = m[199] * t635 - m[200] * t630 + (y[16] * t636 - y[17] * t632);
+        const gic_real t639 = y[13] + (t24 * t634 + (t12 * t637 + t541 * t638));
+        const gic_real t640 = y[0] + (t27 * t636 + (t15 * t632 + t544 * t633));
+        const gic_real t641 = y[1] + (t24 * t636 + (t12 * t632 + t541 * t633));
+        gic_real road642[3];
+        if (!hmmwv14_road_height(self, time, t640, t641, road642))
+            return GIC_ERROR_ROAD;
+        const gic_real t643 = y[12] + (t27 * t634 + (t15 * t637 + t544 * t638));
+        const gic_real t644 = y[14] + (t23 * t634 + (t7 * t637 + t549 * t638));
+        const gic_real t645 = t639 * road642[2] + t643 * road642[1] - t644;
+        const gic_real t646 = y[2] + (t23 * t636 + (t7 * t632 + t549 * t633));
+        const gic_real t647 = road642[0] + R(0.4699) - t646;
+        const gic_real t648 = GIC_MIN(GIC_MAX(t647 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t649 = t645 * ((R(3.0) - (t648 + t648)) * (t648 * t648) * R(500.0));
+        const gic_real t650 = GIC_MAX(t649 + t647 * R(283000.0), R(0.0));
+        const gic_real t651 = t23 * t650;
+        const gic_real t652 = t7 * t650;
+        const gic_real t653 = t630 * t651 - t635 * t652;
+        const gic_real t654 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
+        const gic_real t655 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        const gic_real t656 = R(-0.307086) + t655 - R(-0.4977892);
+        const gic_real t657 = t654 - R(0.32313880000000006);
+        const gic_real t658 = R(1.0) / GIC_SQRT(t657 * t657 + (R(4.633797183999867e-05) + t656 * t656));
+        const gic_real t659 = t658 * (m[72] * t655 * t657 - m[72] * t654 * t656);
+        const gic_real t660 = R(17490.8) * t659;
+        const gic_real t661 = t658 * t660;
+        const gic_real t662 = t656 * t661;
+        const gic_real t663 = t657 * t661;
+        const gic_real t664 = t654 * t662 - t655 * t663;
+        const gic_real t665 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
+        const gic_real t666 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        const gic_real t667 = R(0.307086) + t666 - R(0.4977892);
+        const gic_real t668 = t665 - R(0.32313880000000006);
+        const gic_real t669 = R(1.0) / GIC_SQRT(t668 * t668 + (t667 * t667 + R(4.633797183999867e-05)));
+        const gic_real t670 = t669 * (m[42] * t666 * t668 - m[42] * t665 * t667);
+        const gic_real t671 = t670 * R(17490.8);
+        const gic_real t672 = t669 * t671;
+        const gic_real t673 = t667 * t672;
+        const gic_real t674 = t668 * t672;
+        const gic_real t675 = t665 * t673 - t666 * t674;
+        const gic_real t676 = R(0.4977892) * t674 - R(0.32313880000000006) * t673 + (R(-0.4977892) * t663 - R(0.32313880000000006) * t662);
+        const gic_real t677 = t676 + (R(0.4977892) * t604 - R(0.32313880000000006) * t603) + (R(-0.4977892) * t593 - R(0.32313880000000006) * t592);
+        const gic_real t678 = t664 + (t675 + (t677 - R(0.307086) * t674) - R(-0.307086) * t663);
+        const gic_real t679 = t653 + (t678 + (m[187] * t651 - m[188] * t652)) + (m[259] * t627 - m[260] * t628);
+        const gic_real t680 = t605 + (t629 + t679 - R(0.307086) * t604) - R(-0.307086) * t593;
+        const gic_real t681 = t583 + (t594 + t680 + (m[325] * t581 - m[326] * t582));
+        const gic_real t682 = t492 + (t532 + (t524 * R(-2.6864953889999996) - R(1.3118720270000004) * t530)) - (t559 + (t681 + (m[385] * t557 - m[386] * t558)));
+        const gic_real t683 = GIC_FABS(t671);
+        const gic_real t684 = GIC_FABS(t660);
+        const gic_real t685 = GIC_FABS(t601);
+        const gic_real t686 = GIC_FABS(t590);
+        const gic_real t687 = t683 * R(2.613906) + R(2.613906) * t684 + R(2.613906) * t685 + R(2.613906) * t686;
+        const gic_real t688 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t549);
+        const gic_real t689 = t549 * t8 + (t541 * rate[13] + t544 * rate[12]);
+        const gic_real t690 = t688 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t689));
+        const gic_real t691 = GIC_FABS(y[17]) + GIC_FABS(y[16]) + GIC_FABS(y[15]);
+        const gic_real t692 = GIC_FABS(rate[17]) + GIC_FABS(rate[16]) + GIC_FABS(rate[15]);
+        const gic_real t693 = t691 * t691 + t692;
+        const gic_real t694 = t690 + t693 * R(0.2690000000000001);
+        const gic_real t695 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[1]));
+        const gic_real t696 = GIC_FABS(rate[22]);
+        const gic_real t697 = t690 + t693 * t695 + t691 * GIC_FABS(m[16]) + t696;
+        const gic_real t698 = R(9.072) * t697;
+        const gic_real t699 = t687 + (t694 * R(561.2738800000002) + t693 * R(7604.379999999999)) + (R(3.0) * t693 + t695 * t698);
+        const gic_real t700 = GIC_FABS(t46);
+        const gic_real t701 = t700 + GIC_FABS(t45);
+        const gic_real t702 = t691 + GIC_FABS(m[42]);
+        const gic_real t703 = t692 + t702 * t702;
+        const gic_real t704 = t690 + t703 * (R(1.688965) + (t700 + GIC_FABS(t51))) + t691 * (GIC_FABS(t57) + GIC_FABS(-t47));
+        const gic_real t705 = GIC_FABS(rate[18]);
+        const gic_real t706 = GIC_FABS(m[54]);
+        const gic_real t707 = t705 * t706;
+        const gic_real t708 = t704 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t707 * t701;
+        const gic_real t709 = R(23.965) * t708;
+        const gic_real t710 = t701 * t709 + (t703 + GIC_FABS(m[48]) + t707) * R(1.7876);
+        const gic_real t711 = t683 * (R(0.09720579999999998) + (GIC_FABS(t665) + GIC_FABS(t666))) + t710;
+        const gic_real t712 = t683 + t709;
+        const gic_real t713 = GIC_FABS(t76);
+        const gic_real t714 = t713 + GIC_FABS(t75);
+        const gic_real t715 = t691 + GIC_FABS(m[72]);
+        const gic_real t716 = t692 + t715 * t715;
+        const gic_real t717 = t690 + t716 * (R(1.688965) + (t713 + GIC_FABS(t80))) + t691 * (GIC_FABS(t85) + GIC_FABS(-t77));
+        const gic_real t718 = GIC_FABS(rate[19]);
+        const gic_real t719 = GIC_FABS(m[84]);
+        const gic_real t720 = t718 * t719;
+        const gic_real t721 = t717 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t720 * t714;
+        const gic_real t722 = R(23.965) * t721;
+        const gic_real t723 = t714 * t722 + R(1.7876) * (t716 + GIC_FABS(m[78]) + t720);
+        const gic_real t724 = t684 * (R(0.09720579999999998) + (GIC_FABS(t654) + GIC_FABS(t655))) + t723;
+        const gic_real t725 = t684 + t722;
+        const gic_real t726 = t699 + (t711 + t712 * R(1.996051)) + (t724 + R(1.996051) * t725);
+        const gic_real t727 = (R(0.4699) + (GIC_FABS(t646) + GIC_FABS(road642[0]))) * R(283000.0);
+        const gic_real t728 = GIC_FABS(t649) + GIC_FABS(t727);
+        const gic_real t729 = t728 * (GIC_FABS(t635) + GIC_FABS(t630) + GIC_FABS(t631));
+        const gic_real t730 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
+        const gic_real t731 = t691 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t732 = t692 + t731 * t731;
+        const gic_real t733 = t732 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
+        const gic_real t734 = t691 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
+        const gic_real t735 = m[199] * t139 - m[200] * t125 + (m[205] * t124 - m[206] * t118);
+        const gic_real t736 = t690 + t733 + t734 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t735));
+        const gic_real t737 = GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]);
+        const gic_real t738 = t696 * t737;
+        const gic_real t739 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t740 = t705 * t739;
+        const gic_real t741 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t742 = t736 + t738 * t730 + t730 * t740 + t705 * t741;
+        const gic_real t743 = R(90.555) * t742;
+        const gic_real t744 = t732 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t745 = t729 + (t730 * t743 + (t744 + t738 + t740) * R(17.248790999999997));
+        const gic_real t746 = t728 + t743;
+        const gic_real t747 = t746 * (GIC_FABS(m[188]) + GIC_FABS(m[187]) + GIC_FABS(m[186]));
+        const gic_real t748 = R(283000.0) * (R(0.4699) + (GIC_FABS(t622) + GIC_FABS(road618[0])));
+        const gic_real t749 = GIC_FABS(t625) + GIC_FABS(t748);
+        const gic_real t750 = t749 * (GIC_FABS(t611) + GIC_FABS(t606) + GIC_FABS(t607));
+        const gic_real t751 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
+        const gic_real t752 = t691 + (GIC_FABS(m[272]) + GIC_FABS(m[271]) + GIC_FABS(m[270]));
+        const gic_real t753 = t692 + t752 * t752;
+        const gic_real t754 = t753 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
+        const gic_real t755 = t691 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
+        const gic_real t756 = m[271] * t197 - m[272] * t183 + (m[277] * t182 - m[278] * t176);
+        const gic_real t757 = t690 + t754 + t755 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t756));
+        const gic_real t758 = GIC_FABS(m[284]) + GIC_FABS(m[283]) + GIC_FABS(m[282]);
+        const gic_real t759 = t696 * t758;
+        const gic_real t760 = GIC_FABS(m[290]) + GIC_FABS(m[289]) + GIC_FABS(m[288]);
+        const gic_real t761 = t718 * t760;
+        const gic_real t762 = GIC_FABS(m[293]) + GIC_FABS(m[292]);
+        const gic_real t763 = t757 + t759 * t751 + t751 * t761 + t718 * t762;
+        const gic_real t764 = R(90.555) * t763;
+        const gic_real t765 = t753 + (GIC_FABS(m[278]) + GIC_FABS(m[277]) + GIC_FABS(m[276]));
+        const gic_real t766 = t750 + (t751 * t764 + R(17.248790999999997) * (t765 + t759 + t761));
+        const gic_real t767 = t749 + t764;
+        const gic_real t768 = t767 * (GIC_FABS(m[260]) + GIC_FABS(m[259]) + GIC_FABS(m[258]));
+        const gic_real t769 = GIC_FABS(t216);
+        const gic_real t770 = t769 + GIC_FABS(t215);
+        const gic_real t771 = t691 + GIC_FABS(m[102]);
+        const gic_real t772 = t692 + t771 * t771;
+        const gic_real t773 = t690 + t772 * (R(1.688965) + (t769 + GIC_FABS(t221))) + t691 * (GIC_FABS(t227) + GIC_FABS(-t217));
+        const gic_real t774 = GIC_FABS(rate[20]);
+        const gic_real t775 = GIC_FABS(m[114]);
+        const gic_real t776 = t774 * t775;
+        const gic_real t777 = t773 + (GIC_FABS(t218) + GIC_FABS(-t232)) + t776 * t770;
+        const gic_real t778 = R(23.965) * t777;
+        const gic_real t779 = t770 * t778 + R(1.7876) * (t772 + GIC_FABS(m[108]) + t776);
+        const gic_real t780 = t685 * (R(0.09720579999999998) + (GIC_FABS(t595) + GIC_FABS(t596))) + t779;
+        const gic_real t781 = t685 + t778;
+        const gic_real t782 = t726 + (t745 + t747) + (t766 + t768) + (t780 + R(1.996051) * t781);
+        const gic_real t783 = GIC_FABS(t246);
+        const gic_real t784 = t783 + GIC_FABS(t245);
+        const gic_real t785 = t691 + GIC_FABS(m[132]);
+        const gic_real t786 = t692 + t785 * t785;
+        const gic_real t787 = t690 + t786 * (R(1.688965) + (t783 + GIC_FABS(t250))) + t691 * (GIC_FABS(t255) + GIC_FABS(-t247));
+        const gic_real t788 = GIC_FABS(rate[21]);
+        const gic_real t789 = GIC_FABS(m[144]);
+        const gic_real t790 = t788 * t789;
+        const gic_real t791 = t787 + (GIC_FABS(t248) + GIC_FABS(-t258)) + t790 * t784;
+        const gic_real t792 = R(23.965) * t791;
+        const gic_real t793 = t784 * t792 + R(1.7876) * (t786 + GIC_FABS(m[138]) + t790);
+        const gic_real t794 = t686 * (R(0.09720579999999998) + (GIC_FABS(t584) + GIC_FABS(t585))) + t793;
+        const gic_real t795 = t686 + t792;
+        const gic_real t796 = R(283000.0) * (R(0.4699) + (GIC_FABS(t576) + GIC_FABS(road572[0])));
+        const gic_real t797 = GIC_FABS(t579) + GIC_FABS(t796);
+        const gic_real t798 = t797 * (GIC_FABS(t565) + GIC_FABS(t560) + GIC_FABS(t561));
+        const gic_real t799 = GIC_FABS(t288) + GIC_FABS(t284) + GIC_FABS(t286);
+        const gic_real t800 = t691 + (GIC_FABS(m[338]) + GIC_FABS(m[337]) + GIC_FABS(m[336]));
+        const gic_real t801 = t692 + t800 * t800;
+        const gic_real t802 = t801 * (GIC_FABS(t295) + GIC_FABS(t297) + GIC_FABS(t294));
+        const gic_real t803 = t691 * (GIC_FABS(t305) + GIC_FABS(t293) + GIC_FABS(t290));
+        const gic_real t804 = m[337] * t302 - m[338] * t289 + (m[343] * t288 - m[344] * t284);
+        const gic_real t805 = t690 + t802 + t803 + (GIC_FABS(t292) + GIC_FABS(t304) + GIC_FABS(t804));
+        const gic_real t806 = GIC_FABS(m[350]) + GIC_FABS(m[349]) + GIC_FABS(m[348]);
+        const gic_real t807 = t774 * t806;
+        const gic_real t808 = GIC_FABS(m[353]) + GIC_FABS(m[352]);
+        const gic_real t809 = R(90.555) * (t805 + t807 * t799 + t774 * t808);
+        const gic_real t810 = t801 + (GIC_FABS(m[344]) + GIC_FABS(m[343]) + GIC_FABS(m[342]));
+        const gic_real t811 = t798 + (t799 * t809 + R(17.248790999999997) * (t810 + t807));
+        const gic_real t812 = t797 + t809;
+        const gic_real t813 = t812 * (GIC_FABS(m[326]) + GIC_FABS(m[325]) + GIC_FABS(m[324]));
+        const gic_real t814 = R(283000.0) * (R(0.4699) + (GIC_FABS(t552) + GIC_FABS(road547[0])));
+        const gic_real t815 = GIC_FABS(t555) + GIC_FABS(t814);
+        const gic_real t816 = t815 * (GIC_FABS(t538) + GIC_FABS(t533) + GIC_FABS(t534));
+        const gic_real t817 = GIC_FABS(t338) + GIC_FABS(t334) + GIC_FABS(t336);
+        const gic_real t818 = t691 + (GIC_FABS(m[398]) + GIC_FABS(m[397]) + GIC_FABS(m[396]));
+        const gic_real t819 = t692 + t818 * t818;
+        const gic_real t820 = t819 * (GIC_FABS(t345) + GIC_FABS(t347) + GIC_FABS(t344));
+        const gic_real t821 = t691 * (GIC_FABS(t355) + GIC_FABS(t343) + GIC_FABS(t340));
+        const gic_real t822 = m[397] * t352 - m[398] * t339 + (m[403] * t338 - m[404] * t334);
+        const gic_real t823 = t690 + t820 + t821 + (GIC_FABS(t342) + GIC_FABS(t354) + GIC_FABS(t822));
+        const gic_real t824 = GIC_FABS(m[410]) + GIC_FABS(m[409]) + GIC_FABS(m[408]);
+        const gic_real t825 = t788 * t824;
+        const gic_real t826 = GIC_FABS(m[413]) + GIC_FABS(m[412]);
+        const gic_real t827 = R(90.555) * (t823 + t825 * t817 + t788 * t826);
+        const gic_real t828 = t819 + (GIC_FABS(m[404]) + GIC_FABS(m[403]) + GIC_FABS(m[402]));
+        const gic_real t829 = t816 + (t817 * t827 + R(17.248790999999997) * (t828 + t825));
+        const gic_real t830 = t815 + t827;
+        const gic_real t831 = t830 * (GIC_FABS(m[386]) + GIC_FABS(m[385]) + GIC_FABS(m[384]));
+        const gic_real t832 = t782 + (t794 + R(1.996051) * t795) + (t811 + t813) + (t829 + t831);
+        const gic_real t833 = GIC_FABS(t385) + GIC_FABS(t383) + GIC_FABS(t384);
+        const gic_real t834 = t691 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t835 = t692 + t834 * t834;
+        const gic_real t836 = t835 * (GIC_FABS(t390) + GIC_FABS(t392) + GIC_FABS(t389));
+        const gic_real t837 = t691 * (GIC_FABS(t398) + GIC_FABS(t386) + GIC_FABS(t387));
+        const gic_real t838 = m[163] * t398 - m[164] * t386 + (m[169] * t385 - m[170] * t383);
+        const gic_real t839 = t690 + t836 + t837 + (GIC_FABS(t388) + GIC_FABS(t399) + GIC_FABS(t838));
+        const gic_real t840 = GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]);
+        const gic_real t841 = t696 * t840;
+        const gic_real t842 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t843 = t705 * t842;
+        const gic_real t844 = t839 + t841 * t833 + t833 * t843;
+        const gic_real t845 = R(5.813) * t844;
+        const gic_real t846 = t835 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t847 = t833 * t845 + (t846 + t841 + t843) * R(0.12552);
+        const gic_real t848 = GIC_FABS(t431) + GIC_FABS(t429) + GIC_FABS(t430);
+        const gic_real t849 = t691 + (GIC_FABS(m[236]) + GIC_FABS(m[235]) + GIC_FABS(m[234]));
+        const gic_real t850 = t692 + t849 * t849;
+        const gic_real t851 = t850 * (GIC_FABS(t436) + GIC_FABS(t438) + GIC_FABS(t435));
+        const gic_real t852 = t691 * (GIC_FABS(t444) + GIC_FABS(t432) + GIC_FABS(t433));
+        const gic_real t853 = m[235] * t444 - m[236] * t432 + (m[241] * t431 - m[242] * t429);
+        const gic_real t854 = t690 + t851 + t852 + (GIC_FABS(t434) + GIC_FABS(t445) + GIC_FABS(t853));
+        const gic_real t855 = GIC_FABS(m[248]) + GIC_FABS(m[247]) + GIC_FABS(m[246]);
+        const gic_real t856 = t696 * t855;
+        const gic_real t857 = GIC_FABS(m[254]) + GIC_FABS(m[253]) + GIC_FABS(m[252]);
+        const gic_real t858 = t718 * t857;
+        const gic_real t859 = t854 + t856 * t848 + t848 * t858;
+        const gic_real t860 = R(5.813) * t859;
+        const gic_real t861 = t850 + (GIC_FABS(m[242]) + GIC_FABS(m[241]) + GIC_FABS(m[240]));
+        const gic_real t862 = t848 * t860 + R(0.12552) * (t861 + t856 + t858);
+        const gic_real t863 = t832 + (t847 + t844 * R(12.863238919999999)) + (t862 + R(12.863238919999999) * t859);
+        const gic_real t864 = GIC_FABS(t473) + GIC_FABS(t471) + GIC_FABS(t472);
+        const gic_real t865 = t691 + (GIC_FABS(m[308]) + GIC_FABS(m[307]) + GIC_FABS(m[306]));
+        const gic_real t866 = t692 + t865 * t865;
+        const gic_real t867 = t866 * (GIC_FABS(t478) + GIC_FABS(t480) + GIC_FABS(t477));
+        const gic_real t868 = t691 * (GIC_FABS(t485) + GIC_FABS(t474) + GIC_FABS(t475));
+        const gic_real t869 = m[307] * t485 - m[308] * t474 + (m[313] * t473 - m[314] * t471);
+        const gic_real t870 = t690 + t867 + t868 + (GIC_FABS(t476) + GIC_FABS(t486) + GIC_FABS(t869));
+        const gic_real t871 = GIC_FABS(m[320]) + GIC_FABS(m[319]) + GIC_FABS(m[318]);
+        const gic_real t872 = t774 * t871;
+        const gic_real t873 = t870 + t872 * t864;
+        const gic_real t874 = R(5.813) * t873;
+        const gic_real t875 = t866 + (GIC_FABS(m[314]) + GIC_FABS(m[313]) + GIC_FABS(m[312]));
+        const gic_real t876 = t864 * t874 + R(0.12552) * (t875 + t872);
+        const gic_real t877 = GIC_FABS(t514) + GIC_FABS(t512) + GIC_FABS(t513);
+        const gic_real t878 = t691 + (GIC_FABS(m[368]) + GIC_FABS(m[367]) + GIC_FABS(m[366]));
+        const gic_real t879 = t692 + t878 * t878;
+        const gic_real t880 = t879 * (GIC_FABS(t519) + GIC_FABS(t521) + GIC_FABS(t518));
+        const gic_real t881 = t691 * (GIC_FABS(t526) + GIC_FABS(t515) + GIC_FABS(t516));
+        const gic_real t882 = m[367] * t526 - m[368] * t515 + (m[373] * t514 - m[374] * t512);
+        const gic_real t883 = t690 + t880 + t881 + (GIC_FABS(t517) + GIC_FABS(t527) + GIC_FABS(t882));
+        const gic_real t884 = GIC_FABS(m[380]) + GIC_FABS(m[379]) + GIC_FABS(m[378]);
+        const gic_real t885 = t788 * t884;
+        const gic_real t886 = t883 + t885 * t877;
+        const gic_real t887 = R(5.813) * t886;
+        const gic_real t888 = t879 + (GIC_FABS(m[374]) + GIC_FABS(m[373]) + GIC_FABS(m[372]));
+        const gic_real t889 = t877 * t887 + R(0.12552) * (t888 + t885);
+        const gic_real t890 = t863 + (t876 + t873 * R(12.577535783)) + (t889 + R(12.577535783) * t886);
+        const gic_real t891 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
+        const gic_real t892 = t689 + (rate[16] * R(0.21300000000000008) - (y[17] * t891 + y[16] * t17));
+        const gic_real t893 = y[16] * t34 - y[17] * t29 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
+        const gic_real t894 = t689 + t893;
+        const gic_real t895 = t894 * R(9.072);
+        const gic_real t896 = y[16] * t59 - y[17] * t50 + (rate[16] * t46 - rate[17] * t51);
+        const gic_real t897 = t689 + t896;
+        const gic_real t898 = t897 * R(23.965);
+        const gic_real t899 = y[16] * t86 - y[17] * t79 + (rate[16] * t76 - rate[17] * t80);
+        const gic_real t900 = t689 + t899;
+        const gic_real t901 = R(23.965) * t900;
+        const gic_real t902 = y[16] * t143 - y[17] * t132 + (rate[16] * t131 - rate[17] * t133);
+        const gic_real t903 = t735 + (t689 + t902) + rate[22] * (m[211] * t124 - m[212] * t118);
+        const gic_real t904 = (t903 + rate[18] * (m[217] * t124 - m[218] * t118)) * R(90.555);
+        const gic_real t905 = y[16] * t201 - y[17] * t190 + (rate[16] * t189 - rate[17] * t191);
+        const gic_real t906 = t756 + (t689 + t905) + rate[22] * (m[283] * t182 - m[284] * t176);
+        const gic_real t907 = R(90.555) * (t906 + rate[19] * (m[289] * t182 - m[290] * t176));
+        const gic_real t908 = t892 * R(2086.52) + t895 + t898 + t901 + t904 + t907;
+        const gic_real t909 = y[16] * t229 - y[17] * t220 + (rate[16] * t216 - rate[17] * t221);
+        const gic_real t910 = t689 + t909;
+        const gic_real t911 = R(23.965) * t910;
+        const gic_real t912 = y[16] * t256 - y[17] * t249 + (rate[16] * t246 - rate[17] * t250);
+        const gic_real t913 = t689 + t912;
+        const gic_real t914 = R(23.965) * t913;
+        const gic_real t915 = y[16] * t306 - y[17] * t296 + (rate[16] * t295 - rate[17] * t297);
+        const gic_real t916 = t804 + (t689 + t915) + rate[20] * (m[349] * t288 - m[350] * t284);
+        const gic_real t917 = R(90.555) * t916;
+        const gic_real t918 = y[16] * t356 - y[17] * t346 + (rate[16] * t345 - rate[17] * t347);
+        const gic_real t919 = t822 + (t689 + t918) + rate[21] * (m[409] * t338 - m[410] * t334);
+        const gic_real t920 = R(90.555) * t919;
+        const gic_real t921 = y[16] * t400 - y[17] * t391 + (rate[16] * t390 - rate[17] * t392);
+        const gic_real t922 = t838 + (t689 + t921) + rate[22] * (m[175] * t385 - m[176] * t383);
+        const gic_real t923 = t922 + rate[18] * (m[181] * t385 - m[182] * t383);
+        const gic_real t924 = t923 * R(5.813);
+        const gic_real t925 = y[16] * t446 - y[17] * t437 + (rate[16] * t436 - rate[17] * t438);
+        const gic_real t926 = t853 + (t689 + t925) + rate[22] * (m[247] * t431 - m[248] * t429);
+        const gic_real t927 = t926 + rate[19] * (m[253] * t431 - m[254] * t429);
+        const gic_real t928 = R(5.813) * t927;
+        const gic_real t929 = t908 + t911 + t914 + t917 + t920 + t924 + t928;
+        const gic_real t930 = y[16] * t487 - y[17] * t479 + (rate[16] * t478 - rate[17] * t480);
+        const gic_real t931 = t869 + (t689 + t930) + rate[20] * (m[319] * t473 - m[320] * t471);
+        const gic_real t932 = R(5.813) * t931;
+        const gic_real t933 = y[16] * t528 - y[17] * t520 + (rate[16] * t519 - rate[17] * t521);
+        const gic_real t934 = t882 + (t689 + t933) + rate[21] * (m[379] * t514 - m[380] * t512);
+        const gic_real t935 = R(5.813) * t934;
+        const gic_real t936 = t549 * t556;
+        const gic_real t937 = t549 * t580;
+        const gic_real t938 = t549 * t626;
+        const gic_real t939 = t549 * t650;
+        const gic_real t940 = R(-0.006807199999999902) * t672;
+        const gic_real t941 = R(-0.006807199999999902) * t661;
+        const gic_real t942 = R(0.006807199999999902) * t602;
+        const gic_real t943 = R(0.006807199999999902) * t591;
+        const gic_real t944 = t939 + (t940 + t941 + t942 + t943 - t940 - t941);
+        const gic_real t945 = t929 + t932 + t935 - (t936 + (t937 + (t938 + t944 - t942 - t943)));
+        const gic_real t946 = t683 + t684 + t685 + t686 + R(2086.52) * t694 + t698;
+        const gic_real t947 = t946 + t712 + t725 + t746 + t767 + t781 + t795;
+        const gic_real t948 = t947 + t812 + t830 + t845 + t860 + t874 + t887;
+        const gic_real t949 = y[15] * R(1078.52);
+        const gic_real t950 = t28 + (y[15] * t891 - y[16] * t18 - rate[16] * R(0.056));
+        const gic_real t951 = y[17] * t949 - y[15] * t1 + rate[16] * R(2955.66) + (t892 * R(444.4287600000002) - t950 * R(116.84512));
+        const gic_real t952 = m[42] + y[15];
+        const gic_real t953 = R(0.4469) * t952;
+        const gic_real t954 = rate[17] - m[42] * y[16];
+        const gic_real t955 = rate[16] + m[42] * y[17];
+        const gic_real t956 = y[17] * t953 - t952 * t41 + (t40 * t954 + t42 * t955);
+        const gic_real t957 = t951 + (rate[16] + (t894 * R(0.4919654879999997) - t32 * R(13.051414655999999))) + (t956 + t46 * t898 - t55 * R(40.476046225));
+        const gic_real t958 = m[72] + y[15];
+        const gic_real t959 = R(0.4469) * t958;
+        const gic_real t960 = rate[17] - m[72] * y[16];
+        const gic_real t961 = rate[16] + m[72] * y[17];
+        const gic_real t962 = y[17] * t959 - t958 * t71 + (t70 * t960 + t72 * t961);
+        const gic_real t963 = t102 * t94 + (t106 * t92 + t112 * t103);
+        const gic_real t964 = t94 * t963 - t103 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
+        const gic_real t965 = t964 + (t124 * t904 - t121 * t138);
+        const gic_real t966 = t957 + (t962 + t76 * t901 - R(40.476046225) * t83) + (t965 + (m[188] * t904 - m[186] * t138));
+        const gic_real t967 = t160 * t152 + (t164 * t150 + t170 * t161);
+        const gic_real t968 = t152 * t967 - t161 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
+        const gic_real t969 = t968 + (t182 * t907 - t179 * t196);
+        const gic_real t970 = m[102] + y[15];
+        const gic_real t971 = R(0.4469) * t970;
+        const gic_real t972 = rate[17] - m[102] * y[16];
+        const gic_real t973 = rate[16] + m[102] * y[17];
+        const gic_real t974 = y[17] * t971 - t970 * t211 + (t210 * t972 + t212 * t973);
+        const gic_real t975 = t966 + (t969 + (m[260] * t907 - m[258] * t196)) + (t974 + t216 * t911 - t225 * R(-40.476046225));
+        const gic_real t976 = m[132] + y[15];
+        const gic_real t977 = R(0.4469) * t976;
+        const gic_real t978 = rate[17] - m[132] * y[16];
+        const gic_real t979 = rate[16] + m[132] * y[17];
+        const gic_real t980 = y[17] * t977 - t976 * t241 + (t240 * t978 + t242 * t979);
+        const gic_real t981 = t272 * t264 + (t276 * t262 + t280 * t273);
+        const gic_real t982 = t264 * t981 - t273 * t274 + (t268 * t278 + (t275 * t279 + t276 * t281));
+        const gic_real t983 = t982 + (t288 * t917 - t286 * t301);
+        const gic_real t984 = t975 + (t980 + t246 * t914 - R(-40.476046225) * t253) + (t983 + (m[326] * t917 - m[324] * t301));
+        const gic_real t985 = t322 * t314 + (t326 * t312 + t330 * t323);
+        const gic_real t986 = t314 * t985 - t323 * t324 + (t318 * t328 + (t325 * t329 + t326 * t331));
+        const gic_real t987 = t986 + (t338 * t920 - t336 * t351);
+        const gic_real t988 = t369 * t363 + (t373 * t361 + t379 * t370);
+        const gic_real t989 = t363 * t988 - t370 * t371 + (t366 * t376 + (t372 * t378 + t373 * t381));
+        const gic_real t990 = t989 + (t385 * t924 - t384 * t397);
+        const gic_real t991 = t984 + (t987 + (m[386] * t920 - m[384] * t351)) + (t990 + (t923 * R(1.2793889830000003) - t396 * R(8.8991263504)));
+        const gic_real t992 = t415 * t409 + (t419 * t407 + t425 * t416);
+        const gic_real t993 = t409 * t992 - t416 * t417 + (t412 * t422 + (t418 * t424 + t419 * t427));
+        const gic_real t994 = t993 + (t431 * t928 - t430 * t443);
+        const gic_real t995 = t460 * t454 + (t464 * t452 + t468 * t461);
+        const gic_real t996 = t454 * t995 - t461 * t462 + (t457 * t466 + (t463 * t467 + t464 * t469));
+        const gic_real t997 = t996 + (t473 * t932 - t472 * t484);
+        const gic_real t998 = t991 + (t994 + (R(1.2793889830000003) * t927 - R(8.8991263504) * t442)) + (t997 + (t931 * R(1.3118720270000004) - t483 * R(-8.579168367)));
+        const gic_real t999 = t501 * t495 + (t505 * t493 + t509 * t502);
+        const gic_real t1000 = t495 * t999 - t502 * t503 + (t498 * t507 + (t504 * t508 + t505 * t510));
+        const gic_real t1001 = t1000 + (t514 * t935 - t513 * t525);
+        const gic_real t1002 = t538 * t936 - t534 * t557;
+        const gic_real t1003 = t565 * t937 - t561 * t581;
+        const gic_real t1004 = t611 * t938 - t607 * t627;
+        const gic_real t1005 = t635 * t939 - t631 * t651;
+        const gic_real t1006 = t672 * R(-0.002199670439359969) - R(1.792978) * t674 + (R(-0.002199670439359969) * t661 - R(1.792978) * t663);
+        const gic_real t1007 = t1006 + (t602 * R(0.002199670439359969) - R(-1.792978) * t604) + (R(0.002199670439359969) * t591 - R(-1.792978) * t593);
+        const gic_real t1008 = R(0.09720579999999998) * t674 - t665 * t940 + (t1007 + R(1.688965) * t674);
+        const gic_real t1009 = R(0.09720579999999998) * t663 - t654 * t941 + (t1008 + R(1.688965) * t663);
+        const gic_real t1010 = t1005 + (t1009 + (m[188] * t939 - m[186] * t651)) + (m[260] * t938 - m[258] * t627);
+        const gic_real t1011 = R(-0.09720579999999998) * t604 - t595 * t942 + (t1004 + t1010 + R(-1.688965) * t604);
+        const gic_real t1012 = R(-0.09720579999999998) * t593 - t584 * t943 + (t1011 + R(-1.688965) * t593);
+        const gic_real t1013 = t1003 + (t1012 + (m[326] * t937 - m[324] * t581)) + (m[386] * t936 - m[384] * t557);
+        const gic_real t1014 = t998 + (t1001 + (R(1.3118720270000004) * t934 - R(-8.579168367) * t524)) - (t1002 + t1013);
+        const gic_real t1015 = t36 * R(9.072);
+        const gic_real t1016 = t20 * R(2086.52) + t1015 + t64 + t90 + t147 + t205;
+        const gic_real t1017 = t1016 + t234 + t260 + t309 + t359 + t404 + t450;
+        const gic_real t1018 = t652 + (t673 + t662 + t603 + t592 - t673 - t662);
+        const gic_real t1019 = t1017 + t490 + t531 - (t558 + (t582 + (t628 + t1018 - t603 - t592)));
+        const gic_real t1020 = y[15] * t2 - y[16] * t949 + rate[17] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t1021 = t952 * t43 - y[16] * t953 + (t37 * t954 + t40 * t955);
+        const gic_real t1022 = t1021 - t45 * t898 + (t63 * R(40.476046225) - t897 * R(7.359315990000001));
+        const gic_real t1023 = t1020 + (rate[17] + (t36 * R(13.051414655999999) - m[1] * t895)) + t1022;
+        const gic_real t1024 = t958 * t73 - y[16] * t959 + (t67 * t960 + t70 * t961);
+        const gic_real t1025 = t1024 - t75 * t901 + (R(40.476046225) * t89 - t900 * R(-7.359315990000001));
+        const gic_real t1026 = t103 * t107 - t92 * t963 + (t93 * t109 + (t98 * t111 + t102 * t114));
+        const gic_real t1027 = t1026 + (t121 * t147 - t118 * t904);
+        const gic_real t1028 = t1023 + t1025 + (t1027 + (m[186] * t147 - m[187] * t904));
+        const gic_real t1029 = t161 * t165 - t150 * t967 + (t151 * t167 + (t156 * t169 + t160 * t172));
+        const gic_real t1030 = t1029 + (t179 * t205 - t176 * t907);
+        const gic_real t1031 = t970 * t213 - y[16] * t971 + (t207 * t972 + t210 * t973);
+        const gic_real t1032 = t1031 - t215 * t911 + (t233 * R(-40.476046225) - R(7.359315990000001) * t910);
+        const gic_real t1033 = t1028 + (t1030 + (m[258] * t205 - m[259] * t907)) + t1032;
+        const gic_real t1034 = t976 * t243 - y[16] * t977 + (t237 * t978 + t240 * t979);
+        const gic_real t1035 = t1034 - t245 * t914 + (R(-40.476046225) * t259 - R(-7.359315990000001) * t913);
+        const gic_real t1036 = t273 * t277 - t262 * t981 + (t263 * t278 + (t268 * t279 + t272 * t281));
+        const gic_real t1037 = t1036 + (t286 * t309 - t284 * t917);
+        const gic_real t1038 = t1033 + t1035 + (t1037 + (m[324] * t309 - m[325] * t917));
+        const gic_real t1039 = t323 * t327 - t312 * t985 + (t313 * t328 + (t318 * t329 + t322 * t331));
+        const gic_real t1040 = t1039 + (t336 * t359 - t334 * t920);
+        const gic_real t1041 = t370 * t374 - t361 * t988 + (t362 * t376 + (t366 * t378 + t369 * t381));
+        const gic_real t1042 = t1041 + (t384 * t404 - t383 * t924);
+        const gic_real t1043 = t1038 + (t1040 + (m[384] * t359 - m[385] * t920)) + (t1042 + (t403 * R(8.8991263504) - t923 * R(2.6847235865999997)));
+        const gic_real t1044 = t416 * t420 - t407 * t992 + (t408 * t422 + (t412 * t424 + t415 * t427));
+        const gic_real t1045 = t1044 + (t430 * t450 - t429 * t928);
+        const gic_real t1046 = t461 * t465 - t452 * t995 + (t453 * t466 + (t457 * t467 + t460 * t469));
+        const gic_real t1047 = t1046 + (t472 * t490 - t471 * t932);
+        const gic_real t1048 = t1043 + (t1045 + (R(8.8991263504) * t449 - t927 * R(-2.6847235865999997))) + (t1047 + (t489 * R(-8.579168367) - t931 * R(2.6864953889999996)));
+        const gic_real t1049 = t502 * t506 - t493 * t999 + (t494 * t507 + (t498 * t508 + t501 * t510));
+        const gic_real t1050 = t1049 + (t513 * t531 - t512 * t935);
+        const gic_real t1051 = t534 * t558 - t533 * t936;
+        const gic_real t1052 = t561 * t582 - t560 * t937;
+        const gic_real t1053 = t607 * t628 - t606 * t938;
+        const gic_real t1054 = t631 * t652 - t630 * t939;
+        const gic_real t1055 = R(1.792978) * t673 - t672 * R(-0.003388550642239951) + (R(1.792978) * t662 - t661 * R(0.003388550642239951));
+        const gic_real t1056 = t1055 + (R(-1.792978) * t603 - R(0.003388550642239951) * t602) + (R(-1.792978) * t592 - R(-0.003388550642239951) * t591);
+        const gic_real t1057 = t666 * t940 - R(0.09720579999999998) * t673 + (t1056 + (t672 * R(-0.00209039581919997) - R(1.688965) * t673));
+        const gic_real t1058 = t655 * t941 - R(0.09720579999999998) * t662 + (t1057 + (t661 * R(0.00209039581919997) - R(1.688965) * t662));
+        const gic_real t1059 = t1054 + (t1058 + (m[186] * t652 - m[187] * t939)) + (m[258] * t628 - m[259] * t938);
+        const gic_real t1060 = t596 * t942 - R(-0.09720579999999998) * t603 + (t1053 + t1059 + (t602 * R(0.00209039581919997) - R(-1.688965) * t603));
+        const gic_real t1061 = t585 * t943 - R(-0.09720579999999998) * t592 + (t1060 + (t591 * R(-0.00209039581919997) - R(-1.688965) * t592));
+        const gic_real t1062 = t1052 + (t1061 + (m[324] * t582 - m[325] * t937)) + (m[384] * t558 - m[385] * t936);
+        const gic_real t1063 = t1048 + (t1050 + (R(-8.579168367) * t530 - t934 * R(-2.6864953889999996))) - (t1051 + t1062);
+        const gic_real t1064 = t950 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
+        const gic_real t1065 = t1064 + t226 + t254 + t301 + t351 + t397 + t443;
+        const gic_real t1066 = t651 + (t674 + t663 + t604 + t593 - t674 - t663);
+        const gic_real t1067 = t1065 + t484 + t525 - (t557 + (t581 + (t627 + t1066 - t604 - t593)));
+        const gic_real t1068 = m[221] * t138 + m[220] * t147 + (m[218] * t1027 + (m[217] * t965 + m[216] * t148));
+        const gic_real t1069 = m[54] * t65 + t1068 + (m[182] * t1042 + (m[181] * t990 + m[180] * t405));
+        const gic_real t1070 = (x[0] - R(0.31945)) * R(167070.9);
+        const gic_real t1071 = m[221] * t651 + m[220] * t652 + (m[218] * t1054 + (m[217] * t1005 + m[216] * t653));
+        const gic_real t1072 = GIC_FABS(t1070) + R(167070.9) * (R(0.31945) + GIC_FABS(x[0])) + t706 * t711;
+        const gic_real t1073 = t1072 + t739 * t745 + t741 * t746 + t842 * t847;
+        const gic_real t1074 = m[293] * t196 + m[292] * t205 + (m[290] * t1030 + (m[289] * t969 + m[288] * t206));
+        const gic_real t1075 = m[84] * t91 + t1074 + (m[254] * t1045 + (m[253] * t994 + m[252] * t451));
+        const gic_real t1076 = R(167070.9) * (x[1] - R(0.31945));
+        const gic_real t1077 = m[293] * t627 + m[292] * t628 + (m[290] * t1053 + (m[289] * t1004 + m[288] * t629));
+        const gic_real t1078 = GIC_FABS(t1076) + R(167070.9) * (R(0.31945) + GIC_FABS(x[1])) + t719 * t724;
+        const gic_real t1079 = t1078 + t760 * t766 + t762 * t767 + t857 * t862;
+        const gic_real t1080 = m[353] * t301 + m[352] * t309 + (m[350] * t1037 + (m[349] * t983 + m[348] * t310));
+        const gic_real t1081 = m[114] * t235 + t1080 + (m[320] * t1047 + (m[319] * t997 + m[318] * t491));
+        const gic_real t1082 = (x[2] - R(0.33757)) * R(369167.2);
+        const gic_real t1083 = m[353] * t581 + m[352] * t582 + (m[350] * t1052 + (m[349] * t1003 + m[348] * t583));
+        const gic_real t1084 = GIC_FABS(t1082) + R(369167.2) * (R(0.33757) + GIC_FABS(x[2])) + t775 * t780;
+        const gic_real t1085 = t1084 + t806 * t811 + t808 * t812 + t871 * t876;
+        const gic_real t1086 = m[413] * t351 + m[412] * t359 + (m[410] * t1040 + (m[409] * t987 + m[408] * t360));
+        const gic_real t1087 = m[144] * t261 + t1086 + (m[380] * t1050 + (m[379] * t1001 + m[378] * t532));
+        const gic_real t1088 = R(369167.2) * (x[3] - R(0.33757));
+        const gic_real t1089 = m[413] * t557 + m[412] * t558 + (m[410] * t1051 + (m[409] * t1002 + m[408] * t559));
+        const gic_real t1090 = GIC_FABS(t1088) + R(369167.2) * (R(0.33757) + GIC_FABS(x[3])) + t789 * t794;
+        const gic_real t1091 = t1090 + t824 * t829 + t826 * t830 + t884 * t889;
+        const gic_real t1092 = t1015 + (m[212] * t1027 + (m[211] * t965 + m[210] * t148));
+        const gic_real t1093 = t1092 + (m[284] * t1030 + (m[283] * t969 + m[282] * t206));
+        const gic_real t1094 = t1093 + (m[176] * t1042 + (m[175] * t990 + m[174] * t405));
+        const gic_real t1095 = t1094 + (m[248] * t1045 + (m[247] * t994 + m[246] * t451));
+        const gic_real t1096 = x[4] * R(100000.0);
+        const gic_real t1097 = xd[4] * R(12000.0);
+        const gic_real t1098 = m[212] * t1054 + (m[211] * t1005 + m[210] * t653) - (t1096 + t1097);
+        const gic_real t1099 = t1098 + (m[284] * t1053 + (m[283] * t1004 + m[282] * t629));
+        const gic_real t1100 = GIC_FABS(t1097) + GIC_FABS(t1096) + R(100000.0) * GIC_FABS(x[4]);
+        const gic_real t1101 = t1100 + t698 + t737 * t745 + t758 * t766 + t840 * t847;
+        const gic_real t1102 = t1069 - (m[54] * t675 - t1070 + t1071);
+        const gic_real t1103 = t1075 - (m[84] * t664 - t1076 + t1077);
+        const gic_real t1104 = t1081 - (m[114] * t605 - t1082 + t1083);
+        const gic_real t1105 = t1087 - (m[144] * t594 - t1088 + t1089);
+        const gic_real t1106 = t1095 - t1099;
+        const gic_real t1107 = t1101 + t855 * t862;
+        tau[0] = t682;
+        size[0] = t890;
+        tau[3] = t945;
+        size[3] = t948;
+        tau[1] = t1014;
+        size[1] = t890;
+        tau[4] = t1019;
+        size[4] = t948;
+        tau[2] = t1063;
+        size[2] = t890;
+        tau[5] = t1067;
+        size[5] = t948;
+        tau[6] = t1102;
+        size[6] = t1073;
+        tau[7] = t1103;
+        size[7] = t1079;
+        tau[8] = t1104;
+        size[8] = t1085;
+        tau[9] = t1105;
+        size[9] = t1091;
+        tau[10] = t1106;
+        size[10] = t1107;
+    }
+    return GIC_OK;
+}
+
+/* The motions that were recovered last, against all constraints. */
+static GIC_COLD int hmmwv14_check_constraints(hmmwv14 *self)
+{
+    gic_real largest[2];
+    const int bad = hmmwv14_residual(self, largest);
+    self->head.residual = GIC_MAX(self->head.residual, largest[0]);
+    if (bad < 0)
+        return GIC_OK;
+    self->head.subset = bad;
+    self->recovered = 0;
+    return GIC_ERROR_RESIDUAL;
+}
+
+/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+static GIC_COLD GIC_APART int hmmwv14_check(hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate)
+{
+    gic_real tau[HMMWV14_UNKNOWN_ROOM], size[HMMWV14_UNKNOWN_ROOM];
+    int i, status = hmmwv14_check_constraints(self);
+    self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&hmmwv14_model, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        status = hmmwv14_balance(self, time, y, e, rate, tau, size);
+    for (i = 0; status == GIC_OK && i < HMMWV14_UNKNOWNS; ++i)
+        if (!(GIC_FABS(tau[i]) <= GIC_BALANCE_RESIDUAL * size[i]))
+            status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        self->head.unchecked = GIC_CHECK_EVERY;
+    return status;
+}
+
 /* ---- the functions of hmmwv14.h ------------------------------------------------------------------------------------ */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
@@ -3612,6 +5126,7 @@ static int hmmwv14_locate(hmmwv14 *self, gic_real time, const gic_real *y, gic_r
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
 static int hmmwv14_evaluate(hmmwv14 *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[HMMWV14_STATE_ROOM])
 {
+    const int32_t flip = self->head.flip;
     int status = hmmwv14_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
@@ -3619,6 +5134,11 @@ static int hmmwv14_evaluate(hmmwv14 *self, gic_real time, const gic_real *y, gic
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
     if (status == GIC_OK && !GIC_FINITE(rate + HMMWV14_TWIST, HMMWV14_STATES - HMMWV14_TWIST))
         status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && --self->head.unchecked < 0) {
+        status = hmmwv14_check(self, time, y, e, rate);
+        if (status != GIC_OK)
+            self->head.flip = flip; /* what was found is no start */
+    }
     return self->head.status = status;
 }
 
@@ -3693,7 +5213,13 @@ int hmmwv14_outputs(hmmwv14 *self)
 int hmmwv14_poses(hmmwv14 *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = hmmwv14_locate(self, hmmwv14_present(self), self->state, e);
+    const int32_t flip = self->head.flip;
+    int status = hmmwv14_locate(self, hmmwv14_present(self), self->state, e);
+    if (status == GIC_OK) {
+        status = self->head.status = hmmwv14_check_constraints(self);
+        if (status != GIC_OK)
+            self->head.flip = flip;
+    }
     if (status == GIC_OK)
         hmmwv14_place(self, self->state, e, pose);
     return status;
@@ -3988,6 +5514,8 @@ int hmmwv14_setup_with(hmmwv14 *self, const gic_real *parameter)
     hmmwv14_gather(self, self->state);
     if (status == GIC_OK)
         status = hmmwv14_recover(self, turn, 0);
+    if (status == GIC_OK)
+        status = hmmwv14_check_constraints(self);
     return self->head.status = status;
 }
 
@@ -5659,61 +7187,21 @@ static GIC_COLD int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic
     return GIC_OK;
 }
 
-/* Largest constraint residual of all subsets, relative to their sizes. */
-static GIC_COLD gic_real hmmwv14_residual(const hmmwv14 *self)
-{
-    const gic_real *const start = self->start[self->head.flip];
-    hmmwv14_links links;
-    gic_real largest = R(0.0), one = R(0.0);
-    (void)start;
-    (void)one;
-    links.cold = 0;
-    links.x[0] = start[4];
-    one = hmmwv14_residual_rack(hmmwv14_k_rack[0], &links, self->motion + 0);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[0];
-    one = hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[0], &links, self->motion + 30);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[1];
-    one = hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[1], &links, self->motion + 60);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[2];
-    one = hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[2], &links, self->motion + 90);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[3];
-    one = hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[3], &links, self->motion + 120);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = start[4];
-    links.x[1] = start[0];
-    one = hmmwv14_residual_uca_f_l_wheel_f_l(hmmwv14_k_uca_f_l_wheel_f_l[0], &links, self->motion + 150);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = start[4];
-    links.x[1] = start[1];
-    one = hmmwv14_residual_uca_f_l_wheel_f_l(hmmwv14_k_uca_f_l_wheel_f_l[1], &links, self->motion + 222);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 90;
-    links.x[0] = start[2];
-    one = hmmwv14_residual_uca_r_l_wheel_r_l(hmmwv14_k_uca_r_l_wheel_r_l[0], &links, self->motion + 294);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 120;
-    links.x[0] = start[3];
-    one = hmmwv14_residual_uca_r_l_wheel_r_l(hmmwv14_k_uca_r_l_wheel_r_l[1], &links, self->motion + 354);
-    largest = GIC_MAX(largest, one);
-    return largest;
-}
-
 GIC_COLD int hmmwv14_self_test(hmmwv14 *self, gic_self_test *result)
 {
     gic_real e[4], acc[HMMWV14_UNKNOWN_ROOM], unit[HMMWV14_UNKNOWN_ROOM], tau0[HMMWV14_UNKNOWN_ROOM], tau[HMMWV14_UNKNOWN_ROOM];
-    gic_real M[HMMWV14_UNKNOWN_ROOM][HMMWV14_UNKNOWN_ROOM], energy[3], scale;
+    gic_real M[HMMWV14_UNKNOWN_ROOM][HMMWV14_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = hmmwv14_time(self);
-    const gic_self_test none = {R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = hmmwv14_refresh(self, e);
+    const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = hmmwv14_refresh(self, e);
     *result = none;
+    if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
+        (void)hmmwv14_residual(self, residual);
+        result->constraint = residual[0];
+        result->motion = residual[1];
+    }
     for (i = 0; i < HMMWV14_UNKNOWNS; ++i)
         unit[i] = R(0.0);
     if (status == GIC_OK)
@@ -5722,7 +7210,6 @@ GIC_COLD int hmmwv14_self_test(hmmwv14 *self, gic_self_test *result)
         status = hmmwv14_inverse(self, time, self->state, e, unit, tau0);
     if (status != GIC_OK)
         return self->head.status = status;
-    result->constraint = hmmwv14_residual(self);
     result->energy = GIC_FABS(energy[0] - energy[1]) / (energy[2] > R(0.0) ? energy[2] : R(1.0));
 
     /* the mass matrix column by column: what a unit acceleration adds to the residual */
@@ -5800,6 +7287,14 @@ static int hmmwv14_any_self_test(void *self, gic_self_test *result)
     return hmmwv14_self_test((hmmwv14 *)self, result);
 }
 
+static int hmmwv14_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
+{
+    gic_real e[4];
+    const gic_real *turn;
+    const int status = hmmwv14_orient((hmmwv14 *)self, state, e, &turn);
+    return status == GIC_OK ? hmmwv14_check((hmmwv14 *)self, time, state, e, rate) : status;
+}
+
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define hmmwv14_any_march NULL
 #else
@@ -5869,4 +7364,5 @@ const gic_model hmmwv14_model = {
     NULL,
     NULL,
     NULL,
+    hmmwv14_any_check,
 };

@@ -78,7 +78,7 @@
  */
 #include "hmmwv_full.h"
 
-#if HMMWV_FULL_H != 0x206a69a5
+#if HMMWV_FULL_H != 0x7d47e46f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -168,6 +168,27 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
+ * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
+ * their terms. They are rounding, in single precision near a singular configuration too. */
+#ifdef GIC_FLOAT
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-5)
+#else
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-10), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-9) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-10)
+#endif
+
+/* Evaluations between two that are checked. */
+#define GIC_CHECK_EVERY 200
+
+/* By how much an error that tests plant is off. */
+#ifndef GIC_PLANT_BY
+#define GIC_PLANT_BY R(1e-3)
+#endif
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct hmmwv_full_links {
@@ -232,22 +253,27 @@ static int hmmwv_full_solve_rack(hmmwv_full *self, const gic_real *GIC_RESTRICT 
         const gic_real t20 = t1 * t16 - R(0.4919654879999997) * t12;
         inertia[12] = t20;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_full_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_full_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
-        worst = t1;
+        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        worst[0] = t2;
+        worst[1] = t1;
     }
-    return worst;
 }
 
 static const gic_real hmmwv_full_k_lca_f_l[4][28] = {
@@ -258,7 +284,7 @@ static const gic_real hmmwv_full_k_lca_f_l[4][28] = {
         R(-209.35663216526908), R(51.576600771841136), R(-51.57660077184113), R(209.35663216526908),
         R(-0.20269199999999993), R(0.19748500000000002), R(3.0379110359107786e-06), R(0.24689200985615367),
         R(0.307086), R(40.476046225), R(-8.917091066652828), R(1.688965),
-        R(0.01121887479261392), R(0.2403881036540444), R(0.509778), R(7.8923759275231005),
+        R(0.01121887479261392), R(0.2403881036540444), R(0.509778), R(0.06335227878037954),
     },
     { /* lca_f_r */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
@@ -267,7 +293,7 @@ static const gic_real hmmwv_full_k_lca_f_l[4][28] = {
         R(-209.35663216526908), R(-51.576600771841136), R(51.57660077184113), R(209.35663216526908),
         R(0.20269199999999993), R(0.19748500000000002), R(3.0379110359107786e-06), R(-0.24689200985615367),
         R(-0.307086), R(40.476046225), R(8.917091066652828), R(1.688965),
-        R(0.01121887479261392), R(-0.2403881036540444), R(-0.509778), R(7.8923759275231005),
+        R(0.01121887479261392), R(-0.2403881036540444), R(-0.509778), R(0.06335227878037954),
     },
     { /* lca_r_l */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
@@ -276,7 +302,7 @@ static const gic_real hmmwv_full_k_lca_f_l[4][28] = {
         R(-161.8167759548846), R(39.864795135905354), R(-39.86479513590535), R(161.8167759548846),
         R(-0.19448779999999993), R(0.2564892), R(-3.0379110358344508e-06), R(0.246867347245056),
         R(0.307086), R(-40.476046225), R(-7.181825051954384), R(-1.688965),
-        R(0.011218874792613923), R(0.24038810365404442), R(0.5015738), R(6.355965194292885),
+        R(0.011218874792613923), R(0.24038810365404442), R(0.5015738), R(0.07866625834404464),
     },
     { /* lca_r_r */
         R(0.18179218931811988), R(0.006000421990375402), R(6.000421990375402e-07), R(0.03396250304259998),
@@ -285,7 +311,7 @@ static const gic_real hmmwv_full_k_lca_f_l[4][28] = {
         R(-161.8167759548846), R(-39.864795135905354), R(39.86479513590535), R(161.8167759548846),
         R(0.19448779999999993), R(0.2564892), R(-3.0379110358344508e-06), R(-0.246867347245056),
         R(-0.307086), R(-40.476046225), R(7.181825051954384), R(-1.688965),
-        R(0.011218874792613923), R(-0.24038810365404442), R(-0.5015738), R(6.355965194292885),
+        R(0.011218874792613923), R(-0.24038810365404442), R(-0.5015738), R(0.07866625834404464),
     },
 };
 
@@ -407,25 +433,45 @@ static int hmmwv_full_solve_lca_f_l(hmmwv_full *self, const gic_real *GIC_RESTRI
         const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
         inertia[21] = t71;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_full_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_full_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10] - k[17];
-        const gic_real t2 = k[20] + (k[24] * motion[8] + k[25] * motion[7]) - k[26];
-        const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[27]));
-        worst = t4;
+        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10];
+        const gic_real t2 = t1 - k[17];
+        const gic_real t3 = k[24] * motion[8] + k[25] * motion[7];
+        const gic_real t4 = k[20] + t3 - k[26];
+        const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
+        const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.2595404998909418) + k[27];
+        const gic_real t7 = R(2.0) / t6;
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t13 = t11 * GIC_FABS(rate[0]);
+        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
+        const gic_real t15 = t3 * motion[12];
+        const gic_real t16 = t1 * motion[12];
+        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
+        worst[0] = t9;
+        worst[1] = t20;
     }
-    return worst;
 }
 
 static const gic_real hmmwv_full_k_wheel_f_l[2][15] = {
@@ -750,40 +796,120 @@ static int hmmwv_full_solve_wheel_f_l(hmmwv_full *self, const gic_real *GIC_REST
         const gic_real t222 = t216 + (t114 + t201);
         inertia[4] = t222;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_full_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_full_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (k[0] * m1[7] + k[2]))));
-        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]));
-        const gic_real t3 = t2 - R(0.05422899999999997);
-        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t5 = t4 - (k[1] + m0[1]);
-        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]));
-        const gic_real t7 = t6 - R(1.438648);
-        const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
-        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS(R(2.928075656552032) * (motion[2] - k[0] * m1[10]))), GIC_FABS(t8 * R(3.9285226675160785)));
-        const gic_real t10 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]));
-        const gic_real t11 = t10 - R(0.23411769999999998);
-        const gic_real t12 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t13 = t12 - k[3];
-        const gic_real t14 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]));
-        const gic_real t15 = t14 - R(1.593883);
-        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
-        const gic_real t17 = R(0.21526024724178433) * t11 + (k[4] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
-        const gic_real t18 = GIC_MAX(GIC_MAX(t9, GIC_FABS(t16 * R(5.571891251504317))), GIC_FABS(t17 * R(3.029396354366955)));
-        worst = t18;
+        const gic_real t1 = k[0] * m1[7];
+        const gic_real t2 = k[0] * m1[10];
+        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[1] - (t1 + k[2]))) + GIC_FABS(R(2.928075656552032) * (motion[2] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]);
+        const gic_real t5 = motion[2] + t4 - R(0.05422899999999997);
+        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]);
+        const gic_real t7 = motion[1] + t6;
+        const gic_real t8 = k[1] + m0[1];
+        const gic_real t9 = t7 - t8;
+        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t11 = R(1.653405) + t10 - R(1.438648);
+        const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
+        const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824065);
+        const gic_real t14 = R(2.0) / (t13 + R(0.12727430698933434));
+        const gic_real t15 = R(0.33360360000000006) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]);
+        const gic_real t16 = motion[2] + t15 - R(0.23411769999999998);
+        const gic_real t17 = R(0.33360360000000006) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]);
+        const gic_real t18 = motion[1] + t17 - k[3];
+        const gic_real t19 = R(0.33360360000000006) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t20 = R(1.653405) + t19 - R(1.593883);
+        const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
+        const gic_real t22 = R(0.3415212300824065) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
+        const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331868));
+        const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
+        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
+        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
+        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
+        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
+        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t33 = t6 * t5 - t4 * t9;
+        const gic_real t34 = t4 * t11 - t10 * t5;
+        const gic_real t35 = t10 * t9 - t6 * t11;
+        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t37 = t17 * t16 - t15 * t18;
+        const gic_real t38 = t15 * t20 - t19 * t16;
+        const gic_real t39 = t19 * t18 - t17 * t20;
+        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t41 = R(0.21526024724178433) * t17 - k[4] * t15;
+        const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
+        const gic_real t43 = k[4] * t19 - R(0.9665541626242249) * t17;
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
+        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
+        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[35] - m1[24] * t1));
+        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
+        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
+        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[4] * motion[34];
+        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
+        const gic_real t53 = t52 + GIC_FABS(m1[24]);
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
+        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[17] - rate[1] * motion[35]));
+        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t60 = t46 * GIC_FABS(rate[0]);
+        const gic_real t61 = t53 * GIC_FABS(rate[1]);
+        const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
+        const gic_real t63 = R(2.928075656552032) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
+        const gic_real t64 = R(2.928075656552032) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
+        const gic_real t65 = t6 * motion[12] - t10 * motion[13];
+        const gic_real t66 = motion[17] + t65;
+        const gic_real t67 = t10 * motion[14] - t4 * motion[12];
+        const gic_real t68 = motion[16] + t67 - m0[16];
+        const gic_real t69 = t4 * motion[13] - t6 * motion[14];
+        const gic_real t70 = motion[12] * t67 - motion[13] * t69 + (t6 * motion[18] - t10 * motion[19]);
+        const gic_real t71 = motion[14] * t69 - motion[12] * t65 + (t10 * motion[20] - t4 * motion[18]);
+        const gic_real t72 = motion[13] * t65 - motion[14] * t67 + (t4 * motion[19] - t6 * motion[20]);
+        const gic_real t73 = t5 * (motion[23] + t70) + (t9 * (motion[22] + t71) + t11 * t72);
+        const gic_real t74 = t66 * t66 + (t68 * t68 + t69 * t69) + t73;
+        const gic_real t75 = GIC_FABS(t63) + GIC_FABS(t64) + GIC_FABS(t74 * t14);
+        const gic_real t76 = t17 * motion[12] - t19 * motion[13];
+        const gic_real t77 = motion[17] + t76;
+        const gic_real t78 = t19 * motion[14] - t15 * motion[12];
+        const gic_real t79 = motion[16] + t78;
+        const gic_real t80 = t15 * motion[13] - t17 * motion[14];
+        const gic_real t81 = motion[12] * t78 - motion[13] * t80 + (t17 * motion[18] - t19 * motion[19]);
+        const gic_real t82 = motion[23] + t81;
+        const gic_real t83 = motion[14] * t80 - motion[12] * t76 + (t19 * motion[20] - t15 * motion[18]);
+        const gic_real t84 = motion[22] + t83;
+        const gic_real t85 = motion[13] * t76 - motion[14] * t78 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t86 = t77 * t77 + (t79 * t79 + t80 * t80) + (t16 * t82 + (t18 * t84 + t20 * t85));
+        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) * R(2.559750693852431);
+        const gic_real t88 = R(2.928075656552032) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t89 = R(2.928075656552032) * GIC_FABS(m0[16]);
+        const gic_real t90 = t58 * t58 + t59 * t59 + t88 + t89 * t89;
+        const gic_real t91 = GIC_FABS(m1[12]);
+        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[18])) + t60 * t60;
+        const gic_real t93 = (t75 + GIC_FABS(t86 * t23) + GIC_FABS(t87)) / (R(1e-30) + (t92 + t61 * t61));
+        const gic_real t94 = t62 + t93;
+        worst[0] = t32;
+        worst[1] = t94;
     }
-    return worst;
 }
 
 static const gic_real hmmwv_full_k_wheel_r_l[2][8] = {
@@ -948,27 +1074,60 @@ static int hmmwv_full_solve_wheel_r_l(hmmwv_full *self, const gic_real *GIC_REST
         const gic_real t96 = t54 * t87 + t91 * t57 - t93 * t56;
         inertia[21] = t96;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_full_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_full_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_full_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m0[7] + k[1])) * R(2.928503331078754)));
-        const gic_real t2 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m0[10]) * R(2.928503331078754))), R(0.0));
-        const gic_real t3 = motion[2] + (R(0.33401) * motion[11] + k[3] * motion[10]) - R(0.22567900000000007);
-        const gic_real t4 = motion[1] + (R(0.33401) * motion[8] + k[3] * motion[7]) - k[2];
-        const gic_real t5 = (t3 * t3 + (R(0.031522582115999995) + t4 * t4) - R(0.095812034182)) * R(5.7792183827260155);
-        const gic_real t6 = GIC_MAX(GIC_MAX(t2, R(0.0)), GIC_FABS(t5));
-        worst = t6;
+        const gic_real t1 = k[0] * m0[7];
+        const gic_real t2 = k[0] * m0[10];
+        const gic_real t3 = GIC_FABS((motion[1] - (t1 + k[1])) * R(2.928503331078754)) + GIC_FABS((motion[2] - t2) * R(2.928503331078754));
+        const gic_real t4 = R(0.33401) * motion[11] + k[3] * motion[10];
+        const gic_real t5 = motion[2] + t4 - R(0.22567900000000007);
+        const gic_real t6 = R(0.33401) * motion[8] + k[3] * motion[7];
+        const gic_real t7 = motion[1] + t6 - k[2];
+        const gic_real t8 = R(0.5) * (t5 * t5 + (R(0.031522582115999995) + t7 * t7) - R(0.095812034182));
+        const gic_real t9 = (R(0.17754599999999998) + GIC_FABS(t7) + GIC_FABS(t5)) * R(0.34147135480007684) + R(0.08651688980892147);
+        const gic_real t10 = R(2.0) / t9;
+        const gic_real t11 = t3 + GIC_FABS(t8 * t10) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
+        const gic_real t12 = t11 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t13 = GIC_FABS(R(2.928503331078754) * (m0[24] * t2 + motion[28])) + GIC_FABS(R(2.928503331078754) * (motion[29] - m0[24] * t1));
+        const gic_real t14 = (t6 * t5 - t4 * t7) * motion[24] + t7 * motion[28];
+        const gic_real t15 = R(2.928503331078754) * (GIC_FABS(motion[28]) + GIC_FABS(motion[29])) + GIC_FABS(motion[24]);
+        const gic_real t16 = t15 + GIC_FABS(m0[24]);
+        const gic_real t17 = (t13 + GIC_FABS(t10 * (t14 + t5 * motion[29]))) / (t16 + R(1e-30));
+        const gic_real t18 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(R(2.928503331078754) * (motion[16] - rate[0] * motion[28]));
+        const gic_real t19 = R(2.928503331078754) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t20 = GIC_FABS(motion[12]);
+        const gic_real t21 = t16 * GIC_FABS(rate[0]);
+        const gic_real t22 = (t18 + GIC_FABS(R(2.928503331078754) * (motion[17] - rate[0] * motion[29]))) / (R(1e-30) + (t19 + t20 + t21));
+        const gic_real t23 = R(2.928503331078754) * (m0[12] * (m0[12] * t1) + m0[18] * t2 + motion[22]);
+        const gic_real t24 = R(2.928503331078754) * (motion[23] - (m0[18] * t1 - m0[12] * (m0[12] * t2)));
+        const gic_real t25 = t6 * motion[12];
+        const gic_real t26 = motion[17] + t25;
+        const gic_real t27 = t4 * motion[12];
+        const gic_real t28 = motion[16] - t27;
+        const gic_real t29 = t5 * (motion[23] + (t6 * motion[18] - motion[12] * t27)) + t7 * (motion[22] - (motion[12] * t25 + t4 * motion[18]));
+        const gic_real t30 = GIC_FABS((t26 * t26 + t28 * t28 + t29) * t10);
+        const gic_real t31 = R(2.928503331078754) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + GIC_FABS(motion[18]);
+        const gic_real t32 = GIC_FABS(m0[12]);
+        const gic_real t33 = t19 * t19 + t20 * t20 + t31 + (t32 * t32 + GIC_FABS(m0[18]));
+        const gic_real t34 = (GIC_FABS(t23) + GIC_FABS(t24) + t30) / (R(1e-30) + (t33 + t21 * t21));
+        const gic_real t35 = t17 + t22 + t34;
+        worst[0] = t12;
+        worst[1] = t35;
     }
-    return worst;
 }
 
 /* ---- recovery of the whole vehicle, in computational sequence ------------------------------------------------ */
@@ -1172,6 +1331,8 @@ static int hmmwv_full_recover(hmmwv_full *self, const gic_real turn[3], int cold
         way[i] = self->x[i] - self->start[first][i];
     for (i = 0; i < HMMWV_FULL_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < hmmwv_full_piece[i]);
+    if (far)
+        self->head.unchecked = 0; /* a jump: no state that was checked is near */
     /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
      * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
     if (far || HMMWV_FULL_FOLLOWED > 0) {
@@ -1831,6 +1992,13 @@ static GIC_APART int hmmwv_full_dynamics(hmmwv_full *self, gic_real time, const 
         rate[11] = t434;
         rate[22] = t404;
     }
+#ifdef GIC_PLANT_RATE /* an error that tests plant */
+#ifndef GIC_PLANT_AFTER
+#define GIC_PLANT_AFTER R(-1.0) /* s */
+#endif
+    if (time > GIC_PLANT_AFTER)
+        rate[GIC_PLANT_RATE] += GIC_PLANT_BY + GIC_PLANT_BY * GIC_FABS(rate[GIC_PLANT_RATE]);
+#endif
     return GIC_OK;
 }
 
@@ -2783,6 +2951,966 @@ static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gi
     }
 }
 
+/* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
+
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
+ * whose are beyond what is promised, -1: there is none. */
+static GIC_COLD GIC_APART int hmmwv_full_residual(const hmmwv_full *self, gic_real largest[2])
+{
+    hmmwv_full_links links;
+    gic_real one[2];
+    int bad = -1;
+    (void)self, (void)one;
+    largest[0] = largest[1] = R(0.0);
+    links.cold = 0;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    hmmwv_full_residual_rack(hmmwv_full_k_rack[0], &links, self->motion + 0, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 1;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[0], &links, self->motion + 30, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 2;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[1];
+    links.rate[0] = self->xd[1];
+    hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[1], &links, self->motion + 60, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 3;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[2];
+    links.rate[0] = self->xd[2];
+    hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[2], &links, self->motion + 90, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 4;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[3];
+    links.rate[0] = self->xd[3];
+    hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[3], &links, self->motion + 120, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 5;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 30;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[0];
+    links.rate[1] = self->xd[0];
+    hmmwv_full_residual_wheel_f_l(hmmwv_full_k_wheel_f_l[0], &links, self->motion + 150, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 6;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 60;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[1];
+    links.rate[1] = self->xd[1];
+    hmmwv_full_residual_wheel_f_l(hmmwv_full_k_wheel_f_l[1], &links, self->motion + 186, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 7;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 90;
+    links.x[0] = self->x[2];
+    links.rate[0] = self->xd[2];
+    hmmwv_full_residual_wheel_r_l(hmmwv_full_k_wheel_r_l[0], &links, self->motion + 222, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 8;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 120;
+    links.x[0] = self->x[3];
+    links.rate[0] = self->xd[3];
+    hmmwv_full_residual_wheel_r_l(hmmwv_full_k_wheel_r_l[1], &links, self->motion + 252, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 9;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    return bad;
+}
+
+/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv_full_dynamics. size: magnitudes of
+ * the terms that it is the sum of. */
+static GIC_COLD GIC_APART int hmmwv_full_balance(const hmmwv_full *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *tau, gic_real *size)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    {
+        const gic_real t1 = y[17] * R(3570.2);
+        const gic_real t2 = y[16] * R(2955.66);
+        const gic_real t3 = e[2] + e[2];
+        const gic_real t4 = e[3] * t3;
+        const gic_real t5 = e[1] + e[1];
+        const gic_real t6 = e[0] * t5;
+        const gic_real t7 = t4 + t6;
+        const gic_real t8 = rate[14] - R(-9.81);
+        const gic_real t9 = e[1] * t5;
+        const gic_real t10 = e[3] + e[3];
+        const gic_real t11 = e[3] * t10;
+        const gic_real t12 = R(1.0) - (t9 + t11);
+        const gic_real t13 = e[2] * t5;
+        const gic_real t14 = e[0] * t10;
+        const gic_real t15 = t13 - t14;
+        const gic_real t16 = t7 * t8 + (t12 * rate[13] + t15 * rate[12]);
+        const gic_real t17 = y[16] * R(0.056);
+        const gic_real t18 = y[16] * R(0.21300000000000008);
+        const gic_real t19 = y[15] * t17 + y[17] * t18 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
+        const gic_real t20 = t16 + t19;
+        const gic_real t21 = y[16] * t1 - y[17] * t2 + rate[15] * R(1078.52) - t20 * R(444.4287600000002);
+        const gic_real t22 = e[2] * t3;
+        const gic_real t23 = R(1.0) - (t9 + t22);
+        const gic_real t24 = t4 - t6;
+        const gic_real t25 = e[1] * t10;
+        const gic_real t26 = e[0] * t3;
+        const gic_real t27 = t25 + t26;
+        const gic_real t28 = t23 * t8 + (t24 * rate[13] + t27 * rate[12]);
+        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
+        const gic_real t30 = R(0.05422899999999997) * y[16] - m[1] * y[17];
+        const gic_real t31 = y[15] * t29 - y[16] * t30 + (m[1] * rate[15] - R(1.438648) * rate[16]);
+        const gic_real t32 = t28 + t31;
+        const gic_real t33 = t32 * R(9.072);
+        const gic_real t34 = m[1] * y[15] - R(1.438648) * y[16];
+        const gic_real t35 = y[17] * t30 - y[15] * t34 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
+        const gic_real t36 = rate[22] + (t16 + t35);
+        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
+        const gic_real t38 = m[38] * R(0.8938);
+        const gic_real t39 = m[37] * R(0.4469);
+        const gic_real t40 = m[41] * t38 + m[40] * t39;
+        const gic_real t41 = y[17] * t37 + y[16] * t40;
+        const gic_real t42 = m[38] * t38 + m[37] * t39;
+        const gic_real t43 = y[17] * t40 + y[16] * t42;
+        const gic_real t44 = y[16] * t41 - y[17] * t43 + R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]);
+        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
+        const gic_real t47 = m[42] * t46;
+        const gic_real t48 = m[48] * t45 - m[42] * t47;
+        const gic_real t49 = R(1.688965) * y[17];
+        const gic_real t50 = t49 - y[15] * t46 - t47 - t47;
+        const gic_real t51 = R(0.307086) + t45;
+        const gic_real t52 = y[16] * t46 - y[17] * t51;
+        const gic_real t53 = R(1.688965) * rate[16];
+        const gic_real t54 = y[15] * t50 - y[16] * t52 + (rate[15] * t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[18] * (m[54] * t45);
+        const gic_real t56 = t55 * R(23.965);
+        const gic_real t57 = m[42] * t45;
+        const gic_real t58 = R(1.688965) * y[16];
+        const gic_real t59 = t57 + (t57 + (y[15] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[17];
+        const gic_real t61 = y[17] * t52 - y[15] * t59 + (t60 - rate[15] * t46);
+        const gic_real t62 = m[42] * t57 + m[48] * t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[18] * (m[54] * t46);
+        const gic_real t64 = t63 * R(23.965);
+        const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
+        const gic_real t66 = t21 + (rate[15] + (m[1] * t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
+        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
+        const gic_real t68 = m[68] * R(0.8938);
+        const gic_real t69 = m[67] * R(0.4469);
+        const gic_real t70 = m[71] * t68 + m[70] * t69;
+        const gic_real t71 = y[17] * t67 + y[16] * t70;
+        const gic_real t72 = m[68] * t68 + m[67] * t69;
+        const gic_real t73 = y[17] * t70 + y[16] * t72;
+        const gic_real t74 = y[16] * t71 - y[17] * t73 + R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]);
+        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
+        const gic_real t77 = m[72] * t76;
+        const gic_real t78 = m[78] * t75 - m[72] * t77;
+        const gic_real t79 = t49 - y[15] * t76 - t77 - t77;
+        const gic_real t80 = R(-0.307086) + t75;
+        const gic_real t81 = y[16] * t76 - y[17] * t80;
+        const gic_real t82 = y[15] * t79 - y[16] * t81 + (rate[15] * t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[19] * (m[84] * t75);
+        const gic_real t84 = R(23.965) * t83;
+        const gic_real t85 = m[72] * t75;
+        const gic_real t86 = t85 + (t85 + (y[15] * t80 - t58));
+        const gic_real t87 = y[17] * t81 - y[15] * t86 + (t60 - rate[15] * t76);
+        const gic_real t88 = m[72] * t85 + m[78] * t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[19] * (m[84] * t76);
+        const gic_real t90 = R(23.965) * t89;
+        const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
+        const gic_real t92 = m[163] + y[16];
+        const gic_real t93 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
+        const gic_real t94 = m[164] + y[17];
+        const gic_real t95 = m[158] * R(4.7728205);
+        const gic_real t96 = m[157] * R(7.58122);
+        const gic_real t97 = m[156] * R(4.8947505);
+        const gic_real t98 = m[161] * t95 + (m[160] * t96 + m[159] * t97);
+        const gic_real t99 = m[155] * R(4.7728205);
+        const gic_real t100 = m[154] * R(7.58122);
+        const gic_real t101 = m[153] * R(4.8947505);
+        const gic_real t102 = m[161] * t99 + (m[160] * t100 + m[159] * t101);
+        const gic_real t103 = m[162] + y[15];
+        const gic_real t104 = t93 * t94 + (t98 * t92 + t102 * t103);
+        const gic_real t105 = m[158] * t95 + (m[157] * t96 + m[156] * t97);
+        const gic_real t106 = m[158] * t99 + (m[157] * t100 + m[156] * t101);
+        const gic_real t107 = t98 * t94 + (t105 * t92 + t106 * t103);
+        const gic_real t108 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
+        const gic_real t109 = t108 + m[182] * rate[18];
+        const gic_real t110 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
+        const gic_real t111 = t110 + m[181] * rate[18];
+        const gic_real t112 = m[155] * t99 + (m[154] * t100 + m[153] * t101);
+        const gic_real t113 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
+        const gic_real t114 = t113 + m[180] * rate[18];
+        const gic_real t115 = t92 * t104 - t94 * t107 + (t102 * t109 + (t106 * t111 + t112 * t114));
+        const gic_real t116 = m[158] * R(0.09182100000000004);
+        const gic_real t117 = m[156] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[157] * R(0.08910630000000008));
+        const gic_real t119 = m[155] * R(0.09182100000000004);
+        const gic_real t120 = m[153] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[154] * R(0.08910630000000008));
+        const gic_real t122 = m[161] * R(0.09182100000000004);
+        const gic_real t123 = m[159] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[160] * R(0.08910630000000008));
+        const gic_real t125 = m[164] * t121 - m[162] * t124;
+        const gic_real t126 = m[163] * t124 - m[164] * t118;
+        const gic_real t127 = m[162] * t125 - m[163] * t126 + (m[168] * t118 - m[169] * t121);
+        const gic_real t128 = m[173] + t127;
+        const gic_real t129 = m[166] + t125;
+        const gic_real t130 = R(1.653405) + t121;
+        const gic_real t131 = m[152] + t124;
+        const gic_real t132 = t129 + (t129 + (y[17] * t130 - y[15] * t131));
+        const gic_real t133 = m[151] + t118;
+        const gic_real t134 = t126 + (t126 + (y[16] * t131 - y[17] * t133));
+        const gic_real t135 = y[15] * t132 - y[16] * t134 + (rate[15] * t133 - rate[16] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + rate[22] * (m[174] * t118 - m[175] * t121);
+        const gic_real t137 = t136 + rate[18] * (m[185] + (m[180] * t118 - m[181] * t121));
+        const gic_real t138 = t137 * R(90.555);
+        const gic_real t139 = m[162] * t118 - m[163] * t121;
+        const gic_real t140 = m[164] * t126 - m[162] * t139 + (m[170] * t121 - m[168] * t124);
+        const gic_real t141 = m[172] + t140;
+        const gic_real t142 = m[167] + t139;
+        const gic_real t143 = t142 + (t142 + (y[15] * t133 - y[16] * t130));
+        const gic_real t144 = y[17] * t134 - y[15] * t143 + (rate[17] * t130 - rate[15] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + rate[22] * (m[176] * t121 - m[174] * t124);
+        const gic_real t146 = t145 + rate[18] * (m[184] + (m[182] * t121 - m[180] * t124));
+        const gic_real t147 = t146 * R(90.555);
+        const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[151] * t138 - m[152] * t147));
+        const gic_real t150 = m[199] + y[16];
+        const gic_real t151 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
+        const gic_real t152 = m[200] + y[17];
+        const gic_real t153 = m[194] * R(4.7728205);
+        const gic_real t154 = m[193] * R(7.58122);
+        const gic_real t155 = m[192] * R(4.8947505);
+        const gic_real t156 = m[197] * t153 + (m[196] * t154 + m[195] * t155);
+        const gic_real t157 = m[191] * R(4.7728205);
+        const gic_real t158 = m[190] * R(7.58122);
+        const gic_real t159 = m[189] * R(4.8947505);
+        const gic_real t160 = m[197] * t157 + (m[196] * t158 + m[195] * t159);
+        const gic_real t161 = m[198] + y[15];
+        const gic_real t162 = t151 * t152 + (t156 * t150 + t160 * t161);
+        const gic_real t163 = m[194] * t153 + (m[193] * t154 + m[192] * t155);
+        const gic_real t164 = m[194] * t157 + (m[193] * t158 + m[192] * t159);
+        const gic_real t165 = t156 * t152 + (t163 * t150 + t164 * t161);
+        const gic_real t166 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
+        const gic_real t167 = t166 + m[218] * rate[19];
+        const gic_real t168 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
+        const gic_real t169 = t168 + m[217] * rate[19];
+        const gic_real t170 = m[191] * t157 + (m[190] * t158 + m[189] * t159);
+        const gic_real t171 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
+        const gic_real t172 = t171 + m[216] * rate[19];
+        const gic_real t173 = t150 * t162 - t152 * t165 + (t160 * t167 + (t164 * t169 + t170 * t172));
+        const gic_real t174 = m[194] * R(0.09182100000000004);
+        const gic_real t175 = m[192] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[193] * R(-0.08910630000000008));
+        const gic_real t177 = m[191] * R(0.09182100000000004);
+        const gic_real t178 = m[189] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[190] * R(-0.08910630000000008));
+        const gic_real t180 = m[197] * R(0.09182100000000004);
+        const gic_real t181 = m[195] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[196] * R(-0.08910630000000008));
+        const gic_real t183 = m[200] * t179 - m[198] * t182;
+        const gic_real t184 = m[199] * t182 - m[200] * t176;
+        const gic_real t185 = m[198] * t183 - m[199] * t184 + (m[204] * t176 - m[205] * t179);
+        const gic_real t186 = m[209] + t185;
+        const gic_real t187 = m[202] + t183;
+        const gic_real t188 = R(1.653405) + t179;
+        const gic_real t189 = m[188] + t182;
+        const gic_real t190 = t187 + (t187 + (y[17] * t188 - y[15] * t189));
+        const gic_real t191 = m[187] + t176;
+        const gic_real t192 = t184 + (t184 + (y[16] * t189 - y[17] * t191));
+        const gic_real t193 = y[15] * t190 - y[16] * t192 + (rate[15] * t191 - rate[16] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + rate[22] * (m[210] * t176 - m[211] * t179);
+        const gic_real t195 = t194 + rate[19] * (m[221] + (m[216] * t176 - m[217] * t179));
+        const gic_real t196 = R(90.555) * t195;
+        const gic_real t197 = m[198] * t176 - m[199] * t179;
+        const gic_real t198 = m[200] * t184 - m[198] * t197 + (m[206] * t179 - m[204] * t182);
+        const gic_real t199 = m[208] + t198;
+        const gic_real t200 = m[203] + t197;
+        const gic_real t201 = t200 + (t200 + (y[15] * t191 - y[16] * t188));
+        const gic_real t202 = y[17] * t192 - y[15] * t201 + (rate[17] * t188 - rate[15] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + rate[22] * (m[212] * t179 - m[210] * t182);
+        const gic_real t204 = t203 + rate[19] * (m[220] + (m[218] * t179 - m[216] * t182));
+        const gic_real t205 = R(90.555) * t204;
+        const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
+        const gic_real t207 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
+        const gic_real t208 = m[98] * R(0.8938);
+        const gic_real t209 = m[97] * R(0.4469);
+        const gic_real t210 = m[101] * t208 + m[100] * t209;
+        const gic_real t211 = y[17] * t207 + y[16] * t210;
+        const gic_real t212 = m[98] * t208 + m[97] * t209;
+        const gic_real t213 = y[17] * t210 + y[16] * t212;
+        const gic_real t214 = y[16] * t211 - y[17] * t213 + R(0.4469) * (m[108] + rate[15] + m[114] * rate[20]);
+        const gic_real t215 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
+        const gic_real t216 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
+        const gic_real t217 = m[102] * t216;
+        const gic_real t218 = m[108] * t215 - m[102] * t217;
+        const gic_real t219 = R(-1.688965) * y[17];
+        const gic_real t220 = t219 - y[15] * t216 - t217 - t217;
+        const gic_real t221 = R(0.307086) + t215;
+        const gic_real t222 = y[16] * t216 - y[17] * t221;
+        const gic_real t223 = R(-1.688965) * rate[16];
+        const gic_real t224 = y[15] * t220 - y[16] * t222 + (rate[15] * t221 - t223);
+        const gic_real t225 = t218 + (t28 + t224) + rate[20] * (m[114] * t215);
+        const gic_real t226 = R(23.965) * t225;
+        const gic_real t227 = m[102] * t215;
+        const gic_real t228 = R(-1.688965) * y[16];
+        const gic_real t229 = t227 + (t227 + (y[15] * t221 - t228));
+        const gic_real t230 = R(-1.688965) * rate[17];
+        const gic_real t231 = y[17] * t222 - y[15] * t229 + (t230 - rate[15] * t216);
+        const gic_real t232 = m[102] * t227 + m[108] * t216;
+        const gic_real t233 = t16 + t231 - t232 - rate[20] * (m[114] * t216);
+        const gic_real t234 = R(23.965) * t233;
+        const gic_real t235 = t214 + (t215 * t226 - t216 * t234);
+        const gic_real t236 = t149 + (t206 + (m[187] * t196 - m[188] * t205)) + (t235 + R(7.359315990000001) * t225);
+        const gic_real t237 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
+        const gic_real t238 = m[128] * R(0.8938);
+        const gic_real t239 = m[127] * R(0.4469);
+        const gic_real t240 = m[131] * t238 + m[130] * t239;
+        const gic_real t241 = y[17] * t237 + y[16] * t240;
+        const gic_real t242 = m[128] * t238 + m[127] * t239;
+        const gic_real t243 = y[17] * t240 + y[16] * t242;
+        const gic_real t244 = y[16] * t241 - y[17] * t243 + R(0.4469) * (m[138] + rate[15] + m[144] * rate[21]);
+        const gic_real t245 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
+        const gic_real t246 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
+        const gic_real t247 = m[132] * t246;
+        const gic_real t248 = m[138] * t245 - m[132] * t247;
+        const gic_real t249 = t219 - y[15] * t246 - t247 - t247;
+        const gic_real t250 = R(-0.307086) + t245;
+        const gic_real t251 = y[16] * t246 - y[17] * t250;
+        const gic_real t252 = y[15] * t249 - y[16] * t251 + (rate[15] * t250 - t223);
+        const gic_real t253 = t248 + (t28 + t252) + rate[21] * (m[144] * t245);
+        const gic_real t254 = R(23.965) * t253;
+        const gic_real t255 = m[132] * t245;
+        const gic_real t256 = t255 + (t255 + (y[15] * t250 - t228));
+        const gic_real t257 = y[17] * t251 - y[15] * t256 + (t230 - rate[15] * t246);
+        const gic_real t258 = m[132] * t255 + m[138] * t246;
+        const gic_real t259 = t16 + t257 - t258 - rate[21] * (m[144] * t246);
+        const gic_real t260 = R(23.965) * t259;
+        const gic_real t261 = t244 + (t245 * t254 - t246 * t260);
+        const gic_real t262 = m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(7.58122));
+        const gic_real t263 = m[230] * R(4.7728205);
+        const gic_real t264 = m[229] * R(7.58122);
+        const gic_real t265 = m[233] * t263 + m[232] * t264;
+        const gic_real t266 = y[17] * t262 + y[16] * t265;
+        const gic_real t267 = m[230] * t263 + m[229] * t264;
+        const gic_real t268 = y[17] * t265 + y[16] * t267;
+        const gic_real t269 = y[16] * t266 - y[17] * t268 + R(4.8947505) * (m[240] + rate[15] + m[246] * rate[20]);
+        const gic_real t270 = m[230] * R(0.09182100000000004);
+        const gic_real t271 = t270 + m[229] * R(0.08910630000000008);
+        const gic_real t272 = m[233] * R(0.09182100000000004);
+        const gic_real t273 = t272 + m[232] * R(0.08910630000000008);
+        const gic_real t274 = m[234] * t273;
+        const gic_real t275 = m[245] + (m[240] * t271 - m[234] * t274);
+        const gic_real t276 = m[238] - t274;
+        const gic_real t277 = R(-1.653405) * y[17];
+        const gic_real t278 = m[224] + t273;
+        const gic_real t279 = t276 + (t276 + (t277 - y[15] * t278));
+        const gic_real t280 = m[223] + t271;
+        const gic_real t281 = y[16] * t278 - y[17] * t280;
+        const gic_real t282 = R(-1.653405) * rate[16];
+        const gic_real t283 = y[15] * t279 - y[16] * t281 + (rate[15] * t280 - t282);
+        const gic_real t284 = t275 + (t28 + t283) + rate[20] * (m[251] + m[246] * t271);
+        const gic_real t285 = R(90.555) * t284;
+        const gic_real t286 = m[234] * t271;
+        const gic_real t287 = m[244] - (m[234] * t286 + m[240] * t273);
+        const gic_real t288 = m[239] + t286;
+        const gic_real t289 = R(-1.653405) * y[16];
+        const gic_real t290 = t288 + (t288 + (y[15] * t280 - t289));
+        const gic_real t291 = R(-1.653405) * rate[17];
+        const gic_real t292 = y[17] * t281 - y[15] * t290 + (t291 - rate[15] * t278);
+        const gic_real t293 = t287 + (t16 + t292) + rate[20] * (m[250] - m[246] * t273);
+        const gic_real t294 = R(90.555) * t293;
+        const gic_real t295 = t269 + (t271 * t285 - t273 * t294);
+        const gic_real t296 = t236 + (t261 + R(-7.359315990000001) * t253) + (t295 + (m[223] * t285 - m[224] * t294));
+        const gic_real t297 = m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(7.58122));
+        const gic_real t298 = m[260] * R(4.7728205);
+        const gic_real t299 = m[259] * R(7.58122);
+        const gic_real t300 = m[263] * t298 + m[262] * t299;
+        const gic_real t301 = y[17] * t297 + y[16] * t300;
+        const gic_real t302 = m[260] * t298 + m[259] * t299;
+        const gic_real t303 = y[17] * t300 + y[16] * t302;
+        const gic_real t304 = y[16] * t301 - y[17] * t303 + R(4.8947505) * (m[270] + rate[15] + m[276] * rate[21]);
+        const gic_real t305 = m[260] * R(0.09182100000000004);
+        const gic_real t306 = t305 + m[259] * R(-0.08910630000000008);
+        const gic_real t307 = m[263] * R(0.09182100000000004);
+        const gic_real t308 = t307 + m[262] * R(-0.08910630000000008);
+        const gic_real t309 = m[264] * t308;
+        const gic_real t310 = m[275] + (m[270] * t306 - m[264] * t309);
+        const gic_real t311 = m[268] - t309;
+        const gic_real t312 = m[254] + t308;
+        const gic_real t313 = t311 + (t311 + (t277 - y[15] * t312));
+        const gic_real t314 = m[253] + t306;
+        const gic_real t315 = y[16] * t312 - y[17] * t314;
+        const gic_real t316 = y[15] * t313 - y[16] * t315 + (rate[15] * t314 - t282);
+        const gic_real t317 = t310 + (t28 + t316) + rate[21] * (m[281] + m[276] * t306);
+        const gic_real t318 = R(90.555) * t317;
+        const gic_real t319 = m[264] * t306;
+        const gic_real t320 = m[274] - (m[264] * t319 + m[270] * t308);
+        const gic_real t321 = m[269] + t319;
+        const gic_real t322 = t321 + (t321 + (y[15] * t314 - t289));
+        const gic_real t323 = y[17] * t315 - y[15] * t322 + (t291 - rate[15] * t312);
+        const gic_real t324 = t320 + (t16 + t323) + rate[21] * (m[280] - m[276] * t308);
+        const gic_real t325 = R(90.555) * t324;
+        const gic_real t326 = t304 + (t306 * t318 - t308 * t325);
+        const gic_real t327 = t305 + m[259] * R(-0.12319000000000002);
+        const gic_real t328 = m[253] + t327;
+        const gic_real t329 = m[269] + m[264] * t327 + (y[15] * t328 - t289);
+        const gic_real t330 = t307 + m[262] * R(-0.12319000000000002);
+        const gic_real t331 = m[254] + t330;
+        const gic_real t332 = m[268] - m[264] * t330 + (t277 - y[15] * t331);
+        const gic_real t333 = t13 + t14;
+        const gic_real t334 = y[16] * t331 - y[17] * t328;
+        const gic_real t335 = y[13] + (t24 * t329 + (t12 * t332 + t333 * t334));
+        const gic_real t336 = R(1.0) - (t22 + t11);
+        const gic_real t337 = R(-1.653405) * t336;
+        const gic_real t338 = R(-1.653405) * t333;
+        gic_real road339[3];
+        if (!hmmwv_full_road_height(self, time, y[0] + (t27 * t331 + (t337 + t15 * t328)), y[1] + (t24 * t331 + (t338 + t12 * t328)), road339))
+            return GIC_ERROR_ROAD;
+        const gic_real t340 = y[12] + (t27 * t329 + (t15 * t332 + t336 * t334));
+        const gic_real t341 = t25 - t26;
+        const gic_real t342 = y[14] + (t23 * t329 + (t7 * t332 + t341 * t334));
+        const gic_real t343 = t335 * road339[2] + t340 * road339[1] - t342;
+        const gic_real t344 = R(-1.653405) * t341;
+        const gic_real t345 = y[2] + (t23 * t331 + (t344 + t7 * t328));
+        const gic_real t346 = R(0.4699) + road339[0] - t345;
+        const gic_real t347 = GIC_MIN(GIC_MAX(R(100.0) * t346, R(0.0)), R(1.0));
+        const gic_real t348 = t343 * (R(500.0) * ((R(3.0) - (t347 + t347)) * (t347 * t347)));
+        const gic_real t349 = GIC_MAX(t348 + R(283000.0) * t346, R(0.0));
+        const gic_real t350 = t23 * t349;
+        const gic_real t351 = t7 * t349;
+        const gic_real t352 = t327 * t350 - t330 * t351;
+        const gic_real t353 = t270 + m[229] * R(0.12319000000000002);
+        const gic_real t354 = m[223] + t353;
+        const gic_real t355 = m[239] + m[234] * t353 + (y[15] * t354 - t289);
+        const gic_real t356 = t272 + m[232] * R(0.12319000000000002);
+        const gic_real t357 = m[224] + t356;
+        const gic_real t358 = m[238] - m[234] * t356 + (t277 - y[15] * t357);
+        const gic_real t359 = y[16] * t357 - y[17] * t354;
+        const gic_real t360 = y[13] + (t24 * t355 + (t12 * t358 + t333 * t359));
+        gic_real road361[3];
+        if (!hmmwv_full_road_height(self, time, y[0] + (t27 * t357 + (t15 * t354 + t337)), y[1] + (t24 * t357 + (t12 * t354 + t338)), road361))
+            return GIC_ERROR_ROAD;
+        const gic_real t362 = y[12] + (t27 * t355 + (t15 * t358 + t336 * t359));
+        const gic_real t363 = y[14] + (t23 * t355 + (t7 * t358 + t341 * t359));
+        const gic_real t364 = t360 * road361[2] + t362 * road361[1] - t363;
+        const gic_real t365 = y[2] + (t23 * t357 + (t7 * t354 + t344));
+        const gic_real t366 = R(0.4699) + road361[0] - t365;
+        const gic_real t367 = GIC_MIN(GIC_MAX(R(100.0) * t366, R(0.0)), R(1.0));
+        const gic_real t368 = t364 * (R(500.0) * ((R(3.0) - (t367 + t367)) * (t367 * t367)));
+        const gic_real t369 = GIC_MAX(t368 + R(283000.0) * t366, R(0.0));
+        const gic_real t370 = t23 * t369;
+        const gic_real t371 = t7 * t369;
+        const gic_real t372 = t353 * t370 - t356 * t371;
+        const gic_real t373 = m[131] * R(0.01939183545039609) + m[130] * R(-0.23915941563573181);
+        const gic_real t374 = m[128] * R(0.01939183545039609) + m[127] * R(-0.23915941563573181);
+        const gic_real t375 = R(-0.307086) + t374 - R(-0.4977892);
+        const gic_real t376 = t373 - R(0.32313880000000006);
+        const gic_real t377 = GIC_SQRT(t376 * t376 + (R(4.633797183999867e-05) + t375 * t375));
+        const gic_real t378 = R(1.0) / t377;
+        const gic_real t379 = t378 * (m[132] * t374 * t376 - m[132] * t373 * t375);
+        const gic_real t380 = gic_table_value(&hmmwv_full_table[4], t377) * GIC_MIN(R(0.0), t379) + gic_table_value(&hmmwv_full_table[6], t377) * GIC_MAX(R(0.0), t379);
+        const gic_real t381 = t378 * t380;
+        const gic_real t382 = t375 * t381;
+        const gic_real t383 = t376 * t381;
+        const gic_real t384 = t373 * t382 - t374 * t383;
+        const gic_real t385 = m[101] * R(0.01939183545039609) + m[100] * R(0.23915941563573181);
+        const gic_real t386 = m[98] * R(0.01939183545039609) + m[97] * R(0.23915941563573181);
+        const gic_real t387 = R(0.307086) + t386 - R(0.4977892);
+        const gic_real t388 = t385 - R(0.32313880000000006);
+        const gic_real t389 = GIC_SQRT(t388 * t388 + (R(4.633797183999867e-05) + t387 * t387));
+        const gic_real t390 = R(1.0) / t389;
+        const gic_real t391 = t390 * (m[102] * t386 * t388 - m[102] * t385 * t387);
+        const gic_real t392 = gic_table_value(&hmmwv_full_table[4], t389) * GIC_MIN(R(0.0), t391) + gic_table_value(&hmmwv_full_table[6], t389) * GIC_MAX(R(0.0), t391);
+        const gic_real t393 = t390 * t392;
+        const gic_real t394 = t387 * t393;
+        const gic_real t395 = t388 * t393;
+        const gic_real t396 = t385 * t394 - t386 * t395;
+        const gic_real t397 = t174 + (m[193] * R(-0.12319000000000002) + t175);
+        const gic_real t398 = t177 + (m[190] * R(-0.12319000000000002) + t178);
+        const gic_real t399 = m[187] + t397;
+        const gic_real t400 = R(1.653405) + t398;
+        const gic_real t401 = m[203] + (m[198] * t397 - m[199] * t398) + (y[15] * t399 - y[16] * t400);
+        const gic_real t402 = t180 + (m[196] * R(-0.12319000000000002) + t181);
+        const gic_real t403 = m[188] + t402;
+        const gic_real t404 = m[202] + (m[200] * t398 - m[198] * t402) + (y[17] * t400 - y[15] * t403);
+        const gic_real t405 = m[199] * t402 - m[200] * t397 + (y[16] * t403 - y[17] * t399);
+        const gic_real t406 = y[13] + (t24 * t401 + (t12 * t404 + t333 * t405));
+        const gic_real t407 = y[0] + (t27 * t403 + (t15 * t399 + t336 * t400));
+        const gic_real t408 = y[1] + (t24 * t403 + (t12 * t399 + t333 * t400));
+        gic_real road409[3];
+        if (!hmmwv_full_road_height(self, time, t407, t408, road409))
+            return GIC_ERROR_ROAD;
+        const gic_real t410 = y[12] + (t27 * t401 + (t15 * t404 + t336 * t405));
+        const gic_real t411 = y[14] + (t23 * t401 + (t7 * t404 + t341 * t405));
+        const gic_real t412 = t406 * road409[2] + t410 * road409[1] - t411;
+        const gic_real t413 = y[2] + (t23 * t403 + (t7 * t399 + t341 * t400));
+        const gic_real t414 = R(0.4699) + road409[0] - t413;
+        const gic_real t415 = GIC_MIN(GIC_MAX(R(100.0) * t414, R(0.0)), R(1.0));
+        const gic_real t416 = t412 * (R(500.0) * ((R(3.0) - (t415 + t415)) * (t415 * t415)));
+        const gic_real t417 = GIC_MAX(t416 + R(283000.0) * t414, R(0.0));
+        const gic_real t418 = t23 * t417;
+        const gic_real t419 = t7 * t417;
+        const gic_real t420 = t397 * t418 - t402 * t419;
+        const gic_real t421 = t116 + (m[157] * R(0.12319000000000002) + t117);
+        const gic_real t422 = t119 + (m[154] * R(0.12319000000000002) + t120);
+        const gic_real t423 = m[151] + t421;
+        const gic_real t424 = R(1.653405) + t422;
+        const gic_real t425 = m[167] + (m[162] * t421 - m[163] * t422) + (y[15] * t423 - y[16] * t424);
+        const gic_real t426 = t122 + (m[160] * R(0.12319000000000002) + t123);
+        const gic_real t427 = m[152] + t426;
+        const gic_real t428 = m[166] + (m[164] * t422 - m[162] * t426) + (y[17] * t424 - y[15] * t427);
+        const gic_real t429 = m[163] * t426 - m[164] * t421 + (y[16] * t427 - y[17] * t423);
+        const gic_real t430 = y[13] + (t24 * t425 + (t12 * t428 + t333 * t429));
+        const gic_real t431 = y[0] + (t27 * t427 + (t15 * t423 + t336 * t424));
+        const gic_real t432 = y[1] + (t24 * t427 + (t12 * t423 + t333 * t424));
+        gic_real road433[3];
+        if (!hmmwv_full_road_height(self, time, t431, t432, road433))
+            return GIC_ERROR_ROAD;
+        const gic_real t434 = y[12] + (t27 * t425 + (t15 * t428 + t336 * t429));
+        const gic_real t435 = y[14] + (t23 * t425 + (t7 * t428 + t341 * t429));
+        const gic_real t436 = t430 * road433[2] + t434 * road433[1] - t435;
+        const gic_real t437 = y[2] + (t23 * t427 + (t7 * t423 + t341 * t424));
+        const gic_real t438 = road433[0] + R(0.4699) - t437;
+        const gic_real t439 = GIC_MIN(GIC_MAX(R(100.0) * t438, R(0.0)), R(1.0));
+        const gic_real t440 = t436 * ((R(3.0) - (t439 + t439)) * (t439 * t439) * R(500.0));
+        const gic_real t441 = GIC_MAX(t440 + t438 * R(283000.0), R(0.0));
+        const gic_real t442 = t23 * t441;
+        const gic_real t443 = t7 * t441;
+        const gic_real t444 = t421 * t442 - t426 * t443;
+        const gic_real t445 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
+        const gic_real t446 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        const gic_real t447 = R(-0.307086) + t446 - R(-0.4977892);
+        const gic_real t448 = t445 - R(0.32313880000000006);
+        const gic_real t449 = GIC_SQRT(t448 * t448 + (R(4.633797183999867e-05) + t447 * t447));
+        const gic_real t450 = R(1.0) / t449;
+        const gic_real t451 = t450 * (m[72] * t446 * t448 - m[72] * t445 * t447);
+        const gic_real t452 = gic_table_value(&hmmwv_full_table[3], t449) * GIC_MIN(R(0.0), t451) + gic_table_value(&hmmwv_full_table[5], t449) * GIC_MAX(R(0.0), t451);
+        const gic_real t453 = t450 * t452;
+        const gic_real t454 = t447 * t453;
+        const gic_real t455 = t448 * t453;
+        const gic_real t456 = t445 * t454 - t446 * t455;
+        const gic_real t457 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
+        const gic_real t458 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        const gic_real t459 = R(0.307086) + t458 - R(0.4977892);
+        const gic_real t460 = t457 - R(0.32313880000000006);
+        const gic_real t461 = GIC_SQRT(t460 * t460 + (t459 * t459 + R(4.633797183999867e-05)));
+        const gic_real t462 = R(1.0) / t461;
+        const gic_real t463 = t462 * (m[42] * t458 * t460 - m[42] * t457 * t459);
+        const gic_real t464 = gic_table_value(&hmmwv_full_table[3], t461) * GIC_MIN(R(0.0), t463) + gic_table_value(&hmmwv_full_table[5], t461) * GIC_MAX(R(0.0), t463);
+        const gic_real t465 = t462 * t464;
+        const gic_real t466 = t459 * t465;
+        const gic_real t467 = t460 * t465;
+        const gic_real t468 = t457 * t466 - t458 * t467;
+        const gic_real t469 = R(0.4977892) * t467 - R(0.32313880000000006) * t466 + (R(-0.4977892) * t455 - R(0.32313880000000006) * t454);
+        const gic_real t470 = t469 + (R(0.4977892) * t395 - R(0.32313880000000006) * t394) + (R(-0.4977892) * t383 - R(0.32313880000000006) * t382);
+        const gic_real t471 = t456 + (t468 + (t470 - R(0.307086) * t467) - R(-0.307086) * t455);
+        const gic_real t472 = t444 + (t471 + (m[151] * t442 - m[152] * t443)) + (m[187] * t418 - m[188] * t419);
+        const gic_real t473 = t396 + (t420 + t472 - R(0.307086) * t395) - R(-0.307086) * t383;
+        const gic_real t474 = t372 + (t384 + t473 + (m[223] * t370 - m[224] * t371));
+        const gic_real t475 = t296 + (t326 + (m[253] * t318 - m[254] * t325)) - (t352 + (t474 + (m[253] * t350 - m[254] * t351)));
+        const gic_real t476 = GIC_FABS(t464);
+        const gic_real t477 = GIC_FABS(t452);
+        const gic_real t478 = GIC_FABS(t392);
+        const gic_real t479 = GIC_FABS(t380);
+        const gic_real t480 = t476 * R(2.613906) + R(2.613906) * t477 + R(2.613906) * t478 + R(2.613906) * t479;
+        const gic_real t481 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t341);
+        const gic_real t482 = t341 * t8 + (t333 * rate[13] + t336 * rate[12]);
+        const gic_real t483 = t481 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t482));
+        const gic_real t484 = GIC_FABS(y[17]) + GIC_FABS(y[16]) + GIC_FABS(y[15]);
+        const gic_real t485 = GIC_FABS(rate[17]) + GIC_FABS(rate[16]) + GIC_FABS(rate[15]);
+        const gic_real t486 = t484 * t484 + t485;
+        const gic_real t487 = t483 + t486 * R(0.2690000000000001);
+        const gic_real t488 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[1]));
+        const gic_real t489 = GIC_FABS(rate[22]);
+        const gic_real t490 = t483 + t486 * t488 + t484 * GIC_FABS(m[16]) + t489;
+        const gic_real t491 = R(9.072) * t490;
+        const gic_real t492 = t480 + (t487 * R(561.2738800000002) + t486 * R(7604.379999999999)) + (R(3.0) * t486 + t488 * t491);
+        const gic_real t493 = GIC_FABS(t46);
+        const gic_real t494 = t493 + GIC_FABS(t45);
+        const gic_real t495 = t484 + GIC_FABS(m[42]);
+        const gic_real t496 = t485 + t495 * t495;
+        const gic_real t497 = t483 + t496 * (R(1.688965) + (t493 + GIC_FABS(t51))) + t484 * (GIC_FABS(t57) + GIC_FABS(-t47));
+        const gic_real t498 = GIC_FABS(rate[18]);
+        const gic_real t499 = GIC_FABS(m[54]);
+        const gic_real t500 = t498 * t499;
+        const gic_real t501 = t497 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t500 * t494;
+        const gic_real t502 = R(23.965) * t501;
+        const gic_real t503 = t494 * t502 + (t496 + GIC_FABS(m[48]) + t500) * R(1.7876);
+        const gic_real t504 = t476 * (R(0.09720579999999998) + (GIC_FABS(t457) + GIC_FABS(t458))) + t503;
+        const gic_real t505 = t476 + t502;
+        const gic_real t506 = GIC_FABS(t76);
+        const gic_real t507 = t506 + GIC_FABS(t75);
+        const gic_real t508 = t484 + GIC_FABS(m[72]);
+        const gic_real t509 = t485 + t508 * t508;
+        const gic_real t510 = t483 + t509 * (R(1.688965) + (t506 + GIC_FABS(t80))) + t484 * (GIC_FABS(t85) + GIC_FABS(-t77));
+        const gic_real t511 = GIC_FABS(rate[19]);
+        const gic_real t512 = GIC_FABS(m[84]);
+        const gic_real t513 = t511 * t512;
+        const gic_real t514 = t510 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t513 * t507;
+        const gic_real t515 = R(23.965) * t514;
+        const gic_real t516 = t507 * t515 + R(1.7876) * (t509 + GIC_FABS(m[78]) + t513);
+        const gic_real t517 = t477 * (R(0.09720579999999998) + (GIC_FABS(t445) + GIC_FABS(t446))) + t516;
+        const gic_real t518 = t477 + t515;
+        const gic_real t519 = t492 + (t504 + t505 * R(1.996051)) + (t517 + R(1.996051) * t518);
+        const gic_real t520 = (R(0.4699) + (GIC_FABS(t437) + GIC_FABS(road433[0]))) * R(283000.0);
+        const gic_real t521 = GIC_FABS(t440) + GIC_FABS(t520);
+        const gic_real t522 = t521 * (GIC_FABS(t426) + GIC_FABS(t421) + GIC_FABS(t422));
+        const gic_real t523 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
+        const gic_real t524 = t484 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t525 = t485 + t524 * t524;
+        const gic_real t526 = t525 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
+        const gic_real t527 = t484 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
+        const gic_real t528 = m[163] * t139 - m[164] * t125 + (m[169] * t124 - m[170] * t118);
+        const gic_real t529 = t483 + t526 + t527 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t528));
+        const gic_real t530 = GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]);
+        const gic_real t531 = t489 * t530;
+        const gic_real t532 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t533 = t498 * t532;
+        const gic_real t534 = GIC_FABS(m[185]) + GIC_FABS(m[184]);
+        const gic_real t535 = t529 + t531 * t523 + t523 * t533 + t498 * t534;
+        const gic_real t536 = R(90.555) * t535;
+        const gic_real t537 = t525 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t538 = t522 + (t523 * t536 + (t537 + t531 + t533) * R(17.248790999999997));
+        const gic_real t539 = t521 + t536;
+        const gic_real t540 = t538 + t539 * (R(1.653405) + (GIC_FABS(m[152]) + GIC_FABS(m[151])));
+        const gic_real t541 = R(283000.0) * (R(0.4699) + (GIC_FABS(t413) + GIC_FABS(road409[0])));
+        const gic_real t542 = GIC_FABS(t416) + GIC_FABS(t541);
+        const gic_real t543 = t542 * (GIC_FABS(t402) + GIC_FABS(t397) + GIC_FABS(t398));
+        const gic_real t544 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
+        const gic_real t545 = t484 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t546 = t485 + t545 * t545;
+        const gic_real t547 = t546 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
+        const gic_real t548 = t484 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
+        const gic_real t549 = m[199] * t197 - m[200] * t183 + (m[205] * t182 - m[206] * t176);
+        const gic_real t550 = t483 + t547 + t548 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t549));
+        const gic_real t551 = GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]);
+        const gic_real t552 = t489 * t551;
+        const gic_real t553 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t554 = t511 * t553;
+        const gic_real t555 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t556 = t550 + t552 * t544 + t544 * t554 + t511 * t555;
+        const gic_real t557 = R(90.555) * t556;
+        const gic_real t558 = t546 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t559 = t543 + (t544 * t557 + R(17.248790999999997) * (t558 + t552 + t554));
+        const gic_real t560 = t542 + t557;
+        const gic_real t561 = t559 + t560 * (R(1.653405) + (GIC_FABS(m[188]) + GIC_FABS(m[187])));
+        const gic_real t562 = GIC_FABS(t216);
+        const gic_real t563 = t562 + GIC_FABS(t215);
+        const gic_real t564 = t484 + GIC_FABS(m[102]);
+        const gic_real t565 = t485 + t564 * t564;
+        const gic_real t566 = t483 + t565 * (R(1.688965) + (t562 + GIC_FABS(t221))) + t484 * (GIC_FABS(t227) + GIC_FABS(-t217));
+        const gic_real t567 = GIC_FABS(rate[20]);
+        const gic_real t568 = GIC_FABS(m[114]);
+        const gic_real t569 = t567 * t568;
+        const gic_real t570 = t566 + (GIC_FABS(t218) + GIC_FABS(-t232)) + t569 * t563;
+        const gic_real t571 = R(23.965) * t570;
+        const gic_real t572 = t563 * t571 + R(1.7876) * (t565 + GIC_FABS(m[108]) + t569);
+        const gic_real t573 = t478 * (R(0.09720579999999998) + (GIC_FABS(t385) + GIC_FABS(t386))) + t572;
+        const gic_real t574 = t478 + t571;
+        const gic_real t575 = GIC_FABS(t246);
+        const gic_real t576 = t575 + GIC_FABS(t245);
+        const gic_real t577 = t484 + GIC_FABS(m[132]);
+        const gic_real t578 = t485 + t577 * t577;
+        const gic_real t579 = t483 + t578 * (R(1.688965) + (t575 + GIC_FABS(t250))) + t484 * (GIC_FABS(t255) + GIC_FABS(-t247));
+        const gic_real t580 = GIC_FABS(rate[21]);
+        const gic_real t581 = GIC_FABS(m[144]);
+        const gic_real t582 = t580 * t581;
+        const gic_real t583 = t579 + (GIC_FABS(t248) + GIC_FABS(-t258)) + t582 * t576;
+        const gic_real t584 = R(23.965) * t583;
+        const gic_real t585 = t576 * t584 + R(1.7876) * (t578 + GIC_FABS(m[138]) + t582);
+        const gic_real t586 = t479 * (R(0.09720579999999998) + (GIC_FABS(t373) + GIC_FABS(t374))) + t585;
+        const gic_real t587 = t479 + t584;
+        const gic_real t588 = t519 + t540 + t561 + (t573 + R(1.996051) * t574) + (t586 + R(1.996051) * t587);
+        const gic_real t589 = R(283000.0) * (R(0.4699) + (GIC_FABS(t365) + GIC_FABS(road361[0])));
+        const gic_real t590 = GIC_FABS(t368) + GIC_FABS(t589);
+        const gic_real t591 = GIC_FABS(t273) + GIC_FABS(t271);
+        const gic_real t592 = t484 + GIC_FABS(m[234]);
+        const gic_real t593 = t485 + t592 * t592;
+        const gic_real t594 = t483 + t593 * (R(1.653405) + (GIC_FABS(t278) + GIC_FABS(t280)));
+        const gic_real t595 = t594 + t484 * (GIC_FABS(t288) + GIC_FABS(t276)) + (GIC_FABS(t275) + GIC_FABS(t287));
+        const gic_real t596 = GIC_FABS(m[246]);
+        const gic_real t597 = t567 * t596;
+        const gic_real t598 = GIC_FABS(m[251]) + GIC_FABS(m[250]);
+        const gic_real t599 = R(90.555) * (t595 + t597 * t591 + t567 * t598);
+        const gic_real t600 = t591 * t599 + R(17.248790999999997) * (t593 + GIC_FABS(m[240]) + t597);
+        const gic_real t601 = t590 * (GIC_FABS(t356) + GIC_FABS(t353)) + t600;
+        const gic_real t602 = t590 + t599;
+        const gic_real t603 = t601 + t602 * (R(1.653405) + (GIC_FABS(m[224]) + GIC_FABS(m[223])));
+        const gic_real t604 = R(283000.0) * (R(0.4699) + (GIC_FABS(t345) + GIC_FABS(road339[0])));
+        const gic_real t605 = GIC_FABS(t348) + GIC_FABS(t604);
+        const gic_real t606 = GIC_FABS(t308) + GIC_FABS(t306);
+        const gic_real t607 = t484 + GIC_FABS(m[264]);
+        const gic_real t608 = t485 + t607 * t607;
+        const gic_real t609 = t483 + t608 * (R(1.653405) + (GIC_FABS(t312) + GIC_FABS(t314)));
+        const gic_real t610 = t609 + t484 * (GIC_FABS(t321) + GIC_FABS(t311)) + (GIC_FABS(t310) + GIC_FABS(t320));
+        const gic_real t611 = GIC_FABS(m[276]);
+        const gic_real t612 = t580 * t611;
+        const gic_real t613 = GIC_FABS(m[281]) + GIC_FABS(m[280]);
+        const gic_real t614 = R(90.555) * (t610 + t612 * t606 + t580 * t613);
+        const gic_real t615 = t606 * t614 + R(17.248790999999997) * (t608 + GIC_FABS(m[270]) + t612);
+        const gic_real t616 = t605 * (GIC_FABS(t330) + GIC_FABS(t327)) + t615;
+        const gic_real t617 = t605 + t614;
+        const gic_real t618 = t616 + t617 * (R(1.653405) + (GIC_FABS(m[254]) + GIC_FABS(m[253])));
+        const gic_real t619 = t588 + t603 + t618;
+        const gic_real t620 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
+        const gic_real t621 = t482 + (rate[16] * R(0.21300000000000008) - (y[17] * t620 + y[16] * t17));
+        const gic_real t622 = y[16] * t34 - y[17] * t29 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
+        const gic_real t623 = t482 + t622;
+        const gic_real t624 = t623 * R(9.072);
+        const gic_real t625 = y[16] * t59 - y[17] * t50 + (rate[16] * t46 - rate[17] * t51);
+        const gic_real t626 = t482 + t625;
+        const gic_real t627 = t626 * R(23.965);
+        const gic_real t628 = y[16] * t86 - y[17] * t79 + (rate[16] * t76 - rate[17] * t80);
+        const gic_real t629 = t482 + t628;
+        const gic_real t630 = R(23.965) * t629;
+        const gic_real t631 = y[16] * t143 - y[17] * t132 + (rate[16] * t131 - rate[17] * t133);
+        const gic_real t632 = t528 + (t482 + t631) + rate[22] * (m[175] * t124 - m[176] * t118);
+        const gic_real t633 = (t632 + rate[18] * (m[181] * t124 - m[182] * t118)) * R(90.555);
+        const gic_real t634 = y[16] * t201 - y[17] * t190 + (rate[16] * t189 - rate[17] * t191);
+        const gic_real t635 = t549 + (t482 + t634) + rate[22] * (m[211] * t182 - m[212] * t176);
+        const gic_real t636 = R(90.555) * (t635 + rate[19] * (m[217] * t182 - m[218] * t176));
+        const gic_real t637 = t621 * R(2086.52) + t624 + t627 + t630 + t633 + t636;
+        const gic_real t638 = y[16] * t229 - y[17] * t220 + (rate[16] * t216 - rate[17] * t221);
+        const gic_real t639 = t482 + t638;
+        const gic_real t640 = R(23.965) * t639;
+        const gic_real t641 = y[16] * t256 - y[17] * t249 + (rate[16] * t246 - rate[17] * t250);
+        const gic_real t642 = t482 + t641;
+        const gic_real t643 = R(23.965) * t642;
+        const gic_real t644 = y[16] * t290 - y[17] * t279 + (rate[16] * t278 - rate[17] * t280);
+        const gic_real t645 = R(90.555) * (t482 + t644);
+        const gic_real t646 = y[16] * t322 - y[17] * t313 + (rate[16] * t312 - rate[17] * t314);
+        const gic_real t647 = R(90.555) * (t482 + t646);
+        const gic_real t648 = t341 * t349;
+        const gic_real t649 = t341 * t369;
+        const gic_real t650 = t341 * t417;
+        const gic_real t651 = t341 * t441;
+        const gic_real t652 = R(-0.006807199999999902) * t465;
+        const gic_real t653 = R(-0.006807199999999902) * t453;
+        const gic_real t654 = R(0.006807199999999902) * t393;
+        const gic_real t655 = R(0.006807199999999902) * t381;
+        const gic_real t656 = t651 + (t652 + t653 + t654 + t655 - t652 - t653);
+        const gic_real t657 = t637 + t640 + t643 + t645 + t647 - (t648 + (t649 + (t650 + t656 - t654 - t655)));
+        const gic_real t658 = t476 + t477 + t478 + t479 + R(2086.52) * t487 + t491;
+        const gic_real t659 = t658 + t505 + t518 + t539 + t560 + t574 + t587;
+        const gic_real t660 = t659 + t602 + t617;
+        const gic_real t661 = y[15] * R(1078.52);
+        const gic_real t662 = t28 + (y[15] * t620 - y[16] * t18 - rate[16] * R(0.056));
+        const gic_real t663 = y[17] * t661 - y[15] * t1 + rate[16] * R(2955.66) + (t621 * R(444.4287600000002) - t662 * R(116.84512));
+        const gic_real t664 = m[42] + y[15];
+        const gic_real t665 = R(0.4469) * t664;
+        const gic_real t666 = rate[17] - m[42] * y[16];
+        const gic_real t667 = rate[16] + m[42] * y[17];
+        const gic_real t668 = y[17] * t665 - t664 * t41 + (t40 * t666 + t42 * t667);
+        const gic_real t669 = t663 + (rate[16] + (t623 * R(0.4919654879999997) - t32 * R(13.051414655999999))) + (t668 + t46 * t627 - t55 * R(40.476046225));
+        const gic_real t670 = m[72] + y[15];
+        const gic_real t671 = R(0.4469) * t670;
+        const gic_real t672 = rate[17] - m[72] * y[16];
+        const gic_real t673 = rate[16] + m[72] * y[17];
+        const gic_real t674 = y[17] * t671 - t670 * t71 + (t70 * t672 + t72 * t673);
+        const gic_real t675 = t102 * t94 + (t106 * t92 + t112 * t103);
+        const gic_real t676 = t94 * t675 - t103 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
+        const gic_real t677 = t676 + (t124 * t633 - t121 * t138);
+        const gic_real t678 = t669 + (t674 + t76 * t630 - R(40.476046225) * t83) + (t677 + (m[152] * t633 - t137 * R(149.724089775)));
+        const gic_real t679 = t160 * t152 + (t164 * t150 + t170 * t161);
+        const gic_real t680 = t152 * t679 - t161 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
+        const gic_real t681 = t680 + (t182 * t636 - t179 * t196);
+        const gic_real t682 = m[102] + y[15];
+        const gic_real t683 = R(0.4469) * t682;
+        const gic_real t684 = rate[17] - m[102] * y[16];
+        const gic_real t685 = rate[16] + m[102] * y[17];
+        const gic_real t686 = y[17] * t683 - t682 * t211 + (t210 * t684 + t212 * t685);
+        const gic_real t687 = t678 + (t681 + (m[188] * t636 - R(149.724089775) * t195)) + (t686 + t216 * t640 - t225 * R(-40.476046225));
+        const gic_real t688 = m[132] + y[15];
+        const gic_real t689 = R(0.4469) * t688;
+        const gic_real t690 = rate[17] - m[132] * y[16];
+        const gic_real t691 = rate[16] + m[132] * y[17];
+        const gic_real t692 = y[17] * t689 - t688 * t241 + (t240 * t690 + t242 * t691);
+        const gic_real t693 = m[234] + y[15];
+        const gic_real t694 = R(4.8947505) * t693;
+        const gic_real t695 = rate[17] - m[234] * y[16];
+        const gic_real t696 = rate[16] + m[234] * y[17];
+        const gic_real t697 = y[17] * t694 - t693 * t266 + (t265 * t695 + t267 * t696);
+        const gic_real t698 = t697 + t273 * t645 + (m[224] * t645 - t284 * R(-149.724089775));
+        const gic_real t699 = t687 + (t692 + t246 * t643 - R(-40.476046225) * t253) + t698;
+        const gic_real t700 = m[264] + y[15];
+        const gic_real t701 = R(4.8947505) * t700;
+        const gic_real t702 = rate[17] - m[264] * y[16];
+        const gic_real t703 = rate[16] + m[264] * y[17];
+        const gic_real t704 = y[17] * t701 - t700 * t301 + (t300 * t702 + t302 * t703);
+        const gic_real t705 = t704 + t308 * t647 + (m[254] * t647 - R(-149.724089775) * t317);
+        const gic_real t706 = t402 * t650 - t398 * t418;
+        const gic_real t707 = t426 * t651 - t422 * t442;
+        const gic_real t708 = t465 * R(-0.002199670439359969) - R(1.792978) * t467 + (R(-0.002199670439359969) * t453 - R(1.792978) * t455);
+        const gic_real t709 = t708 + (t393 * R(0.002199670439359969) - R(-1.792978) * t395) + (R(0.002199670439359969) * t381 - R(-1.792978) * t383);
+        const gic_real t710 = R(0.09720579999999998) * t467 - t457 * t652 + (t709 + R(1.688965) * t467);
+        const gic_real t711 = R(0.09720579999999998) * t455 - t445 * t653 + (t710 + R(1.688965) * t455);
+        const gic_real t712 = t707 + (t711 + (m[152] * t651 - R(1.653405) * t442)) + (m[188] * t650 - R(1.653405) * t418);
+        const gic_real t713 = R(-0.09720579999999998) * t395 - t385 * t654 + (t706 + t712 + R(-1.688965) * t395);
+        const gic_real t714 = R(-0.09720579999999998) * t383 - t373 * t655 + (t713 + R(-1.688965) * t383);
+        const gic_real t715 = t356 * t649 + (t714 + (m[224] * t649 - R(-1.653405) * t370));
+        const gic_real t716 = t330 * t648 + (t715 + (m[254] * t648 - R(-1.653405) * t350));
+        const gic_real t717 = t36 * R(9.072);
+        const gic_real t718 = t20 * R(2086.52) + t717 + t64 + t90 + t147 + t205;
+        const gic_real t719 = t443 + (t466 + t454 + t394 + t382 - t466 - t454);
+        const gic_real t720 = t718 + t234 + t260 + t294 + t325 - (t351 + (t371 + (t419 + t719 - t394 - t382)));
+        const gic_real t721 = y[15] * t2 - y[16] * t661 + rate[17] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t722 = t664 * t43 - y[16] * t665 + (t37 * t666 + t40 * t667);
+        const gic_real t723 = t722 - t45 * t627 + (t63 * R(40.476046225) - t626 * R(7.359315990000001));
+        const gic_real t724 = t721 + (rate[17] + (t36 * R(13.051414655999999) - m[1] * t624)) + t723;
+        const gic_real t725 = t670 * t73 - y[16] * t671 + (t67 * t672 + t70 * t673);
+        const gic_real t726 = t725 - t75 * t630 + (R(40.476046225) * t89 - t629 * R(-7.359315990000001));
+        const gic_real t727 = t103 * t107 - t92 * t675 + (t93 * t109 + (t98 * t111 + t102 * t114));
+        const gic_real t728 = t727 + (t121 * t147 - t118 * t633);
+        const gic_real t729 = t724 + t726 + (t728 + (t146 * R(149.724089775) - m[151] * t633));
+        const gic_real t730 = t161 * t165 - t150 * t679 + (t151 * t167 + (t156 * t169 + t160 * t172));
+        const gic_real t731 = t730 + (t179 * t205 - t176 * t636);
+        const gic_real t732 = t682 * t213 - y[16] * t683 + (t207 * t684 + t210 * t685);
+        const gic_real t733 = t732 - t215 * t640 + (t233 * R(-40.476046225) - R(7.359315990000001) * t639);
+        const gic_real t734 = t729 + (t731 + (R(149.724089775) * t204 - m[187] * t636)) + t733;
+        const gic_real t735 = t688 * t243 - y[16] * t689 + (t237 * t690 + t240 * t691);
+        const gic_real t736 = t735 - t245 * t643 + (R(-40.476046225) * t259 - R(-7.359315990000001) * t642);
+        const gic_real t737 = t693 * t268 - y[16] * t694 + (t262 * t695 + t265 * t696);
+        const gic_real t738 = t737 - t271 * t645 + (t293 * R(-149.724089775) - m[223] * t645);
+        const gic_real t739 = t700 * t303 - y[16] * t701 + (t297 * t702 + t300 * t703);
+        const gic_real t740 = t739 - t306 * t647 + (R(-149.724089775) * t324 - m[253] * t647);
+        const gic_real t741 = t398 * t419 - t397 * t650;
+        const gic_real t742 = t422 * t443 - t421 * t651;
+        const gic_real t743 = R(1.792978) * t466 - t465 * R(-0.003388550642239951) + (R(1.792978) * t454 - t453 * R(0.003388550642239951));
+        const gic_real t744 = t743 + (R(-1.792978) * t394 - R(0.003388550642239951) * t393) + (R(-1.792978) * t382 - R(-0.003388550642239951) * t381);
+        const gic_real t745 = t458 * t652 - R(0.09720579999999998) * t466 + (t744 + (t465 * R(-0.00209039581919997) - R(1.688965) * t466));
+        const gic_real t746 = t446 * t653 - R(0.09720579999999998) * t454 + (t745 + (t453 * R(0.00209039581919997) - R(1.688965) * t454));
+        const gic_real t747 = t742 + (t746 + (R(1.653405) * t443 - m[151] * t651)) + (R(1.653405) * t419 - m[187] * t650);
+        const gic_real t748 = t386 * t654 - R(-0.09720579999999998) * t394 + (t741 + t747 + (t393 * R(0.00209039581919997) - R(-1.688965) * t394));
+        const gic_real t749 = t374 * t655 - R(-0.09720579999999998) * t382 + (t748 + (t381 * R(-0.00209039581919997) - R(-1.688965) * t382));
+        const gic_real t750 = t749 + (R(-1.653405) * t371 - m[223] * t649) - t353 * t649;
+        const gic_real t751 = t750 + (R(-1.653405) * t351 - m[253] * t648) - t327 * t648;
+        const gic_real t752 = t662 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
+        const gic_real t753 = t442 + (t467 + t455 + t395 + t383 - t467 - t455);
+        const gic_real t754 = t752 + t226 + t254 + t285 + t318 - (t350 + (t370 + (t418 + t753 - t395 - t383)));
+        const gic_real t755 = m[185] * t138 + m[184] * t147 + (m[182] * t728 + (m[181] * t677 + m[180] * t148));
+        const gic_real t756 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[0], R(0.0))), R(0.0));
+        const gic_real t757 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[0] - R(0.3), R(0.0))), R(0.0));
+        const gic_real t758 = gic_table_value(&hmmwv_full_table[0], x[0] - R(0.339));
+        const gic_real t759 = m[185] * t442 + m[184] * t443 + (m[182] * t742 + (m[181] * t707 + m[180] * t444));
+        const gic_real t760 = m[54] * t65 + t755 - (t756 - t757 - t758 + m[54] * t468 + t759);
+        const gic_real t761 = GIC_FABS(t758) + GIC_FABS(t757 - t756) + t499 * t504;
+        const gic_real t762 = m[221] * t196 + m[220] * t205 + (m[218] * t731 + (m[217] * t681 + m[216] * t206));
+        const gic_real t763 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[1], R(0.0))), R(0.0));
+        const gic_real t764 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[1] - R(0.3), R(0.0))), R(0.0));
+        const gic_real t765 = gic_table_value(&hmmwv_full_table[0], x[1] - R(0.339));
+        const gic_real t766 = m[221] * t418 + m[220] * t419 + (m[218] * t741 + (m[217] * t706 + m[216] * t420));
+        const gic_real t767 = m[84] * t91 + t762 - (t763 - t764 - t765 + m[84] * t456 + t766);
+        const gic_real t768 = GIC_FABS(t765) + GIC_FABS(t764 - t763) + t512 * t517;
+        const gic_real t769 = m[114] * t235 + (m[251] * t285 + m[250] * t294 + m[246] * t295);
+        const gic_real t770 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[2], R(0.0))), R(0.0));
+        const gic_real t771 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[2] - R(0.35), R(0.0))), R(0.0));
+        const gic_real t772 = gic_table_value(&hmmwv_full_table[1], x[2] - R(0.382));
+        const gic_real t773 = t770 - t771 - t772 + m[114] * t396 + (m[251] * t370 + m[250] * t371 + m[246] * t372);
+        const gic_real t774 = GIC_FABS(t772) + GIC_FABS(t771 - t770) + t568 * t573;
+        const gic_real t775 = m[144] * t261 + (m[281] * t318 + m[280] * t325 + m[276] * t326);
+        const gic_real t776 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(R(0.15) - x[3], R(0.0))), R(0.0));
+        const gic_real t777 = GIC_MAX(gic_table_value(&hmmwv_full_table[2], GIC_MAX(x[3] - R(0.35), R(0.0))), R(0.0));
+        const gic_real t778 = gic_table_value(&hmmwv_full_table[1], x[3] - R(0.382));
+        const gic_real t779 = t776 - t777 - t778 + m[144] * t384 + (m[281] * t350 + m[280] * t351 + m[276] * t352);
+        const gic_real t780 = GIC_FABS(t778) + GIC_FABS(t777 - t776) + t581 * t586;
+        const gic_real t781 = t717 + (m[176] * t728 + (m[175] * t677 + m[174] * t148));
+        const gic_real t782 = t781 + (m[212] * t731 + (m[211] * t681 + m[210] * t206));
+        const gic_real t783 = x[4] * R(100000.0);
+        const gic_real t784 = xd[4] * R(12000.0);
+        const gic_real t785 = m[176] * t742 + (m[175] * t707 + m[174] * t444) - (t783 + t784);
+        const gic_real t786 = t785 + (m[212] * t741 + (m[211] * t706 + m[210] * t420));
+        const gic_real t787 = GIC_FABS(t784) + GIC_FABS(t783) + R(100000.0) * GIC_FABS(x[4]);
+        const gic_real t788 = t699 + t705 - t716;
+        const gic_real t789 = t734 + t736 + t738 + t740 - t751;
+        const gic_real t790 = t761 + t532 * t538 + t534 * t539;
+        const gic_real t791 = t768 + t553 * t559 + t555 * t560;
+        const gic_real t792 = t769 - t773;
+        const gic_real t793 = t774 + t596 * t601 + t598 * t602;
+        const gic_real t794 = t775 - t779;
+        const gic_real t795 = t780 + t611 * t616 + t613 * t617;
+        const gic_real t796 = t782 - t786;
+        const gic_real t797 = t787 + t491 + t530 * t538 + t551 * t559;
+        tau[0] = t475;
+        size[0] = t619;
+        tau[3] = t657;
+        size[3] = t660;
+        tau[1] = t788;
+        size[1] = t619;
+        tau[4] = t720;
+        size[4] = t660;
+        tau[2] = t789;
+        size[2] = t619;
+        tau[5] = t754;
+        size[5] = t660;
+        tau[6] = t760;
+        size[6] = t790;
+        tau[7] = t767;
+        size[7] = t791;
+        tau[8] = t792;
+        size[8] = t793;
+        tau[9] = t794;
+        size[9] = t795;
+        tau[10] = t796;
+        size[10] = t797;
+    }
+    return GIC_OK;
+}
+
+/* The motions that were recovered last, against all constraints. */
+static GIC_COLD int hmmwv_full_check_constraints(hmmwv_full *self)
+{
+    gic_real largest[2];
+    const int bad = hmmwv_full_residual(self, largest);
+    self->head.residual = GIC_MAX(self->head.residual, largest[0]);
+    if (bad < 0)
+        return GIC_OK;
+    self->head.subset = bad;
+    self->recovered = 0;
+    return GIC_ERROR_RESIDUAL;
+}
+
+/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+static GIC_COLD GIC_APART int hmmwv_full_check(hmmwv_full *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate)
+{
+    gic_real tau[HMMWV_FULL_UNKNOWN_ROOM], size[HMMWV_FULL_UNKNOWN_ROOM];
+    int i, status = hmmwv_full_check_constraints(self);
+    self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&hmmwv_full_model, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        status = hmmwv_full_balance(self, time, y, e, rate, tau, size);
+    for (i = 0; status == GIC_OK && i < HMMWV_FULL_UNKNOWNS; ++i)
+        if (!(GIC_FABS(tau[i]) <= GIC_BALANCE_RESIDUAL * size[i]))
+            status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        self->head.unchecked = GIC_CHECK_EVERY;
+    return status;
+}
+
 /* ---- the functions of hmmwv_full.h ------------------------------------------------------------------------------------ */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
@@ -2805,6 +3933,7 @@ static int hmmwv_full_locate(hmmwv_full *self, gic_real time, const gic_real *y,
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
 static int hmmwv_full_evaluate(hmmwv_full *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[HMMWV_FULL_STATE_ROOM])
 {
+    const int32_t flip = self->head.flip;
     int status = hmmwv_full_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
@@ -2812,6 +3941,11 @@ static int hmmwv_full_evaluate(hmmwv_full *self, gic_real time, const gic_real *
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
     if (status == GIC_OK && !GIC_FINITE(rate + HMMWV_FULL_TWIST, HMMWV_FULL_STATES - HMMWV_FULL_TWIST))
         status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && --self->head.unchecked < 0) {
+        status = hmmwv_full_check(self, time, y, e, rate);
+        if (status != GIC_OK)
+            self->head.flip = flip; /* what was found is no start */
+    }
     return self->head.status = status;
 }
 
@@ -2886,7 +4020,13 @@ int hmmwv_full_outputs(hmmwv_full *self)
 int hmmwv_full_poses(hmmwv_full *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = hmmwv_full_locate(self, hmmwv_full_present(self), self->state, e);
+    const int32_t flip = self->head.flip;
+    int status = hmmwv_full_locate(self, hmmwv_full_present(self), self->state, e);
+    if (status == GIC_OK) {
+        status = self->head.status = hmmwv_full_check_constraints(self);
+        if (status != GIC_OK)
+            self->head.flip = flip;
+    }
     if (status == GIC_OK)
         hmmwv_full_place(self, self->state, e, pose);
     return status;
@@ -3170,6 +4310,8 @@ int hmmwv_full_setup_with(hmmwv_full *self, const gic_real *parameter)
     hmmwv_full_gather(self, self->state);
     if (status == GIC_OK)
         status = hmmwv_full_recover(self, turn, 0);
+    if (status == GIC_OK)
+        status = hmmwv_full_check_constraints(self);
     return self->head.status = status;
 }
 
@@ -4394,61 +5536,21 @@ static GIC_COLD int hmmwv_full_energy(const hmmwv_full *self, gic_real time, con
     return GIC_OK;
 }
 
-/* Largest constraint residual of all subsets, relative to their sizes. */
-static GIC_COLD gic_real hmmwv_full_residual(const hmmwv_full *self)
-{
-    const gic_real *const start = self->start[self->head.flip];
-    hmmwv_full_links links;
-    gic_real largest = R(0.0), one = R(0.0);
-    (void)start;
-    (void)one;
-    links.cold = 0;
-    links.x[0] = start[4];
-    one = hmmwv_full_residual_rack(hmmwv_full_k_rack[0], &links, self->motion + 0);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[0];
-    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[0], &links, self->motion + 30);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[1];
-    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[1], &links, self->motion + 60);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[2];
-    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[2], &links, self->motion + 90);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[3];
-    one = hmmwv_full_residual_lca_f_l(hmmwv_full_k_lca_f_l[3], &links, self->motion + 120);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = start[4];
-    links.x[1] = start[0];
-    one = hmmwv_full_residual_wheel_f_l(hmmwv_full_k_wheel_f_l[0], &links, self->motion + 150);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = start[4];
-    links.x[1] = start[1];
-    one = hmmwv_full_residual_wheel_f_l(hmmwv_full_k_wheel_f_l[1], &links, self->motion + 186);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 90;
-    links.x[0] = start[2];
-    one = hmmwv_full_residual_wheel_r_l(hmmwv_full_k_wheel_r_l[0], &links, self->motion + 222);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 120;
-    links.x[0] = start[3];
-    one = hmmwv_full_residual_wheel_r_l(hmmwv_full_k_wheel_r_l[1], &links, self->motion + 252);
-    largest = GIC_MAX(largest, one);
-    return largest;
-}
-
 GIC_COLD int hmmwv_full_self_test(hmmwv_full *self, gic_self_test *result)
 {
     gic_real e[4], acc[HMMWV_FULL_UNKNOWN_ROOM], unit[HMMWV_FULL_UNKNOWN_ROOM], tau0[HMMWV_FULL_UNKNOWN_ROOM], tau[HMMWV_FULL_UNKNOWN_ROOM];
-    gic_real M[HMMWV_FULL_UNKNOWN_ROOM][HMMWV_FULL_UNKNOWN_ROOM], energy[3], scale;
+    gic_real M[HMMWV_FULL_UNKNOWN_ROOM][HMMWV_FULL_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = hmmwv_full_time(self);
-    const gic_self_test none = {R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = hmmwv_full_refresh(self, e);
+    const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = hmmwv_full_refresh(self, e);
     *result = none;
+    if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
+        (void)hmmwv_full_residual(self, residual);
+        result->constraint = residual[0];
+        result->motion = residual[1];
+    }
     for (i = 0; i < HMMWV_FULL_UNKNOWNS; ++i)
         unit[i] = R(0.0);
     if (status == GIC_OK)
@@ -4457,7 +5559,6 @@ GIC_COLD int hmmwv_full_self_test(hmmwv_full *self, gic_self_test *result)
         status = hmmwv_full_inverse(self, time, self->state, e, unit, tau0);
     if (status != GIC_OK)
         return self->head.status = status;
-    result->constraint = hmmwv_full_residual(self);
     result->energy = GIC_FABS(energy[0] - energy[1]) / (energy[2] > R(0.0) ? energy[2] : R(1.0));
 
     /* the mass matrix column by column: what a unit acceleration adds to the residual */
@@ -4535,6 +5636,14 @@ static int hmmwv_full_any_self_test(void *self, gic_self_test *result)
     return hmmwv_full_self_test((hmmwv_full *)self, result);
 }
 
+static int hmmwv_full_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
+{
+    gic_real e[4];
+    const gic_real *turn;
+    const int status = hmmwv_full_orient((hmmwv_full *)self, state, e, &turn);
+    return status == GIC_OK ? hmmwv_full_check((hmmwv_full *)self, time, state, e, rate) : status;
+}
+
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define hmmwv_full_any_march NULL
 #else
@@ -4604,4 +5713,5 @@ const gic_model hmmwv_full_model = {
     NULL,
     NULL,
     NULL,
+    hmmwv_full_any_check,
 };

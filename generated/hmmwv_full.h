@@ -77,12 +77,12 @@
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H
-#define HMMWV_FULL_H 0x206a69a5
+#define HMMWV_FULL_H 0x7d47e46f
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "hmmwv_full.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "hmmwv_full.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -91,7 +91,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV_FULL_ABI = 5,
+    HMMWV_FULL_ABI = 6,
     HMMWV_FULL_FREE_BASE = 1,
     HMMWV_FULL_STATES = 23,
     HMMWV_FULL_SLOW = 23,
@@ -291,7 +291,8 @@ const char *hmmwv_full_status_condition(const hmmwv_full *self);
 void hmmwv_full_snapshot(const hmmwv_full *self, hmmwv_full *copy);
 void hmmwv_full_restore(hmmwv_full *self, const hmmwv_full *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
+ * not as well as promised; other functions check that too, now and then. */
 int hmmwv_full_self_test(hmmwv_full *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -82,7 +82,7 @@
  */
 #include "hmmwv_tires.h"
 
-#if HMMWV_TIRES_H != 0x445bc4a1
+#if HMMWV_TIRES_H != 0x72b432a7
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -172,6 +172,27 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
+ * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
+ * their terms. They are rounding, in single precision near a singular configuration too. */
+#ifdef GIC_FLOAT
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-5)
+#else
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-10), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-9) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-10)
+#endif
+
+/* Evaluations between two that are checked. */
+#define GIC_CHECK_EVERY 200
+
+/* By how much an error that tests plant is off. */
+#ifndef GIC_PLANT_BY
+#define GIC_PLANT_BY R(1e-3)
+#endif
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct hmmwv_tires_links {
@@ -236,22 +257,27 @@ static int hmmwv_tires_solve_rack(hmmwv_tires *self, const gic_real *GIC_RESTRIC
         const gic_real t20 = t1 * t16 - R(0.4919654879999992) * t12;
         inertia[12] = t20;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_tires_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_tires_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
-        worst = t1;
+        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        worst[0] = t2;
+        worst[1] = t1;
     }
-    return worst;
 }
 
 static const gic_real hmmwv_tires_k_lca_f_l[4][28] = {
@@ -262,7 +288,7 @@ static const gic_real hmmwv_tires_k_lca_f_l[4][28] = {
         R(-209.35663216526913), R(51.57660077184116), R(-51.57660077184115), R(209.35663216526913),
         R(-0.20269199999999993), R(0.19748499999999997), R(3.0379110359107786e-06), R(0.24689200985615367),
         R(0.307086), R(40.476046225), R(-8.917091066652828), R(1.688965),
-        R(0.01121887479261392), R(0.2403881036540444), R(0.509778), R(7.8923759275231005),
+        R(0.01121887479261392), R(0.2403881036540444), R(0.509778), R(0.06335227878037954),
     },
     { /* lca_f_r */
         R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.038649583990999964),
@@ -271,7 +297,7 @@ static const gic_real hmmwv_tires_k_lca_f_l[4][28] = {
         R(-209.35663216526913), R(-51.57660077184116), R(51.57660077184115), R(209.35663216526913),
         R(0.20269199999999993), R(0.19748499999999997), R(3.0379110359107786e-06), R(-0.24689200985615367),
         R(-0.307086), R(40.476046225), R(8.917091066652828), R(1.688965),
-        R(0.01121887479261392), R(-0.2403881036540444), R(-0.509778), R(7.8923759275231005),
+        R(0.01121887479261392), R(-0.2403881036540444), R(-0.509778), R(0.06335227878037954),
     },
     { /* lca_r_l */
         R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(0.033962503042599984),
@@ -280,7 +306,7 @@ static const gic_real hmmwv_tires_k_lca_f_l[4][28] = {
         R(-161.8167759548846), R(39.86479513590536), R(-39.864795135905354), R(161.8167759548846),
         R(-0.19448779999999993), R(0.2564891999999999), R(-3.0379110358344508e-06), R(0.246867347245056),
         R(0.307086), R(-40.476046225), R(-7.181825051954384), R(-1.688965),
-        R(0.011218874792613923), R(0.24038810365404442), R(0.5015738), R(6.355965194292886),
+        R(0.011218874792613923), R(0.24038810365404442), R(0.5015738), R(0.07866625834404463),
     },
     { /* lca_r_r */
         R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(0.033962503042599984),
@@ -289,7 +315,7 @@ static const gic_real hmmwv_tires_k_lca_f_l[4][28] = {
         R(-161.8167759548846), R(-39.86479513590536), R(39.864795135905354), R(161.8167759548846),
         R(0.19448779999999993), R(0.2564891999999999), R(-3.0379110358344508e-06), R(-0.246867347245056),
         R(-0.307086), R(-40.476046225), R(7.181825051954384), R(-1.688965),
-        R(0.011218874792613923), R(-0.24038810365404442), R(-0.5015738), R(6.355965194292886),
+        R(0.011218874792613923), R(-0.24038810365404442), R(-0.5015738), R(0.07866625834404463),
     },
 };
 
@@ -411,25 +437,45 @@ static int hmmwv_tires_solve_lca_f_l(hmmwv_tires *self, const gic_real *GIC_REST
         const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
         inertia[21] = t71;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_tires_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_tires_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10] - k[17];
-        const gic_real t2 = k[20] + (k[24] * motion[8] + k[25] * motion[7]) - k[26];
-        const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[27]));
-        worst = t4;
+        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10];
+        const gic_real t2 = t1 - k[17];
+        const gic_real t3 = k[24] * motion[8] + k[25] * motion[7];
+        const gic_real t4 = k[20] + t3 - k[26];
+        const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
+        const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.2595404998909418) + k[27];
+        const gic_real t7 = R(2.0) / t6;
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t13 = t11 * GIC_FABS(rate[0]);
+        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
+        const gic_real t15 = t3 * motion[12];
+        const gic_real t16 = t1 * motion[12];
+        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
+        worst[0] = t9;
+        worst[1] = t20;
     }
-    return worst;
 }
 
 static const gic_real hmmwv_tires_k_wheel_f_l[2][15] = {
@@ -754,40 +800,120 @@ static int hmmwv_tires_solve_wheel_f_l(hmmwv_tires *self, const gic_real *GIC_RE
         const gic_real t222 = t216 + (t114 + t201);
         inertia[4] = t222;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_tires_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_tires_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.9280756565520325) * (motion[1] - (k[0] * m1[7] + k[2]))));
-        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]));
-        const gic_real t3 = t2 - R(0.054228999999999916);
-        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t5 = t4 - (k[1] + m0[1]);
-        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]));
-        const gic_real t7 = t6 - R(1.438648);
-        const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
-        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS(R(2.9280756565520325) * (motion[2] - k[0] * m1[10]))), GIC_FABS(t8 * R(3.9285226675160794)));
-        const gic_real t10 = motion[2] + (R(0.3336036) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]));
-        const gic_real t11 = t10 - R(0.23411769999999993);
-        const gic_real t12 = motion[1] + (R(0.3336036) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t13 = t12 - k[3];
-        const gic_real t14 = R(1.653405) + (R(0.3336036) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]));
-        const gic_real t15 = t14 - R(1.593883);
-        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
-        const gic_real t17 = R(0.21526024724178433) * t11 + (k[4] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
-        const gic_real t18 = GIC_MAX(GIC_MAX(t9, GIC_FABS(t16 * R(5.571891251504318))), GIC_FABS(t17 * R(3.029396354366956)));
-        worst = t18;
+        const gic_real t1 = k[0] * m1[7];
+        const gic_real t2 = k[0] * m1[10];
+        const gic_real t3 = GIC_FABS(R(2.9280756565520325) * (motion[1] - (t1 + k[2]))) + GIC_FABS(R(2.9280756565520325) * (motion[2] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]);
+        const gic_real t5 = motion[2] + t4 - R(0.054228999999999916);
+        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]);
+        const gic_real t7 = motion[1] + t6;
+        const gic_real t8 = k[1] + m0[1];
+        const gic_real t9 = t7 - t8;
+        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t11 = R(1.653405) + t10 - R(1.438648);
+        const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
+        const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824064);
+        const gic_real t14 = R(2.0) / (t13 + R(0.1272743069893343));
+        const gic_real t15 = R(0.3336036) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]);
+        const gic_real t16 = motion[2] + t15 - R(0.23411769999999993);
+        const gic_real t17 = R(0.3336036) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]);
+        const gic_real t18 = motion[1] + t17 - k[3];
+        const gic_real t19 = R(0.3336036) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t20 = R(1.653405) + t19 - R(1.593883);
+        const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
+        const gic_real t22 = R(0.3415212300824064) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
+        const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331867));
+        const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
+        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
+        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
+        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
+        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
+        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t33 = t6 * t5 - t4 * t9;
+        const gic_real t34 = t4 * t11 - t10 * t5;
+        const gic_real t35 = t10 * t9 - t6 * t11;
+        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t37 = t17 * t16 - t15 * t18;
+        const gic_real t38 = t15 * t20 - t19 * t16;
+        const gic_real t39 = t19 * t18 - t17 * t20;
+        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t41 = R(0.21526024724178433) * t17 - k[4] * t15;
+        const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
+        const gic_real t43 = k[4] * t19 - R(0.9665541626242249) * t17;
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
+        const gic_real t46 = R(2.9280756565520325) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
+        const gic_real t47 = GIC_FABS(R(2.9280756565520325) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.9280756565520325) * (motion[35] - m1[24] * t1));
+        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
+        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
+        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[4] * motion[34];
+        const gic_real t52 = R(2.9280756565520325) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
+        const gic_real t53 = t52 + GIC_FABS(m1[24]);
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
+        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.9280756565520325) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.9280756565520325) * (motion[17] - rate[1] * motion[35]));
+        const gic_real t58 = R(2.9280756565520325) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t60 = t46 * GIC_FABS(rate[0]);
+        const gic_real t61 = t53 * GIC_FABS(rate[1]);
+        const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
+        const gic_real t63 = R(2.9280756565520325) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
+        const gic_real t64 = R(2.9280756565520325) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
+        const gic_real t65 = t6 * motion[12] - t10 * motion[13];
+        const gic_real t66 = motion[17] + t65;
+        const gic_real t67 = t10 * motion[14] - t4 * motion[12];
+        const gic_real t68 = motion[16] + t67 - m0[16];
+        const gic_real t69 = t4 * motion[13] - t6 * motion[14];
+        const gic_real t70 = motion[12] * t67 - motion[13] * t69 + (t6 * motion[18] - t10 * motion[19]);
+        const gic_real t71 = motion[14] * t69 - motion[12] * t65 + (t10 * motion[20] - t4 * motion[18]);
+        const gic_real t72 = motion[13] * t65 - motion[14] * t67 + (t4 * motion[19] - t6 * motion[20]);
+        const gic_real t73 = t5 * (motion[23] + t70) + (t9 * (motion[22] + t71) + t11 * t72);
+        const gic_real t74 = t66 * t66 + (t68 * t68 + t69 * t69) + t73;
+        const gic_real t75 = GIC_FABS(t63) + GIC_FABS(t64) + GIC_FABS(t74 * t14);
+        const gic_real t76 = t17 * motion[12] - t19 * motion[13];
+        const gic_real t77 = motion[17] + t76;
+        const gic_real t78 = t19 * motion[14] - t15 * motion[12];
+        const gic_real t79 = motion[16] + t78;
+        const gic_real t80 = t15 * motion[13] - t17 * motion[14];
+        const gic_real t81 = motion[12] * t78 - motion[13] * t80 + (t17 * motion[18] - t19 * motion[19]);
+        const gic_real t82 = motion[23] + t81;
+        const gic_real t83 = motion[14] * t80 - motion[12] * t76 + (t19 * motion[20] - t15 * motion[18]);
+        const gic_real t84 = motion[22] + t83;
+        const gic_real t85 = motion[13] * t76 - motion[14] * t78 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t86 = t77 * t77 + (t79 * t79 + t80 * t80) + (t16 * t82 + (t18 * t84 + t20 * t85));
+        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) * R(2.559750693852431);
+        const gic_real t88 = R(2.9280756565520325) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t89 = R(2.9280756565520325) * GIC_FABS(m0[16]);
+        const gic_real t90 = t58 * t58 + t59 * t59 + t88 + t89 * t89;
+        const gic_real t91 = GIC_FABS(m1[12]);
+        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[18])) + t60 * t60;
+        const gic_real t93 = (t75 + GIC_FABS(t86 * t23) + GIC_FABS(t87)) / (R(1e-30) + (t92 + t61 * t61));
+        const gic_real t94 = t62 + t93;
+        worst[0] = t32;
+        worst[1] = t94;
     }
-    return worst;
 }
 
 static const gic_real hmmwv_tires_k_wheel_r_l[2][8] = {
@@ -952,27 +1078,60 @@ static int hmmwv_tires_solve_wheel_r_l(hmmwv_tires *self, const gic_real *GIC_RE
         const gic_real t96 = t54 * t87 + t91 * t57 - t93 * t56;
         inertia[21] = t96;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_tires_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_tires_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_tires_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m0[7] + k[1])) * R(2.928503331078754)));
-        const gic_real t2 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m0[10]) * R(2.928503331078754))), R(0.0));
-        const gic_real t3 = motion[2] + (R(0.3340099999999999) * motion[11] + k[3] * motion[10]) - R(0.22567900000000002);
-        const gic_real t4 = motion[1] + (R(0.3340099999999999) * motion[8] + k[3] * motion[7]) - k[2];
-        const gic_real t5 = (t3 * t3 + (R(0.031522582115999995) + t4 * t4) - R(0.095812034182)) * R(5.7792183827260155);
-        const gic_real t6 = GIC_MAX(GIC_MAX(t2, R(0.0)), GIC_FABS(t5));
-        worst = t6;
+        const gic_real t1 = k[0] * m0[7];
+        const gic_real t2 = k[0] * m0[10];
+        const gic_real t3 = GIC_FABS((motion[1] - (t1 + k[1])) * R(2.928503331078754)) + GIC_FABS((motion[2] - t2) * R(2.928503331078754));
+        const gic_real t4 = R(0.3340099999999999) * motion[11] + k[3] * motion[10];
+        const gic_real t5 = motion[2] + t4 - R(0.22567900000000002);
+        const gic_real t6 = R(0.3340099999999999) * motion[8] + k[3] * motion[7];
+        const gic_real t7 = motion[1] + t6 - k[2];
+        const gic_real t8 = R(0.5) * (t5 * t5 + (R(0.031522582115999995) + t7 * t7) - R(0.095812034182));
+        const gic_real t9 = (R(0.17754599999999998) + GIC_FABS(t7) + GIC_FABS(t5)) * R(0.34147135480007684) + R(0.08651688980892147);
+        const gic_real t10 = R(2.0) / t9;
+        const gic_real t11 = t3 + GIC_FABS(t8 * t10) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
+        const gic_real t12 = t11 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t13 = GIC_FABS(R(2.928503331078754) * (m0[24] * t2 + motion[28])) + GIC_FABS(R(2.928503331078754) * (motion[29] - m0[24] * t1));
+        const gic_real t14 = (t6 * t5 - t4 * t7) * motion[24] + t7 * motion[28];
+        const gic_real t15 = R(2.928503331078754) * (GIC_FABS(motion[28]) + GIC_FABS(motion[29])) + GIC_FABS(motion[24]);
+        const gic_real t16 = t15 + GIC_FABS(m0[24]);
+        const gic_real t17 = (t13 + GIC_FABS(t10 * (t14 + t5 * motion[29]))) / (t16 + R(1e-30));
+        const gic_real t18 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(R(2.928503331078754) * (motion[16] - rate[0] * motion[28]));
+        const gic_real t19 = R(2.928503331078754) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t20 = GIC_FABS(motion[12]);
+        const gic_real t21 = t16 * GIC_FABS(rate[0]);
+        const gic_real t22 = (t18 + GIC_FABS(R(2.928503331078754) * (motion[17] - rate[0] * motion[29]))) / (R(1e-30) + (t19 + t20 + t21));
+        const gic_real t23 = R(2.928503331078754) * (m0[12] * (m0[12] * t1) + m0[18] * t2 + motion[22]);
+        const gic_real t24 = R(2.928503331078754) * (motion[23] - (m0[18] * t1 - m0[12] * (m0[12] * t2)));
+        const gic_real t25 = t6 * motion[12];
+        const gic_real t26 = motion[17] + t25;
+        const gic_real t27 = t4 * motion[12];
+        const gic_real t28 = motion[16] - t27;
+        const gic_real t29 = t5 * (motion[23] + (t6 * motion[18] - motion[12] * t27)) + t7 * (motion[22] - (motion[12] * t25 + t4 * motion[18]));
+        const gic_real t30 = GIC_FABS((t26 * t26 + t28 * t28 + t29) * t10);
+        const gic_real t31 = R(2.928503331078754) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + GIC_FABS(motion[18]);
+        const gic_real t32 = GIC_FABS(m0[12]);
+        const gic_real t33 = t19 * t19 + t20 * t20 + t31 + (t32 * t32 + GIC_FABS(m0[18]));
+        const gic_real t34 = (GIC_FABS(t23) + GIC_FABS(t24) + t30) / (R(1e-30) + (t33 + t21 * t21));
+        const gic_real t35 = t17 + t22 + t34;
+        worst[0] = t12;
+        worst[1] = t35;
     }
-    return worst;
 }
 
 /* ---- recovery of the whole vehicle, in computational sequence ------------------------------------------------ */
@@ -1176,6 +1335,8 @@ static int hmmwv_tires_recover(hmmwv_tires *self, const gic_real turn[3], int co
         way[i] = self->x[i] - self->start[first][i];
     for (i = 0; i < HMMWV_TIRES_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < hmmwv_tires_piece[i]);
+    if (far)
+        self->head.unchecked = 0; /* a jump: no state that was checked is near */
     /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
      * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
     if (far || HMMWV_TIRES_FOLLOWED > 0) {
@@ -2107,6 +2268,13 @@ static GIC_APART int hmmwv_tires_dynamics(hmmwv_tires *self, gic_real time, cons
         rate[10] = t260;
         rate[20] = t261;
     }
+#ifdef GIC_PLANT_RATE /* an error that tests plant */
+#ifndef GIC_PLANT_AFTER
+#define GIC_PLANT_AFTER R(-1.0) /* s */
+#endif
+    if (time > GIC_PLANT_AFTER)
+        rate[GIC_PLANT_RATE] += GIC_PLANT_BY + GIC_PLANT_BY * GIC_FABS(rate[GIC_PLANT_RATE]);
+#endif
     return GIC_OK;
 }
 
@@ -3205,6 +3373,815 @@ static void hmmwv_tires_place(const hmmwv_tires *self, const gic_real *y, const 
     }
 }
 
+/* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
+
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
+ * whose are beyond what is promised, -1: there is none. */
+static GIC_COLD GIC_APART int hmmwv_tires_residual(const hmmwv_tires *self, gic_real largest[2])
+{
+    hmmwv_tires_links links;
+    gic_real one[2];
+    int bad = -1;
+    (void)self, (void)one;
+    largest[0] = largest[1] = R(0.0);
+    links.cold = 0;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    hmmwv_tires_residual_rack(hmmwv_tires_k_rack[0], &links, self->motion + 0, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 1;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    hmmwv_tires_residual_lca_f_l(hmmwv_tires_k_lca_f_l[0], &links, self->motion + 30, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 2;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[1];
+    links.rate[0] = self->xd[1];
+    hmmwv_tires_residual_lca_f_l(hmmwv_tires_k_lca_f_l[1], &links, self->motion + 60, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 3;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[2];
+    links.rate[0] = self->xd[2];
+    hmmwv_tires_residual_lca_f_l(hmmwv_tires_k_lca_f_l[2], &links, self->motion + 90, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 4;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[3];
+    links.rate[0] = self->xd[3];
+    hmmwv_tires_residual_lca_f_l(hmmwv_tires_k_lca_f_l[3], &links, self->motion + 120, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 5;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 30;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[0];
+    links.rate[1] = self->xd[0];
+    hmmwv_tires_residual_wheel_f_l(hmmwv_tires_k_wheel_f_l[0], &links, self->motion + 150, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638516)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 6;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 60;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[1];
+    links.rate[1] = self->xd[1];
+    hmmwv_tires_residual_wheel_f_l(hmmwv_tires_k_wheel_f_l[1], &links, self->motion + 186, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638516)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 7;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 90;
+    links.x[0] = self->x[2];
+    links.rate[0] = self->xd[2];
+    hmmwv_tires_residual_wheel_r_l(hmmwv_tires_k_wheel_r_l[0], &links, self->motion + 222, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 8;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 120;
+    links.x[0] = self->x[3];
+    links.rate[0] = self->xd[3];
+    hmmwv_tires_residual_wheel_r_l(hmmwv_tires_k_wheel_r_l[1], &links, self->motion + 252, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 9;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    return bad;
+}
+
+/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv_tires_dynamics. size: magnitudes of
+ * the terms that it is the sum of. */
+static GIC_COLD GIC_APART int hmmwv_tires_balance(const hmmwv_tires *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *tau, gic_real *size)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    {
+        const gic_real t1 = y[16] * R(3570.2);
+        const gic_real t2 = y[15] * R(2955.66);
+        const gic_real t3 = e[2] + e[2];
+        const gic_real t4 = e[3] * t3;
+        const gic_real t5 = e[1] + e[1];
+        const gic_real t6 = e[0] * t5;
+        const gic_real t7 = t4 + t6;
+        const gic_real t8 = rate[13] - R(-9.81);
+        const gic_real t9 = e[1] * t5;
+        const gic_real t10 = e[3] + e[3];
+        const gic_real t11 = e[3] * t10;
+        const gic_real t12 = R(1.0) - (t9 + t11);
+        const gic_real t13 = e[2] * t5;
+        const gic_real t14 = e[0] * t10;
+        const gic_real t15 = t13 - t14;
+        const gic_real t16 = t7 * t8 + (t12 * rate[12] + t15 * rate[11]);
+        const gic_real t17 = y[15] * R(0.056);
+        const gic_real t18 = y[15] * R(0.21300000000000002);
+        const gic_real t19 = y[14] * t17 + y[16] * t18 + (rate[16] * R(0.056) - rate[14] * R(0.21300000000000002));
+        const gic_real t20 = t16 + t19;
+        const gic_real t21 = y[15] * t1 - y[16] * t2 + rate[14] * R(1078.52) - t20 * R(444.42876000000007);
+        const gic_real t22 = e[2] * t3;
+        const gic_real t23 = R(1.0) - (t9 + t22);
+        const gic_real t24 = t4 - t6;
+        const gic_real t25 = e[1] * t10;
+        const gic_real t26 = e[0] * t3;
+        const gic_real t27 = t25 + t26;
+        const gic_real t28 = t23 * t8 + (t24 * rate[12] + t27 * rate[11]);
+        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[16] - R(0.054228999999999916) * y[14]));
+        const gic_real t30 = R(0.054228999999999916) * y[15] - m[1] * y[16];
+        const gic_real t31 = y[14] * t29 - y[15] * t30 + (m[1] * rate[14] - R(1.438648) * rate[15]);
+        const gic_real t32 = t28 + t31;
+        const gic_real t33 = t32 * R(9.072);
+        const gic_real t34 = m[1] * y[14] - R(1.438648) * y[15];
+        const gic_real t35 = y[16] * t30 - y[14] * t34 + (R(1.438648) * rate[16] - R(0.054228999999999916) * rate[14]);
+        const gic_real t36 = u[2] + (t16 + t35);
+        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
+        const gic_real t38 = m[38] * R(0.8938);
+        const gic_real t39 = m[37] * R(0.4469);
+        const gic_real t40 = m[41] * t38 + m[40] * t39;
+        const gic_real t41 = y[16] * t37 + y[15] * t40;
+        const gic_real t42 = m[38] * t38 + m[37] * t39;
+        const gic_real t43 = y[16] * t40 + y[15] * t42;
+        const gic_real t44 = y[15] * t41 - y[16] * t43 + R(0.4469) * (m[48] + rate[14] + m[54] * rate[17]);
+        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
+        const gic_real t47 = m[42] * t46;
+        const gic_real t48 = m[48] * t45 - m[42] * t47;
+        const gic_real t49 = R(1.688965) * y[16];
+        const gic_real t50 = t49 - y[14] * t46 - t47 - t47;
+        const gic_real t51 = R(0.307086) + t45;
+        const gic_real t52 = y[15] * t46 - y[16] * t51;
+        const gic_real t53 = R(1.688965) * rate[15];
+        const gic_real t54 = y[14] * t50 - y[15] * t52 + (rate[14] * t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[17] * (m[54] * t45);
+        const gic_real t56 = t55 * R(23.965);
+        const gic_real t57 = m[42] * t45;
+        const gic_real t58 = R(1.688965) * y[15];
+        const gic_real t59 = t57 + (t57 + (y[14] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[16];
+        const gic_real t61 = y[16] * t52 - y[14] * t59 + (t60 - rate[14] * t46);
+        const gic_real t62 = m[42] * t57 + m[48] * t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[17] * (m[54] * t46);
+        const gic_real t64 = t63 * R(23.965);
+        const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
+        const gic_real t66 = t21 + (rate[14] + (m[1] * t33 - t36 * R(0.4919654879999992))) + (t65 + t55 * R(7.359315990000001));
+        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
+        const gic_real t68 = m[68] * R(0.8938);
+        const gic_real t69 = m[67] * R(0.4469);
+        const gic_real t70 = m[71] * t68 + m[70] * t69;
+        const gic_real t71 = y[16] * t67 + y[15] * t70;
+        const gic_real t72 = m[68] * t68 + m[67] * t69;
+        const gic_real t73 = y[16] * t70 + y[15] * t72;
+        const gic_real t74 = y[15] * t71 - y[16] * t73 + R(0.4469) * (m[78] + rate[14] + m[84] * rate[18]);
+        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
+        const gic_real t77 = m[72] * t76;
+        const gic_real t78 = m[78] * t75 - m[72] * t77;
+        const gic_real t79 = t49 - y[14] * t76 - t77 - t77;
+        const gic_real t80 = R(-0.307086) + t75;
+        const gic_real t81 = y[15] * t76 - y[16] * t80;
+        const gic_real t82 = y[14] * t79 - y[15] * t81 + (rate[14] * t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[18] * (m[84] * t75);
+        const gic_real t84 = R(23.965) * t83;
+        const gic_real t85 = m[72] * t75;
+        const gic_real t86 = t85 + (t85 + (y[14] * t80 - t58));
+        const gic_real t87 = y[16] * t81 - y[14] * t86 + (t60 - rate[14] * t76);
+        const gic_real t88 = m[72] * t85 + m[78] * t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[18] * (m[84] * t76);
+        const gic_real t90 = R(23.965) * t89;
+        const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
+        const gic_real t92 = m[163] + y[15];
+        const gic_real t93 = m[164] + y[16];
+        const gic_real t94 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(0.19340000000000046)) + m[159] * (m[159] * R(4.8947505)));
+        const gic_real t95 = m[158] * R(4.7728205);
+        const gic_real t96 = m[157] * R(0.19340000000000046);
+        const gic_real t97 = m[156] * R(4.8947505);
+        const gic_real t98 = m[161] * t95 + (m[160] * t96 + m[159] * t97);
+        const gic_real t99 = m[162] + y[14];
+        const gic_real t100 = m[155] * R(4.7728205);
+        const gic_real t101 = m[154] * R(0.19340000000000046);
+        const gic_real t102 = m[153] * R(4.8947505);
+        const gic_real t103 = m[161] * t100 + (m[160] * t101 + m[159] * t102);
+        const gic_real t104 = t93 * t94 + (t92 * t98 + t99 * t103);
+        const gic_real t105 = m[158] * t95 + (m[157] * t96 + m[156] * t97);
+        const gic_real t106 = m[158] * t100 + (m[157] * t101 + m[156] * t102);
+        const gic_real t107 = t93 * t98 + (t92 * t105 + t99 * t106);
+        const gic_real t108 = m[170] + (rate[16] + (m[163] * y[14] - m[162] * y[15])) + m[176] * u[2];
+        const gic_real t109 = t108 + m[182] * rate[17];
+        const gic_real t110 = m[169] + (rate[15] + (m[162] * y[16] - m[164] * y[14])) + m[175] * u[2];
+        const gic_real t111 = t110 + m[181] * rate[17];
+        const gic_real t112 = m[155] * t100 + (m[154] * t101 + m[153] * t102);
+        const gic_real t113 = m[168] + (rate[14] + (m[164] * y[15] - m[163] * y[16])) + m[174] * u[2];
+        const gic_real t114 = t113 + m[180] * rate[17];
+        const gic_real t115 = t92 * t104 - t93 * t107 + (t103 * t109 + (t106 * t111 + t112 * t114));
+        const gic_real t116 = m[158] * R(0.09182100000000004);
+        const gic_real t117 = m[156] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[157] * R(0.08910630000000008));
+        const gic_real t119 = m[155] * R(0.09182100000000004);
+        const gic_real t120 = m[153] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[154] * R(0.08910630000000008));
+        const gic_real t122 = m[161] * R(0.09182100000000004);
+        const gic_real t123 = m[159] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[160] * R(0.08910630000000008));
+        const gic_real t125 = m[164] * t121 - m[162] * t124;
+        const gic_real t126 = m[163] * t124 - m[164] * t118;
+        const gic_real t127 = m[162] * t125 - m[163] * t126 + (m[168] * t118 - m[169] * t121);
+        const gic_real t128 = m[173] + t127;
+        const gic_real t129 = m[166] + t125;
+        const gic_real t130 = R(1.653405) + t121;
+        const gic_real t131 = m[152] + t124;
+        const gic_real t132 = t129 + (t129 + (y[16] * t130 - y[14] * t131));
+        const gic_real t133 = m[151] + t118;
+        const gic_real t134 = t126 + (t126 + (y[15] * t131 - y[16] * t133));
+        const gic_real t135 = y[14] * t132 - y[15] * t134 + (rate[14] * t133 - rate[15] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + u[2] * (m[174] * t118 - m[175] * t121);
+        const gic_real t137 = t136 + rate[17] * (m[185] + (m[180] * t118 - m[181] * t121));
+        const gic_real t138 = t137 * R(90.555);
+        const gic_real t139 = m[162] * t118 - m[163] * t121;
+        const gic_real t140 = m[164] * t126 - m[162] * t139 + (m[170] * t121 - m[168] * t124);
+        const gic_real t141 = m[172] + t140;
+        const gic_real t142 = m[167] + t139;
+        const gic_real t143 = t142 + (t142 + (y[14] * t133 - y[15] * t130));
+        const gic_real t144 = y[16] * t134 - y[14] * t143 + (rate[16] * t130 - rate[14] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + u[2] * (m[176] * t121 - m[174] * t124);
+        const gic_real t146 = t145 + rate[17] * (m[184] + (m[182] * t121 - m[180] * t124));
+        const gic_real t147 = t146 * R(90.555);
+        const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[151] * t138 - m[152] * t147));
+        const gic_real t150 = m[199] + y[15];
+        const gic_real t151 = m[200] + y[16];
+        const gic_real t152 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(0.19340000000000046)) + m[195] * (m[195] * R(4.8947505)));
+        const gic_real t153 = m[194] * R(4.7728205);
+        const gic_real t154 = m[193] * R(0.19340000000000046);
+        const gic_real t155 = m[192] * R(4.8947505);
+        const gic_real t156 = m[197] * t153 + (m[196] * t154 + m[195] * t155);
+        const gic_real t157 = m[198] + y[14];
+        const gic_real t158 = m[191] * R(4.7728205);
+        const gic_real t159 = m[190] * R(0.19340000000000046);
+        const gic_real t160 = m[189] * R(4.8947505);
+        const gic_real t161 = m[197] * t158 + (m[196] * t159 + m[195] * t160);
+        const gic_real t162 = t151 * t152 + (t150 * t156 + t157 * t161);
+        const gic_real t163 = m[194] * t153 + (m[193] * t154 + m[192] * t155);
+        const gic_real t164 = m[194] * t158 + (m[193] * t159 + m[192] * t160);
+        const gic_real t165 = t151 * t156 + (t150 * t163 + t157 * t164);
+        const gic_real t166 = m[206] + (rate[16] + (m[199] * y[14] - m[198] * y[15])) + m[212] * u[2];
+        const gic_real t167 = t166 + m[218] * rate[18];
+        const gic_real t168 = m[205] + (rate[15] + (m[198] * y[16] - m[200] * y[14])) + m[211] * u[2];
+        const gic_real t169 = t168 + m[217] * rate[18];
+        const gic_real t170 = m[191] * t158 + (m[190] * t159 + m[189] * t160);
+        const gic_real t171 = m[204] + (rate[14] + (m[200] * y[15] - m[199] * y[16])) + m[210] * u[2];
+        const gic_real t172 = t171 + m[216] * rate[18];
+        const gic_real t173 = t150 * t162 - t151 * t165 + (t161 * t167 + (t164 * t169 + t170 * t172));
+        const gic_real t174 = m[194] * R(0.09182100000000004);
+        const gic_real t175 = m[192] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[193] * R(-0.08910630000000008));
+        const gic_real t177 = m[191] * R(0.09182100000000004);
+        const gic_real t178 = m[189] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[190] * R(-0.08910630000000008));
+        const gic_real t180 = m[197] * R(0.09182100000000004);
+        const gic_real t181 = m[195] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[196] * R(-0.08910630000000008));
+        const gic_real t183 = m[200] * t179 - m[198] * t182;
+        const gic_real t184 = m[199] * t182 - m[200] * t176;
+        const gic_real t185 = m[198] * t183 - m[199] * t184 + (m[204] * t176 - m[205] * t179);
+        const gic_real t186 = m[209] + t185;
+        const gic_real t187 = m[202] + t183;
+        const gic_real t188 = R(1.653405) + t179;
+        const gic_real t189 = m[188] + t182;
+        const gic_real t190 = t187 + (t187 + (y[16] * t188 - y[14] * t189));
+        const gic_real t191 = m[187] + t176;
+        const gic_real t192 = t184 + (t184 + (y[15] * t189 - y[16] * t191));
+        const gic_real t193 = y[14] * t190 - y[15] * t192 + (rate[14] * t191 - rate[15] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + u[2] * (m[210] * t176 - m[211] * t179);
+        const gic_real t195 = t194 + rate[18] * (m[221] + (m[216] * t176 - m[217] * t179));
+        const gic_real t196 = R(90.555) * t195;
+        const gic_real t197 = m[198] * t176 - m[199] * t179;
+        const gic_real t198 = m[200] * t184 - m[198] * t197 + (m[206] * t179 - m[204] * t182);
+        const gic_real t199 = m[208] + t198;
+        const gic_real t200 = m[203] + t197;
+        const gic_real t201 = t200 + (t200 + (y[14] * t191 - y[15] * t188));
+        const gic_real t202 = y[16] * t192 - y[14] * t201 + (rate[16] * t188 - rate[14] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + u[2] * (m[212] * t179 - m[210] * t182);
+        const gic_real t204 = t203 + rate[18] * (m[220] + (m[218] * t179 - m[216] * t182));
+        const gic_real t205 = R(90.555) * t204;
+        const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
+        const gic_real t207 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
+        const gic_real t208 = m[98] * R(0.8938);
+        const gic_real t209 = m[97] * R(0.4469);
+        const gic_real t210 = m[101] * t208 + m[100] * t209;
+        const gic_real t211 = y[16] * t207 + y[15] * t210;
+        const gic_real t212 = m[98] * t208 + m[97] * t209;
+        const gic_real t213 = y[16] * t210 + y[15] * t212;
+        const gic_real t214 = y[15] * t211 - y[16] * t213 + R(0.4469) * (m[108] + rate[14] + m[114] * rate[19]);
+        const gic_real t215 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
+        const gic_real t216 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
+        const gic_real t217 = m[102] * t216;
+        const gic_real t218 = m[108] * t215 - m[102] * t217;
+        const gic_real t219 = R(-1.688965) * y[16];
+        const gic_real t220 = t219 - y[14] * t216 - t217 - t217;
+        const gic_real t221 = R(0.307086) + t215;
+        const gic_real t222 = y[15] * t216 - y[16] * t221;
+        const gic_real t223 = R(-1.688965) * rate[15];
+        const gic_real t224 = y[14] * t220 - y[15] * t222 + (rate[14] * t221 - t223);
+        const gic_real t225 = t218 + (t28 + t224) + rate[19] * (m[114] * t215);
+        const gic_real t226 = R(23.965) * t225;
+        const gic_real t227 = m[102] * t215;
+        const gic_real t228 = R(-1.688965) * y[15];
+        const gic_real t229 = t227 + (t227 + (y[14] * t221 - t228));
+        const gic_real t230 = R(-1.688965) * rate[16];
+        const gic_real t231 = y[16] * t222 - y[14] * t229 + (t230 - rate[14] * t216);
+        const gic_real t232 = m[102] * t227 + m[108] * t216;
+        const gic_real t233 = t16 + t231 - t232 - rate[19] * (m[114] * t216);
+        const gic_real t234 = R(23.965) * t233;
+        const gic_real t235 = t214 + (t215 * t226 - t216 * t234);
+        const gic_real t236 = t149 + (t206 + (m[187] * t196 - m[188] * t205)) + (t235 + R(7.359315990000001) * t225);
+        const gic_real t237 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
+        const gic_real t238 = m[128] * R(0.8938);
+        const gic_real t239 = m[127] * R(0.4469);
+        const gic_real t240 = m[131] * t238 + m[130] * t239;
+        const gic_real t241 = y[16] * t237 + y[15] * t240;
+        const gic_real t242 = m[128] * t238 + m[127] * t239;
+        const gic_real t243 = y[16] * t240 + y[15] * t242;
+        const gic_real t244 = y[15] * t241 - y[16] * t243 + R(0.4469) * (m[138] + rate[14] + m[144] * rate[20]);
+        const gic_real t245 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
+        const gic_real t246 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
+        const gic_real t247 = m[132] * t246;
+        const gic_real t248 = m[138] * t245 - m[132] * t247;
+        const gic_real t249 = t219 - y[14] * t246 - t247 - t247;
+        const gic_real t250 = R(-0.307086) + t245;
+        const gic_real t251 = y[15] * t246 - y[16] * t250;
+        const gic_real t252 = y[14] * t249 - y[15] * t251 + (rate[14] * t250 - t223);
+        const gic_real t253 = t248 + (t28 + t252) + rate[20] * (m[144] * t245);
+        const gic_real t254 = R(23.965) * t253;
+        const gic_real t255 = m[132] * t245;
+        const gic_real t256 = t255 + (t255 + (y[14] * t250 - t228));
+        const gic_real t257 = y[16] * t251 - y[14] * t256 + (t230 - rate[14] * t246);
+        const gic_real t258 = m[132] * t255 + m[138] * t246;
+        const gic_real t259 = t16 + t257 - t258 - rate[20] * (m[144] * t246);
+        const gic_real t260 = R(23.965) * t259;
+        const gic_real t261 = t244 + (t245 * t254 - t246 * t260);
+        const gic_real t262 = m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(0.19340000000000046));
+        const gic_real t263 = m[230] * R(4.7728205);
+        const gic_real t264 = m[229] * R(0.19340000000000046);
+        const gic_real t265 = m[233] * t263 + m[232] * t264;
+        const gic_real t266 = y[16] * t262 + y[15] * t265;
+        const gic_real t267 = m[230] * t263 + m[229] * t264;
+        const gic_real t268 = y[16] * t265 + y[15] * t267;
+        const gic_real t269 = y[15] * t266 - y[16] * t268 + R(4.8947505) * (m[240] + rate[14] + m[246] * rate[19]);
+        const gic_real t270 = m[230] * R(0.09182100000000004);
+        const gic_real t271 = t270 + m[229] * R(0.08910630000000008);
+        const gic_real t272 = m[233] * R(0.09182100000000004);
+        const gic_real t273 = t272 + m[232] * R(0.08910630000000008);
+        const gic_real t274 = m[234] * t273;
+        const gic_real t275 = m[245] + (m[240] * t271 - m[234] * t274);
+        const gic_real t276 = m[238] - t274;
+        const gic_real t277 = R(-1.653405) * y[16];
+        const gic_real t278 = m[224] + t273;
+        const gic_real t279 = t276 + (t276 + (t277 - y[14] * t278));
+        const gic_real t280 = m[223] + t271;
+        const gic_real t281 = y[15] * t278 - y[16] * t280;
+        const gic_real t282 = R(-1.653405) * rate[15];
+        const gic_real t283 = y[14] * t279 - y[15] * t281 + (rate[14] * t280 - t282);
+        const gic_real t284 = t275 + (t28 + t283) + rate[19] * (m[251] + m[246] * t271);
+        const gic_real t285 = R(90.555) * t284;
+        const gic_real t286 = m[234] * t271;
+        const gic_real t287 = m[244] - (m[234] * t286 + m[240] * t273);
+        const gic_real t288 = m[239] + t286;
+        const gic_real t289 = R(-1.653405) * y[15];
+        const gic_real t290 = t288 + (t288 + (y[14] * t280 - t289));
+        const gic_real t291 = R(-1.653405) * rate[16];
+        const gic_real t292 = y[16] * t281 - y[14] * t290 + (t291 - rate[14] * t278);
+        const gic_real t293 = t287 + (t16 + t292) + rate[19] * (m[250] - m[246] * t273);
+        const gic_real t294 = R(90.555) * t293;
+        const gic_real t295 = t269 + (t271 * t285 - t273 * t294);
+        const gic_real t296 = t236 + (t261 + R(-7.359315990000001) * t253) + (t295 + (m[223] * t285 - m[224] * t294));
+        const gic_real t297 = m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(0.19340000000000046));
+        const gic_real t298 = m[260] * R(4.7728205);
+        const gic_real t299 = m[259] * R(0.19340000000000046);
+        const gic_real t300 = m[263] * t298 + m[262] * t299;
+        const gic_real t301 = y[16] * t297 + y[15] * t300;
+        const gic_real t302 = m[260] * t298 + m[259] * t299;
+        const gic_real t303 = y[16] * t300 + y[15] * t302;
+        const gic_real t304 = y[15] * t301 - y[16] * t303 + R(4.8947505) * (m[270] + rate[14] + m[276] * rate[20]);
+        const gic_real t305 = m[260] * R(0.09182100000000004);
+        const gic_real t306 = t305 + m[259] * R(-0.08910630000000008);
+        const gic_real t307 = m[263] * R(0.09182100000000004);
+        const gic_real t308 = t307 + m[262] * R(-0.08910630000000008);
+        const gic_real t309 = m[264] * t308;
+        const gic_real t310 = m[275] + (m[270] * t306 - m[264] * t309);
+        const gic_real t311 = m[268] - t309;
+        const gic_real t312 = m[254] + t308;
+        const gic_real t313 = t311 + (t311 + (t277 - y[14] * t312));
+        const gic_real t314 = m[253] + t306;
+        const gic_real t315 = y[15] * t312 - y[16] * t314;
+        const gic_real t316 = y[14] * t313 - y[15] * t315 + (rate[14] * t314 - t282);
+        const gic_real t317 = t310 + (t28 + t316) + rate[20] * (m[281] + m[276] * t306);
+        const gic_real t318 = R(90.555) * t317;
+        const gic_real t319 = m[264] * t306;
+        const gic_real t320 = m[274] - (m[264] * t319 + m[270] * t308);
+        const gic_real t321 = m[269] + t319;
+        const gic_real t322 = t321 + (t321 + (y[14] * t314 - t289));
+        const gic_real t323 = y[16] * t315 - y[14] * t322 + (t291 - rate[14] * t312);
+        const gic_real t324 = t320 + (t16 + t323) + rate[20] * (m[280] - m[276] * t308);
+        const gic_real t325 = R(90.555) * t324;
+        const gic_real t326 = t304 + (t306 * t318 - t308 * t325);
+        const gic_real t327 = t25 - t26;
+        const gic_real t328 = t13 + t14;
+        const gic_real t329 = R(1.0) - (t22 + t11);
+        const gic_real t330 = t327 * self->grip[86] + (t328 * self->grip[85] + t329 * self->grip[84]);
+        const gic_real t331 = t305 + m[259] * R(-0.12319000000000002);
+        const gic_real t332 = t23 * self->grip[83] + (t24 * self->grip[82] + t27 * self->grip[81]);
+        const gic_real t333 = t307 + m[262] * R(-0.12319000000000002);
+        const gic_real t334 = t7 * self->grip[83] + (t12 * self->grip[82] + t15 * self->grip[81]);
+        const gic_real t335 = t330 + (t331 * t332 - t333 * t334);
+        const gic_real t336 = t327 * self->grip[59] + (t328 * self->grip[58] + t329 * self->grip[57]);
+        const gic_real t337 = t270 + m[229] * R(0.12319000000000002);
+        const gic_real t338 = t23 * self->grip[56] + (t24 * self->grip[55] + t27 * self->grip[54]);
+        const gic_real t339 = t272 + m[232] * R(0.12319000000000002);
+        const gic_real t340 = t7 * self->grip[56] + (t12 * self->grip[55] + t15 * self->grip[54]);
+        const gic_real t341 = t336 + (t337 * t338 - t339 * t340);
+        const gic_real t342 = t327 * self->grip[32] + (t328 * self->grip[31] + t329 * self->grip[30]);
+        const gic_real t343 = t174 + (m[193] * R(-0.12319000000000002) + t175);
+        const gic_real t344 = t23 * self->grip[29] + (t24 * self->grip[28] + t27 * self->grip[27]);
+        const gic_real t345 = t180 + (m[196] * R(-0.12319000000000002) + t181);
+        const gic_real t346 = t7 * self->grip[29] + (t12 * self->grip[28] + t15 * self->grip[27]);
+        const gic_real t347 = t342 + (t343 * t344 - t345 * t346);
+        const gic_real t348 = t327 * self->grip[5] + (t328 * self->grip[4] + t329 * self->grip[3]);
+        const gic_real t349 = t116 + (m[157] * R(0.12319000000000002) + t117);
+        const gic_real t350 = t23 * self->grip[2] + (t24 * self->grip[1] + t27 * self->grip[0]);
+        const gic_real t351 = t122 + (m[160] * R(0.12319000000000002) + t123);
+        const gic_real t352 = t7 * self->grip[2] + (t12 * self->grip[1] + t15 * self->grip[0]);
+        const gic_real t353 = t348 + (t349 * t350 - t351 * t352);
+        const gic_real t354 = m[154] * self->grip[6];
+        const gic_real t355 = m[190] * self->grip[33];
+        const gic_real t356 = t353 + (m[151] * t350 - m[152] * t352 - (t354 + t355));
+        const gic_real t357 = t347 + (t356 + (m[187] * t344 - m[188] * t346)) + (m[223] * t338 - m[224] * t340);
+        const gic_real t358 = t335 + (t341 + t357 + (m[253] * t332 - m[254] * t334));
+        const gic_real t359 = t296 + (t326 + (m[253] * t318 - m[254] * t325)) - t358;
+        const gic_real t360 = m[160] * self->grip[6];
+        const gic_real t361 = m[157] * self->grip[6];
+        const gic_real t362 = GIC_FABS(-t360) + GIC_FABS(-t361) + GIC_FABS(-t354);
+        const gic_real t363 = m[196] * self->grip[33];
+        const gic_real t364 = m[193] * self->grip[33];
+        const gic_real t365 = GIC_FABS(-t363) + GIC_FABS(-t364) + GIC_FABS(-t355);
+        const gic_real t366 = m[232] * self->grip[60];
+        const gic_real t367 = m[229] * self->grip[60];
+        const gic_real t368 = t362 + t365 + (GIC_FABS(-t366) + GIC_FABS(-t367));
+        const gic_real t369 = m[262] * self->grip[87];
+        const gic_real t370 = m[259] * self->grip[87];
+        const gic_real t371 = t368 + (GIC_FABS(-t369) + GIC_FABS(-t370));
+        const gic_real t372 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t327);
+        const gic_real t373 = t327 * t8 + (t328 * rate[12] + t329 * rate[11]);
+        const gic_real t374 = t372 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t373));
+        const gic_real t375 = GIC_FABS(y[16]) + GIC_FABS(y[15]) + GIC_FABS(y[14]);
+        const gic_real t376 = GIC_FABS(rate[16]) + GIC_FABS(rate[15]) + GIC_FABS(rate[14]);
+        const gic_real t377 = t375 * t375 + t376;
+        const gic_real t378 = t374 + t377 * R(0.269);
+        const gic_real t379 = R(1.438648) + (R(0.054228999999999916) + GIC_FABS(m[1]));
+        const gic_real t380 = GIC_FABS(u[2]);
+        const gic_real t381 = t374 + t377 * t379 + t375 * GIC_FABS(m[16]) + t380;
+        const gic_real t382 = R(9.072) * t381;
+        const gic_real t383 = t371 + (t378 * R(561.2738800000001) + t377 * R(7604.379999999999)) + (t377 * R(3.0) + t379 * t382);
+        const gic_real t384 = GIC_FABS(t46);
+        const gic_real t385 = t384 + GIC_FABS(t45);
+        const gic_real t386 = t375 + GIC_FABS(m[42]);
+        const gic_real t387 = t376 + t386 * t386;
+        const gic_real t388 = t374 + t387 * (R(1.688965) + (t384 + GIC_FABS(t51))) + t375 * (GIC_FABS(t57) + GIC_FABS(-t47));
+        const gic_real t389 = GIC_FABS(rate[17]);
+        const gic_real t390 = GIC_FABS(m[54]);
+        const gic_real t391 = t389 * t390;
+        const gic_real t392 = t388 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t391 * t385;
+        const gic_real t393 = R(23.965) * t392;
+        const gic_real t394 = t385 * t393 + (t387 + GIC_FABS(m[48]) + t391) * R(1.7876);
+        const gic_real t395 = GIC_FABS(t76);
+        const gic_real t396 = t395 + GIC_FABS(t75);
+        const gic_real t397 = t375 + GIC_FABS(m[72]);
+        const gic_real t398 = t376 + t397 * t397;
+        const gic_real t399 = t374 + t398 * (R(1.688965) + (t395 + GIC_FABS(t80))) + t375 * (GIC_FABS(t85) + GIC_FABS(-t77));
+        const gic_real t400 = GIC_FABS(rate[18]);
+        const gic_real t401 = GIC_FABS(m[84]);
+        const gic_real t402 = t400 * t401;
+        const gic_real t403 = t399 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t402 * t396;
+        const gic_real t404 = R(23.965) * t403;
+        const gic_real t405 = t396 * t404 + R(1.7876) * (t398 + GIC_FABS(m[78]) + t402);
+        const gic_real t406 = t383 + (t394 + t392 * R(47.835362215)) + (t405 + R(47.835362215) * t403);
+        const gic_real t407 = t327 * self->grip[2] + (t328 * self->grip[1] + t329 * self->grip[0]);
+        const gic_real t408 = GIC_FABS(t350) + GIC_FABS(t352) + GIC_FABS(t407);
+        const gic_real t409 = t119 + (m[154] * R(0.12319000000000002) + t120);
+        const gic_real t410 = t408 * (GIC_FABS(t351) + GIC_FABS(t349) + GIC_FABS(t409));
+        const gic_real t411 = t23 * self->grip[5] + (t24 * self->grip[4] + t27 * self->grip[3]);
+        const gic_real t412 = t7 * self->grip[5] + (t12 * self->grip[4] + t15 * self->grip[3]);
+        const gic_real t413 = t410 + (GIC_FABS(t411) + GIC_FABS(t412) + GIC_FABS(t348));
+        const gic_real t414 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
+        const gic_real t415 = t375 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t416 = t376 + t415 * t415;
+        const gic_real t417 = t416 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
+        const gic_real t418 = t375 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
+        const gic_real t419 = m[163] * t139 - m[164] * t125 + (m[169] * t124 - m[170] * t118);
+        const gic_real t420 = t374 + t417 + t418 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t419));
+        const gic_real t421 = t380 * (GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]));
+        const gic_real t422 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t423 = t389 * t422;
+        const gic_real t424 = GIC_FABS(m[185]) + GIC_FABS(m[184]);
+        const gic_real t425 = t420 + t421 * t414 + t414 * t423 + t389 * t424;
+        const gic_real t426 = R(90.555) * t425;
+        const gic_real t427 = t416 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t428 = t413 + (t414 * t426 + (t427 + t421 + t423) * R(9.860971));
+        const gic_real t429 = t408 + t426;
+        const gic_real t430 = t428 + t429 * (R(1.653405) + (GIC_FABS(m[152]) + GIC_FABS(m[151])));
+        const gic_real t431 = t327 * self->grip[29] + (t328 * self->grip[28] + t329 * self->grip[27]);
+        const gic_real t432 = GIC_FABS(t344) + GIC_FABS(t346) + GIC_FABS(t431);
+        const gic_real t433 = t177 + (m[190] * R(-0.12319000000000002) + t178);
+        const gic_real t434 = t432 * (GIC_FABS(t345) + GIC_FABS(t343) + GIC_FABS(t433));
+        const gic_real t435 = t23 * self->grip[32] + (t24 * self->grip[31] + t27 * self->grip[30]);
+        const gic_real t436 = t7 * self->grip[32] + (t12 * self->grip[31] + t15 * self->grip[30]);
+        const gic_real t437 = t434 + (GIC_FABS(t435) + GIC_FABS(t436) + GIC_FABS(t342));
+        const gic_real t438 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
+        const gic_real t439 = t375 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t440 = t376 + t439 * t439;
+        const gic_real t441 = t440 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
+        const gic_real t442 = t375 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
+        const gic_real t443 = m[199] * t197 - m[200] * t183 + (m[205] * t182 - m[206] * t176);
+        const gic_real t444 = t374 + t441 + t442 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t443));
+        const gic_real t445 = t380 * (GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]));
+        const gic_real t446 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t447 = t400 * t446;
+        const gic_real t448 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t449 = t444 + t445 * t438 + t438 * t447 + t400 * t448;
+        const gic_real t450 = R(90.555) * t449;
+        const gic_real t451 = t440 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t452 = t437 + (t438 * t450 + R(9.860971) * (t451 + t445 + t447));
+        const gic_real t453 = t432 + t450;
+        const gic_real t454 = t452 + t453 * (R(1.653405) + (GIC_FABS(m[188]) + GIC_FABS(m[187])));
+        const gic_real t455 = GIC_FABS(t216);
+        const gic_real t456 = t455 + GIC_FABS(t215);
+        const gic_real t457 = t375 + GIC_FABS(m[102]);
+        const gic_real t458 = t376 + t457 * t457;
+        const gic_real t459 = t374 + t458 * (R(1.688965) + (t455 + GIC_FABS(t221))) + t375 * (GIC_FABS(t227) + GIC_FABS(-t217));
+        const gic_real t460 = GIC_FABS(rate[19]);
+        const gic_real t461 = GIC_FABS(m[114]);
+        const gic_real t462 = t460 * t461;
+        const gic_real t463 = t459 + (GIC_FABS(t218) + GIC_FABS(-t232)) + t462 * t456;
+        const gic_real t464 = R(23.965) * t463;
+        const gic_real t465 = t456 * t464 + R(1.7876) * (t458 + GIC_FABS(m[108]) + t462);
+        const gic_real t466 = GIC_FABS(t246);
+        const gic_real t467 = t466 + GIC_FABS(t245);
+        const gic_real t468 = t375 + GIC_FABS(m[132]);
+        const gic_real t469 = t376 + t468 * t468;
+        const gic_real t470 = t374 + t469 * (R(1.688965) + (t466 + GIC_FABS(t250))) + t375 * (GIC_FABS(t255) + GIC_FABS(-t247));
+        const gic_real t471 = GIC_FABS(rate[20]);
+        const gic_real t472 = GIC_FABS(m[144]);
+        const gic_real t473 = t471 * t472;
+        const gic_real t474 = t470 + (GIC_FABS(t248) + GIC_FABS(-t258)) + t473 * t467;
+        const gic_real t475 = R(23.965) * t474;
+        const gic_real t476 = t467 * t475 + R(1.7876) * (t469 + GIC_FABS(m[138]) + t473);
+        const gic_real t477 = t406 + t430 + t454 + (t465 + R(47.835362215) * t463) + (t476 + R(47.835362215) * t474);
+        const gic_real t478 = t327 * self->grip[56] + (t328 * self->grip[55] + t329 * self->grip[54]);
+        const gic_real t479 = GIC_FABS(t338) + GIC_FABS(t340) + GIC_FABS(t478);
+        const gic_real t480 = t23 * self->grip[59] + (t24 * self->grip[58] + t27 * self->grip[57]);
+        const gic_real t481 = t7 * self->grip[59] + (t12 * self->grip[58] + t15 * self->grip[57]);
+        const gic_real t482 = t479 * (GIC_FABS(t339) + GIC_FABS(t337)) + (GIC_FABS(t480) + GIC_FABS(t481) + GIC_FABS(t336));
+        const gic_real t483 = GIC_FABS(t273) + GIC_FABS(t271);
+        const gic_real t484 = t375 + GIC_FABS(m[234]);
+        const gic_real t485 = t376 + t484 * t484;
+        const gic_real t486 = t374 + t485 * (R(1.653405) + (GIC_FABS(t278) + GIC_FABS(t280)));
+        const gic_real t487 = t486 + t375 * (GIC_FABS(t288) + GIC_FABS(t276)) + (GIC_FABS(t275) + GIC_FABS(t287));
+        const gic_real t488 = GIC_FABS(m[246]);
+        const gic_real t489 = t460 * t488;
+        const gic_real t490 = GIC_FABS(m[251]) + GIC_FABS(m[250]);
+        const gic_real t491 = R(90.555) * (t487 + t489 * t483 + t460 * t490);
+        const gic_real t492 = t483 * t491 + R(9.860971) * (t485 + GIC_FABS(m[240]) + t489);
+        const gic_real t493 = t482 + t492;
+        const gic_real t494 = t479 + t491;
+        const gic_real t495 = t493 + t494 * (R(1.653405) + (GIC_FABS(m[224]) + GIC_FABS(m[223])));
+        const gic_real t496 = t327 * self->grip[83] + (t328 * self->grip[82] + t329 * self->grip[81]);
+        const gic_real t497 = GIC_FABS(t332) + GIC_FABS(t334) + GIC_FABS(t496);
+        const gic_real t498 = t23 * self->grip[86] + (t24 * self->grip[85] + t27 * self->grip[84]);
+        const gic_real t499 = t7 * self->grip[86] + (t12 * self->grip[85] + t15 * self->grip[84]);
+        const gic_real t500 = t497 * (GIC_FABS(t333) + GIC_FABS(t331)) + (GIC_FABS(t498) + GIC_FABS(t499) + GIC_FABS(t330));
+        const gic_real t501 = GIC_FABS(t308) + GIC_FABS(t306);
+        const gic_real t502 = t375 + GIC_FABS(m[264]);
+        const gic_real t503 = t376 + t502 * t502;
+        const gic_real t504 = t374 + t503 * (R(1.653405) + (GIC_FABS(t312) + GIC_FABS(t314)));
+        const gic_real t505 = t504 + t375 * (GIC_FABS(t321) + GIC_FABS(t311)) + (GIC_FABS(t310) + GIC_FABS(t320));
+        const gic_real t506 = GIC_FABS(m[276]);
+        const gic_real t507 = t471 * t506;
+        const gic_real t508 = GIC_FABS(m[281]) + GIC_FABS(m[280]);
+        const gic_real t509 = R(90.555) * (t505 + t507 * t501 + t471 * t508);
+        const gic_real t510 = t501 * t509 + R(9.860971) * (t503 + GIC_FABS(m[270]) + t507);
+        const gic_real t511 = t500 + t510;
+        const gic_real t512 = t497 + t509;
+        const gic_real t513 = t511 + t512 * (R(1.653405) + (GIC_FABS(m[254]) + GIC_FABS(m[253])));
+        const gic_real t514 = t477 + t495 + t513;
+        const gic_real t515 = y[16] * R(0.056) - y[14] * R(0.21300000000000002);
+        const gic_real t516 = t373 + (rate[15] * R(0.21300000000000002) - (y[16] * t515 + y[15] * t17));
+        const gic_real t517 = y[15] * t34 - y[16] * t29 + (R(0.054228999999999916) * rate[15] - m[1] * rate[16]);
+        const gic_real t518 = t373 + t517;
+        const gic_real t519 = t518 * R(9.072);
+        const gic_real t520 = y[15] * t59 - y[16] * t50 + (rate[15] * t46 - rate[16] * t51);
+        const gic_real t521 = t373 + t520;
+        const gic_real t522 = t521 * R(23.965);
+        const gic_real t523 = y[15] * t86 - y[16] * t79 + (rate[15] * t76 - rate[16] * t80);
+        const gic_real t524 = t373 + t523;
+        const gic_real t525 = R(23.965) * t524;
+        const gic_real t526 = y[15] * t143 - y[16] * t132 + (rate[15] * t131 - rate[16] * t133);
+        const gic_real t527 = t419 + (t373 + t526) + u[2] * (m[175] * t124 - m[176] * t118);
+        const gic_real t528 = (t527 + rate[17] * (m[181] * t124 - m[182] * t118)) * R(90.555);
+        const gic_real t529 = y[15] * t201 - y[16] * t190 + (rate[15] * t189 - rate[16] * t191);
+        const gic_real t530 = t443 + (t373 + t529) + u[2] * (m[211] * t182 - m[212] * t176);
+        const gic_real t531 = R(90.555) * (t530 + rate[18] * (m[217] * t182 - m[218] * t176));
+        const gic_real t532 = t516 * R(2086.52) + t519 + t522 + t525 + t528 + t531;
+        const gic_real t533 = y[15] * t229 - y[16] * t220 + (rate[15] * t216 - rate[16] * t221);
+        const gic_real t534 = t373 + t533;
+        const gic_real t535 = R(23.965) * t534;
+        const gic_real t536 = y[15] * t256 - y[16] * t249 + (rate[15] * t246 - rate[16] * t250);
+        const gic_real t537 = t373 + t536;
+        const gic_real t538 = R(23.965) * t537;
+        const gic_real t539 = y[15] * t290 - y[16] * t279 + (rate[15] * t278 - rate[16] * t280);
+        const gic_real t540 = R(90.555) * (t373 + t539);
+        const gic_real t541 = y[15] * t322 - y[16] * t313 + (rate[15] * t312 - rate[16] * t314);
+        const gic_real t542 = R(90.555) * (t373 + t541);
+        const gic_real t543 = t532 + t535 + t538 + t540 + t542 - (t496 + (t478 + (t407 + t431)));
+        const gic_real t544 = R(2086.52) * t378 + t382 + t393 + t404 + t429 + t453;
+        const gic_real t545 = t544 + t464 + t475 + t494 + t512;
+        const gic_real t546 = y[14] * R(1078.52);
+        const gic_real t547 = t28 + (y[14] * t515 - y[15] * t18 - rate[15] * R(0.056));
+        const gic_real t548 = y[16] * t546 - y[14] * t1 + rate[15] * R(2955.66) + (t516 * R(444.42876000000007) - t547 * R(116.84512));
+        const gic_real t549 = m[42] + y[14];
+        const gic_real t550 = R(0.4469) * t549;
+        const gic_real t551 = rate[16] - m[42] * y[15];
+        const gic_real t552 = rate[15] + m[42] * y[16];
+        const gic_real t553 = y[16] * t550 - t549 * t41 + (t40 * t551 + t42 * t552);
+        const gic_real t554 = t548 + (rate[15] + (t518 * R(0.4919654879999992) - t32 * R(13.051414655999999))) + (t553 + t46 * t522 - t55 * R(40.476046225));
+        const gic_real t555 = m[72] + y[14];
+        const gic_real t556 = R(0.4469) * t555;
+        const gic_real t557 = rate[16] - m[72] * y[15];
+        const gic_real t558 = rate[15] + m[72] * y[16];
+        const gic_real t559 = y[16] * t556 - t555 * t71 + (t70 * t557 + t72 * t558);
+        const gic_real t560 = t93 * t103 + (t92 * t106 + t99 * t112);
+        const gic_real t561 = t93 * t560 - t99 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
+        const gic_real t562 = t561 + (t124 * t528 - t121 * t138);
+        const gic_real t563 = t554 + (t559 + t76 * t525 - R(40.476046225) * t83) + (t562 + (m[152] * t528 - t137 * R(149.724089775)));
+        const gic_real t564 = t151 * t161 + (t150 * t164 + t157 * t170);
+        const gic_real t565 = t151 * t564 - t157 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
+        const gic_real t566 = t565 + (t182 * t531 - t179 * t196);
+        const gic_real t567 = m[102] + y[14];
+        const gic_real t568 = R(0.4469) * t567;
+        const gic_real t569 = rate[16] - m[102] * y[15];
+        const gic_real t570 = rate[15] + m[102] * y[16];
+        const gic_real t571 = y[16] * t568 - t567 * t211 + (t210 * t569 + t212 * t570);
+        const gic_real t572 = t563 + (t566 + (m[188] * t531 - R(149.724089775) * t195)) + (t571 + t216 * t535 - t225 * R(-40.476046225));
+        const gic_real t573 = m[132] + y[14];
+        const gic_real t574 = R(0.4469) * t573;
+        const gic_real t575 = rate[16] - m[132] * y[15];
+        const gic_real t576 = rate[15] + m[132] * y[16];
+        const gic_real t577 = y[16] * t574 - t573 * t241 + (t240 * t575 + t242 * t576);
+        const gic_real t578 = m[234] + y[14];
+        const gic_real t579 = t578 * R(4.8947505);
+        const gic_real t580 = rate[16] - m[234] * y[15];
+        const gic_real t581 = rate[15] + m[234] * y[16];
+        const gic_real t582 = y[16] * t579 - t578 * t266 + (t265 * t580 + t267 * t581);
+        const gic_real t583 = t582 + t273 * t540 + (m[224] * t540 - t284 * R(-149.724089775));
+        const gic_real t584 = t572 + (t577 + t246 * t538 - R(-40.476046225) * t253) + t583;
+        const gic_real t585 = m[264] + y[14];
+        const gic_real t586 = t585 * R(4.8947505);
+        const gic_real t587 = rate[16] - m[264] * y[15];
+        const gic_real t588 = rate[15] + m[264] * y[16];
+        const gic_real t589 = y[16] * t586 - t585 * t301 + (t300 * t587 + t302 * t588);
+        const gic_real t590 = t589 + t308 * t542 + (m[254] * t542 - R(-149.724089775) * t317);
+        const gic_real t591 = t436 + (t345 * t431 - t433 * t344);
+        const gic_real t592 = t412 + (t351 * t407 - t409 * t350);
+        const gic_real t593 = m[152] * t407 - R(1.653405) * t350 - (t361 + t364 + t367 + t370);
+        const gic_real t594 = t591 + (t592 + t593 + (m[188] * t431 - R(1.653405) * t344));
+        const gic_real t595 = t481 + t339 * t478 + (t594 + (m[224] * t478 - R(-1.653405) * t338));
+        const gic_real t596 = t499 + t333 * t496 + (t595 + (m[254] * t496 - R(-1.653405) * t332));
+        const gic_real t597 = t20 * R(2086.52) + t36 * R(9.072) + t64 + t90 + t147;
+        const gic_real t598 = t597 + t205 + t234 + t260 + t294 + t325 - (t334 + (t340 + (t352 + t346)));
+        const gic_real t599 = y[14] * t2 - y[15] * t546 + rate[16] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t600 = t549 * t43 - y[15] * t550 + (t37 * t551 + t40 * t552);
+        const gic_real t601 = t600 - t45 * t522 + (t63 * R(40.476046225) - t521 * R(7.359315990000001));
+        const gic_real t602 = t599 + (rate[16] + (t36 * R(13.051414655999999) - m[1] * t519)) + t601;
+        const gic_real t603 = t555 * t73 - y[15] * t556 + (t67 * t557 + t70 * t558);
+        const gic_real t604 = t603 - t75 * t525 + (R(40.476046225) * t89 - t524 * R(-7.359315990000001));
+        const gic_real t605 = t99 * t107 - t92 * t560 + (t94 * t109 + (t98 * t111 + t103 * t114));
+        const gic_real t606 = t605 + (t121 * t147 - t118 * t528);
+        const gic_real t607 = t602 + t604 + (t606 + (t146 * R(149.724089775) - m[151] * t528));
+        const gic_real t608 = t157 * t165 - t150 * t564 + (t152 * t167 + (t156 * t169 + t161 * t172));
+        const gic_real t609 = t608 + (t179 * t205 - t176 * t531);
+        const gic_real t610 = t567 * t213 - y[15] * t568 + (t207 * t569 + t210 * t570);
+        const gic_real t611 = t610 - t215 * t535 + (t233 * R(-40.476046225) - R(7.359315990000001) * t534);
+        const gic_real t612 = t607 + (t609 + (R(149.724089775) * t204 - m[187] * t531)) + t611;
+        const gic_real t613 = t573 * t243 - y[15] * t574 + (t237 * t575 + t240 * t576);
+        const gic_real t614 = t613 - t245 * t538 + (R(-40.476046225) * t259 - R(-7.359315990000001) * t537);
+        const gic_real t615 = t578 * t268 - y[15] * t579 + (t262 * t580 + t265 * t581);
+        const gic_real t616 = t615 - t271 * t540 + (t293 * R(-149.724089775) - m[223] * t540);
+        const gic_real t617 = t585 * t303 - y[15] * t586 + (t297 * t587 + t300 * t588);
+        const gic_real t618 = t617 - t306 * t542 + (R(-149.724089775) * t324 - m[253] * t542);
+        const gic_real t619 = t435 + (t433 * t346 - t343 * t431);
+        const gic_real t620 = t411 + (t409 * t352 - t349 * t407);
+        const gic_real t621 = R(1.653405) * t352 - m[151] * t407 - (t360 + t363 + t366 + t369);
+        const gic_real t622 = t619 + (t620 + t621 + (R(1.653405) * t346 - m[187] * t431));
+        const gic_real t623 = t480 - t337 * t478 + (t622 + (R(-1.653405) * t340 - m[223] * t478));
+        const gic_real t624 = t498 - t331 * t496 + (t623 + (R(-1.653405) * t334 - m[253] * t496));
+        const gic_real t625 = t547 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
+        const gic_real t626 = t625 + t226 + t254 + t285 + t318 - (t332 + (t338 + (t350 + t344)));
+        const gic_real t627 = m[185] * t138 + m[184] * t147 + (m[182] * t606 + (m[181] * t562 + m[180] * t148));
+        const gic_real t628 = m[185] * t350 + m[184] * t352 + (m[182] * t620 + (m[181] * t592 + m[180] * t353));
+        const gic_real t629 = (x[0] - R(0.31903)) * R(167070.9);
+        const gic_real t630 = xd[0] * R(17490.8);
+        const gic_real t631 = GIC_FABS(t630) + GIC_FABS(t629) + R(167070.9) * (R(0.31903) + GIC_FABS(x[0]));
+        const gic_real t632 = t631 + t390 * t394 + t422 * t428 + t424 * t429;
+        const gic_real t633 = m[221] * t196 + m[220] * t205 + (m[218] * t609 + (m[217] * t566 + m[216] * t206));
+        const gic_real t634 = m[221] * t344 + m[220] * t346 + (m[218] * t619 + (m[217] * t591 + m[216] * t347));
+        const gic_real t635 = R(167070.9) * (x[1] - R(0.31903));
+        const gic_real t636 = xd[1] * R(17490.8);
+        const gic_real t637 = GIC_FABS(t636) + GIC_FABS(t635) + R(167070.9) * (R(0.31903) + GIC_FABS(x[1]));
+        const gic_real t638 = t637 + t401 * t405 + t446 * t452 + t448 * t453;
+        const gic_real t639 = m[114] * t235 + (m[251] * t285 + m[250] * t294 + m[246] * t295);
+        const gic_real t640 = (x[2] - R(0.33727)) * R(369167.2);
+        const gic_real t641 = xd[2] * R(24780.4);
+        const gic_real t642 = m[251] * t338 + m[250] * t340 + m[246] * t341 - (t640 + t641);
+        const gic_real t643 = GIC_FABS(t641) + GIC_FABS(t640) + R(369167.2) * (R(0.33727) + GIC_FABS(x[2]));
+        const gic_real t644 = t643 + t461 * t465 + t488 * t493 + t490 * t494;
+        const gic_real t645 = m[144] * t261 + (m[281] * t318 + m[280] * t325 + m[276] * t326);
+        const gic_real t646 = R(369167.2) * (x[3] - R(0.33727));
+        const gic_real t647 = xd[3] * R(24780.4);
+        const gic_real t648 = m[281] * t332 + m[280] * t334 + m[276] * t335 - (t646 + t647);
+        const gic_real t649 = GIC_FABS(t647) + GIC_FABS(t646) + R(369167.2) * (R(0.33727) + GIC_FABS(x[3]));
+        const gic_real t650 = t649 + t472 * t476 + t506 * t511 + t508 * t512;
+        const gic_real t651 = t584 + t590 - t596;
+        const gic_real t652 = t612 + t614 + t616 + t618 - t624;
+        const gic_real t653 = m[54] * t65 + t627 - (t628 - (t629 + t630));
+        const gic_real t654 = m[84] * t91 + t633 - (t634 - (t635 + t636));
+        const gic_real t655 = t639 - t642;
+        const gic_real t656 = t645 - t648;
+        tau[0] = t359;
+        size[0] = t514;
+        tau[3] = t543;
+        size[3] = t545;
+        tau[1] = t651;
+        size[1] = t514;
+        tau[4] = t598;
+        size[4] = t545;
+        tau[2] = t652;
+        size[2] = t514;
+        tau[5] = t626;
+        size[5] = t545;
+        tau[6] = t653;
+        size[6] = t632;
+        tau[7] = t654;
+        size[7] = t638;
+        tau[8] = t655;
+        size[8] = t644;
+        tau[9] = t656;
+        size[9] = t650;
+    }
+    return GIC_OK;
+}
+
+/* The motions that were recovered last, against all constraints. */
+static GIC_COLD int hmmwv_tires_check_constraints(hmmwv_tires *self)
+{
+    gic_real largest[2];
+    const int bad = hmmwv_tires_residual(self, largest);
+    self->head.residual = GIC_MAX(self->head.residual, largest[0]);
+    if (bad < 0)
+        return GIC_OK;
+    self->head.subset = bad;
+    self->recovered = 0;
+    return GIC_ERROR_RESIDUAL;
+}
+
+/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+static GIC_COLD GIC_APART int hmmwv_tires_check(hmmwv_tires *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate)
+{
+    gic_real tau[HMMWV_TIRES_UNKNOWN_ROOM], size[HMMWV_TIRES_UNKNOWN_ROOM];
+    int i, status = hmmwv_tires_check_constraints(self);
+    self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&hmmwv_tires_model, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        status = hmmwv_tires_balance(self, time, y, e, rate, tau, size);
+    for (i = 0; status == GIC_OK && i < HMMWV_TIRES_UNKNOWNS; ++i)
+        if (!(GIC_FABS(tau[i]) <= GIC_BALANCE_RESIDUAL * size[i]))
+            status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        self->head.unchecked = GIC_CHECK_EVERY;
+    return status;
+}
+
 /* ---- the functions of hmmwv_tires.h ------------------------------------------------------------------------------------ */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
@@ -3227,6 +4204,7 @@ static int hmmwv_tires_locate(hmmwv_tires *self, gic_real time, const gic_real *
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
 static int hmmwv_tires_evaluate(hmmwv_tires *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[HMMWV_TIRES_STATE_ROOM])
 {
+    const int32_t flip = self->head.flip;
     int status = hmmwv_tires_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
@@ -3236,6 +4214,11 @@ static int hmmwv_tires_evaluate(hmmwv_tires *self, gic_real time, const gic_real
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
     if (status == GIC_OK && !GIC_FINITE(rate + HMMWV_TIRES_TWIST, HMMWV_TIRES_STATES - HMMWV_TIRES_TWIST))
         status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && --self->head.unchecked < 0) {
+        status = hmmwv_tires_check(self, time, y, e, rate);
+        if (status != GIC_OK)
+            self->head.flip = flip; /* what was found is no start */
+    }
     return self->head.status = status;
 }
 
@@ -3310,7 +4293,13 @@ int hmmwv_tires_outputs(hmmwv_tires *self)
 int hmmwv_tires_poses(hmmwv_tires *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = hmmwv_tires_locate(self, hmmwv_tires_present(self), self->state, e);
+    const int32_t flip = self->head.flip;
+    int status = hmmwv_tires_locate(self, hmmwv_tires_present(self), self->state, e);
+    if (status == GIC_OK) {
+        status = self->head.status = hmmwv_tires_check_constraints(self);
+        if (status != GIC_OK)
+            self->head.flip = flip;
+    }
     if (status == GIC_OK)
         hmmwv_tires_place(self, self->state, e, pose);
     return status;
@@ -3682,6 +4671,8 @@ int hmmwv_tires_setup_with(hmmwv_tires *self, const gic_real *parameter)
     hmmwv_tires_gather(self, self->state);
     if (status == GIC_OK)
         status = hmmwv_tires_recover(self, turn, 0);
+    if (status == GIC_OK)
+        status = hmmwv_tires_check_constraints(self);
     return self->head.status = status;
 }
 
@@ -4725,61 +5716,21 @@ static GIC_COLD int hmmwv_tires_energy(const hmmwv_tires *self, gic_real time, c
     return GIC_OK;
 }
 
-/* Largest constraint residual of all subsets, relative to their sizes. */
-static GIC_COLD gic_real hmmwv_tires_residual(const hmmwv_tires *self)
-{
-    const gic_real *const start = self->start[self->head.flip];
-    hmmwv_tires_links links;
-    gic_real largest = R(0.0), one = R(0.0);
-    (void)start;
-    (void)one;
-    links.cold = 0;
-    links.x[0] = start[4];
-    one = hmmwv_tires_residual_rack(hmmwv_tires_k_rack[0], &links, self->motion + 0);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[0];
-    one = hmmwv_tires_residual_lca_f_l(hmmwv_tires_k_lca_f_l[0], &links, self->motion + 30);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[1];
-    one = hmmwv_tires_residual_lca_f_l(hmmwv_tires_k_lca_f_l[1], &links, self->motion + 60);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[2];
-    one = hmmwv_tires_residual_lca_f_l(hmmwv_tires_k_lca_f_l[2], &links, self->motion + 90);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[3];
-    one = hmmwv_tires_residual_lca_f_l(hmmwv_tires_k_lca_f_l[3], &links, self->motion + 120);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = start[4];
-    links.x[1] = start[0];
-    one = hmmwv_tires_residual_wheel_f_l(hmmwv_tires_k_wheel_f_l[0], &links, self->motion + 150);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = start[4];
-    links.x[1] = start[1];
-    one = hmmwv_tires_residual_wheel_f_l(hmmwv_tires_k_wheel_f_l[1], &links, self->motion + 186);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 90;
-    links.x[0] = start[2];
-    one = hmmwv_tires_residual_wheel_r_l(hmmwv_tires_k_wheel_r_l[0], &links, self->motion + 222);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 120;
-    links.x[0] = start[3];
-    one = hmmwv_tires_residual_wheel_r_l(hmmwv_tires_k_wheel_r_l[1], &links, self->motion + 252);
-    largest = GIC_MAX(largest, one);
-    return largest;
-}
-
 GIC_COLD int hmmwv_tires_self_test(hmmwv_tires *self, gic_self_test *result)
 {
     gic_real e[4], acc[HMMWV_TIRES_UNKNOWN_ROOM], unit[HMMWV_TIRES_UNKNOWN_ROOM], tau0[HMMWV_TIRES_UNKNOWN_ROOM], tau[HMMWV_TIRES_UNKNOWN_ROOM];
-    gic_real M[HMMWV_TIRES_UNKNOWN_ROOM][HMMWV_TIRES_UNKNOWN_ROOM], energy[3], scale;
+    gic_real M[HMMWV_TIRES_UNKNOWN_ROOM][HMMWV_TIRES_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = hmmwv_tires_time(self);
-    const gic_self_test none = {R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = hmmwv_tires_refresh(self, e);
+    const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = hmmwv_tires_refresh(self, e);
     *result = none;
+    if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
+        (void)hmmwv_tires_residual(self, residual);
+        result->constraint = residual[0];
+        result->motion = residual[1];
+    }
     for (i = 0; i < HMMWV_TIRES_UNKNOWNS; ++i)
         unit[i] = R(0.0);
     if (status == GIC_OK)
@@ -4788,7 +5739,6 @@ GIC_COLD int hmmwv_tires_self_test(hmmwv_tires *self, gic_self_test *result)
         status = hmmwv_tires_inverse(self, time, self->state, e, unit, tau0);
     if (status != GIC_OK)
         return self->head.status = status;
-    result->constraint = hmmwv_tires_residual(self);
     result->energy = GIC_FABS(energy[0] - energy[1]) / (energy[2] > R(0.0) ? energy[2] : R(1.0));
 
     /* the mass matrix column by column: what a unit acceleration adds to the residual */
@@ -4938,6 +5888,14 @@ static int hmmwv_tires_any_self_test(void *self, gic_self_test *result)
     return hmmwv_tires_self_test((hmmwv_tires *)self, result);
 }
 
+static int hmmwv_tires_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
+{
+    gic_real e[4];
+    const gic_real *turn;
+    const int status = hmmwv_tires_orient((hmmwv_tires *)self, state, e, &turn);
+    return status == GIC_OK ? hmmwv_tires_check((hmmwv_tires *)self, time, state, e, rate) : status;
+}
+
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define hmmwv_tires_any_march NULL
 #else
@@ -5007,4 +5965,5 @@ const gic_model hmmwv_tires_model = {
     hmmwv_tires_any_fast,
     hmmwv_tires_any_roll,
     NULL,
+    hmmwv_tires_any_check,
 };

@@ -81,12 +81,12 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H 0x445bc4a1
+#define HMMWV_TIRES_H 0x72b432a7
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "hmmwv_tires.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "hmmwv_tires.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -98,7 +98,7 @@ enum {
     HMMWV_TIRES_ROLLING = 4,
     HMMWV_TIRES_LINKS = 48,
     HMMWV_TIRES_GRIP = 27,
-    HMMWV_TIRES_ABI = 5,
+    HMMWV_TIRES_ABI = 6,
     HMMWV_TIRES_FREE_BASE = 1,
     HMMWV_TIRES_STATES = 37,
     HMMWV_TIRES_SLOW = 21,
@@ -371,7 +371,8 @@ const char *hmmwv_tires_status_condition(const hmmwv_tires *self);
 void hmmwv_tires_snapshot(const hmmwv_tires *self, hmmwv_tires *copy);
 void hmmwv_tires_restore(hmmwv_tires *self, const hmmwv_tires *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
+ * not as well as promised; other functions check that too, now and then. */
 int hmmwv_tires_self_test(hmmwv_tires *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

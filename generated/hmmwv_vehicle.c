@@ -83,7 +83,7 @@
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0x2ec7b3af
+#if HMMWV_VEHICLE_H != 0x3fb15107
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -173,6 +173,27 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
+ * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
+ * their terms. They are rounding, in single precision near a singular configuration too. */
+#ifdef GIC_FLOAT
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-5)
+#else
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-10), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-9) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-10)
+#endif
+
+/* Evaluations between two that are checked. */
+#define GIC_CHECK_EVERY 200
+
+/* By how much an error that tests plant is off. */
+#ifndef GIC_PLANT_BY
+#define GIC_PLANT_BY R(1e-3)
+#endif
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct hmmwv_vehicle_links {
@@ -237,22 +258,27 @@ static int hmmwv_vehicle_solve_rack(hmmwv_vehicle *self, const gic_real *GIC_RES
         const gic_real t20 = t1 * t16 - R(0.4919654879999992) * t12;
         inertia[12] = t20;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_vehicle_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_vehicle_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
-        worst = t1;
+        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        worst[0] = t2;
+        worst[1] = t1;
     }
-    return worst;
 }
 
 static const gic_real hmmwv_vehicle_k_lca_f_l[4][28] = {
@@ -263,7 +289,7 @@ static const gic_real hmmwv_vehicle_k_lca_f_l[4][28] = {
         R(-209.35663216526913), R(51.57660077184116), R(-51.57660077184115), R(209.35663216526913),
         R(-0.20269199999999993), R(0.19748499999999997), R(3.0379110359107786e-06), R(0.24689200985615367),
         R(0.307086), R(40.476046225), R(-8.917091066652828), R(1.688965),
-        R(0.01121887479261392), R(0.2403881036540444), R(0.509778), R(7.8923759275231005),
+        R(0.01121887479261392), R(0.2403881036540444), R(0.509778), R(0.06335227878037954),
     },
     { /* lca_f_r */
         R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.038649583990999964),
@@ -272,7 +298,7 @@ static const gic_real hmmwv_vehicle_k_lca_f_l[4][28] = {
         R(-209.35663216526913), R(-51.57660077184116), R(51.57660077184115), R(209.35663216526913),
         R(0.20269199999999993), R(0.19748499999999997), R(3.0379110359107786e-06), R(-0.24689200985615367),
         R(-0.307086), R(40.476046225), R(8.917091066652828), R(1.688965),
-        R(0.01121887479261392), R(-0.2403881036540444), R(-0.509778), R(7.8923759275231005),
+        R(0.01121887479261392), R(-0.2403881036540444), R(-0.509778), R(0.06335227878037954),
     },
     { /* lca_r_l */
         R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(0.033962503042599984),
@@ -281,7 +307,7 @@ static const gic_real hmmwv_vehicle_k_lca_f_l[4][28] = {
         R(-161.8167759548846), R(39.86479513590536), R(-39.864795135905354), R(161.8167759548846),
         R(-0.19448779999999993), R(0.2564891999999999), R(-3.0379110358344508e-06), R(0.246867347245056),
         R(0.307086), R(-40.476046225), R(-7.181825051954384), R(-1.688965),
-        R(0.011218874792613923), R(0.24038810365404442), R(0.5015738), R(6.355965194292886),
+        R(0.011218874792613923), R(0.24038810365404442), R(0.5015738), R(0.07866625834404463),
     },
     { /* lca_r_r */
         R(0.18179218931811986), R(0.006000421990375401), R(6.000421990375401e-07), R(0.033962503042599984),
@@ -290,7 +316,7 @@ static const gic_real hmmwv_vehicle_k_lca_f_l[4][28] = {
         R(-161.8167759548846), R(-39.86479513590536), R(39.864795135905354), R(161.8167759548846),
         R(0.19448779999999993), R(0.2564891999999999), R(-3.0379110358344508e-06), R(-0.246867347245056),
         R(-0.307086), R(-40.476046225), R(7.181825051954384), R(-1.688965),
-        R(0.011218874792613923), R(-0.24038810365404442), R(-0.5015738), R(6.355965194292886),
+        R(0.011218874792613923), R(-0.24038810365404442), R(-0.5015738), R(0.07866625834404463),
     },
 };
 
@@ -412,25 +438,45 @@ static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_
         const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
         inertia[21] = t71;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_vehicle_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_vehicle_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10] - k[17];
-        const gic_real t2 = k[20] + (k[24] * motion[8] + k[25] * motion[7]) - k[26];
-        const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * k[27]));
-        worst = t4;
+        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10];
+        const gic_real t2 = t1 - k[17];
+        const gic_real t3 = k[24] * motion[8] + k[25] * motion[7];
+        const gic_real t4 = k[20] + t3 - k[26];
+        const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
+        const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.2595404998909418) + k[27];
+        const gic_real t7 = R(2.0) / t6;
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t13 = t11 * GIC_FABS(rate[0]);
+        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
+        const gic_real t15 = t3 * motion[12];
+        const gic_real t16 = t1 * motion[12];
+        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
+        worst[0] = t9;
+        worst[1] = t20;
     }
-    return worst;
 }
 
 static const gic_real hmmwv_vehicle_k_wheel_f_l[2][15] = {
@@ -755,40 +801,120 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t222 = t216 + (t114 + t201);
         inertia[4] = t222;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.9280756565520325) * (motion[1] - (k[0] * m1[7] + k[2]))));
-        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]));
-        const gic_real t3 = t2 - R(0.054228999999999916);
-        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t5 = t4 - (k[1] + m0[1]);
-        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]));
-        const gic_real t7 = t6 - R(1.438648);
-        const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
-        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS(R(2.9280756565520325) * (motion[2] - k[0] * m1[10]))), GIC_FABS(t8 * R(3.9285226675160794)));
-        const gic_real t10 = motion[2] + (R(0.3336036) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]));
-        const gic_real t11 = t10 - R(0.23411769999999993);
-        const gic_real t12 = motion[1] + (R(0.3336036) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t13 = t12 - k[3];
-        const gic_real t14 = R(1.653405) + (R(0.3336036) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]));
-        const gic_real t15 = t14 - R(1.593883);
-        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
-        const gic_real t17 = R(0.21526024724178433) * t11 + (k[4] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
-        const gic_real t18 = GIC_MAX(GIC_MAX(t9, GIC_FABS(t16 * R(5.571891251504318))), GIC_FABS(t17 * R(3.029396354366956)));
-        worst = t18;
+        const gic_real t1 = k[0] * m1[7];
+        const gic_real t2 = k[0] * m1[10];
+        const gic_real t3 = GIC_FABS(R(2.9280756565520325) * (motion[1] - (t1 + k[2]))) + GIC_FABS(R(2.9280756565520325) * (motion[2] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]);
+        const gic_real t5 = motion[2] + t4 - R(0.054228999999999916);
+        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]);
+        const gic_real t7 = motion[1] + t6;
+        const gic_real t8 = k[1] + m0[1];
+        const gic_real t9 = t7 - t8;
+        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t11 = R(1.653405) + t10 - R(1.438648);
+        const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
+        const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824064);
+        const gic_real t14 = R(2.0) / (t13 + R(0.1272743069893343));
+        const gic_real t15 = R(0.3336036) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]);
+        const gic_real t16 = motion[2] + t15 - R(0.23411769999999993);
+        const gic_real t17 = R(0.3336036) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]);
+        const gic_real t18 = motion[1] + t17 - k[3];
+        const gic_real t19 = R(0.3336036) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t20 = R(1.653405) + t19 - R(1.593883);
+        const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
+        const gic_real t22 = R(0.3415212300824064) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
+        const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331867));
+        const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
+        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
+        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
+        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
+        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
+        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t33 = t6 * t5 - t4 * t9;
+        const gic_real t34 = t4 * t11 - t10 * t5;
+        const gic_real t35 = t10 * t9 - t6 * t11;
+        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t37 = t17 * t16 - t15 * t18;
+        const gic_real t38 = t15 * t20 - t19 * t16;
+        const gic_real t39 = t19 * t18 - t17 * t20;
+        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t41 = R(0.21526024724178433) * t17 - k[4] * t15;
+        const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
+        const gic_real t43 = k[4] * t19 - R(0.9665541626242249) * t17;
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
+        const gic_real t46 = R(2.9280756565520325) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
+        const gic_real t47 = GIC_FABS(R(2.9280756565520325) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.9280756565520325) * (motion[35] - m1[24] * t1));
+        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
+        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
+        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[4] * motion[34];
+        const gic_real t52 = R(2.9280756565520325) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
+        const gic_real t53 = t52 + GIC_FABS(m1[24]);
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
+        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.9280756565520325) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.9280756565520325) * (motion[17] - rate[1] * motion[35]));
+        const gic_real t58 = R(2.9280756565520325) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t60 = t46 * GIC_FABS(rate[0]);
+        const gic_real t61 = t53 * GIC_FABS(rate[1]);
+        const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
+        const gic_real t63 = R(2.9280756565520325) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
+        const gic_real t64 = R(2.9280756565520325) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
+        const gic_real t65 = t6 * motion[12] - t10 * motion[13];
+        const gic_real t66 = motion[17] + t65;
+        const gic_real t67 = t10 * motion[14] - t4 * motion[12];
+        const gic_real t68 = motion[16] + t67 - m0[16];
+        const gic_real t69 = t4 * motion[13] - t6 * motion[14];
+        const gic_real t70 = motion[12] * t67 - motion[13] * t69 + (t6 * motion[18] - t10 * motion[19]);
+        const gic_real t71 = motion[14] * t69 - motion[12] * t65 + (t10 * motion[20] - t4 * motion[18]);
+        const gic_real t72 = motion[13] * t65 - motion[14] * t67 + (t4 * motion[19] - t6 * motion[20]);
+        const gic_real t73 = t5 * (motion[23] + t70) + (t9 * (motion[22] + t71) + t11 * t72);
+        const gic_real t74 = t66 * t66 + (t68 * t68 + t69 * t69) + t73;
+        const gic_real t75 = GIC_FABS(t63) + GIC_FABS(t64) + GIC_FABS(t74 * t14);
+        const gic_real t76 = t17 * motion[12] - t19 * motion[13];
+        const gic_real t77 = motion[17] + t76;
+        const gic_real t78 = t19 * motion[14] - t15 * motion[12];
+        const gic_real t79 = motion[16] + t78;
+        const gic_real t80 = t15 * motion[13] - t17 * motion[14];
+        const gic_real t81 = motion[12] * t78 - motion[13] * t80 + (t17 * motion[18] - t19 * motion[19]);
+        const gic_real t82 = motion[23] + t81;
+        const gic_real t83 = motion[14] * t80 - motion[12] * t76 + (t19 * motion[20] - t15 * motion[18]);
+        const gic_real t84 = motion[22] + t83;
+        const gic_real t85 = motion[13] * t76 - motion[14] * t78 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t86 = t77 * t77 + (t79 * t79 + t80 * t80) + (t16 * t82 + (t18 * t84 + t20 * t85));
+        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) * R(2.559750693852431);
+        const gic_real t88 = R(2.9280756565520325) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t89 = R(2.9280756565520325) * GIC_FABS(m0[16]);
+        const gic_real t90 = t58 * t58 + t59 * t59 + t88 + t89 * t89;
+        const gic_real t91 = GIC_FABS(m1[12]);
+        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[18])) + t60 * t60;
+        const gic_real t93 = (t75 + GIC_FABS(t86 * t23) + GIC_FABS(t87)) / (R(1e-30) + (t92 + t61 * t61));
+        const gic_real t94 = t62 + t93;
+        worst[0] = t32;
+        worst[1] = t94;
     }
-    return worst;
 }
 
 static const gic_real hmmwv_vehicle_k_wheel_r_l[2][8] = {
@@ -953,27 +1079,60 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t96 = t54 * t87 + t91 * t57 - t93 * t56;
         inertia[21] = t96;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real hmmwv_vehicle_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void hmmwv_vehicle_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS((motion[1] - (k[0] * m0[7] + k[1])) * R(2.928503331078754)));
-        const gic_real t2 = GIC_MAX(GIC_MAX(t1, GIC_FABS((motion[2] - k[0] * m0[10]) * R(2.928503331078754))), R(0.0));
-        const gic_real t3 = motion[2] + (R(0.3340099999999999) * motion[11] + k[3] * motion[10]) - R(0.22567900000000002);
-        const gic_real t4 = motion[1] + (R(0.3340099999999999) * motion[8] + k[3] * motion[7]) - k[2];
-        const gic_real t5 = (t3 * t3 + (R(0.031522582115999995) + t4 * t4) - R(0.095812034182)) * R(5.7792183827260155);
-        const gic_real t6 = GIC_MAX(GIC_MAX(t2, R(0.0)), GIC_FABS(t5));
-        worst = t6;
+        const gic_real t1 = k[0] * m0[7];
+        const gic_real t2 = k[0] * m0[10];
+        const gic_real t3 = GIC_FABS((motion[1] - (t1 + k[1])) * R(2.928503331078754)) + GIC_FABS((motion[2] - t2) * R(2.928503331078754));
+        const gic_real t4 = R(0.3340099999999999) * motion[11] + k[3] * motion[10];
+        const gic_real t5 = motion[2] + t4 - R(0.22567900000000002);
+        const gic_real t6 = R(0.3340099999999999) * motion[8] + k[3] * motion[7];
+        const gic_real t7 = motion[1] + t6 - k[2];
+        const gic_real t8 = R(0.5) * (t5 * t5 + (R(0.031522582115999995) + t7 * t7) - R(0.095812034182));
+        const gic_real t9 = (R(0.17754599999999998) + GIC_FABS(t7) + GIC_FABS(t5)) * R(0.34147135480007684) + R(0.08651688980892147);
+        const gic_real t10 = R(2.0) / t9;
+        const gic_real t11 = t3 + GIC_FABS(t8 * t10) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
+        const gic_real t12 = t11 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t13 = GIC_FABS(R(2.928503331078754) * (m0[24] * t2 + motion[28])) + GIC_FABS(R(2.928503331078754) * (motion[29] - m0[24] * t1));
+        const gic_real t14 = (t6 * t5 - t4 * t7) * motion[24] + t7 * motion[28];
+        const gic_real t15 = R(2.928503331078754) * (GIC_FABS(motion[28]) + GIC_FABS(motion[29])) + GIC_FABS(motion[24]);
+        const gic_real t16 = t15 + GIC_FABS(m0[24]);
+        const gic_real t17 = (t13 + GIC_FABS(t10 * (t14 + t5 * motion[29]))) / (t16 + R(1e-30));
+        const gic_real t18 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(R(2.928503331078754) * (motion[16] - rate[0] * motion[28]));
+        const gic_real t19 = R(2.928503331078754) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t20 = GIC_FABS(motion[12]);
+        const gic_real t21 = t16 * GIC_FABS(rate[0]);
+        const gic_real t22 = (t18 + GIC_FABS(R(2.928503331078754) * (motion[17] - rate[0] * motion[29]))) / (R(1e-30) + (t19 + t20 + t21));
+        const gic_real t23 = R(2.928503331078754) * (m0[12] * (m0[12] * t1) + m0[18] * t2 + motion[22]);
+        const gic_real t24 = R(2.928503331078754) * (motion[23] - (m0[18] * t1 - m0[12] * (m0[12] * t2)));
+        const gic_real t25 = t6 * motion[12];
+        const gic_real t26 = motion[17] + t25;
+        const gic_real t27 = t4 * motion[12];
+        const gic_real t28 = motion[16] - t27;
+        const gic_real t29 = t5 * (motion[23] + (t6 * motion[18] - motion[12] * t27)) + t7 * (motion[22] - (motion[12] * t25 + t4 * motion[18]));
+        const gic_real t30 = GIC_FABS((t26 * t26 + t28 * t28 + t29) * t10);
+        const gic_real t31 = R(2.928503331078754) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + GIC_FABS(motion[18]);
+        const gic_real t32 = GIC_FABS(m0[12]);
+        const gic_real t33 = t19 * t19 + t20 * t20 + t31 + (t32 * t32 + GIC_FABS(m0[18]));
+        const gic_real t34 = (GIC_FABS(t23) + GIC_FABS(t24) + t30) / (R(1e-30) + (t33 + t21 * t21));
+        const gic_real t35 = t17 + t22 + t34;
+        worst[0] = t12;
+        worst[1] = t35;
     }
-    return worst;
 }
 
 /* ---- recovery of the whole vehicle, in computational sequence ------------------------------------------------ */
@@ -1177,6 +1336,8 @@ static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], in
         way[i] = self->x[i] - self->start[first][i];
     for (i = 0; i < HMMWV_VEHICLE_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < hmmwv_vehicle_piece[i]);
+    if (far)
+        self->head.unchecked = 0; /* a jump: no state that was checked is near */
     /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
      * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
     if (far || HMMWV_VEHICLE_FOLLOWED > 0) {
@@ -2310,6 +2471,13 @@ static GIC_APART int hmmwv_vehicle_dynamics(hmmwv_vehicle *self, gic_real time, 
         rate[10] = t288;
         rate[20] = t289;
     }
+#ifdef GIC_PLANT_RATE /* an error that tests plant */
+#ifndef GIC_PLANT_AFTER
+#define GIC_PLANT_AFTER R(-1.0) /* s */
+#endif
+    if (time > GIC_PLANT_AFTER)
+        rate[GIC_PLANT_RATE] += GIC_PLANT_BY + GIC_PLANT_BY * GIC_FABS(rate[GIC_PLANT_RATE]);
+#endif
     return GIC_OK;
 }
 
@@ -3454,6 +3622,841 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
     }
 }
 
+/* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
+
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
+ * whose are beyond what is promised, -1: there is none. */
+static GIC_COLD GIC_APART int hmmwv_vehicle_residual(const hmmwv_vehicle *self, gic_real largest[2])
+{
+    hmmwv_vehicle_links links;
+    gic_real one[2];
+    int bad = -1;
+    (void)self, (void)one;
+    largest[0] = largest[1] = R(0.0);
+    links.cold = 0;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    hmmwv_vehicle_residual_rack(hmmwv_vehicle_k_rack[0], &links, self->motion + 0, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 1;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[0], &links, self->motion + 30, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 2;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[1];
+    links.rate[0] = self->xd[1];
+    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[1], &links, self->motion + 60, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 3;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[2];
+    links.rate[0] = self->xd[2];
+    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[2], &links, self->motion + 90, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 4;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[3];
+    links.rate[0] = self->xd[3];
+    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[3], &links, self->motion + 120, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 5;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 30;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[0];
+    links.rate[1] = self->xd[0];
+    hmmwv_vehicle_residual_wheel_f_l(hmmwv_vehicle_k_wheel_f_l[0], &links, self->motion + 150, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638516)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 6;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 60;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[1];
+    links.rate[1] = self->xd[1];
+    hmmwv_vehicle_residual_wheel_f_l(hmmwv_vehicle_k_wheel_f_l[1], &links, self->motion + 186, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638516)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 7;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 90;
+    links.x[0] = self->x[2];
+    links.rate[0] = self->xd[2];
+    hmmwv_vehicle_residual_wheel_r_l(hmmwv_vehicle_k_wheel_r_l[0], &links, self->motion + 222, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 8;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 120;
+    links.x[0] = self->x[3];
+    links.rate[0] = self->xd[3];
+    hmmwv_vehicle_residual_wheel_r_l(hmmwv_vehicle_k_wheel_r_l[1], &links, self->motion + 252, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 9;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    return bad;
+}
+
+/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv_vehicle_dynamics. size: magnitudes of
+ * the terms that it is the sum of. */
+static GIC_COLD GIC_APART int hmmwv_vehicle_balance(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *tau, gic_real *size)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    {
+        const gic_real t1 = y[16] * R(3570.2);
+        const gic_real t2 = y[15] * R(2955.66);
+        const gic_real t3 = e[2] + e[2];
+        const gic_real t4 = e[3] * t3;
+        const gic_real t5 = e[1] + e[1];
+        const gic_real t6 = e[0] * t5;
+        const gic_real t7 = t4 + t6;
+        const gic_real t8 = rate[13] - R(-9.81);
+        const gic_real t9 = e[1] * t5;
+        const gic_real t10 = e[3] + e[3];
+        const gic_real t11 = e[3] * t10;
+        const gic_real t12 = R(1.0) - (t9 + t11);
+        const gic_real t13 = e[2] * t5;
+        const gic_real t14 = e[0] * t10;
+        const gic_real t15 = t13 - t14;
+        const gic_real t16 = t7 * t8 + (t12 * rate[12] + t15 * rate[11]);
+        const gic_real t17 = y[15] * R(0.056);
+        const gic_real t18 = y[15] * R(0.21300000000000002);
+        const gic_real t19 = y[14] * t17 + y[16] * t18 + (rate[16] * R(0.056) - rate[14] * R(0.21300000000000002));
+        const gic_real t20 = t16 + t19;
+        const gic_real t21 = y[15] * t1 - y[16] * t2 + rate[14] * R(1078.52) - t20 * R(444.42876000000007);
+        const gic_real t22 = e[2] * t3;
+        const gic_real t23 = R(1.0) - (t9 + t22);
+        const gic_real t24 = t4 - t6;
+        const gic_real t25 = e[1] * t10;
+        const gic_real t26 = e[0] * t3;
+        const gic_real t27 = t25 + t26;
+        const gic_real t28 = t23 * t8 + (t24 * rate[12] + t27 * rate[11]);
+        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[16] - R(0.054228999999999916) * y[14]));
+        const gic_real t30 = R(0.054228999999999916) * y[15] - m[1] * y[16];
+        const gic_real t31 = y[14] * t29 - y[15] * t30 + (m[1] * rate[14] - R(1.438648) * rate[15]);
+        const gic_real t32 = t28 + t31;
+        const gic_real t33 = t32 * R(9.072);
+        const gic_real t34 = m[1] * y[14] - R(1.438648) * y[15];
+        const gic_real t35 = y[16] * t30 - y[14] * t34 + (R(1.438648) * rate[16] - R(0.054228999999999916) * rate[14]);
+        const gic_real t36 = u[2] + (t16 + t35);
+        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
+        const gic_real t38 = m[38] * R(0.8938);
+        const gic_real t39 = m[37] * R(0.4469);
+        const gic_real t40 = m[41] * t38 + m[40] * t39;
+        const gic_real t41 = y[16] * t37 + y[15] * t40;
+        const gic_real t42 = m[38] * t38 + m[37] * t39;
+        const gic_real t43 = y[16] * t40 + y[15] * t42;
+        const gic_real t44 = y[15] * t41 - y[16] * t43 + R(0.4469) * (m[48] + rate[14] + m[54] * rate[17]);
+        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
+        const gic_real t47 = m[42] * t46;
+        const gic_real t48 = m[48] * t45 - m[42] * t47;
+        const gic_real t49 = R(1.688965) * y[16];
+        const gic_real t50 = t49 - y[14] * t46 - t47 - t47;
+        const gic_real t51 = R(0.307086) + t45;
+        const gic_real t52 = y[15] * t46 - y[16] * t51;
+        const gic_real t53 = R(1.688965) * rate[15];
+        const gic_real t54 = y[14] * t50 - y[15] * t52 + (rate[14] * t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[17] * (m[54] * t45);
+        const gic_real t56 = t55 * R(23.965);
+        const gic_real t57 = m[42] * t45;
+        const gic_real t58 = R(1.688965) * y[15];
+        const gic_real t59 = t57 + (t57 + (y[14] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[16];
+        const gic_real t61 = y[16] * t52 - y[14] * t59 + (t60 - rate[14] * t46);
+        const gic_real t62 = m[42] * t57 + m[48] * t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[17] * (m[54] * t46);
+        const gic_real t64 = t63 * R(23.965);
+        const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
+        const gic_real t66 = t21 + (rate[14] + (m[1] * t33 - t36 * R(0.4919654879999992))) + (t65 + t55 * R(7.359315990000001));
+        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
+        const gic_real t68 = m[68] * R(0.8938);
+        const gic_real t69 = m[67] * R(0.4469);
+        const gic_real t70 = m[71] * t68 + m[70] * t69;
+        const gic_real t71 = y[16] * t67 + y[15] * t70;
+        const gic_real t72 = m[68] * t68 + m[67] * t69;
+        const gic_real t73 = y[16] * t70 + y[15] * t72;
+        const gic_real t74 = y[15] * t71 - y[16] * t73 + R(0.4469) * (m[78] + rate[14] + m[84] * rate[18]);
+        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
+        const gic_real t77 = m[72] * t76;
+        const gic_real t78 = m[78] * t75 - m[72] * t77;
+        const gic_real t79 = t49 - y[14] * t76 - t77 - t77;
+        const gic_real t80 = R(-0.307086) + t75;
+        const gic_real t81 = y[15] * t76 - y[16] * t80;
+        const gic_real t82 = y[14] * t79 - y[15] * t81 + (rate[14] * t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[18] * (m[84] * t75);
+        const gic_real t84 = R(23.965) * t83;
+        const gic_real t85 = m[72] * t75;
+        const gic_real t86 = t85 + (t85 + (y[14] * t80 - t58));
+        const gic_real t87 = y[16] * t81 - y[14] * t86 + (t60 - rate[14] * t76);
+        const gic_real t88 = m[72] * t85 + m[78] * t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[18] * (m[84] * t76);
+        const gic_real t90 = R(23.965) * t89;
+        const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
+        const gic_real t92 = m[163] + y[15];
+        const gic_real t93 = m[164] + y[16];
+        const gic_real t94 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(0.19340000000000046)) + m[159] * (m[159] * R(4.8947505)));
+        const gic_real t95 = m[158] * R(4.7728205);
+        const gic_real t96 = m[157] * R(0.19340000000000046);
+        const gic_real t97 = m[156] * R(4.8947505);
+        const gic_real t98 = m[161] * t95 + (m[160] * t96 + m[159] * t97);
+        const gic_real t99 = m[162] + y[14];
+        const gic_real t100 = m[155] * R(4.7728205);
+        const gic_real t101 = m[154] * R(0.19340000000000046);
+        const gic_real t102 = m[153] * R(4.8947505);
+        const gic_real t103 = m[161] * t100 + (m[160] * t101 + m[159] * t102);
+        const gic_real t104 = t93 * t94 + (t92 * t98 + t99 * t103);
+        const gic_real t105 = m[158] * t95 + (m[157] * t96 + m[156] * t97);
+        const gic_real t106 = m[158] * t100 + (m[157] * t101 + m[156] * t102);
+        const gic_real t107 = t93 * t98 + (t92 * t105 + t99 * t106);
+        const gic_real t108 = m[170] + (rate[16] + (m[163] * y[14] - m[162] * y[15])) + m[176] * u[2];
+        const gic_real t109 = t108 + m[182] * rate[17];
+        const gic_real t110 = m[169] + (rate[15] + (m[162] * y[16] - m[164] * y[14])) + m[175] * u[2];
+        const gic_real t111 = t110 + m[181] * rate[17];
+        const gic_real t112 = m[155] * t100 + (m[154] * t101 + m[153] * t102);
+        const gic_real t113 = m[168] + (rate[14] + (m[164] * y[15] - m[163] * y[16])) + m[174] * u[2];
+        const gic_real t114 = t113 + m[180] * rate[17];
+        const gic_real t115 = t92 * t104 - t93 * t107 + (t103 * t109 + (t106 * t111 + t112 * t114));
+        const gic_real t116 = m[156] * R(-0.004825999999999997);
+        const gic_real t117 = m[158] * R(0.09182099999999999) + (t116 + m[157] * R(0.08910630000000008));
+        const gic_real t118 = m[153] * R(-0.004825999999999997);
+        const gic_real t119 = m[155] * R(0.09182099999999999) + (t118 + m[154] * R(0.08910630000000008));
+        const gic_real t120 = m[159] * R(-0.004825999999999997);
+        const gic_real t121 = m[161] * R(0.09182099999999999) + (t120 + m[160] * R(0.08910630000000008));
+        const gic_real t122 = m[164] * t119 - m[162] * t121;
+        const gic_real t123 = m[163] * t121 - m[164] * t117;
+        const gic_real t124 = m[162] * t122 - m[163] * t123 + (m[168] * t117 - m[169] * t119);
+        const gic_real t125 = m[173] + t124;
+        const gic_real t126 = m[166] + t122;
+        const gic_real t127 = R(1.653405) + t119;
+        const gic_real t128 = m[152] + t121;
+        const gic_real t129 = t126 + (t126 + (y[16] * t127 - y[14] * t128));
+        const gic_real t130 = m[151] + t117;
+        const gic_real t131 = t123 + (t123 + (y[15] * t128 - y[16] * t130));
+        const gic_real t132 = y[14] * t129 - y[15] * t131 + (rate[14] * t130 - rate[15] * t127);
+        const gic_real t133 = t125 + (t28 + t132) + u[2] * (m[174] * t117 - m[175] * t119);
+        const gic_real t134 = t133 + rate[17] * (m[185] + (m[180] * t117 - m[181] * t119));
+        const gic_real t135 = t134 * R(90.555);
+        const gic_real t136 = m[162] * t117 - m[163] * t119;
+        const gic_real t137 = m[164] * t123 - m[162] * t136 + (m[170] * t119 - m[168] * t121);
+        const gic_real t138 = m[172] + t137;
+        const gic_real t139 = m[167] + t136;
+        const gic_real t140 = t139 + (t139 + (y[14] * t130 - y[15] * t127));
+        const gic_real t141 = y[16] * t131 - y[14] * t140 + (rate[16] * t127 - rate[14] * t128);
+        const gic_real t142 = t138 + (t16 + t141) + u[2] * (m[176] * t119 - m[174] * t121);
+        const gic_real t143 = t142 + rate[17] * (m[184] + (m[182] * t119 - m[180] * t121));
+        const gic_real t144 = t143 * R(90.555);
+        const gic_real t145 = t115 + (t117 * t135 - t121 * t144);
+        const gic_real t146 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t145 + (m[151] * t135 - m[152] * t144));
+        const gic_real t147 = m[199] + y[15];
+        const gic_real t148 = m[200] + y[16];
+        const gic_real t149 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(0.19340000000000046)) + m[195] * (m[195] * R(4.8947505)));
+        const gic_real t150 = m[194] * R(4.7728205);
+        const gic_real t151 = m[193] * R(0.19340000000000046);
+        const gic_real t152 = m[192] * R(4.8947505);
+        const gic_real t153 = m[197] * t150 + (m[196] * t151 + m[195] * t152);
+        const gic_real t154 = m[198] + y[14];
+        const gic_real t155 = m[191] * R(4.7728205);
+        const gic_real t156 = m[190] * R(0.19340000000000046);
+        const gic_real t157 = m[189] * R(4.8947505);
+        const gic_real t158 = m[197] * t155 + (m[196] * t156 + m[195] * t157);
+        const gic_real t159 = t148 * t149 + (t147 * t153 + t154 * t158);
+        const gic_real t160 = m[194] * t150 + (m[193] * t151 + m[192] * t152);
+        const gic_real t161 = m[194] * t155 + (m[193] * t156 + m[192] * t157);
+        const gic_real t162 = t148 * t153 + (t147 * t160 + t154 * t161);
+        const gic_real t163 = m[206] + (rate[16] + (m[199] * y[14] - m[198] * y[15])) + m[212] * u[2];
+        const gic_real t164 = t163 + m[218] * rate[18];
+        const gic_real t165 = m[205] + (rate[15] + (m[198] * y[16] - m[200] * y[14])) + m[211] * u[2];
+        const gic_real t166 = t165 + m[217] * rate[18];
+        const gic_real t167 = m[191] * t155 + (m[190] * t156 + m[189] * t157);
+        const gic_real t168 = m[204] + (rate[14] + (m[200] * y[15] - m[199] * y[16])) + m[210] * u[2];
+        const gic_real t169 = t168 + m[216] * rate[18];
+        const gic_real t170 = t147 * t159 - t148 * t162 + (t158 * t164 + (t161 * t166 + t167 * t169));
+        const gic_real t171 = m[192] * R(-0.004825999999999997);
+        const gic_real t172 = m[194] * R(0.09182099999999999) + (t171 + m[193] * R(-0.08910630000000008));
+        const gic_real t173 = m[189] * R(-0.004825999999999997);
+        const gic_real t174 = m[191] * R(0.09182099999999999) + (t173 + m[190] * R(-0.08910630000000008));
+        const gic_real t175 = m[195] * R(-0.004825999999999997);
+        const gic_real t176 = m[197] * R(0.09182099999999999) + (t175 + m[196] * R(-0.08910630000000008));
+        const gic_real t177 = m[200] * t174 - m[198] * t176;
+        const gic_real t178 = m[199] * t176 - m[200] * t172;
+        const gic_real t179 = m[198] * t177 - m[199] * t178 + (m[204] * t172 - m[205] * t174);
+        const gic_real t180 = m[209] + t179;
+        const gic_real t181 = m[202] + t177;
+        const gic_real t182 = R(1.653405) + t174;
+        const gic_real t183 = m[188] + t176;
+        const gic_real t184 = t181 + (t181 + (y[16] * t182 - y[14] * t183));
+        const gic_real t185 = m[187] + t172;
+        const gic_real t186 = t178 + (t178 + (y[15] * t183 - y[16] * t185));
+        const gic_real t187 = y[14] * t184 - y[15] * t186 + (rate[14] * t185 - rate[15] * t182);
+        const gic_real t188 = t180 + (t28 + t187) + u[2] * (m[210] * t172 - m[211] * t174);
+        const gic_real t189 = t188 + rate[18] * (m[221] + (m[216] * t172 - m[217] * t174));
+        const gic_real t190 = R(90.555) * t189;
+        const gic_real t191 = m[198] * t172 - m[199] * t174;
+        const gic_real t192 = m[200] * t178 - m[198] * t191 + (m[206] * t174 - m[204] * t176);
+        const gic_real t193 = m[208] + t192;
+        const gic_real t194 = m[203] + t191;
+        const gic_real t195 = t194 + (t194 + (y[14] * t185 - y[15] * t182));
+        const gic_real t196 = y[16] * t186 - y[14] * t195 + (rate[16] * t182 - rate[14] * t183);
+        const gic_real t197 = t193 + (t16 + t196) + u[2] * (m[212] * t174 - m[210] * t176);
+        const gic_real t198 = t197 + rate[18] * (m[220] + (m[218] * t174 - m[216] * t176));
+        const gic_real t199 = R(90.555) * t198;
+        const gic_real t200 = t170 + (t172 * t190 - t176 * t199);
+        const gic_real t201 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
+        const gic_real t202 = m[98] * R(0.8938);
+        const gic_real t203 = m[97] * R(0.4469);
+        const gic_real t204 = m[101] * t202 + m[100] * t203;
+        const gic_real t205 = y[16] * t201 + y[15] * t204;
+        const gic_real t206 = m[98] * t202 + m[97] * t203;
+        const gic_real t207 = y[16] * t204 + y[15] * t206;
+        const gic_real t208 = y[15] * t205 - y[16] * t207 + R(0.4469) * (m[108] + rate[14] + m[114] * rate[19]);
+        const gic_real t209 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
+        const gic_real t210 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
+        const gic_real t211 = m[102] * t210;
+        const gic_real t212 = m[108] * t209 - m[102] * t211;
+        const gic_real t213 = R(-1.688965) * y[16];
+        const gic_real t214 = t213 - y[14] * t210 - t211 - t211;
+        const gic_real t215 = R(0.307086) + t209;
+        const gic_real t216 = y[15] * t210 - y[16] * t215;
+        const gic_real t217 = R(-1.688965) * rate[15];
+        const gic_real t218 = y[14] * t214 - y[15] * t216 + (rate[14] * t215 - t217);
+        const gic_real t219 = t212 + (t28 + t218) + rate[19] * (m[114] * t209);
+        const gic_real t220 = R(23.965) * t219;
+        const gic_real t221 = m[102] * t209;
+        const gic_real t222 = R(-1.688965) * y[15];
+        const gic_real t223 = t221 + (t221 + (y[14] * t215 - t222));
+        const gic_real t224 = R(-1.688965) * rate[16];
+        const gic_real t225 = y[16] * t216 - y[14] * t223 + (t224 - rate[14] * t210);
+        const gic_real t226 = m[102] * t221 + m[108] * t210;
+        const gic_real t227 = t16 + t225 - t226 - rate[19] * (m[114] * t210);
+        const gic_real t228 = R(23.965) * t227;
+        const gic_real t229 = t208 + (t209 * t220 - t210 * t228);
+        const gic_real t230 = t146 + (t200 + (m[187] * t190 - m[188] * t199)) + (t229 + R(7.359315990000001) * t219);
+        const gic_real t231 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
+        const gic_real t232 = m[128] * R(0.8938);
+        const gic_real t233 = m[127] * R(0.4469);
+        const gic_real t234 = m[131] * t232 + m[130] * t233;
+        const gic_real t235 = y[16] * t231 + y[15] * t234;
+        const gic_real t236 = m[128] * t232 + m[127] * t233;
+        const gic_real t237 = y[16] * t234 + y[15] * t236;
+        const gic_real t238 = y[15] * t235 - y[16] * t237 + R(0.4469) * (m[138] + rate[14] + m[144] * rate[20]);
+        const gic_real t239 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
+        const gic_real t240 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
+        const gic_real t241 = m[132] * t240;
+        const gic_real t242 = m[138] * t239 - m[132] * t241;
+        const gic_real t243 = t213 - y[14] * t240 - t241 - t241;
+        const gic_real t244 = R(-0.307086) + t239;
+        const gic_real t245 = y[15] * t240 - y[16] * t244;
+        const gic_real t246 = y[14] * t243 - y[15] * t245 + (rate[14] * t244 - t217);
+        const gic_real t247 = t242 + (t28 + t246) + rate[20] * (m[144] * t239);
+        const gic_real t248 = R(23.965) * t247;
+        const gic_real t249 = m[132] * t239;
+        const gic_real t250 = t249 + (t249 + (y[14] * t244 - t222));
+        const gic_real t251 = y[16] * t245 - y[14] * t250 + (t224 - rate[14] * t240);
+        const gic_real t252 = m[132] * t249 + m[138] * t240;
+        const gic_real t253 = t16 + t251 - t252 - rate[20] * (m[144] * t240);
+        const gic_real t254 = R(23.965) * t253;
+        const gic_real t255 = t238 + (t239 * t248 - t240 * t254);
+        const gic_real t256 = m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(0.19340000000000046));
+        const gic_real t257 = m[230] * R(4.7728205);
+        const gic_real t258 = m[229] * R(0.19340000000000046);
+        const gic_real t259 = m[233] * t257 + m[232] * t258;
+        const gic_real t260 = y[16] * t256 + y[15] * t259;
+        const gic_real t261 = m[230] * t257 + m[229] * t258;
+        const gic_real t262 = y[16] * t259 + y[15] * t261;
+        const gic_real t263 = y[15] * t260 - y[16] * t262 + R(4.8947505) * (m[240] + rate[14] + m[246] * rate[19]);
+        const gic_real t264 = m[230] * R(0.09182099999999999) + m[229] * R(0.08910630000000008);
+        const gic_real t265 = m[233] * R(0.09182099999999999) + m[232] * R(0.08910630000000008);
+        const gic_real t266 = m[234] * t265;
+        const gic_real t267 = m[245] + (m[240] * t264 - m[234] * t266);
+        const gic_real t268 = m[238] - t266;
+        const gic_real t269 = R(-1.653405) * y[16];
+        const gic_real t270 = m[224] + t265;
+        const gic_real t271 = t268 + (t268 + (t269 - y[14] * t270));
+        const gic_real t272 = m[223] + t264;
+        const gic_real t273 = y[15] * t270 - y[16] * t272;
+        const gic_real t274 = R(-1.653405) * rate[15];
+        const gic_real t275 = y[14] * t271 - y[15] * t273 + (rate[14] * t272 - t274);
+        const gic_real t276 = t267 + (t28 + t275) + rate[19] * (m[251] + m[246] * t264);
+        const gic_real t277 = R(90.555) * t276;
+        const gic_real t278 = m[234] * t264;
+        const gic_real t279 = m[244] - (m[234] * t278 + m[240] * t265);
+        const gic_real t280 = m[239] + t278;
+        const gic_real t281 = R(-1.653405) * y[15];
+        const gic_real t282 = t280 + (t280 + (y[14] * t272 - t281));
+        const gic_real t283 = R(-1.653405) * rate[16];
+        const gic_real t284 = y[16] * t273 - y[14] * t282 + (t283 - rate[14] * t270);
+        const gic_real t285 = t279 + (t16 + t284) + rate[19] * (m[250] - m[246] * t265);
+        const gic_real t286 = R(90.555) * t285;
+        const gic_real t287 = t263 + (t264 * t277 - t265 * t286);
+        const gic_real t288 = t230 + (t255 + R(-7.359315990000001) * t247) + (t287 + (m[223] * t277 - m[224] * t286));
+        const gic_real t289 = m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(0.19340000000000046));
+        const gic_real t290 = m[260] * R(4.7728205);
+        const gic_real t291 = m[259] * R(0.19340000000000046);
+        const gic_real t292 = m[263] * t290 + m[262] * t291;
+        const gic_real t293 = y[16] * t289 + y[15] * t292;
+        const gic_real t294 = m[260] * t290 + m[259] * t291;
+        const gic_real t295 = y[16] * t292 + y[15] * t294;
+        const gic_real t296 = y[15] * t293 - y[16] * t295 + R(4.8947505) * (m[270] + rate[14] + m[276] * rate[20]);
+        const gic_real t297 = m[260] * R(0.09182099999999999) + m[259] * R(-0.08910630000000008);
+        const gic_real t298 = m[263] * R(0.09182099999999999) + m[262] * R(-0.08910630000000008);
+        const gic_real t299 = m[264] * t298;
+        const gic_real t300 = m[275] + (m[270] * t297 - m[264] * t299);
+        const gic_real t301 = m[268] - t299;
+        const gic_real t302 = m[254] + t298;
+        const gic_real t303 = t301 + (t301 + (t269 - y[14] * t302));
+        const gic_real t304 = m[253] + t297;
+        const gic_real t305 = y[15] * t302 - y[16] * t304;
+        const gic_real t306 = y[14] * t303 - y[15] * t305 + (rate[14] * t304 - t274);
+        const gic_real t307 = t300 + (t28 + t306) + rate[20] * (m[281] + m[276] * t297);
+        const gic_real t308 = R(90.555) * t307;
+        const gic_real t309 = m[264] * t297;
+        const gic_real t310 = m[274] - (m[264] * t309 + m[270] * t298);
+        const gic_real t311 = m[269] + t309;
+        const gic_real t312 = t311 + (t311 + (y[14] * t304 - t281));
+        const gic_real t313 = y[16] * t305 - y[14] * t312 + (t283 - rate[14] * t302);
+        const gic_real t314 = t310 + (t16 + t313) + rate[20] * (m[280] - m[276] * t298);
+        const gic_real t315 = R(90.555) * t314;
+        const gic_real t316 = t296 + (t297 * t308 - t298 * t315);
+        const gic_real t317 = t25 - t26;
+        const gic_real t318 = t13 + t14;
+        const gic_real t319 = R(1.0) - (t22 + t11);
+        const gic_real t320 = t317 * self->grip[86] + (t318 * self->grip[85] + t319 * self->grip[84]);
+        const gic_real t321 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
+        const gic_real t322 = t23 * self->grip[83] + (t24 * self->grip[82] + t27 * self->grip[81]);
+        const gic_real t323 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
+        const gic_real t324 = t7 * self->grip[83] + (t12 * self->grip[82] + t15 * self->grip[81]);
+        const gic_real t325 = t320 + (t321 * t322 - t323 * t324);
+        const gic_real t326 = t317 * self->grip[59] + (t318 * self->grip[58] + t319 * self->grip[57]);
+        const gic_real t327 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
+        const gic_real t328 = t23 * self->grip[56] + (t24 * self->grip[55] + t27 * self->grip[54]);
+        const gic_real t329 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
+        const gic_real t330 = t7 * self->grip[56] + (t12 * self->grip[55] + t15 * self->grip[54]);
+        const gic_real t331 = t326 + (t327 * t328 - t329 * t330);
+        const gic_real t332 = t317 * self->grip[32] + (t318 * self->grip[31] + t319 * self->grip[30]);
+        const gic_real t333 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + t171);
+        const gic_real t334 = t23 * self->grip[29] + (t24 * self->grip[28] + t27 * self->grip[27]);
+        const gic_real t335 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + t175);
+        const gic_real t336 = t7 * self->grip[29] + (t12 * self->grip[28] + t15 * self->grip[27]);
+        const gic_real t337 = t332 + (t333 * t334 - t335 * t336);
+        const gic_real t338 = t317 * self->grip[5] + (t318 * self->grip[4] + t319 * self->grip[3]);
+        const gic_real t339 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + t116);
+        const gic_real t340 = t23 * self->grip[2] + (t24 * self->grip[1] + t27 * self->grip[0]);
+        const gic_real t341 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + t120);
+        const gic_real t342 = t7 * self->grip[2] + (t12 * self->grip[1] + t15 * self->grip[0]);
+        const gic_real t343 = t338 + (t339 * t340 - t341 * t342);
+        const gic_real t344 = m[154] * self->grip[6];
+        const gic_real t345 = m[190] * self->grip[33];
+        const gic_real t346 = t343 + (m[151] * t340 - m[152] * t342 - (t344 + t345));
+        const gic_real t347 = t337 + (t346 + (m[187] * t334 - m[188] * t336)) + (m[223] * t328 - m[224] * t330);
+        const gic_real t348 = t325 + (t331 + t347 + (m[253] * t322 - m[254] * t324));
+        const gic_real t349 = t288 + (t316 + (m[253] * t308 - m[254] * t315)) - t348;
+        const gic_real t350 = m[160] * self->grip[6];
+        const gic_real t351 = m[157] * self->grip[6];
+        const gic_real t352 = GIC_FABS(-t350) + GIC_FABS(-t351) + GIC_FABS(-t344);
+        const gic_real t353 = m[196] * self->grip[33];
+        const gic_real t354 = m[193] * self->grip[33];
+        const gic_real t355 = GIC_FABS(-t353) + GIC_FABS(-t354) + GIC_FABS(-t345);
+        const gic_real t356 = m[232] * self->grip[60];
+        const gic_real t357 = m[229] * self->grip[60];
+        const gic_real t358 = t352 + t355 + (GIC_FABS(-t356) + GIC_FABS(-t357));
+        const gic_real t359 = m[262] * self->grip[87];
+        const gic_real t360 = m[259] * self->grip[87];
+        const gic_real t361 = t358 + (GIC_FABS(-t359) + GIC_FABS(-t360));
+        const gic_real t362 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t317);
+        const gic_real t363 = t317 * t8 + (t318 * rate[12] + t319 * rate[11]);
+        const gic_real t364 = t362 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t363));
+        const gic_real t365 = GIC_FABS(y[16]) + GIC_FABS(y[15]) + GIC_FABS(y[14]);
+        const gic_real t366 = GIC_FABS(rate[16]) + GIC_FABS(rate[15]) + GIC_FABS(rate[14]);
+        const gic_real t367 = t365 * t365 + t366;
+        const gic_real t368 = t364 + t367 * R(0.269);
+        const gic_real t369 = R(1.438648) + (R(0.054228999999999916) + GIC_FABS(m[1]));
+        const gic_real t370 = GIC_FABS(u[2]);
+        const gic_real t371 = t364 + t367 * t369 + t365 * GIC_FABS(m[16]) + t370;
+        const gic_real t372 = R(9.072) * t371;
+        const gic_real t373 = t361 + (t368 * R(561.2738800000001) + t367 * R(7604.379999999999)) + (R(3.0) * t367 + t369 * t372);
+        const gic_real t374 = GIC_FABS(t46);
+        const gic_real t375 = t374 + GIC_FABS(t45);
+        const gic_real t376 = t365 + GIC_FABS(m[42]);
+        const gic_real t377 = t366 + t376 * t376;
+        const gic_real t378 = t364 + t377 * (R(1.688965) + (t374 + GIC_FABS(t51))) + t365 * (GIC_FABS(t57) + GIC_FABS(-t47));
+        const gic_real t379 = GIC_FABS(rate[17]);
+        const gic_real t380 = GIC_FABS(m[54]);
+        const gic_real t381 = t379 * t380;
+        const gic_real t382 = t378 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t381 * t375;
+        const gic_real t383 = R(23.965) * t382;
+        const gic_real t384 = t375 * t383 + (t377 + GIC_FABS(m[48]) + t381) * R(1.7876);
+        const gic_real t385 = GIC_FABS(t76);
+        const gic_real t386 = t385 + GIC_FABS(t75);
+        const gic_real t387 = t365 + GIC_FABS(m[72]);
+        const gic_real t388 = t366 + t387 * t387;
+        const gic_real t389 = t364 + t388 * (R(1.688965) + (t385 + GIC_FABS(t80))) + t365 * (GIC_FABS(t85) + GIC_FABS(-t77));
+        const gic_real t390 = GIC_FABS(rate[18]);
+        const gic_real t391 = GIC_FABS(m[84]);
+        const gic_real t392 = t390 * t391;
+        const gic_real t393 = t389 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t392 * t386;
+        const gic_real t394 = R(23.965) * t393;
+        const gic_real t395 = t386 * t394 + R(1.7876) * (t388 + GIC_FABS(m[78]) + t392);
+        const gic_real t396 = t373 + (t384 + t382 * R(47.835362215)) + (t395 + R(47.835362215) * t393);
+        const gic_real t397 = t317 * self->grip[2] + (t318 * self->grip[1] + t319 * self->grip[0]);
+        const gic_real t398 = GIC_FABS(t340) + GIC_FABS(t342) + GIC_FABS(t397);
+        const gic_real t399 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + t118);
+        const gic_real t400 = t398 * (GIC_FABS(t341) + GIC_FABS(t339) + GIC_FABS(t399));
+        const gic_real t401 = t23 * self->grip[5] + (t24 * self->grip[4] + t27 * self->grip[3]);
+        const gic_real t402 = t7 * self->grip[5] + (t12 * self->grip[4] + t15 * self->grip[3]);
+        const gic_real t403 = t400 + (GIC_FABS(t401) + GIC_FABS(t402) + GIC_FABS(t338));
+        const gic_real t404 = GIC_FABS(t121) + GIC_FABS(t117) + GIC_FABS(t119);
+        const gic_real t405 = t365 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t406 = t366 + t405 * t405;
+        const gic_real t407 = t406 * (GIC_FABS(t128) + GIC_FABS(t130) + GIC_FABS(t127));
+        const gic_real t408 = t365 * (GIC_FABS(t139) + GIC_FABS(t126) + GIC_FABS(t123));
+        const gic_real t409 = m[163] * t136 - m[164] * t122 + (m[169] * t121 - m[170] * t117);
+        const gic_real t410 = t364 + t407 + t408 + (GIC_FABS(t125) + GIC_FABS(t138) + GIC_FABS(t409));
+        const gic_real t411 = t370 * (GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]));
+        const gic_real t412 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t413 = t379 * t412;
+        const gic_real t414 = GIC_FABS(m[185]) + GIC_FABS(m[184]);
+        const gic_real t415 = t410 + t411 * t404 + t404 * t413 + t379 * t414;
+        const gic_real t416 = R(90.555) * t415;
+        const gic_real t417 = t406 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t418 = t403 + (t404 * t416 + (t417 + t411 + t413) * R(9.860971));
+        const gic_real t419 = t398 + t416;
+        const gic_real t420 = t418 + t419 * (R(1.653405) + (GIC_FABS(m[152]) + GIC_FABS(m[151])));
+        const gic_real t421 = t317 * self->grip[29] + (t318 * self->grip[28] + t319 * self->grip[27]);
+        const gic_real t422 = GIC_FABS(t334) + GIC_FABS(t336) + GIC_FABS(t421);
+        const gic_real t423 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + t173);
+        const gic_real t424 = t422 * (GIC_FABS(t335) + GIC_FABS(t333) + GIC_FABS(t423));
+        const gic_real t425 = t23 * self->grip[32] + (t24 * self->grip[31] + t27 * self->grip[30]);
+        const gic_real t426 = t7 * self->grip[32] + (t12 * self->grip[31] + t15 * self->grip[30]);
+        const gic_real t427 = t424 + (GIC_FABS(t425) + GIC_FABS(t426) + GIC_FABS(t332));
+        const gic_real t428 = GIC_FABS(t176) + GIC_FABS(t172) + GIC_FABS(t174);
+        const gic_real t429 = t365 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t430 = t366 + t429 * t429;
+        const gic_real t431 = t430 * (GIC_FABS(t183) + GIC_FABS(t185) + GIC_FABS(t182));
+        const gic_real t432 = t365 * (GIC_FABS(t194) + GIC_FABS(t181) + GIC_FABS(t178));
+        const gic_real t433 = m[199] * t191 - m[200] * t177 + (m[205] * t176 - m[206] * t172);
+        const gic_real t434 = t364 + t431 + t432 + (GIC_FABS(t180) + GIC_FABS(t193) + GIC_FABS(t433));
+        const gic_real t435 = t370 * (GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]));
+        const gic_real t436 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t437 = t390 * t436;
+        const gic_real t438 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t439 = t434 + t435 * t428 + t428 * t437 + t390 * t438;
+        const gic_real t440 = R(90.555) * t439;
+        const gic_real t441 = t430 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t442 = t427 + (t428 * t440 + R(9.860971) * (t441 + t435 + t437));
+        const gic_real t443 = t422 + t440;
+        const gic_real t444 = t442 + t443 * (R(1.653405) + (GIC_FABS(m[188]) + GIC_FABS(m[187])));
+        const gic_real t445 = GIC_FABS(t210);
+        const gic_real t446 = t445 + GIC_FABS(t209);
+        const gic_real t447 = t365 + GIC_FABS(m[102]);
+        const gic_real t448 = t366 + t447 * t447;
+        const gic_real t449 = t364 + t448 * (R(1.688965) + (t445 + GIC_FABS(t215))) + t365 * (GIC_FABS(t221) + GIC_FABS(-t211));
+        const gic_real t450 = GIC_FABS(rate[19]);
+        const gic_real t451 = GIC_FABS(m[114]);
+        const gic_real t452 = t450 * t451;
+        const gic_real t453 = t449 + (GIC_FABS(t212) + GIC_FABS(-t226)) + t452 * t446;
+        const gic_real t454 = R(23.965) * t453;
+        const gic_real t455 = t446 * t454 + R(1.7876) * (t448 + GIC_FABS(m[108]) + t452);
+        const gic_real t456 = GIC_FABS(t240);
+        const gic_real t457 = t456 + GIC_FABS(t239);
+        const gic_real t458 = t365 + GIC_FABS(m[132]);
+        const gic_real t459 = t366 + t458 * t458;
+        const gic_real t460 = t364 + t459 * (R(1.688965) + (t456 + GIC_FABS(t244))) + t365 * (GIC_FABS(t249) + GIC_FABS(-t241));
+        const gic_real t461 = GIC_FABS(rate[20]);
+        const gic_real t462 = GIC_FABS(m[144]);
+        const gic_real t463 = t461 * t462;
+        const gic_real t464 = t460 + (GIC_FABS(t242) + GIC_FABS(-t252)) + t463 * t457;
+        const gic_real t465 = R(23.965) * t464;
+        const gic_real t466 = t457 * t465 + R(1.7876) * (t459 + GIC_FABS(m[138]) + t463);
+        const gic_real t467 = t396 + t420 + t444 + (t455 + R(47.835362215) * t453) + (t466 + R(47.835362215) * t464);
+        const gic_real t468 = t317 * self->grip[56] + (t318 * self->grip[55] + t319 * self->grip[54]);
+        const gic_real t469 = GIC_FABS(t328) + GIC_FABS(t330) + GIC_FABS(t468);
+        const gic_real t470 = t23 * self->grip[59] + (t24 * self->grip[58] + t27 * self->grip[57]);
+        const gic_real t471 = t7 * self->grip[59] + (t12 * self->grip[58] + t15 * self->grip[57]);
+        const gic_real t472 = t469 * (GIC_FABS(t329) + GIC_FABS(t327)) + (GIC_FABS(t470) + GIC_FABS(t471) + GIC_FABS(t326));
+        const gic_real t473 = GIC_FABS(t265) + GIC_FABS(t264);
+        const gic_real t474 = t365 + GIC_FABS(m[234]);
+        const gic_real t475 = t366 + t474 * t474;
+        const gic_real t476 = t364 + t475 * (R(1.653405) + (GIC_FABS(t270) + GIC_FABS(t272)));
+        const gic_real t477 = t476 + t365 * (GIC_FABS(t280) + GIC_FABS(t268)) + (GIC_FABS(t267) + GIC_FABS(t279));
+        const gic_real t478 = GIC_FABS(m[246]);
+        const gic_real t479 = t450 * t478;
+        const gic_real t480 = GIC_FABS(m[251]) + GIC_FABS(m[250]);
+        const gic_real t481 = R(90.555) * (t477 + t479 * t473 + t450 * t480);
+        const gic_real t482 = t473 * t481 + R(9.860971) * (t475 + GIC_FABS(m[240]) + t479);
+        const gic_real t483 = t472 + t482;
+        const gic_real t484 = t469 + t481;
+        const gic_real t485 = t483 + t484 * (R(1.653405) + (GIC_FABS(m[224]) + GIC_FABS(m[223])));
+        const gic_real t486 = t317 * self->grip[83] + (t318 * self->grip[82] + t319 * self->grip[81]);
+        const gic_real t487 = GIC_FABS(t322) + GIC_FABS(t324) + GIC_FABS(t486);
+        const gic_real t488 = t23 * self->grip[86] + (t24 * self->grip[85] + t27 * self->grip[84]);
+        const gic_real t489 = t7 * self->grip[86] + (t12 * self->grip[85] + t15 * self->grip[84]);
+        const gic_real t490 = t487 * (GIC_FABS(t323) + GIC_FABS(t321)) + (GIC_FABS(t488) + GIC_FABS(t489) + GIC_FABS(t320));
+        const gic_real t491 = GIC_FABS(t298) + GIC_FABS(t297);
+        const gic_real t492 = t365 + GIC_FABS(m[264]);
+        const gic_real t493 = t366 + t492 * t492;
+        const gic_real t494 = t364 + t493 * (R(1.653405) + (GIC_FABS(t302) + GIC_FABS(t304)));
+        const gic_real t495 = t494 + t365 * (GIC_FABS(t311) + GIC_FABS(t301)) + (GIC_FABS(t300) + GIC_FABS(t310));
+        const gic_real t496 = GIC_FABS(m[276]);
+        const gic_real t497 = t461 * t496;
+        const gic_real t498 = GIC_FABS(m[281]) + GIC_FABS(m[280]);
+        const gic_real t499 = R(90.555) * (t495 + t497 * t491 + t461 * t498);
+        const gic_real t500 = t491 * t499 + R(9.860971) * (t493 + GIC_FABS(m[270]) + t497);
+        const gic_real t501 = t490 + t500;
+        const gic_real t502 = t487 + t499;
+        const gic_real t503 = t501 + t502 * (R(1.653405) + (GIC_FABS(m[254]) + GIC_FABS(m[253])));
+        const gic_real t504 = t467 + t485 + t503;
+        const gic_real t505 = y[16] * R(0.056) - y[14] * R(0.21300000000000002);
+        const gic_real t506 = t363 + (rate[15] * R(0.21300000000000002) - (y[16] * t505 + y[15] * t17));
+        const gic_real t507 = y[15] * t34 - y[16] * t29 + (R(0.054228999999999916) * rate[15] - m[1] * rate[16]);
+        const gic_real t508 = t363 + t507;
+        const gic_real t509 = t508 * R(9.072);
+        const gic_real t510 = y[15] * t59 - y[16] * t50 + (rate[15] * t46 - rate[16] * t51);
+        const gic_real t511 = t363 + t510;
+        const gic_real t512 = t511 * R(23.965);
+        const gic_real t513 = y[15] * t86 - y[16] * t79 + (rate[15] * t76 - rate[16] * t80);
+        const gic_real t514 = t363 + t513;
+        const gic_real t515 = R(23.965) * t514;
+        const gic_real t516 = y[15] * t140 - y[16] * t129 + (rate[15] * t128 - rate[16] * t130);
+        const gic_real t517 = t409 + (t363 + t516) + u[2] * (m[175] * t121 - m[176] * t117);
+        const gic_real t518 = (t517 + rate[17] * (m[181] * t121 - m[182] * t117)) * R(90.555);
+        const gic_real t519 = y[15] * t195 - y[16] * t184 + (rate[15] * t183 - rate[16] * t185);
+        const gic_real t520 = t433 + (t363 + t519) + u[2] * (m[211] * t176 - m[212] * t172);
+        const gic_real t521 = R(90.555) * (t520 + rate[18] * (m[217] * t176 - m[218] * t172));
+        const gic_real t522 = t506 * R(2086.52) + t509 + t512 + t515 + t518 + t521;
+        const gic_real t523 = y[15] * t223 - y[16] * t214 + (rate[15] * t210 - rate[16] * t215);
+        const gic_real t524 = t363 + t523;
+        const gic_real t525 = R(23.965) * t524;
+        const gic_real t526 = y[15] * t250 - y[16] * t243 + (rate[15] * t240 - rate[16] * t244);
+        const gic_real t527 = t363 + t526;
+        const gic_real t528 = R(23.965) * t527;
+        const gic_real t529 = y[15] * t282 - y[16] * t271 + (rate[15] * t270 - rate[16] * t272);
+        const gic_real t530 = R(90.555) * (t363 + t529);
+        const gic_real t531 = y[15] * t312 - y[16] * t303 + (rate[15] * t302 - rate[16] * t304);
+        const gic_real t532 = R(90.555) * (t363 + t531);
+        const gic_real t533 = t522 + t525 + t528 + t530 + t532 - (t486 + (t468 + (t397 + t421)));
+        const gic_real t534 = R(2086.52) * t368 + t372 + t383 + t394 + t419 + t443;
+        const gic_real t535 = t534 + t454 + t465 + t484 + t502;
+        const gic_real t536 = y[14] * R(1078.52);
+        const gic_real t537 = t28 + (y[14] * t505 - y[15] * t18 - rate[15] * R(0.056));
+        const gic_real t538 = y[16] * t536 - y[14] * t1 + rate[15] * R(2955.66) + (t506 * R(444.42876000000007) - t537 * R(116.84512));
+        const gic_real t539 = m[42] + y[14];
+        const gic_real t540 = R(0.4469) * t539;
+        const gic_real t541 = rate[16] - m[42] * y[15];
+        const gic_real t542 = rate[15] + m[42] * y[16];
+        const gic_real t543 = y[16] * t540 - t539 * t41 + (t40 * t541 + t42 * t542);
+        const gic_real t544 = t538 + (rate[15] + (t508 * R(0.4919654879999992) - t32 * R(13.051414655999999))) + (t543 + t46 * t512 - t55 * R(40.476046225));
+        const gic_real t545 = m[72] + y[14];
+        const gic_real t546 = R(0.4469) * t545;
+        const gic_real t547 = rate[16] - m[72] * y[15];
+        const gic_real t548 = rate[15] + m[72] * y[16];
+        const gic_real t549 = y[16] * t546 - t545 * t71 + (t70 * t547 + t72 * t548);
+        const gic_real t550 = t93 * t103 + (t92 * t106 + t99 * t112);
+        const gic_real t551 = t93 * t550 - t99 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
+        const gic_real t552 = t551 + (t121 * t518 - t119 * t135);
+        const gic_real t553 = t544 + (t549 + t76 * t515 - R(40.476046225) * t83) + (t552 + (m[152] * t518 - t134 * R(149.724089775)));
+        const gic_real t554 = t148 * t158 + (t147 * t161 + t154 * t167);
+        const gic_real t555 = t148 * t554 - t154 * t159 + (t153 * t164 + (t160 * t166 + t161 * t169));
+        const gic_real t556 = t555 + (t176 * t521 - t174 * t190);
+        const gic_real t557 = m[102] + y[14];
+        const gic_real t558 = R(0.4469) * t557;
+        const gic_real t559 = rate[16] - m[102] * y[15];
+        const gic_real t560 = rate[15] + m[102] * y[16];
+        const gic_real t561 = y[16] * t558 - t557 * t205 + (t204 * t559 + t206 * t560);
+        const gic_real t562 = t553 + (t556 + (m[188] * t521 - R(149.724089775) * t189)) + (t561 + t210 * t525 - t219 * R(-40.476046225));
+        const gic_real t563 = m[132] + y[14];
+        const gic_real t564 = R(0.4469) * t563;
+        const gic_real t565 = rate[16] - m[132] * y[15];
+        const gic_real t566 = rate[15] + m[132] * y[16];
+        const gic_real t567 = y[16] * t564 - t563 * t235 + (t234 * t565 + t236 * t566);
+        const gic_real t568 = m[234] + y[14];
+        const gic_real t569 = t568 * R(4.8947505);
+        const gic_real t570 = rate[16] - m[234] * y[15];
+        const gic_real t571 = rate[15] + m[234] * y[16];
+        const gic_real t572 = y[16] * t569 - t568 * t260 + (t259 * t570 + t261 * t571);
+        const gic_real t573 = t572 + t265 * t530 + (m[224] * t530 - t276 * R(-149.724089775));
+        const gic_real t574 = t562 + (t567 + t240 * t528 - R(-40.476046225) * t247) + t573;
+        const gic_real t575 = m[264] + y[14];
+        const gic_real t576 = t575 * R(4.8947505);
+        const gic_real t577 = rate[16] - m[264] * y[15];
+        const gic_real t578 = rate[15] + m[264] * y[16];
+        const gic_real t579 = y[16] * t576 - t575 * t293 + (t292 * t577 + t294 * t578);
+        const gic_real t580 = t579 + t298 * t532 + (m[254] * t532 - R(-149.724089775) * t307);
+        const gic_real t581 = t426 + (t335 * t421 - t423 * t334);
+        const gic_real t582 = t402 + (t341 * t397 - t399 * t340);
+        const gic_real t583 = m[152] * t397 - R(1.653405) * t340 - (t351 + t354 + t357 + t360);
+        const gic_real t584 = t581 + (t582 + t583 + (m[188] * t421 - R(1.653405) * t334));
+        const gic_real t585 = t471 + t329 * t468 + (t584 + (m[224] * t468 - R(-1.653405) * t328));
+        const gic_real t586 = t489 + t323 * t486 + (t585 + (m[254] * t486 - R(-1.653405) * t322));
+        const gic_real t587 = t20 * R(2086.52) + t36 * R(9.072) + t64 + t90 + t144;
+        const gic_real t588 = t587 + t199 + t228 + t254 + t286 + t315 - (t324 + (t330 + (t342 + t336)));
+        const gic_real t589 = y[14] * t2 - y[15] * t536 + rate[16] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t590 = t539 * t43 - y[15] * t540 + (t37 * t541 + t40 * t542);
+        const gic_real t591 = t590 - t45 * t512 + (t63 * R(40.476046225) - t511 * R(7.359315990000001));
+        const gic_real t592 = t589 + (rate[16] + (t36 * R(13.051414655999999) - m[1] * t509)) + t591;
+        const gic_real t593 = t545 * t73 - y[15] * t546 + (t67 * t547 + t70 * t548);
+        const gic_real t594 = t593 - t75 * t515 + (R(40.476046225) * t89 - t514 * R(-7.359315990000001));
+        const gic_real t595 = t99 * t107 - t92 * t550 + (t94 * t109 + (t98 * t111 + t103 * t114));
+        const gic_real t596 = t595 + (t119 * t144 - t117 * t518);
+        const gic_real t597 = t592 + t594 + (t596 + (t143 * R(149.724089775) - m[151] * t518));
+        const gic_real t598 = t154 * t162 - t147 * t554 + (t149 * t164 + (t153 * t166 + t158 * t169));
+        const gic_real t599 = t598 + (t174 * t199 - t172 * t521);
+        const gic_real t600 = t557 * t207 - y[15] * t558 + (t201 * t559 + t204 * t560);
+        const gic_real t601 = t600 - t209 * t525 + (t227 * R(-40.476046225) - R(7.359315990000001) * t524);
+        const gic_real t602 = t597 + (t599 + (R(149.724089775) * t198 - m[187] * t521)) + t601;
+        const gic_real t603 = t563 * t237 - y[15] * t564 + (t231 * t565 + t234 * t566);
+        const gic_real t604 = t603 - t239 * t528 + (R(-40.476046225) * t253 - R(-7.359315990000001) * t527);
+        const gic_real t605 = t568 * t262 - y[15] * t569 + (t256 * t570 + t259 * t571);
+        const gic_real t606 = t605 - t264 * t530 + (t285 * R(-149.724089775) - m[223] * t530);
+        const gic_real t607 = t575 * t295 - y[15] * t576 + (t289 * t577 + t292 * t578);
+        const gic_real t608 = t607 - t297 * t532 + (R(-149.724089775) * t314 - m[253] * t532);
+        const gic_real t609 = t425 + (t423 * t336 - t333 * t421);
+        const gic_real t610 = t401 + (t399 * t342 - t339 * t397);
+        const gic_real t611 = R(1.653405) * t342 - m[151] * t397 - (t350 + t353 + t356 + t359);
+        const gic_real t612 = t609 + (t610 + t611 + (R(1.653405) * t336 - m[187] * t421));
+        const gic_real t613 = t470 - t327 * t468 + (t612 + (R(-1.653405) * t330 - m[223] * t468));
+        const gic_real t614 = t488 - t321 * t486 + (t613 + (R(-1.653405) * t324 - m[253] * t486));
+        const gic_real t615 = t537 * R(2086.52) + t33 + t56 + t84 + t135 + t190;
+        const gic_real t616 = t615 + t220 + t248 + t277 + t308 - (t322 + (t328 + (t340 + t334)));
+        const gic_real t617 = m[185] * t135 + m[184] * t144 + (m[182] * t596 + (m[181] * t552 + m[180] * t145));
+        const gic_real t618 = GIC_MAX(R(0.19) - x[0], R(0.0));
+        const gic_real t619 = GIC_MIN(R(100.0) * t618, R(1.0));
+        const gic_real t620 = xd[0] * (R(5000.0) * ((R(3.0) - (t619 + t619)) * (t619 * t619)));
+        const gic_real t621 = GIC_MAX(R(400000.0) * t618 - t620, R(0.0));
+        const gic_real t622 = GIC_MAX(x[0] - R(0.29), R(0.0));
+        const gic_real t623 = GIC_MIN(t622 * R(100.0), R(1.0));
+        const gic_real t624 = xd[0] * ((R(3.0) - (t623 + t623)) * (t623 * t623) * R(5000.0));
+        const gic_real t625 = GIC_MAX(t622 * R(400000.0) + t624, R(0.0));
+        const gic_real t626 = (x[0] - R(0.31903)) * R(167070.9);
+        const gic_real t627 = xd[0] * R(17490.8);
+        const gic_real t628 = m[185] * t340 + m[184] * t342 + (m[182] * t610 + (m[181] * t582 + m[180] * t343));
+        const gic_real t629 = m[54] * t65 + t617 - (t621 - t625 - (t626 + t627) + t628);
+        const gic_real t630 = GIC_FABS(t627) + GIC_FABS(t626) + R(167070.9) * (R(0.31903) + GIC_FABS(x[0]));
+        const gic_real t631 = t630 + GIC_FABS(t625 - t621) + t380 * t384 + t412 * t418;
+        const gic_real t632 = m[221] * t190 + m[220] * t199 + (m[218] * t599 + (m[217] * t556 + m[216] * t200));
+        const gic_real t633 = GIC_MAX(R(0.19) - x[1], R(0.0));
+        const gic_real t634 = GIC_MIN(R(100.0) * t633, R(1.0));
+        const gic_real t635 = xd[1] * (R(5000.0) * ((R(3.0) - (t634 + t634)) * (t634 * t634)));
+        const gic_real t636 = GIC_MAX(R(400000.0) * t633 - t635, R(0.0));
+        const gic_real t637 = GIC_MAX(x[1] - R(0.29), R(0.0));
+        const gic_real t638 = GIC_MIN(R(100.0) * t637, R(1.0));
+        const gic_real t639 = xd[1] * (R(5000.0) * ((R(3.0) - (t638 + t638)) * (t638 * t638)));
+        const gic_real t640 = GIC_MAX(R(400000.0) * t637 + t639, R(0.0));
+        const gic_real t641 = R(167070.9) * (x[1] - R(0.31903));
+        const gic_real t642 = xd[1] * R(17490.8);
+        const gic_real t643 = m[221] * t334 + m[220] * t336 + (m[218] * t609 + (m[217] * t581 + m[216] * t337));
+        const gic_real t644 = m[84] * t91 + t632 - (t636 - t640 - (t641 + t642) + t643);
+        const gic_real t645 = GIC_FABS(t642) + GIC_FABS(t641) + R(167070.9) * (R(0.31903) + GIC_FABS(x[1]));
+        const gic_real t646 = t645 + GIC_FABS(t640 - t636) + t391 * t395 + t436 * t442;
+        const gic_real t647 = m[114] * t229 + (m[251] * t277 + m[250] * t286 + m[246] * t287);
+        const gic_real t648 = GIC_MAX(R(0.25) - x[2], R(0.0));
+        const gic_real t649 = GIC_MIN(R(100.0) * t648, R(1.0));
+        const gic_real t650 = xd[2] * (R(5000.0) * ((R(3.0) - (t649 + t649)) * (t649 * t649)));
+        const gic_real t651 = GIC_MAX(R(400000.0) * t648 - t650, R(0.0));
+        const gic_real t652 = GIC_MAX(x[2] - R(0.34), R(0.0));
+        const gic_real t653 = GIC_MIN(R(100.0) * t652, R(1.0));
+        const gic_real t654 = xd[2] * (R(5000.0) * ((R(3.0) - (t653 + t653)) * (t653 * t653)));
+        const gic_real t655 = GIC_MAX(R(400000.0) * t652 + t654, R(0.0));
+        const gic_real t656 = (x[2] - R(0.33727)) * R(369167.2);
+        const gic_real t657 = xd[2] * R(24780.4);
+        const gic_real t658 = t651 - t655 - (t656 + t657) + (m[251] * t328 + m[250] * t330 + m[246] * t331);
+        const gic_real t659 = GIC_FABS(t657) + GIC_FABS(t656) + R(369167.2) * (R(0.33727) + GIC_FABS(x[2]));
+        const gic_real t660 = t659 + GIC_FABS(t655 - t651) + t451 * t455 + t478 * t483;
+        const gic_real t661 = m[144] * t255 + (m[281] * t308 + m[280] * t315 + m[276] * t316);
+        const gic_real t662 = GIC_MAX(R(0.25) - x[3], R(0.0));
+        const gic_real t663 = GIC_MIN(R(100.0) * t662, R(1.0));
+        const gic_real t664 = xd[3] * (R(5000.0) * ((R(3.0) - (t663 + t663)) * (t663 * t663)));
+        const gic_real t665 = GIC_MAX(R(400000.0) * t662 - t664, R(0.0));
+        const gic_real t666 = GIC_MAX(x[3] - R(0.34), R(0.0));
+        const gic_real t667 = GIC_MIN(R(100.0) * t666, R(1.0));
+        const gic_real t668 = xd[3] * (R(5000.0) * ((R(3.0) - (t667 + t667)) * (t667 * t667)));
+        const gic_real t669 = GIC_MAX(R(400000.0) * t666 + t668, R(0.0));
+        const gic_real t670 = R(369167.2) * (x[3] - R(0.33727));
+        const gic_real t671 = xd[3] * R(24780.4);
+        const gic_real t672 = t665 - t669 - (t670 + t671) + (m[281] * t322 + m[280] * t324 + m[276] * t325);
+        const gic_real t673 = GIC_FABS(t671) + GIC_FABS(t670) + R(369167.2) * (R(0.33727) + GIC_FABS(x[3]));
+        const gic_real t674 = t673 + GIC_FABS(t669 - t665) + t462 * t466 + t496 * t501;
+        const gic_real t675 = t574 + t580 - t586;
+        const gic_real t676 = t602 + t604 + t606 + t608 - t614;
+        const gic_real t677 = t631 + t414 * t419;
+        const gic_real t678 = t646 + t438 * t443;
+        const gic_real t679 = t647 - t658;
+        const gic_real t680 = t660 + t480 * t484;
+        const gic_real t681 = t661 - t672;
+        const gic_real t682 = t674 + t498 * t502;
+        tau[0] = t349;
+        size[0] = t504;
+        tau[3] = t533;
+        size[3] = t535;
+        tau[1] = t675;
+        size[1] = t504;
+        tau[4] = t588;
+        size[4] = t535;
+        tau[2] = t676;
+        size[2] = t504;
+        tau[5] = t616;
+        size[5] = t535;
+        tau[6] = t629;
+        size[6] = t677;
+        tau[7] = t644;
+        size[7] = t678;
+        tau[8] = t679;
+        size[8] = t680;
+        tau[9] = t681;
+        size[9] = t682;
+    }
+    return GIC_OK;
+}
+
+/* The motions that were recovered last, against all constraints. */
+static GIC_COLD int hmmwv_vehicle_check_constraints(hmmwv_vehicle *self)
+{
+    gic_real largest[2];
+    const int bad = hmmwv_vehicle_residual(self, largest);
+    self->head.residual = GIC_MAX(self->head.residual, largest[0]);
+    if (bad < 0)
+        return GIC_OK;
+    self->head.subset = bad;
+    self->recovered = 0;
+    return GIC_ERROR_RESIDUAL;
+}
+
+/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+static GIC_COLD GIC_APART int hmmwv_vehicle_check(hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate)
+{
+    gic_real tau[HMMWV_VEHICLE_UNKNOWN_ROOM], size[HMMWV_VEHICLE_UNKNOWN_ROOM];
+    int i, status = hmmwv_vehicle_check_constraints(self);
+    self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&hmmwv_vehicle_model, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        status = hmmwv_vehicle_balance(self, time, y, e, rate, tau, size);
+    for (i = 0; status == GIC_OK && i < HMMWV_VEHICLE_UNKNOWNS; ++i)
+        if (!(GIC_FABS(tau[i]) <= GIC_BALANCE_RESIDUAL * size[i]))
+            status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        self->head.unchecked = GIC_CHECK_EVERY;
+    return status;
+}
+
 /* ---- the functions of hmmwv_vehicle.h ------------------------------------------------------------------------------------ */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
@@ -3476,6 +4479,7 @@ static int hmmwv_vehicle_locate(hmmwv_vehicle *self, gic_real time, const gic_re
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
 static int hmmwv_vehicle_evaluate(hmmwv_vehicle *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[HMMWV_VEHICLE_STATE_ROOM])
 {
+    const int32_t flip = self->head.flip;
     int status = hmmwv_vehicle_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
@@ -3485,6 +4489,11 @@ static int hmmwv_vehicle_evaluate(hmmwv_vehicle *self, gic_real time, const gic_
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
     if (status == GIC_OK && !GIC_FINITE(rate + HMMWV_VEHICLE_TWIST, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_TWIST))
         status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && --self->head.unchecked < 0) {
+        status = hmmwv_vehicle_check(self, time, y, e, rate);
+        if (status != GIC_OK)
+            self->head.flip = flip; /* what was found is no start */
+    }
     return self->head.status = status;
 }
 
@@ -3559,7 +4568,13 @@ int hmmwv_vehicle_outputs(hmmwv_vehicle *self)
 int hmmwv_vehicle_poses(hmmwv_vehicle *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = hmmwv_vehicle_locate(self, hmmwv_vehicle_present(self), self->state, e);
+    const int32_t flip = self->head.flip;
+    int status = hmmwv_vehicle_locate(self, hmmwv_vehicle_present(self), self->state, e);
+    if (status == GIC_OK) {
+        status = self->head.status = hmmwv_vehicle_check_constraints(self);
+        if (status != GIC_OK)
+            self->head.flip = flip;
+    }
     if (status == GIC_OK)
         hmmwv_vehicle_place(self, self->state, e, pose);
     return status;
@@ -3949,6 +4964,8 @@ int hmmwv_vehicle_setup_with(hmmwv_vehicle *self, const gic_real *parameter)
     hmmwv_vehicle_gather(self, self->state);
     if (status == GIC_OK)
         status = hmmwv_vehicle_recover(self, turn, 0);
+    if (status == GIC_OK)
+        status = hmmwv_vehicle_check_constraints(self);
     return self->head.status = status;
 }
 
@@ -5041,61 +6058,21 @@ static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real tim
     return GIC_OK;
 }
 
-/* Largest constraint residual of all subsets, relative to their sizes. */
-static GIC_COLD gic_real hmmwv_vehicle_residual(const hmmwv_vehicle *self)
-{
-    const gic_real *const start = self->start[self->head.flip];
-    hmmwv_vehicle_links links;
-    gic_real largest = R(0.0), one = R(0.0);
-    (void)start;
-    (void)one;
-    links.cold = 0;
-    links.x[0] = start[4];
-    one = hmmwv_vehicle_residual_rack(hmmwv_vehicle_k_rack[0], &links, self->motion + 0);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[0];
-    one = hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[0], &links, self->motion + 30);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[1];
-    one = hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[1], &links, self->motion + 60);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[2];
-    one = hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[2], &links, self->motion + 90);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[3];
-    one = hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[3], &links, self->motion + 120);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = start[4];
-    links.x[1] = start[0];
-    one = hmmwv_vehicle_residual_wheel_f_l(hmmwv_vehicle_k_wheel_f_l[0], &links, self->motion + 150);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = start[4];
-    links.x[1] = start[1];
-    one = hmmwv_vehicle_residual_wheel_f_l(hmmwv_vehicle_k_wheel_f_l[1], &links, self->motion + 186);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 90;
-    links.x[0] = start[2];
-    one = hmmwv_vehicle_residual_wheel_r_l(hmmwv_vehicle_k_wheel_r_l[0], &links, self->motion + 222);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 120;
-    links.x[0] = start[3];
-    one = hmmwv_vehicle_residual_wheel_r_l(hmmwv_vehicle_k_wheel_r_l[1], &links, self->motion + 252);
-    largest = GIC_MAX(largest, one);
-    return largest;
-}
-
 GIC_COLD int hmmwv_vehicle_self_test(hmmwv_vehicle *self, gic_self_test *result)
 {
     gic_real e[4], acc[HMMWV_VEHICLE_UNKNOWN_ROOM], unit[HMMWV_VEHICLE_UNKNOWN_ROOM], tau0[HMMWV_VEHICLE_UNKNOWN_ROOM], tau[HMMWV_VEHICLE_UNKNOWN_ROOM];
-    gic_real M[HMMWV_VEHICLE_UNKNOWN_ROOM][HMMWV_VEHICLE_UNKNOWN_ROOM], energy[3], scale;
+    gic_real M[HMMWV_VEHICLE_UNKNOWN_ROOM][HMMWV_VEHICLE_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = hmmwv_vehicle_time(self);
-    const gic_self_test none = {R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = hmmwv_vehicle_refresh(self, e);
+    const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = hmmwv_vehicle_refresh(self, e);
     *result = none;
+    if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
+        (void)hmmwv_vehicle_residual(self, residual);
+        result->constraint = residual[0];
+        result->motion = residual[1];
+    }
     for (i = 0; i < HMMWV_VEHICLE_UNKNOWNS; ++i)
         unit[i] = R(0.0);
     if (status == GIC_OK)
@@ -5104,7 +6081,6 @@ GIC_COLD int hmmwv_vehicle_self_test(hmmwv_vehicle *self, gic_self_test *result)
         status = hmmwv_vehicle_inverse(self, time, self->state, e, unit, tau0);
     if (status != GIC_OK)
         return self->head.status = status;
-    result->constraint = hmmwv_vehicle_residual(self);
     result->energy = GIC_FABS(energy[0] - energy[1]) / (energy[2] > R(0.0) ? energy[2] : R(1.0));
 
     /* the mass matrix column by column: what a unit acceleration adds to the residual */
@@ -5262,7 +6238,7 @@ static int hmmwv_vehicle_any_shift(void *instance)
         choice[3] = R(261.79938779914943);
         choice[5] = R(125.66370614359172);
     }
-    wanted = hmmwv_vehicle_above(choice[0], R(0.5)) ? 1 : hmmwv_vehicle_above(-choice[0], R(0.5)) && HMMWV_VEHICLE_REVERSE ? -1 : 0;
+    wanted = hmmwv_vehicle_above(choice[0], R(0.5)) ? 1 : hmmwv_vehicle_above(-choice[0], R(0.5)) && HMMWV_VEHICLE_REVERSE != 0 ? -1 : 0;
     if (wanted != (next > 0) - (next < 0))
         next = wanted;
     else if (next > 0 && hmmwv_vehicle_reached(*age, latency)) {
@@ -5314,6 +6290,14 @@ static int hmmwv_vehicle_any_poses(void *self, gic_real *pose)
 static int hmmwv_vehicle_any_self_test(void *self, gic_self_test *result)
 {
     return hmmwv_vehicle_self_test((hmmwv_vehicle *)self, result);
+}
+
+static int hmmwv_vehicle_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
+{
+    gic_real e[4];
+    const gic_real *turn;
+    const int status = hmmwv_vehicle_orient((hmmwv_vehicle *)self, state, e, &turn);
+    return status == GIC_OK ? hmmwv_vehicle_check((hmmwv_vehicle *)self, time, state, e, rate) : status;
 }
 
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
@@ -5385,4 +6369,5 @@ const gic_model hmmwv_vehicle_model = {
     hmmwv_vehicle_any_fast,
     hmmwv_vehicle_any_roll,
     hmmwv_vehicle_any_shift,
+    hmmwv_vehicle_any_check,
 };

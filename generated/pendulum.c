@@ -29,7 +29,7 @@
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0x4c99014d
+#if PENDULUM_H != 0x49b44f77
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -119,6 +119,27 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
+ * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
+ * their terms. They are rounding, in single precision near a singular configuration too. */
+#ifdef GIC_FLOAT
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-5)
+#else
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-10), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-9) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-10)
+#endif
+
+/* Evaluations between two that are checked. */
+#define GIC_CHECK_EVERY 200
+
+/* By how much an error that tests plant is off. */
+#ifndef GIC_PLANT_BY
+#define GIC_PLANT_BY R(1e-3)
+#endif
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct pendulum_links {
@@ -169,23 +190,39 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t11 = R(0.25) + t8;
         inertia[22] = t11;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real pendulum_residual_rod(const gic_real *GIC_RESTRICT k, const pendulum_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void pendulum_residual_rod(const gic_real *GIC_RESTRICT k, const pendulum_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_FABS(GIC_COS(x[0]) * motion[9] - GIC_SIN(x[0]) * motion[3]);
-        const gic_real t2 = GIC_MAX(R(0.0), t1);
-        worst = t2;
+        const gic_real t1 = GIC_COS(x[0]);
+        const gic_real t2 = GIC_SIN(x[0]);
+        const gic_real t3 = t2 * motion[9] + t1 * motion[3];
+        const gic_real t4 = GIC_FABS(t1 * motion[9] - t2 * motion[3]) + (GIC_FABS(t3) - t3);
+        const gic_real t5 = t4 + GIC_FABS(motion[9] * motion[9] + motion[3] * motion[3] - R(1.0));
+        const gic_real t6 = t5 + GIC_FABS(-(motion[5] + motion[9])) + GIC_FABS(motion[3] - motion[11]);
+        const gic_real t7 = GIC_FABS(motion[13]);
+        const gic_real t8 = (R(1.0) + GIC_FABS(-t3)) * GIC_FABS(rate[0]);
+        const gic_real t9 = motion[3] * motion[13];
+        const gic_real t10 = motion[9] * motion[13];
+        const gic_real t11 = rate[0] * (t1 * t10 - t2 * t9);
+        const gic_real t12 = t2 * (motion[13] * t9) - t1 * (motion[13] * t10) - (t11 + t11);
+        const gic_real t13 = GIC_FABS(t12) / (R(1e-30) + (t7 * t7 + t8 * t8));
+        const gic_real t14 = GIC_FABS(rate[0] + motion[13]) / (R(1e-30) + (t7 + t8)) + t13;
+        worst[0] = t6;
+        worst[1] = t14;
     }
-    return worst;
 }
 
 /* ---- recovery of the whole vehicle, in computational sequence ------------------------------------------------ */
@@ -281,6 +318,8 @@ static int pendulum_recover(pendulum *self, const gic_real turn[3], int cold)
         way[0] = gic_unwound(way[0]);
     for (i = 0; i < PENDULUM_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < pendulum_piece[i]);
+    if (far)
+        self->head.unchecked = 0; /* a jump: no state that was checked is near */
     /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
      * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
     if (far || PENDULUM_FOLLOWED > 0) {
@@ -363,6 +402,13 @@ static GIC_APART int pendulum_dynamics(pendulum *self, gic_real time, const gic_
         rate[0] = t1;
         rate[1] = t2;
     }
+#ifdef GIC_PLANT_RATE /* an error that tests plant */
+#ifndef GIC_PLANT_AFTER
+#define GIC_PLANT_AFTER R(-1.0) /* s */
+#endif
+    if (time > GIC_PLANT_AFTER)
+        rate[GIC_PLANT_RATE] += GIC_PLANT_BY + GIC_PLANT_BY * GIC_FABS(rate[GIC_PLANT_RATE]);
+#endif
     return GIC_OK;
 }
 
@@ -450,6 +496,87 @@ static void pendulum_place(const pendulum *self, const gic_real *y, const gic_re
     }
 }
 
+/* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
+
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
+ * whose are beyond what is promised, -1: there is none. */
+static GIC_COLD GIC_APART int pendulum_residual(const pendulum *self, gic_real largest[2])
+{
+    pendulum_links links;
+    gic_real one[2];
+    int bad = -1;
+    (void)self, (void)one;
+    largest[0] = largest[1] = R(0.0);
+    links.cold = 0;
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    pendulum_residual_rod(pendulum_k_rod[0], &links, self->motion + 0, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(0.0)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 0;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    return bad;
+}
+
+/* tau: residual of the equations of motion at `rate`, body by body: another way than pendulum_dynamics. size: magnitudes of
+ * the terms that it is the sum of. */
+static GIC_COLD GIC_APART int pendulum_balance(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *tau, gic_real *size)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    {
+        const gic_real t1 = m[3] * R(-0.5);
+        const gic_real t2 = m[9] * R(-0.5);
+        const gic_real t3 = m[13] * (m[13] * t2);
+        const gic_real t4 = m[13] * (m[13] * t1);
+        const gic_real t5 = t1 * (R(9.81) - t3 + rate[1] * t1) + t2 * (t4 + rate[1] * t2);
+        const gic_real t6 = GIC_FABS(t2) + GIC_FABS(t1);
+        const gic_real t7 = GIC_FABS(m[13]);
+        const gic_real t8 = t7 * t7;
+        const gic_real t9 = R(19.62) + t8 * t6 + (GIC_FABS(-t3) + GIC_FABS(-t4));
+        const gic_real t10 = GIC_FABS(rate[1]);
+        const gic_real t11 = t6 * (t9 + t6 * t10) + (t8 + t10) * R(0.75);
+        const gic_real t12 = rate[1] * R(0.25) + t5;
+        tau[0] = t12;
+        size[0] = t11;
+    }
+    return GIC_OK;
+}
+
+/* The motions that were recovered last, against all constraints. */
+static GIC_COLD int pendulum_check_constraints(pendulum *self)
+{
+    gic_real largest[2];
+    const int bad = pendulum_residual(self, largest);
+    self->head.residual = GIC_MAX(self->head.residual, largest[0]);
+    if (bad < 0)
+        return GIC_OK;
+    self->head.subset = bad;
+    self->recovered = 0;
+    return GIC_ERROR_RESIDUAL;
+}
+
+/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+static GIC_COLD GIC_APART int pendulum_check(pendulum *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate)
+{
+    gic_real tau[PENDULUM_UNKNOWN_ROOM], size[PENDULUM_UNKNOWN_ROOM];
+    int i, status = pendulum_check_constraints(self);
+    self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&pendulum_model, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        status = pendulum_balance(self, time, y, e, rate, tau, size);
+    for (i = 0; status == GIC_OK && i < PENDULUM_UNKNOWNS; ++i)
+        if (!(GIC_FABS(tau[i]) <= GIC_BALANCE_RESIDUAL * size[i]))
+            status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        self->head.unchecked = GIC_CHECK_EVERY;
+    return status;
+}
+
 /* ---- the functions of pendulum.h ------------------------------------------------------------------------------------ */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
@@ -472,6 +599,7 @@ static int pendulum_locate(pendulum *self, gic_real time, const gic_real *y, gic
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
 static int pendulum_evaluate(pendulum *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[PENDULUM_STATE_ROOM])
 {
+    const int32_t flip = self->head.flip;
     int status = pendulum_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
@@ -479,6 +607,11 @@ static int pendulum_evaluate(pendulum *self, gic_real time, const gic_real *y, g
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
     if (status == GIC_OK && !GIC_FINITE(rate + PENDULUM_TWIST, PENDULUM_STATES - PENDULUM_TWIST))
         status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && --self->head.unchecked < 0) {
+        status = pendulum_check(self, time, y, e, rate);
+        if (status != GIC_OK)
+            self->head.flip = flip; /* what was found is no start */
+    }
     return self->head.status = status;
 }
 
@@ -553,7 +686,13 @@ int pendulum_outputs(pendulum *self)
 int pendulum_poses(pendulum *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = pendulum_locate(self, pendulum_present(self), self->state, e);
+    const int32_t flip = self->head.flip;
+    int status = pendulum_locate(self, pendulum_present(self), self->state, e);
+    if (status == GIC_OK) {
+        status = self->head.status = pendulum_check_constraints(self);
+        if (status != GIC_OK)
+            self->head.flip = flip;
+    }
     if (status == GIC_OK)
         pendulum_place(self, self->state, e, pose);
     return status;
@@ -688,6 +827,8 @@ int pendulum_setup_with(pendulum *self, const gic_real *parameter)
     pendulum_gather(self, self->state);
     if (status == GIC_OK)
         status = pendulum_recover(self, turn, 0);
+    if (status == GIC_OK)
+        status = pendulum_check_constraints(self);
     return self->head.status = status;
 }
 
@@ -786,29 +927,21 @@ static GIC_COLD int pendulum_energy(const pendulum *self, gic_real time, const g
     return GIC_OK;
 }
 
-/* Largest constraint residual of all subsets, relative to their sizes. */
-static GIC_COLD gic_real pendulum_residual(const pendulum *self)
-{
-    const gic_real *const start = self->start[self->head.flip];
-    pendulum_links links;
-    gic_real largest = R(0.0), one = R(0.0);
-    (void)start;
-    (void)one;
-    links.cold = 0;
-    links.x[0] = start[0];
-    one = pendulum_residual_rod(pendulum_k_rod[0], &links, self->motion + 0);
-    largest = GIC_MAX(largest, one);
-    return largest;
-}
-
 GIC_COLD int pendulum_self_test(pendulum *self, gic_self_test *result)
 {
     gic_real e[4], acc[PENDULUM_UNKNOWN_ROOM], unit[PENDULUM_UNKNOWN_ROOM], tau0[PENDULUM_UNKNOWN_ROOM], tau[PENDULUM_UNKNOWN_ROOM];
-    gic_real M[PENDULUM_UNKNOWN_ROOM][PENDULUM_UNKNOWN_ROOM], energy[3], scale;
+    gic_real M[PENDULUM_UNKNOWN_ROOM][PENDULUM_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = pendulum_time(self);
-    const gic_self_test none = {R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = pendulum_refresh(self, e);
+    const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = pendulum_refresh(self, e);
     *result = none;
+    if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
+        (void)pendulum_residual(self, residual);
+        result->constraint = residual[0];
+        result->motion = residual[1];
+    }
     for (i = 0; i < PENDULUM_UNKNOWNS; ++i)
         unit[i] = R(0.0);
     if (status == GIC_OK)
@@ -817,7 +950,6 @@ GIC_COLD int pendulum_self_test(pendulum *self, gic_self_test *result)
         status = pendulum_inverse(self, time, self->state, e, unit, tau0);
     if (status != GIC_OK)
         return self->head.status = status;
-    result->constraint = pendulum_residual(self);
     result->energy = GIC_FABS(energy[0] - energy[1]) / (energy[2] > R(0.0) ? energy[2] : R(1.0));
 
     /* the mass matrix column by column: what a unit acceleration adds to the residual */
@@ -895,6 +1027,14 @@ static int pendulum_any_self_test(void *self, gic_self_test *result)
     return pendulum_self_test((pendulum *)self, result);
 }
 
+static int pendulum_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
+{
+    gic_real e[4];
+    const gic_real *turn;
+    const int status = pendulum_orient((pendulum *)self, state, e, &turn);
+    return status == GIC_OK ? pendulum_check((pendulum *)self, time, state, e, rate) : status;
+}
+
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define pendulum_any_march NULL
 #else
@@ -964,4 +1104,5 @@ const gic_model pendulum_model = {
     NULL,
     NULL,
     NULL,
+    pendulum_any_check,
 };

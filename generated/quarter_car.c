@@ -48,7 +48,7 @@
  */
 #include "quarter_car.h"
 
-#if QUARTER_CAR_H != 0xcfc11b41
+#if QUARTER_CAR_H != 0x70e2d357
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -138,6 +138,27 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
+ * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
+ * their terms. They are rounding, in single precision near a singular configuration too. */
+#ifdef GIC_FLOAT
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-5)
+#else
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-10), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-9) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-10)
+#endif
+
+/* Evaluations between two that are checked. */
+#define GIC_CHECK_EVERY 200
+
+/* By how much an error that tests plant is off. */
+#ifndef GIC_PLANT_BY
+#define GIC_PLANT_BY R(1e-3)
+#endif
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct quarter_car_links {
@@ -166,27 +187,32 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
     const gic_real *const rate = links->rate;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = R(0.687) + x[0];
-        motion[2] = t1;
-        const gic_real t2 = rate[0];
-        motion[17] = t2;
+        const gic_real t1 = rate[0];
+        motion[17] = t1;
+        const gic_real t2 = R(0.687) + x[0];
+        motion[2] = t2;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real quarter_car_residual_carriage(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void quarter_car_residual_carriage(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[2] - R(0.687) - x[0]));
-        worst = t1;
+        const gic_real t1 = GIC_FABS(motion[17] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[17]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[2] - R(0.687) - x[0]);
+        worst[0] = t2;
+        worst[1] = t1;
     }
-    return worst;
 }
 
 static const gic_real quarter_car_k_arm[1][1] = {
@@ -208,10 +234,10 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
     (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = R(0.5) * (R(0.1582643473416399) - x[0] * x[0]) - R(0.010110666875399996);
-        const gic_real t2 = R(-0.21300000000000008) + m0[2];
-        motion[2] = t2;
-        const gic_real t3 = m0[17];
-        motion[17] = t3;
+        const gic_real t2 = m0[17];
+        motion[17] = t2;
+        const gic_real t3 = R(-0.21300000000000008) + m0[2];
+        motion[2] = t3;
         const gic_real t4 = R(0.004637870464427621) - t1 * t1;
         if (!(t4 > R(0.0)))
             return GIC_ERROR_NEWTON;
@@ -255,7 +281,7 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         inertia[17] = t30;
         inertia[30] = t30;
         const gic_real t31 = rate[0] * rate[0] - t27 * t27 - t28 * t28 + (t15 * (t23 * t28) + t14 * (t23 * t27));
-        const gic_real t32 = t19 * t30 + (t26 + (t2 + t18) * t29);
+        const gic_real t32 = t19 * t30 + (t26 + (t3 + t18) * t29);
         inertia[18] = t32;
         const gic_real t33 = t24 * t29 + (t22 * t26 + t25 * t30);
         inertia[29] = t33;
@@ -269,27 +295,56 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         const gic_real t38 = t37 + (t22 * (R(0.4469) * t35) + t36 * t25);
         inertia[21] = t38;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real quarter_car_residual_arm(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void quarter_car_residual_arm(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(GIC_MAX(R(0.0), GIC_FABS((motion[2] - (R(-0.21300000000000008) + m0[2])) * R(3.852963219305648))), R(0.0));
-        const gic_real t2 = motion[2] + (R(0.01121887479261392) * motion[11] + R(0.2403881036540444) * motion[10]) - (R(-0.015515000000000057) + m0[2]);
-        const gic_real t3 = R(0.307086) + (R(0.01121887479261392) * motion[8] + R(0.2403881036540444) * motion[7]) - R(0.509778);
-        const gic_real t4 = t2 * t2 + (R(4.633797184000037e-05) + t3 * t3) - x[0] * x[0];
-        const gic_real t5 = GIC_MAX(GIC_MAX(t1, R(0.0)), GIC_FABS(t4 * R(7.892375927523104)));
-        worst = t5;
+        const gic_real t1 = R(0.01121887479261392) * motion[11] + R(0.2403881036540444) * motion[10];
+        const gic_real t2 = motion[2] + t1;
+        const gic_real t3 = R(-0.015515000000000057) + m0[2];
+        const gic_real t4 = t2 - t3;
+        const gic_real t5 = R(0.01121887479261392) * motion[8] + R(0.2403881036540444) * motion[7];
+        const gic_real t6 = R(0.307086) + t5 - R(0.509778);
+        const gic_real t7 = t4 * t4 + (R(4.633797184000037e-05) + t6 * t6) - x[0] * x[0];
+        const gic_real t8 = (R(0.006807200000000027) + GIC_FABS(t6) + GIC_FABS(t4)) * R(0.25954049989094174) + R(0.06335227878037951);
+        const gic_real t9 = R(2.0) / t8;
+        const gic_real t10 = GIC_FABS((motion[2] - (R(-0.21300000000000008) + m0[2])) * R(3.852963219305648)) + GIC_FABS(R(0.5) * t7 * t9);
+        const gic_real t11 = t10 + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
+        const gic_real t12 = t11 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t13 = t9 * ((t5 * t4 - t1 * t6) * motion[24] - x[0]);
+        const gic_real t14 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t9));
+        const gic_real t15 = GIC_FABS(t13) / (t14 + R(1e-30)) + GIC_FABS(t9 * (t4 + (t3 - t2))) * R(0.12977024994547087);
+        const gic_real t16 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(R(3.852963219305648) * (motion[17] - rate[1]));
+        const gic_real t17 = R(3.852963219305648) * GIC_FABS(motion[17]);
+        const gic_real t18 = GIC_FABS(motion[12]);
+        const gic_real t19 = t14 * GIC_FABS(rate[0]);
+        const gic_real t20 = R(7.705926438611296) * GIC_FABS(rate[1]);
+        const gic_real t21 = t15 + t16 / (R(1e-30) + (t17 + t18 + t19 + t20));
+        const gic_real t22 = t5 * motion[12];
+        const gic_real t23 = motion[17] + t22 - m0[17];
+        const gic_real t24 = t1 * motion[12];
+        const gic_real t25 = t4 * (t5 * motion[18] - motion[12] * t24) - t6 * (motion[12] * t22 + t1 * motion[18]);
+        const gic_real t26 = t23 * t23 + t24 * t24 + t25 - rate[0] * rate[0];
+        const gic_real t27 = R(3.852963219305648) * GIC_FABS(m0[17]);
+        const gic_real t28 = t17 * t17 + t18 * t18 + GIC_FABS(motion[18]) + t27 * t27;
+        const gic_real t29 = GIC_FABS(t26 * t9) / (R(1e-30) + (t28 + t19 * t19 + t20 * t20));
+        const gic_real t30 = t21 + t29;
+        worst[0] = t12;
+        worst[1] = t30;
     }
-    return worst;
 }
 
 static const gic_real quarter_car_k_wheel[1][1] = {
@@ -536,41 +591,113 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t177 = t172 + t173;
         inertia[28] = t177;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real quarter_car_residual_wheel(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void quarter_car_residual_wheel(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const m1 = links->known[1]; /* arm */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (R(0.49375935710120966) * m1[7] + R(0.307086)))));
-        const gic_real t2 = GIC_MAX(t1, GIC_FABS(R(2.928075656552032) * (motion[2] - (m1[2] + R(0.49375935710120966) * m1[10]))));
-        const gic_real t3 = motion[2] + (R(0.10177780000000003) * motion[11] + (R(0.03459480000000004) * motion[10] + R(-0.1402588) * motion[9]));
-        const gic_real t4 = t3 - (R(-0.1587710000000001) + m0[2]);
-        const gic_real t5 = motion[1] + (R(0.10177780000000003) * motion[8] + (R(0.03459480000000004) * motion[7] + R(-0.1402588) * motion[6]));
-        const gic_real t6 = t5 - R(0.448437);
-        const gic_real t7 = R(-0.035559999999999994) + (R(0.10177780000000003) * motion[5] + (R(0.03459480000000004) * motion[4] + R(-0.1402588) * motion[3]));
-        const gic_real t8 = t7 - R(-0.250317);
-        const gic_real t9 = t4 * t4 + (t6 * t6 + t8 * t8) - R(0.14941089924212003);
-        const gic_real t10 = motion[2] + (R(0.33360360000000006) * motion[11] + (R(-0.07099299999999997) * motion[10] + R(-0.017475199999999996) * motion[9]));
-        const gic_real t11 = t10 - (R(0.021117699999999906) + m0[2]);
-        const gic_real t12 = motion[1] + (R(0.33360360000000006) * motion[8] + (R(-0.07099299999999997) * motion[7] + R(-0.017475199999999996) * motion[6]));
-        const gic_real t13 = t12 - R(0.4527638);
-        const gic_real t14 = R(-0.035559999999999994) + (R(0.33360360000000006) * motion[5] + (R(-0.07099299999999997) * motion[4] + R(-0.017475199999999996) * motion[3]));
-        const gic_real t15 = t14 - R(-0.095082);
-        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
-        const gic_real t17 = GIC_MAX(GIC_MAX(t2, GIC_FABS(t9 * R(3.9285226675160785))), GIC_FABS(t16 * R(5.571891251504317)));
-        const gic_real t18 = R(0.21526024724178433) * t11 + (R(-0.1394133303209898) * t13 + R(0.9665541626242249) * t15) - R(4.311654514671526e-08);
-        const gic_real t19 = GIC_MAX(t17, GIC_FABS(t18 * R(3.029396354366955)));
-        worst = t19;
+        const gic_real t1 = R(0.49375935710120966) * m1[7];
+        const gic_real t2 = R(0.49375935710120966) * m1[10];
+        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[1] - (t1 + R(0.307086)))) + GIC_FABS(R(2.928075656552032) * (motion[2] - (m1[2] + t2)));
+        const gic_real t4 = R(0.10177780000000003) * motion[11] + (R(0.03459480000000004) * motion[10] + R(-0.1402588) * motion[9]);
+        const gic_real t5 = motion[2] + t4;
+        const gic_real t6 = R(-0.1587710000000001) + m0[2];
+        const gic_real t7 = t5 - t6;
+        const gic_real t8 = R(0.10177780000000003) * motion[8] + (R(0.03459480000000004) * motion[7] + R(-0.1402588) * motion[6]);
+        const gic_real t9 = motion[1] + t8 - R(0.448437);
+        const gic_real t10 = R(0.10177780000000003) * motion[5] + (R(0.03459480000000004) * motion[4] + R(-0.1402588) * motion[3]);
+        const gic_real t11 = R(-0.035559999999999994) + t10 - R(-0.250317);
+        const gic_real t12 = t7 * t7 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
+        const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t7)) * R(0.3415212300824065);
+        const gic_real t14 = R(2.0) / (t13 + R(0.12727430698933434));
+        const gic_real t15 = R(0.33360360000000006) * motion[11] + (R(-0.07099299999999997) * motion[10] + R(-0.017475199999999996) * motion[9]);
+        const gic_real t16 = motion[2] + t15;
+        const gic_real t17 = R(0.021117699999999906) + m0[2];
+        const gic_real t18 = t16 - t17;
+        const gic_real t19 = R(0.33360360000000006) * motion[8] + (R(-0.07099299999999997) * motion[7] + R(-0.017475199999999996) * motion[6]);
+        const gic_real t20 = motion[1] + t19 - R(0.4527638);
+        const gic_real t21 = R(0.33360360000000006) * motion[5] + (R(-0.07099299999999997) * motion[4] + R(-0.017475199999999996) * motion[3]);
+        const gic_real t22 = R(-0.035559999999999994) + t21 - R(-0.095082);
+        const gic_real t23 = t18 * t18 + (t20 * t20 + t22 * t22) - R(0.07115456010869);
+        const gic_real t24 = R(0.3415212300824065) * (GIC_FABS(t22) + GIC_FABS(t20) + GIC_FABS(t18));
+        const gic_real t25 = R(2.0) / (t24 + R(0.08973613759331868));
+        const gic_real t26 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t23 * t25);
+        const gic_real t27 = R(0.21526024724178433) * t18 + (R(-0.1394133303209898) * t20 + R(0.9665541626242249) * t22) - R(4.311654514671526e-08);
+        const gic_real t28 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
+        const gic_real t29 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t30 = t26 + GIC_FABS(t27 * R(2.559750693852431)) + GIC_FABS(t28) + GIC_FABS(t29);
+        const gic_real t31 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
+        const gic_real t32 = t30 + t31 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
+        const gic_real t33 = t32 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
+        const gic_real t34 = t33 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t35 = GIC_FABS(t14 * (t7 + (t6 - t5))) + GIC_FABS(t25 * (t18 + (t17 - t16)));
+        const gic_real t36 = GIC_FABS(R(2.928075656552032) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[35] - m1[24] * t1));
+        const gic_real t37 = (t8 * t7 - t4 * t9) * motion[30] + (t4 * t11 - t10 * t7) * motion[31];
+        const gic_real t38 = t37 + (t10 * t9 - t8 * t11) * motion[32] + t9 * motion[34];
+        const gic_real t39 = (t19 * t18 - t15 * t20) * motion[30] + (t15 * t22 - t21 * t18) * motion[31];
+        const gic_real t40 = t39 + (t21 * t20 - t19 * t22) * motion[32] + t20 * motion[34];
+        const gic_real t41 = t36 + GIC_FABS(t14 * (t38 + t7 * motion[35])) + GIC_FABS(t25 * (t40 + t18 * motion[35]));
+        const gic_real t42 = (R(0.21526024724178433) * t19 - R(-0.1394133303209898) * t15) * motion[30] + (R(0.9665541626242249) * t15 - R(0.21526024724178433) * t21) * motion[31];
+        const gic_real t43 = t42 + (R(-0.1394133303209898) * t21 - R(0.9665541626242249) * t19) * motion[32] + R(-0.1394133303209898) * motion[34];
+        const gic_real t44 = R(2.928075656552032) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
+        const gic_real t45 = t44 + GIC_FABS(m1[24]);
+        const gic_real t46 = (t41 + GIC_FABS(R(2.559750693852431) * (t43 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t45);
+        const gic_real t47 = GIC_FABS(motion[12] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[1] * motion[31]);
+        const gic_real t48 = t47 + GIC_FABS(motion[14] - rate[1] * motion[32]) + GIC_FABS(R(2.928075656552032) * (motion[16] - rate[1] * motion[34]));
+        const gic_real t49 = t48 + GIC_FABS(R(2.928075656552032) * (motion[17] - rate[0] - rate[1] * motion[35]));
+        const gic_real t50 = R(2.928075656552032) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t51 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t52 = R(8.784226969656096) * GIC_FABS(rate[0]);
+        const gic_real t53 = t45 * GIC_FABS(rate[1]);
+        const gic_real t54 = t35 * R(0.11384041002746884) + t46 + t49 / (R(1e-30) + (t50 + t51 + t52 + t53));
+        const gic_real t55 = R(2.928075656552032) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
+        const gic_real t56 = R(2.928075656552032) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
+        const gic_real t57 = t8 * motion[12] - t10 * motion[13];
+        const gic_real t58 = motion[17] + t57 - m0[17];
+        const gic_real t59 = t10 * motion[14] - t4 * motion[12];
+        const gic_real t60 = motion[16] + t59;
+        const gic_real t61 = t4 * motion[13] - t8 * motion[14];
+        const gic_real t62 = motion[12] * t59 - motion[13] * t61 + (t8 * motion[18] - t10 * motion[19]);
+        const gic_real t63 = motion[14] * t61 - motion[12] * t57 + (t10 * motion[20] - t4 * motion[18]);
+        const gic_real t64 = motion[13] * t57 - motion[14] * t59 + (t4 * motion[19] - t8 * motion[20]);
+        const gic_real t65 = t7 * (motion[23] + t62) + (t9 * (motion[22] + t63) + t11 * t64);
+        const gic_real t66 = t58 * t58 + (t60 * t60 + t61 * t61) + t65;
+        const gic_real t67 = GIC_FABS(t55) + GIC_FABS(t56) + GIC_FABS(t66 * t14);
+        const gic_real t68 = t19 * motion[12] - t21 * motion[13];
+        const gic_real t69 = motion[17] + t68 - m0[17];
+        const gic_real t70 = t21 * motion[14] - t15 * motion[12];
+        const gic_real t71 = motion[16] + t70;
+        const gic_real t72 = t15 * motion[13] - t19 * motion[14];
+        const gic_real t73 = motion[12] * t70 - motion[13] * t72 + (t19 * motion[18] - t21 * motion[19]);
+        const gic_real t74 = motion[23] + t73;
+        const gic_real t75 = motion[14] * t72 - motion[12] * t68 + (t21 * motion[20] - t15 * motion[18]);
+        const gic_real t76 = motion[22] + t75;
+        const gic_real t77 = motion[13] * t68 - motion[14] * t70 + (t15 * motion[19] - t19 * motion[20]);
+        const gic_real t78 = t69 * t69 + (t71 * t71 + t72 * t72) + (t18 * t74 + (t20 * t76 + t22 * t77));
+        const gic_real t79 = (R(0.21526024724178433) * t74 + (R(-0.1394133303209898) * t76 + R(0.9665541626242249) * t77)) * R(2.559750693852431);
+        const gic_real t80 = R(2.928075656552032) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t81 = R(2.928075656552032) * GIC_FABS(m0[17]);
+        const gic_real t82 = t50 * t50 + t51 * t51 + t80 + t81 * t81;
+        const gic_real t83 = R(2.928075656552032) * GIC_FABS(m1[17]);
+        const gic_real t84 = GIC_FABS(m1[12]);
+        const gic_real t85 = t82 + (t83 * t83 + t84 * t84 + GIC_FABS(m1[18]));
+        const gic_real t86 = (t67 + GIC_FABS(t78 * t25) + GIC_FABS(t79)) / (R(1e-30) + (t85 + t52 * t52 + t53 * t53));
+        const gic_real t87 = t54 + t86;
+        worst[0] = t34;
+        worst[1] = t87;
     }
-    return worst;
 }
 
 /* ---- recovery of the whole vehicle, in computational sequence ------------------------------------------------ */
@@ -696,6 +823,8 @@ static int quarter_car_recover(quarter_car *self, const gic_real turn[3], int co
         way[i] = self->x[i] - self->start[first][i];
     for (i = 0; i < QUARTER_CAR_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < quarter_car_piece[i]);
+    if (far)
+        self->head.unchecked = 0; /* a jump: no state that was checked is near */
     /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
      * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
     if (far || QUARTER_CAR_FOLLOWED > 0) {
@@ -812,6 +941,13 @@ static GIC_APART int quarter_car_dynamics(quarter_car *self, gic_real time, cons
         rate[1] = t21;
         rate[3] = t22;
     }
+#ifdef GIC_PLANT_RATE /* an error that tests plant */
+#ifndef GIC_PLANT_AFTER
+#define GIC_PLANT_AFTER R(-1.0) /* s */
+#endif
+    if (time > GIC_PLANT_AFTER)
+        rate[GIC_PLANT_RATE] += GIC_PLANT_BY + GIC_PLANT_BY * GIC_FABS(rate[GIC_PLANT_RATE]);
+#endif
     return GIC_OK;
 }
 
@@ -1011,6 +1147,197 @@ static void quarter_car_place(const quarter_car *self, const gic_real *y, const 
     }
 }
 
+/* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
+
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
+ * whose are beyond what is promised, -1: there is none. */
+static GIC_COLD GIC_APART int quarter_car_residual(const quarter_car *self, gic_real largest[2])
+{
+    quarter_car_links links;
+    gic_real one[2];
+    int bad = -1;
+    (void)self, (void)one;
+    largest[0] = largest[1] = R(0.0);
+    links.cold = 0;
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    quarter_car_residual_carriage(quarter_car_k_carriage[0], &links, self->motion + 0, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(0.687)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 0;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.x[0] = self->x[1];
+    links.rate[0] = self->xd[1];
+    links.x[1] = self->x[0];
+    links.rate[1] = self->xd[0];
+    quarter_car_residual_arm(quarter_car_k_arm[0], &links, self->motion + 30, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4399509254502427)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 1;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 30;
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    links.x[1] = self->x[1];
+    links.rate[1] = self->xd[1];
+    quarter_car_residual_wheel(quarter_car_k_wheel[0], &links, self->motion + 66, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(2.5299010149033596)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 2;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    return bad;
+}
+
+/* tau: residual of the equations of motion at `rate`, body by body: another way than quarter_car_dynamics. size: magnitudes of
+ * the terms that it is the sum of. */
+static GIC_COLD GIC_APART int quarter_car_balance(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *tau, gic_real *size)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    {
+        const gic_real t1 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t2 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
+        const gic_real t3 = m[48] * t1 - m[42] * (m[42] * t2);
+        const gic_real t4 = (rate[2] + (R(9.81) + t3 + rate[3] * (m[54] * t1))) * R(23.965);
+        const gic_real t5 = m[71] * R(0.09182100000000004);
+        const gic_real t6 = m[69] * R(-0.004825999999999997);
+        const gic_real t7 = t5 + (t6 + m[70] * R(0.08910630000000008));
+        const gic_real t8 = m[77] * R(0.09182100000000004);
+        const gic_real t9 = m[75] * R(-0.004825999999999997);
+        const gic_real t10 = t8 + (t9 + m[76] * R(0.08910630000000008));
+        const gic_real t11 = m[80] * t7 - m[78] * t10;
+        const gic_real t12 = m[74] * R(0.09182100000000004);
+        const gic_real t13 = m[72] * R(-0.004825999999999997);
+        const gic_real t14 = t12 + (t13 + m[73] * R(0.08910630000000008));
+        const gic_real t15 = m[79] * t10 - m[80] * t14;
+        const gic_real t16 = m[78] * t11 - m[79] * t15 + (m[84] * t14 - m[85] * t7);
+        const gic_real t17 = m[89] + t16;
+        const gic_real t18 = rate[2] + (R(9.81) + t17) + rate[3] * (m[101] + (m[96] * t14 - m[97] * t7));
+        const gic_real t19 = t18 * R(90.555);
+        const gic_real t20 = t5 + (m[70] * R(0.12319000000000002) + t6);
+        const gic_real t21 = t8 + (m[76] * R(0.12319000000000002) + t9);
+        const gic_real t22 = t12 + (m[73] * R(0.12319000000000002) + t13);
+        gic_real road23[3];
+        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t20, m[67] + t22, road23))
+            return GIC_ERROR_ROAD;
+        const gic_real t24 = (m[82] + (m[80] * t20 - m[78] * t21)) * road23[2];
+        const gic_real t25 = t24 + (m[79] * t21 - m[80] * t22) * road23[1];
+        const gic_real t26 = m[68] + t21;
+        const gic_real t27 = road23[0] + R(0.4699) - t26;
+        const gic_real t28 = GIC_MIN(GIC_MAX(t27 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t29 = (t25 - (m[83] + (m[78] * t22 - m[79] * t20))) * ((R(3.0) - (t28 + t28)) * (t28 * t28) * R(500.0));
+        const gic_real t30 = GIC_MAX(t29 + t27 * R(283000.0), R(0.0));
+        const gic_real t31 = GIC_FABS(rate[2]);
+        const gic_real t32 = GIC_FABS(m[42]);
+        const gic_real t33 = t32 * t32;
+        const gic_real t34 = t33 * (GIC_FABS(m[32] + t2) + GIC_FABS(R(0.307086) + t1));
+        const gic_real t35 = m[42] * (m[42] * t1) + m[48] * t2;
+        const gic_real t36 = R(19.62) + t34 + (GIC_FABS(t3) + GIC_FABS(-t35));
+        const gic_real t37 = GIC_FABS(rate[3]);
+        const gic_real t38 = GIC_FABS(m[54]);
+        const gic_real t39 = t37 * t38;
+        const gic_real t40 = GIC_FABS(t2) + GIC_FABS(t1);
+        const gic_real t41 = R(23.965) * (t31 + (t36 + t39 * t40));
+        const gic_real t42 = (R(0.4699) + (GIC_FABS(t26) + GIC_FABS(road23[0]))) * R(283000.0);
+        const gic_real t43 = GIC_FABS(t29) + GIC_FABS(t42);
+        const gic_real t44 = GIC_FABS(m[80]) + GIC_FABS(m[79]) + GIC_FABS(m[78]);
+        const gic_real t45 = t44 * t44;
+        const gic_real t46 = GIC_FABS(m[68] + t10) + GIC_FABS(m[67] + t14) + GIC_FABS(R(-0.035559999999999994) + t7);
+        const gic_real t47 = m[78] * t14 - m[79] * t7;
+        const gic_real t48 = m[80] * t15 - m[78] * t47 + (m[86] * t7 - m[84] * t10);
+        const gic_real t49 = m[88] + t48;
+        const gic_real t50 = m[79] * t47 - m[80] * t11 + (m[85] * t10 - m[86] * t14);
+        const gic_real t51 = R(19.62) + t45 * t46 + (GIC_FABS(t17) + GIC_FABS(t49) + GIC_FABS(t50));
+        const gic_real t52 = GIC_FABS(t10) + GIC_FABS(t14) + GIC_FABS(t7);
+        const gic_real t53 = GIC_FABS(m[98]) + GIC_FABS(m[97]) + GIC_FABS(m[96]);
+        const gic_real t54 = t37 * t53;
+        const gic_real t55 = GIC_FABS(m[101]) + GIC_FABS(m[100]);
+        const gic_real t56 = R(90.555) * (t31 + t51 + t52 * t54 + t37 * t55);
+        const gic_real t57 = t43 + t56;
+        const gic_real t58 = t2 * ((t35 + rate[3] * (m[54] * t2)) * R(23.965)) + t1 * t4;
+        const gic_real t59 = t49 + rate[3] * (m[100] + (m[98] * t7 - m[96] * t10));
+        const gic_real t60 = t59 * R(90.555);
+        const gic_real t61 = m[74] * R(4.7728205);
+        const gic_real t62 = m[73] * R(7.58122);
+        const gic_real t63 = m[72] * R(4.8947505);
+        const gic_real t64 = m[77] * t61 + (m[76] * t62 + m[75] * t63);
+        const gic_real t65 = m[74] * t61 + (m[73] * t62 + m[72] * t63);
+        const gic_real t66 = m[71] * R(4.7728205);
+        const gic_real t67 = m[70] * R(7.58122);
+        const gic_real t68 = m[69] * R(4.8947505);
+        const gic_real t69 = m[74] * t66 + (m[73] * t67 + m[72] * t68);
+        const gic_real t70 = m[80] * t64 + (m[79] * t65 + m[78] * t69);
+        const gic_real t71 = m[77] * t66 + (m[76] * t67 + m[75] * t68);
+        const gic_real t72 = m[71] * t66 + (m[70] * t67 + m[69] * t68);
+        const gic_real t73 = m[80] * t71 + (m[79] * t69 + m[78] * t72);
+        const gic_real t74 = m[77] * (m[77] * R(4.7728205)) + (m[76] * (m[76] * R(7.58122)) + m[75] * (m[75] * R(4.8947505)));
+        const gic_real t75 = m[86] + m[98] * rate[3];
+        const gic_real t76 = m[85] + m[97] * rate[3];
+        const gic_real t77 = m[84] + m[96] * rate[3];
+        const gic_real t78 = m[78] * t70 - m[79] * t73 + (t74 * t75 + (t64 * t76 + t71 * t77));
+        const gic_real t79 = (t50 + rate[3] * (m[97] * t10 - m[98] * t14)) * R(90.555);
+        const gic_real t80 = m[80] * t74 + (m[79] * t64 + m[78] * t71);
+        const gic_real t81 = m[80] * t73 - m[78] * t80 + (t64 * t75 + (t65 * t76 + t69 * t77));
+        const gic_real t82 = m[79] * t80 - m[80] * t70 + (t71 * t75 + (t69 * t76 + t72 * t77));
+        const gic_real t83 = m[97] * (t81 + (t10 * t79 - t7 * t19)) + m[96] * (t82 + (t14 * t19 - t10 * t60));
+        const gic_real t84 = m[98] * (t78 + (t7 * t60 - t14 * t79)) + t83;
+        const gic_real t85 = m[54] * (R(0.4469) * (m[48] + m[54] * rate[3]) + t58) + (m[101] * t19 + m[100] * t60 + t84);
+        const gic_real t86 = m[101] * t30 + (m[96] * (t22 * t30) - m[97] * (t20 * t30));
+        const gic_real t87 = (x[1] - R(0.31658)) * R(167070.9);
+        const gic_real t88 = xd[1] * R(17490.8);
+        const gic_real t89 = GIC_FABS(t88) + GIC_FABS(t87) + R(167070.9) * (R(0.31658) + GIC_FABS(x[1]));
+        const gic_real t90 = t40 * t41 + (t33 + GIC_FABS(m[48]) + t39) * R(1.7876);
+        const gic_real t91 = t43 * (GIC_FABS(t21) + GIC_FABS(t22) + GIC_FABS(t20));
+        const gic_real t92 = t45 + (GIC_FABS(m[86]) + GIC_FABS(m[85]) + GIC_FABS(m[84]));
+        const gic_real t93 = t53 * (t91 + (t52 * t56 + (t92 + t54) * R(17.248790999999997)));
+        const gic_real t94 = (R(9.81) + rate[2]) * R(525.59) + t4 + t19 - t30;
+        const gic_real t95 = R(525.59) * (R(19.62) + t31) + t41 + t57;
+        const gic_real t96 = t85 - (t86 - (t87 + t88));
+        const gic_real t97 = t89 + t38 * t90 + t93 + t55 * t57;
+        tau[0] = t94;
+        size[0] = t95;
+        tau[1] = t96;
+        size[1] = t97;
+    }
+    return GIC_OK;
+}
+
+/* The motions that were recovered last, against all constraints. */
+static GIC_COLD int quarter_car_check_constraints(quarter_car *self)
+{
+    gic_real largest[2];
+    const int bad = quarter_car_residual(self, largest);
+    self->head.residual = GIC_MAX(self->head.residual, largest[0]);
+    if (bad < 0)
+        return GIC_OK;
+    self->head.subset = bad;
+    self->recovered = 0;
+    return GIC_ERROR_RESIDUAL;
+}
+
+/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+static GIC_COLD GIC_APART int quarter_car_check(quarter_car *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate)
+{
+    gic_real tau[QUARTER_CAR_UNKNOWN_ROOM], size[QUARTER_CAR_UNKNOWN_ROOM];
+    int i, status = quarter_car_check_constraints(self);
+    self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&quarter_car_model, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        status = quarter_car_balance(self, time, y, e, rate, tau, size);
+    for (i = 0; status == GIC_OK && i < QUARTER_CAR_UNKNOWNS; ++i)
+        if (!(GIC_FABS(tau[i]) <= GIC_BALANCE_RESIDUAL * size[i]))
+            status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        self->head.unchecked = GIC_CHECK_EVERY;
+    return status;
+}
+
 /* ---- the functions of quarter_car.h ------------------------------------------------------------------------------------ */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
@@ -1033,6 +1360,7 @@ static int quarter_car_locate(quarter_car *self, gic_real time, const gic_real *
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
 static int quarter_car_evaluate(quarter_car *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[QUARTER_CAR_STATE_ROOM])
 {
+    const int32_t flip = self->head.flip;
     int status = quarter_car_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
@@ -1040,6 +1368,11 @@ static int quarter_car_evaluate(quarter_car *self, gic_real time, const gic_real
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
     if (status == GIC_OK && !GIC_FINITE(rate + QUARTER_CAR_TWIST, QUARTER_CAR_STATES - QUARTER_CAR_TWIST))
         status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && --self->head.unchecked < 0) {
+        status = quarter_car_check(self, time, y, e, rate);
+        if (status != GIC_OK)
+            self->head.flip = flip; /* what was found is no start */
+    }
     return self->head.status = status;
 }
 
@@ -1114,7 +1447,13 @@ int quarter_car_outputs(quarter_car *self)
 int quarter_car_poses(quarter_car *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = quarter_car_locate(self, quarter_car_present(self), self->state, e);
+    const int32_t flip = self->head.flip;
+    int status = quarter_car_locate(self, quarter_car_present(self), self->state, e);
+    if (status == GIC_OK) {
+        status = self->head.status = quarter_car_check_constraints(self);
+        if (status != GIC_OK)
+            self->head.flip = flip;
+    }
     if (status == GIC_OK)
         quarter_car_place(self, self->state, e, pose);
     return status;
@@ -1274,6 +1613,8 @@ int quarter_car_setup_with(quarter_car *self, const gic_real *parameter)
     quarter_car_gather(self, self->state);
     if (status == GIC_OK)
         status = quarter_car_recover(self, turn, 0);
+    if (status == GIC_OK)
+        status = quarter_car_check_constraints(self);
     return self->head.status = status;
 }
 
@@ -1491,40 +1832,21 @@ static GIC_COLD int quarter_car_energy(const quarter_car *self, gic_real time, c
     return GIC_OK;
 }
 
-/* Largest constraint residual of all subsets, relative to their sizes. */
-static GIC_COLD gic_real quarter_car_residual(const quarter_car *self)
-{
-    const gic_real *const start = self->start[self->head.flip];
-    quarter_car_links links;
-    gic_real largest = R(0.0), one = R(0.0);
-    (void)start;
-    (void)one;
-    links.cold = 0;
-    links.x[0] = start[0];
-    one = quarter_car_residual_carriage(quarter_car_k_carriage[0], &links, self->motion + 0);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.x[0] = start[1];
-    links.x[1] = start[0];
-    one = quarter_car_residual_arm(quarter_car_k_arm[0], &links, self->motion + 30);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = start[0];
-    links.x[1] = start[1];
-    one = quarter_car_residual_wheel(quarter_car_k_wheel[0], &links, self->motion + 66);
-    largest = GIC_MAX(largest, one);
-    return largest;
-}
-
 GIC_COLD int quarter_car_self_test(quarter_car *self, gic_self_test *result)
 {
     gic_real e[4], acc[QUARTER_CAR_UNKNOWN_ROOM], unit[QUARTER_CAR_UNKNOWN_ROOM], tau0[QUARTER_CAR_UNKNOWN_ROOM], tau[QUARTER_CAR_UNKNOWN_ROOM];
-    gic_real M[QUARTER_CAR_UNKNOWN_ROOM][QUARTER_CAR_UNKNOWN_ROOM], energy[3], scale;
+    gic_real M[QUARTER_CAR_UNKNOWN_ROOM][QUARTER_CAR_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = quarter_car_time(self);
-    const gic_self_test none = {R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = quarter_car_refresh(self, e);
+    const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = quarter_car_refresh(self, e);
     *result = none;
+    if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
+        (void)quarter_car_residual(self, residual);
+        result->constraint = residual[0];
+        result->motion = residual[1];
+    }
     for (i = 0; i < QUARTER_CAR_UNKNOWNS; ++i)
         unit[i] = R(0.0);
     if (status == GIC_OK)
@@ -1533,7 +1855,6 @@ GIC_COLD int quarter_car_self_test(quarter_car *self, gic_self_test *result)
         status = quarter_car_inverse(self, time, self->state, e, unit, tau0);
     if (status != GIC_OK)
         return self->head.status = status;
-    result->constraint = quarter_car_residual(self);
     result->energy = GIC_FABS(energy[0] - energy[1]) / (energy[2] > R(0.0) ? energy[2] : R(1.0));
 
     /* the mass matrix column by column: what a unit acceleration adds to the residual */
@@ -1611,6 +1932,14 @@ static int quarter_car_any_self_test(void *self, gic_self_test *result)
     return quarter_car_self_test((quarter_car *)self, result);
 }
 
+static int quarter_car_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
+{
+    gic_real e[4];
+    const gic_real *turn;
+    const int status = quarter_car_orient((quarter_car *)self, state, e, &turn);
+    return status == GIC_OK ? quarter_car_check((quarter_car *)self, time, state, e, rate) : status;
+}
+
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define quarter_car_any_march NULL
 #else
@@ -1680,4 +2009,5 @@ const gic_model quarter_car_model = {
     NULL,
     NULL,
     NULL,
+    quarter_car_any_check,
 };

@@ -67,7 +67,7 @@
  */
 #include "solid_axle.h"
 
-#if SOLID_AXLE_H != 0x33068f85
+#if SOLID_AXLE_H != 0x633cbac1
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -157,6 +157,27 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
+ * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
+ * their terms. They are rounding, in single precision near a singular configuration too. */
+#ifdef GIC_FLOAT
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-5)
+#else
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-10), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-9) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-10)
+#endif
+
+/* Evaluations between two that are checked. */
+#define GIC_CHECK_EVERY 200
+
+/* By how much an error that tests plant is off. */
+#ifndef GIC_PLANT_BY
+#define GIC_PLANT_BY R(1e-3)
+#endif
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct solid_axle_links {
@@ -221,22 +242,27 @@ static int solid_axle_solve_rack(solid_axle *self, const gic_real *GIC_RESTRICT 
         const gic_real t20 = t1 * t16 - R(0.4919654879999997) * t12;
         inertia[12] = t20;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real solid_axle_residual_rack(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void solid_axle_residual_rack(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
-        worst = t1;
+        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        worst[0] = t2;
+        worst[1] = t1;
     }
-    return worst;
 }
 
 static const gic_real solid_axle_k_lca_f_l[2][12] = {
@@ -370,25 +396,45 @@ static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRI
         const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
         inertia[21] = t71;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real solid_axle_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void solid_axle_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = R(0.01121887479261392) * motion[11] + k[10] * motion[10] - R(0.19748500000000002);
-        const gic_real t2 = k[8] + (R(0.01121887479261392) * motion[8] + k[10] * motion[7]) - k[11];
-        const gic_real t3 = t1 * t1 + (R(4.633797183999867e-05) + t2 * t2) - x[0] * x[0];
-        const gic_real t4 = GIC_MAX(R(0.0), GIC_FABS(t3 * R(7.892375927523102)));
-        worst = t4;
+        const gic_real t1 = R(0.01121887479261392) * motion[11] + k[10] * motion[10];
+        const gic_real t2 = t1 - R(0.19748500000000002);
+        const gic_real t3 = R(0.01121887479261392) * motion[8] + k[10] * motion[7];
+        const gic_real t4 = k[8] + t3 - k[11];
+        const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
+        const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.25954049989094174) + R(0.06335227878037952);
+        const gic_real t7 = R(2.0) / t6;
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t13 = t11 * GIC_FABS(rate[0]);
+        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
+        const gic_real t15 = t3 * motion[12];
+        const gic_real t16 = t1 * motion[12];
+        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
+        worst[0] = t9;
+        worst[1] = t20;
     }
-    return worst;
 }
 
 static const gic_real solid_axle_k_axle[1][1] = {
@@ -1272,6 +1318,9 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             q[5] = t366;
             q[6] = t367;
         }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+        motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
         ++self->head.correction_count;
         if (!(step < GIC_LEAP_SQUARE))
             return GIC_ERROR_NEWTON;
@@ -1290,62 +1339,215 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
     return GIC_ERROR_NEWTON;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real solid_axle_residual_axle(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void solid_axle_residual_axle(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
         const gic_real t1 = motion[2] - R(0.18600000000000005);
         const gic_real t2 = motion[1] - R(-0.45);
         const gic_real t3 = motion[0] - R(-1.05);
         const gic_real t4 = t1 * t1 + (t2 * t2 + t3 * t3) - R(0.43540000000000006);
-        const gic_real t5 = R(-0.27) * motion[11];
-        const gic_real t6 = R(-0.38) * motion[10];
-        const gic_real t7 = R(0.020000000000000018) * motion[9];
-        const gic_real t8 = motion[2] + (t5 + (t6 + t7)) - R(-0.05399999999999999);
-        const gic_real t9 = R(-0.27) * motion[8];
-        const gic_real t10 = R(-0.38) * motion[7];
-        const gic_real t11 = R(0.020000000000000018) * motion[6];
-        const gic_real t12 = motion[1] + (t9 + (t10 + t11)) - R(-0.45);
-        const gic_real t13 = R(-0.27) * motion[5];
-        const gic_real t14 = R(-0.38) * motion[4];
-        const gic_real t15 = R(0.020000000000000018) * motion[3];
-        const gic_real t16 = motion[0] + (t13 + (t14 + t15)) - R(-0.9);
-        const gic_real t17 = t8 * t8 + (t12 * t12 + t16 * t16) - R(0.4974000000000001);
-        const gic_real t18 = R(0.62) * motion[10];
-        const gic_real t19 = motion[2] + (t5 + (t7 + t18)) - R(-0.05399999999999999);
-        const gic_real t20 = R(0.62) * motion[7];
-        const gic_real t21 = motion[1] + (t9 + (t11 + t20)) - R(0.45);
-        const gic_real t22 = R(0.62) * motion[4];
-        const gic_real t23 = motion[0] + (t13 + (t15 + t22)) - R(-0.9);
-        const gic_real t24 = t19 * t19 + (t21 * t21 + t23 * t23) - R(0.4974000000000001);
-        const gic_real t25 = GIC_MAX(GIC_MAX(GIC_FABS(t4 * R(1.2965960447226863)), GIC_FABS(t17 * R(1.0557996364170446))), GIC_FABS(t24 * R(1.0557996364170446)));
-        const gic_real t26 = motion[2] + R(0.24) * motion[10] - R(0.18600000000000005);
-        const gic_real t27 = motion[1] + R(0.24) * motion[7] - R(0.45);
-        const gic_real t28 = motion[0] + R(0.24) * motion[4] - R(-1.05);
-        const gic_real t29 = t26 * t26 + (t27 * t27 + t28 * t28) - R(0.43540000000000006);
-        const gic_real t30 = R(-0.16999999999999998) * motion[11];
-        const gic_real t31 = R(-0.09999999999999987) * motion[9];
-        const gic_real t32 = motion[2] + (t30 + (t18 + t31)) - R(0.30600000000000005);
-        const gic_real t33 = R(-0.16999999999999998) * motion[8];
-        const gic_real t34 = R(-0.09999999999999987) * motion[6];
-        const gic_real t35 = motion[1] + (t33 + (t20 + t34)) - R(0.45);
-        const gic_real t36 = R(-0.16999999999999998) * motion[5];
-        const gic_real t37 = R(-0.09999999999999987) * motion[3];
-        const gic_real t38 = motion[0] + (t36 + (t22 + t37)) - R(-1.75);
-        const gic_real t39 = t32 * t32 + (t35 * t35 + t38 * t38) - x[0] * x[0];
-        const gic_real t40 = GIC_MAX(GIC_MAX(t25, GIC_FABS(t29 * R(1.2965960447226863))), GIC_FABS(t39 * R(2.2395749863391856)));
-        const gic_real t41 = motion[2] + (t30 + (t6 + t31)) - R(0.30600000000000005);
-        const gic_real t42 = motion[1] + (t33 + (t10 + t34)) - R(-0.45);
-        const gic_real t43 = motion[0] + (t36 + (t14 + t37)) - R(-1.75);
-        const gic_real t44 = t41 * t41 + (t42 * t42 + t43 * t43) - x[1] * x[1];
-        const gic_real t45 = GIC_MAX(t40, GIC_FABS(t44 * R(2.2395749863391856)));
-        worst = t45;
+        const gic_real t5 = (GIC_FABS(t3) + GIC_FABS(t2) + GIC_FABS(t1)) * R(0.6765352910233139);
+        const gic_real t6 = R(2.0) / (t5 + R(0.38562511588328896));
+        const gic_real t7 = R(-0.27) * motion[11];
+        const gic_real t8 = R(-0.38) * motion[10];
+        const gic_real t9 = R(0.020000000000000018) * motion[9];
+        const gic_real t10 = t7 + (t8 + t9);
+        const gic_real t11 = motion[2] + t10 - R(-0.05399999999999999);
+        const gic_real t12 = R(-0.27) * motion[8];
+        const gic_real t13 = R(-0.38) * motion[7];
+        const gic_real t14 = R(0.020000000000000018) * motion[6];
+        const gic_real t15 = t12 + (t13 + t14);
+        const gic_real t16 = motion[1] + t15 - R(-0.45);
+        const gic_real t17 = R(-0.27) * motion[5];
+        const gic_real t18 = R(-0.38) * motion[4];
+        const gic_real t19 = R(0.020000000000000018) * motion[3];
+        const gic_real t20 = t17 + (t18 + t19);
+        const gic_real t21 = motion[0] + t20 - R(-0.9);
+        const gic_real t22 = t11 * t11 + (t16 * t16 + t21 * t21) - R(0.4974000000000001);
+        const gic_real t23 = R(0.6765352910233139) * (GIC_FABS(t21) + GIC_FABS(t16) + GIC_FABS(t11));
+        const gic_real t24 = R(2.0) / (t23 + R(0.47357470371631977));
+        const gic_real t25 = GIC_FABS(R(0.5) * t4 * t6) + GIC_FABS(R(0.5) * t22 * t24);
+        const gic_real t26 = R(0.62) * motion[10];
+        const gic_real t27 = t7 + (t9 + t26);
+        const gic_real t28 = motion[2] + t27 - R(-0.05399999999999999);
+        const gic_real t29 = R(0.62) * motion[7];
+        const gic_real t30 = t12 + (t14 + t29);
+        const gic_real t31 = motion[1] + t30 - R(0.45);
+        const gic_real t32 = R(0.62) * motion[4];
+        const gic_real t33 = t17 + (t19 + t32);
+        const gic_real t34 = motion[0] + t33 - R(-0.9);
+        const gic_real t35 = t28 * t28 + (t31 * t31 + t34 * t34) - R(0.4974000000000001);
+        const gic_real t36 = R(0.6765352910233139) * (GIC_FABS(t34) + GIC_FABS(t31) + GIC_FABS(t28));
+        const gic_real t37 = R(2.0) / (R(0.47357470371631977) + t36);
+        const gic_real t38 = R(0.24) * motion[10];
+        const gic_real t39 = motion[2] + t38 - R(0.18600000000000005);
+        const gic_real t40 = R(0.24) * motion[7];
+        const gic_real t41 = motion[1] + t40 - R(0.45);
+        const gic_real t42 = R(0.24) * motion[4];
+        const gic_real t43 = motion[0] + t42 - R(-1.05);
+        const gic_real t44 = t39 * t39 + (t41 * t41 + t43 * t43) - R(0.43540000000000006);
+        const gic_real t45 = R(0.6765352910233139) * (GIC_FABS(t43) + GIC_FABS(t41) + GIC_FABS(t39));
+        const gic_real t46 = R(2.0) / (R(0.38562511588328896) + t45);
+        const gic_real t47 = t25 + GIC_FABS(R(0.5) * t35 * t37) + GIC_FABS(R(0.5) * t44 * t46);
+        const gic_real t48 = R(-0.16999999999999998) * motion[11];
+        const gic_real t49 = R(-0.09999999999999987) * motion[9];
+        const gic_real t50 = t48 + (t26 + t49);
+        const gic_real t51 = motion[2] + t50 - R(0.30600000000000005);
+        const gic_real t52 = R(-0.16999999999999998) * motion[8];
+        const gic_real t53 = R(-0.09999999999999987) * motion[6];
+        const gic_real t54 = t52 + (t29 + t53);
+        const gic_real t55 = motion[1] + t54 - R(0.45);
+        const gic_real t56 = R(-0.16999999999999998) * motion[5];
+        const gic_real t57 = R(-0.09999999999999987) * motion[3];
+        const gic_real t58 = t56 + (t32 + t57);
+        const gic_real t59 = motion[0] + t58 - R(-1.75);
+        const gic_real t60 = t51 * t51 + (t55 * t55 + t59 * t59) - x[0] * x[0];
+        const gic_real t61 = R(0.6765352910233139) * (GIC_FABS(t59) + GIC_FABS(t55) + GIC_FABS(t51));
+        const gic_real t62 = R(2.0) / (t61 + R(0.2232566460376936));
+        const gic_real t63 = t48 + (t8 + t49);
+        const gic_real t64 = motion[2] + t63 - R(0.30600000000000005);
+        const gic_real t65 = t52 + (t13 + t53);
+        const gic_real t66 = motion[1] + t65 - R(-0.45);
+        const gic_real t67 = t56 + (t18 + t57);
+        const gic_real t68 = motion[0] + t67 - R(-1.75);
+        const gic_real t69 = t64 * t64 + (t66 * t66 + t68 * t68) - x[1] * x[1];
+        const gic_real t70 = R(0.6765352910233139) * (GIC_FABS(t68) + GIC_FABS(t66) + GIC_FABS(t64));
+        const gic_real t71 = R(2.0) / (R(0.2232566460376936) + t70);
+        const gic_real t72 = t47 + GIC_FABS(R(0.5) * t60 * t62) + GIC_FABS(R(0.5) * t69 * t71);
+        const gic_real t73 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
+        const gic_real t74 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t75 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
+        const gic_real t76 = t72 + GIC_FABS(t73) + GIC_FABS(t74) + t75 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
+        const gic_real t77 = t76 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
+        const gic_real t78 = t77 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t79 = t6 * (t3 * motion[27] + t2 * motion[28] + t1 * motion[29]);
+        const gic_real t80 = t15 * t11 - t10 * t16;
+        const gic_real t81 = t10 * t21 - t20 * t11;
+        const gic_real t82 = t20 * t16 - t15 * t21;
+        const gic_real t83 = t80 * motion[24] + t81 * motion[25] + t82 * motion[26] + t21 * motion[27];
+        const gic_real t84 = GIC_FABS(t24 * (t83 + t16 * motion[28] + t11 * motion[29]));
+        const gic_real t85 = t30 * t28 - t27 * t31;
+        const gic_real t86 = t27 * t34 - t33 * t28;
+        const gic_real t87 = t33 * t31 - t30 * t34;
+        const gic_real t88 = t85 * motion[24] + t86 * motion[25] + t87 * motion[26] + t34 * motion[27];
+        const gic_real t89 = GIC_FABS(t37 * (t88 + t31 * motion[28] + t28 * motion[29]));
+        const gic_real t90 = t40 * t39 - t38 * t41;
+        const gic_real t91 = t38 * t43 - t42 * t39;
+        const gic_real t92 = t42 * t41 - t40 * t43;
+        const gic_real t93 = t90 * motion[24] + t91 * motion[25] + t92 * motion[26] + t43 * motion[27];
+        const gic_real t94 = GIC_FABS(t46 * (t93 + t41 * motion[28] + t39 * motion[29]));
+        const gic_real t95 = t54 * t51 - t50 * t55;
+        const gic_real t96 = t50 * t59 - t58 * t51;
+        const gic_real t97 = t58 * t55 - t54 * t59;
+        const gic_real t98 = t95 * motion[24] - x[0] + t96 * motion[25] + t97 * motion[26];
+        const gic_real t99 = t98 + t59 * motion[27] + t55 * motion[28] + t51 * motion[29];
+        const gic_real t100 = GIC_FABS(t79) + t84 + t89 + t94 + GIC_FABS(t62 * t99);
+        const gic_real t101 = t65 * t64 - t63 * t66;
+        const gic_real t102 = t63 * t68 - t67 * t64;
+        const gic_real t103 = t67 * t66 - t65 * t68;
+        const gic_real t104 = t101 * motion[24] + t102 * motion[25] + t103 * motion[26] + t68 * motion[27];
+        const gic_real t105 = GIC_FABS(t71 * (t104 + t66 * motion[28] + t64 * motion[29]));
+        const gic_real t106 = R(1.4781194909838624) * (GIC_FABS(motion[27]) + GIC_FABS(motion[28]) + GIC_FABS(motion[29]));
+        const gic_real t107 = t106 + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
+        const gic_real t108 = t107 + GIC_FABS(-(x[0] * t62));
+        const gic_real t109 = t6 * (t3 * motion[33] + t2 * motion[34] + t1 * motion[35]);
+        const gic_real t110 = t80 * motion[30] + t81 * motion[31] + t82 * motion[32] + t21 * motion[33];
+        const gic_real t111 = GIC_FABS(t24 * (t110 + t16 * motion[34] + t11 * motion[35]));
+        const gic_real t112 = t85 * motion[30] + t86 * motion[31] + t87 * motion[32] + t34 * motion[33];
+        const gic_real t113 = GIC_FABS(t37 * (t112 + t31 * motion[34] + t28 * motion[35]));
+        const gic_real t114 = t90 * motion[30] + t91 * motion[31] + t92 * motion[32] + t43 * motion[33];
+        const gic_real t115 = GIC_FABS(t46 * (t114 + t41 * motion[34] + t39 * motion[35]));
+        const gic_real t116 = t95 * motion[30] + t96 * motion[31] + t97 * motion[32] + t59 * motion[33];
+        const gic_real t117 = GIC_FABS(t62 * (t116 + t55 * motion[34] + t51 * motion[35]));
+        const gic_real t118 = t101 * motion[30] - x[1] + t102 * motion[31] + t103 * motion[32];
+        const gic_real t119 = t118 + t68 * motion[33] + t66 * motion[34] + t64 * motion[35];
+        const gic_real t120 = GIC_FABS(t109) + t111 + t113 + t115 + t117 + GIC_FABS(t71 * t119);
+        const gic_real t121 = R(1.4781194909838624) * (GIC_FABS(motion[33]) + GIC_FABS(motion[34]) + GIC_FABS(motion[35]));
+        const gic_real t122 = t121 + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
+        const gic_real t123 = t122 + GIC_FABS(-(x[1] * t71));
+        const gic_real t124 = (t100 + t105) / (t108 + R(1e-30)) + t120 / (R(1e-30) + t123);
+        const gic_real t125 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
+        const gic_real t126 = t125 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
+        const gic_real t127 = GIC_FABS(R(1.4781194909838624) * (motion[15] - rate[0] * motion[27] - rate[1] * motion[33]));
+        const gic_real t128 = GIC_FABS(R(1.4781194909838624) * (motion[16] - rate[0] * motion[28] - rate[1] * motion[34]));
+        const gic_real t129 = GIC_FABS(R(1.4781194909838624) * (motion[17] - rate[0] * motion[29] - rate[1] * motion[35]));
+        const gic_real t130 = R(1.4781194909838624) * (GIC_FABS(motion[15]) + GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t131 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t132 = t108 * GIC_FABS(rate[0]);
+        const gic_real t133 = t123 * GIC_FABS(rate[1]);
+        const gic_real t134 = (t126 + t127 + t128 + t129) / (R(1e-30) + (t130 + t131 + t132 + t133));
+        const gic_real t135 = motion[17] * motion[17] + (motion[16] * motion[16] + motion[15] * motion[15]) + (t1 * motion[23] + (t2 * motion[22] + t3 * motion[21]));
+        const gic_real t136 = t15 * motion[12] - t20 * motion[13];
+        const gic_real t137 = motion[17] + t136;
+        const gic_real t138 = t20 * motion[14] - t10 * motion[12];
+        const gic_real t139 = motion[16] + t138;
+        const gic_real t140 = t10 * motion[13] - t15 * motion[14];
+        const gic_real t141 = motion[15] + t140;
+        const gic_real t142 = motion[12] * t138 - motion[13] * t140 + (t15 * motion[18] - t20 * motion[19]);
+        const gic_real t143 = motion[14] * t140 - motion[12] * t136 + (t20 * motion[20] - t10 * motion[18]);
+        const gic_real t144 = motion[13] * t136 - motion[14] * t138 + (t10 * motion[19] - t15 * motion[20]);
+        const gic_real t145 = t11 * (motion[23] + t142) + (t16 * (motion[22] + t143) + t21 * (motion[21] + t144));
+        const gic_real t146 = t137 * t137 + (t139 * t139 + t141 * t141) + t145;
+        const gic_real t147 = t30 * motion[12] - t33 * motion[13];
+        const gic_real t148 = motion[17] + t147;
+        const gic_real t149 = t33 * motion[14] - t27 * motion[12];
+        const gic_real t150 = motion[16] + t149;
+        const gic_real t151 = t27 * motion[13] - t30 * motion[14];
+        const gic_real t152 = motion[15] + t151;
+        const gic_real t153 = motion[12] * t149 - motion[13] * t151 + (t30 * motion[18] - t33 * motion[19]);
+        const gic_real t154 = motion[14] * t151 - motion[12] * t147 + (t33 * motion[20] - t27 * motion[18]);
+        const gic_real t155 = motion[13] * t147 - motion[14] * t149 + (t27 * motion[19] - t30 * motion[20]);
+        const gic_real t156 = t28 * (motion[23] + t153) + (t31 * (motion[22] + t154) + t34 * (motion[21] + t155));
+        const gic_real t157 = t148 * t148 + (t150 * t150 + t152 * t152) + t156;
+        const gic_real t158 = GIC_FABS(t135 * t6) + GIC_FABS(t146 * t24) + GIC_FABS(t157 * t37);
+        const gic_real t159 = t40 * motion[12] - t42 * motion[13];
+        const gic_real t160 = motion[17] + t159;
+        const gic_real t161 = t42 * motion[14] - t38 * motion[12];
+        const gic_real t162 = motion[16] + t161;
+        const gic_real t163 = t38 * motion[13] - t40 * motion[14];
+        const gic_real t164 = motion[15] + t163;
+        const gic_real t165 = motion[12] * t161 - motion[13] * t163 + (t40 * motion[18] - t42 * motion[19]);
+        const gic_real t166 = motion[14] * t163 - motion[12] * t159 + (t42 * motion[20] - t38 * motion[18]);
+        const gic_real t167 = motion[13] * t159 - motion[14] * t161 + (t38 * motion[19] - t40 * motion[20]);
+        const gic_real t168 = t39 * (motion[23] + t165) + (t41 * (motion[22] + t166) + t43 * (motion[21] + t167));
+        const gic_real t169 = t160 * t160 + (t162 * t162 + t164 * t164) + t168;
+        const gic_real t170 = t54 * motion[12] - t58 * motion[13];
+        const gic_real t171 = motion[17] + t170;
+        const gic_real t172 = t58 * motion[14] - t50 * motion[12];
+        const gic_real t173 = motion[16] + t172;
+        const gic_real t174 = t50 * motion[13] - t54 * motion[14];
+        const gic_real t175 = motion[15] + t174;
+        const gic_real t176 = motion[12] * t172 - motion[13] * t174 + (t54 * motion[18] - t58 * motion[19]);
+        const gic_real t177 = motion[14] * t174 - motion[12] * t170 + (t58 * motion[20] - t50 * motion[18]);
+        const gic_real t178 = motion[13] * t170 - motion[14] * t172 + (t50 * motion[19] - t54 * motion[20]);
+        const gic_real t179 = t51 * (motion[23] + t176) + (t55 * (motion[22] + t177) + t59 * (motion[21] + t178));
+        const gic_real t180 = t171 * t171 + (t173 * t173 + t175 * t175) + t179;
+        const gic_real t181 = t158 + GIC_FABS(t169 * t46) + GIC_FABS((t180 - rate[0] * rate[0]) * t62);
+        const gic_real t182 = t65 * motion[12] - t67 * motion[13];
+        const gic_real t183 = motion[17] + t182;
+        const gic_real t184 = t67 * motion[14] - t63 * motion[12];
+        const gic_real t185 = motion[16] + t184;
+        const gic_real t186 = t63 * motion[13] - t65 * motion[14];
+        const gic_real t187 = motion[15] + t186;
+        const gic_real t188 = motion[12] * t184 - motion[13] * t186 + (t65 * motion[18] - t67 * motion[19]);
+        const gic_real t189 = motion[14] * t186 - motion[12] * t182 + (t67 * motion[20] - t63 * motion[18]);
+        const gic_real t190 = motion[13] * t182 - motion[14] * t184 + (t63 * motion[19] - t65 * motion[20]);
+        const gic_real t191 = t64 * (motion[23] + t188) + (t66 * (motion[22] + t189) + t68 * (motion[21] + t190));
+        const gic_real t192 = t183 * t183 + (t185 * t185 + t187 * t187) + t191;
+        const gic_real t193 = R(1.4781194909838624) * (GIC_FABS(motion[21]) + GIC_FABS(motion[22]) + GIC_FABS(motion[23]));
+        const gic_real t194 = t193 + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t195 = t130 * t130 + t131 * t131 + t194 + t132 * t132;
+        const gic_real t196 = (t181 + GIC_FABS((t192 - rate[1] * rate[1]) * t71)) / (R(1e-30) + (t195 + t133 * t133));
+        const gic_real t197 = t124 + t134 + t196;
+        worst[0] = t78;
+        worst[1] = t197;
     }
-    return worst;
 }
 
 static const gic_real solid_axle_k_wheel_f_l[2][15] = {
@@ -1670,40 +1872,120 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t222 = t216 + (t114 + t201);
         inertia[4] = t222;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real solid_axle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void solid_axle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (k[0] * m1[7] + k[2]))));
-        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]));
-        const gic_real t3 = t2 - R(0.05422899999999997);
-        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t5 = t4 - (k[1] + m0[1]);
-        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]));
-        const gic_real t7 = t6 - R(1.438648);
-        const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
-        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS(R(2.928075656552032) * (motion[2] - k[0] * m1[10]))), GIC_FABS(t8 * R(3.9285226675160785)));
-        const gic_real t10 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]));
-        const gic_real t11 = t10 - R(0.23411769999999998);
-        const gic_real t12 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t13 = t12 - k[3];
-        const gic_real t14 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]));
-        const gic_real t15 = t14 - R(1.593883);
-        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
-        const gic_real t17 = R(0.21526024724178433) * t11 + (k[4] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
-        const gic_real t18 = GIC_MAX(GIC_MAX(t9, GIC_FABS(t16 * R(5.571891251504317))), GIC_FABS(t17 * R(3.029396354366955)));
-        worst = t18;
+        const gic_real t1 = k[0] * m1[7];
+        const gic_real t2 = k[0] * m1[10];
+        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[1] - (t1 + k[2]))) + GIC_FABS(R(2.928075656552032) * (motion[2] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]);
+        const gic_real t5 = motion[2] + t4 - R(0.05422899999999997);
+        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]);
+        const gic_real t7 = motion[1] + t6;
+        const gic_real t8 = k[1] + m0[1];
+        const gic_real t9 = t7 - t8;
+        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t11 = R(1.653405) + t10 - R(1.438648);
+        const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
+        const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824065);
+        const gic_real t14 = R(2.0) / (t13 + R(0.12727430698933434));
+        const gic_real t15 = R(0.33360360000000006) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]);
+        const gic_real t16 = motion[2] + t15 - R(0.23411769999999998);
+        const gic_real t17 = R(0.33360360000000006) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]);
+        const gic_real t18 = motion[1] + t17 - k[3];
+        const gic_real t19 = R(0.33360360000000006) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t20 = R(1.653405) + t19 - R(1.593883);
+        const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
+        const gic_real t22 = R(0.3415212300824065) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
+        const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331868));
+        const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
+        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
+        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
+        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
+        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
+        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t33 = t6 * t5 - t4 * t9;
+        const gic_real t34 = t4 * t11 - t10 * t5;
+        const gic_real t35 = t10 * t9 - t6 * t11;
+        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t37 = t17 * t16 - t15 * t18;
+        const gic_real t38 = t15 * t20 - t19 * t16;
+        const gic_real t39 = t19 * t18 - t17 * t20;
+        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t41 = R(0.21526024724178433) * t17 - k[4] * t15;
+        const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
+        const gic_real t43 = k[4] * t19 - R(0.9665541626242249) * t17;
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
+        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
+        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[35] - m1[24] * t1));
+        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
+        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
+        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[4] * motion[34];
+        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
+        const gic_real t53 = t52 + GIC_FABS(m1[24]);
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
+        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[17] - rate[1] * motion[35]));
+        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t60 = t46 * GIC_FABS(rate[0]);
+        const gic_real t61 = t53 * GIC_FABS(rate[1]);
+        const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
+        const gic_real t63 = R(2.928075656552032) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
+        const gic_real t64 = R(2.928075656552032) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
+        const gic_real t65 = t6 * motion[12] - t10 * motion[13];
+        const gic_real t66 = motion[17] + t65;
+        const gic_real t67 = t10 * motion[14] - t4 * motion[12];
+        const gic_real t68 = motion[16] + t67 - m0[16];
+        const gic_real t69 = t4 * motion[13] - t6 * motion[14];
+        const gic_real t70 = motion[12] * t67 - motion[13] * t69 + (t6 * motion[18] - t10 * motion[19]);
+        const gic_real t71 = motion[14] * t69 - motion[12] * t65 + (t10 * motion[20] - t4 * motion[18]);
+        const gic_real t72 = motion[13] * t65 - motion[14] * t67 + (t4 * motion[19] - t6 * motion[20]);
+        const gic_real t73 = t5 * (motion[23] + t70) + (t9 * (motion[22] + t71) + t11 * t72);
+        const gic_real t74 = t66 * t66 + (t68 * t68 + t69 * t69) + t73;
+        const gic_real t75 = GIC_FABS(t63) + GIC_FABS(t64) + GIC_FABS(t74 * t14);
+        const gic_real t76 = t17 * motion[12] - t19 * motion[13];
+        const gic_real t77 = motion[17] + t76;
+        const gic_real t78 = t19 * motion[14] - t15 * motion[12];
+        const gic_real t79 = motion[16] + t78;
+        const gic_real t80 = t15 * motion[13] - t17 * motion[14];
+        const gic_real t81 = motion[12] * t78 - motion[13] * t80 + (t17 * motion[18] - t19 * motion[19]);
+        const gic_real t82 = motion[23] + t81;
+        const gic_real t83 = motion[14] * t80 - motion[12] * t76 + (t19 * motion[20] - t15 * motion[18]);
+        const gic_real t84 = motion[22] + t83;
+        const gic_real t85 = motion[13] * t76 - motion[14] * t78 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t86 = t77 * t77 + (t79 * t79 + t80 * t80) + (t16 * t82 + (t18 * t84 + t20 * t85));
+        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) * R(2.559750693852431);
+        const gic_real t88 = R(2.928075656552032) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t89 = R(2.928075656552032) * GIC_FABS(m0[16]);
+        const gic_real t90 = t58 * t58 + t59 * t59 + t88 + t89 * t89;
+        const gic_real t91 = GIC_FABS(m1[12]);
+        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[18])) + t60 * t60;
+        const gic_real t93 = (t75 + GIC_FABS(t86 * t23) + GIC_FABS(t87)) / (R(1e-30) + (t92 + t61 * t61));
+        const gic_real t94 = t62 + t93;
+        worst[0] = t32;
+        worst[1] = t94;
     }
-    return worst;
 }
 
 /* ---- recovery of the whole vehicle, in computational sequence ------------------------------------------------ */
@@ -1869,6 +2151,8 @@ static int solid_axle_recover(solid_axle *self, const gic_real turn[3], int cold
         way[i] = self->x[i] - self->start[first][i];
     for (i = 0; i < SOLID_AXLE_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < solid_axle_piece[i]);
+    if (far)
+        self->head.unchecked = 0; /* a jump: no state that was checked is near */
     /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
      * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
     if (far || SOLID_AXLE_FOLLOWED > 0) {
@@ -2374,6 +2658,13 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
         rate[11] = t366;
         rate[22] = t333;
     }
+#ifdef GIC_PLANT_RATE /* an error that tests plant */
+#ifndef GIC_PLANT_AFTER
+#define GIC_PLANT_AFTER R(-1.0) /* s */
+#endif
+    if (time > GIC_PLANT_AFTER)
+        rate[GIC_PLANT_RATE] += GIC_PLANT_BY + GIC_PLANT_BY * GIC_FABS(rate[GIC_PLANT_RATE]);
+#endif
     return GIC_OK;
 }
 
@@ -3107,6 +3398,745 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
     }
 }
 
+/* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
+
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
+ * whose are beyond what is promised, -1: there is none. */
+static GIC_COLD GIC_APART int solid_axle_residual(const solid_axle *self, gic_real largest[2])
+{
+    solid_axle_links links;
+    gic_real one[2];
+    int bad = -1;
+    (void)self, (void)one;
+    largest[0] = largest[1] = R(0.0);
+    links.cold = 0;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    solid_axle_residual_rack(solid_axle_k_rack[0], &links, self->motion + 0, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 1;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    solid_axle_residual_lca_f_l(solid_axle_k_lca_f_l[0], &links, self->motion + 30, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496358)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 2;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[1];
+    links.rate[0] = self->xd[1];
+    solid_axle_residual_lca_f_l(solid_axle_k_lca_f_l[1], &links, self->motion + 60, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496358)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 3;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[2];
+    links.rate[0] = self->xd[2];
+    links.x[1] = self->x[3];
+    links.rate[1] = self->xd[3];
+    solid_axle_residual_axle(solid_axle_k_axle[0], &links, self->motion + 90, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(2.410792498728342)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 4;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 30;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[0];
+    links.rate[1] = self->xd[0];
+    solid_axle_residual_wheel_f_l(solid_axle_k_wheel_f_l[0], &links, self->motion + 126, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 5;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 60;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[1];
+    links.rate[1] = self->xd[1];
+    solid_axle_residual_wheel_f_l(solid_axle_k_wheel_f_l[1], &links, self->motion + 162, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 6;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    return bad;
+}
+
+/* tau: residual of the equations of motion at `rate`, body by body: another way than solid_axle_dynamics. size: magnitudes of
+ * the terms that it is the sum of. */
+static GIC_COLD GIC_APART int solid_axle_balance(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *tau, gic_real *size)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    {
+        const gic_real t1 = y[17] * R(3570.2);
+        const gic_real t2 = y[16] * R(2955.66);
+        const gic_real t3 = e[2] + e[2];
+        const gic_real t4 = e[3] * t3;
+        const gic_real t5 = e[1] + e[1];
+        const gic_real t6 = e[0] * t5;
+        const gic_real t7 = t4 + t6;
+        const gic_real t8 = rate[14] - R(-9.81);
+        const gic_real t9 = e[1] * t5;
+        const gic_real t10 = e[3] + e[3];
+        const gic_real t11 = e[3] * t10;
+        const gic_real t12 = R(1.0) - (t9 + t11);
+        const gic_real t13 = e[2] * t5;
+        const gic_real t14 = e[0] * t10;
+        const gic_real t15 = t13 - t14;
+        const gic_real t16 = t7 * t8 + (t12 * rate[13] + t15 * rate[12]);
+        const gic_real t17 = y[16] * R(0.056);
+        const gic_real t18 = y[16] * R(0.21300000000000008);
+        const gic_real t19 = y[15] * t17 + y[17] * t18 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
+        const gic_real t20 = t16 + t19;
+        const gic_real t21 = y[16] * t1 - y[17] * t2 + rate[15] * R(1078.52) - t20 * R(444.4287600000002);
+        const gic_real t22 = e[2] * t3;
+        const gic_real t23 = R(1.0) - (t9 + t22);
+        const gic_real t24 = t4 - t6;
+        const gic_real t25 = e[1] * t10;
+        const gic_real t26 = e[0] * t3;
+        const gic_real t27 = t25 + t26;
+        const gic_real t28 = t23 * t8 + (t24 * rate[13] + t27 * rate[12]);
+        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
+        const gic_real t30 = R(0.05422899999999997) * y[16] - m[1] * y[17];
+        const gic_real t31 = y[15] * t29 - y[16] * t30 + (m[1] * rate[15] - R(1.438648) * rate[16]);
+        const gic_real t32 = t28 + t31;
+        const gic_real t33 = t32 * R(9.072);
+        const gic_real t34 = m[1] * y[15] - R(1.438648) * y[16];
+        const gic_real t35 = y[17] * t30 - y[15] * t34 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
+        const gic_real t36 = rate[22] + (t16 + t35);
+        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
+        const gic_real t38 = m[38] * R(0.8938);
+        const gic_real t39 = m[37] * R(0.4469);
+        const gic_real t40 = m[41] * t38 + m[40] * t39;
+        const gic_real t41 = y[17] * t37 + y[16] * t40;
+        const gic_real t42 = m[38] * t38 + m[37] * t39;
+        const gic_real t43 = y[17] * t40 + y[16] * t42;
+        const gic_real t44 = y[16] * t41 - y[17] * t43 + R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]);
+        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
+        const gic_real t47 = m[42] * t46;
+        const gic_real t48 = m[48] * t45 - m[42] * t47;
+        const gic_real t49 = R(1.688965) * y[17];
+        const gic_real t50 = t49 - y[15] * t46 - t47 - t47;
+        const gic_real t51 = R(0.307086) + t45;
+        const gic_real t52 = y[16] * t46 - y[17] * t51;
+        const gic_real t53 = R(1.688965) * rate[16];
+        const gic_real t54 = y[15] * t50 - y[16] * t52 + (rate[15] * t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[18] * (m[54] * t45);
+        const gic_real t56 = t55 * R(23.965);
+        const gic_real t57 = m[42] * t45;
+        const gic_real t58 = R(1.688965) * y[16];
+        const gic_real t59 = t57 + (t57 + (y[15] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[17];
+        const gic_real t61 = y[17] * t52 - y[15] * t59 + (t60 - rate[15] * t46);
+        const gic_real t62 = m[42] * t57 + m[48] * t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[18] * (m[54] * t46);
+        const gic_real t64 = t63 * R(23.965);
+        const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
+        const gic_real t66 = t21 + (rate[15] + (m[1] * t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
+        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
+        const gic_real t68 = m[68] * R(0.8938);
+        const gic_real t69 = m[67] * R(0.4469);
+        const gic_real t70 = m[71] * t68 + m[70] * t69;
+        const gic_real t71 = y[17] * t67 + y[16] * t70;
+        const gic_real t72 = m[68] * t68 + m[67] * t69;
+        const gic_real t73 = y[17] * t70 + y[16] * t72;
+        const gic_real t74 = y[16] * t71 - y[17] * t73 + R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]);
+        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
+        const gic_real t77 = m[72] * t76;
+        const gic_real t78 = m[78] * t75 - m[72] * t77;
+        const gic_real t79 = t49 - y[15] * t76 - t77 - t77;
+        const gic_real t80 = R(-0.307086) + t75;
+        const gic_real t81 = y[16] * t76 - y[17] * t80;
+        const gic_real t82 = y[15] * t79 - y[16] * t81 + (rate[15] * t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[19] * (m[84] * t75);
+        const gic_real t84 = R(23.965) * t83;
+        const gic_real t85 = m[72] * t75;
+        const gic_real t86 = t85 + (t85 + (y[15] * t80 - t58));
+        const gic_real t87 = y[17] * t81 - y[15] * t86 + (t60 - rate[15] * t76);
+        const gic_real t88 = m[72] * t85 + m[78] * t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[19] * (m[84] * t76);
+        const gic_real t90 = R(23.965) * t89;
+        const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
+        const gic_real t92 = m[139] + y[16];
+        const gic_real t93 = m[137] * (m[137] * R(4.7728205)) + (m[136] * (m[136] * R(7.58122)) + m[135] * (m[135] * R(4.8947505)));
+        const gic_real t94 = m[140] + y[17];
+        const gic_real t95 = m[134] * R(4.7728205);
+        const gic_real t96 = m[133] * R(7.58122);
+        const gic_real t97 = m[132] * R(4.8947505);
+        const gic_real t98 = m[137] * t95 + (m[136] * t96 + m[135] * t97);
+        const gic_real t99 = m[131] * R(4.7728205);
+        const gic_real t100 = m[130] * R(7.58122);
+        const gic_real t101 = m[129] * R(4.8947505);
+        const gic_real t102 = m[137] * t99 + (m[136] * t100 + m[135] * t101);
+        const gic_real t103 = m[138] + y[15];
+        const gic_real t104 = t93 * t94 + (t98 * t92 + t102 * t103);
+        const gic_real t105 = m[134] * t95 + (m[133] * t96 + m[132] * t97);
+        const gic_real t106 = m[134] * t99 + (m[133] * t100 + m[132] * t101);
+        const gic_real t107 = t98 * t94 + (t105 * t92 + t106 * t103);
+        const gic_real t108 = m[146] + (rate[17] + (m[139] * y[15] - m[138] * y[16])) + m[152] * rate[22];
+        const gic_real t109 = t108 + m[158] * rate[18];
+        const gic_real t110 = m[145] + (rate[16] + (m[138] * y[17] - m[140] * y[15])) + m[151] * rate[22];
+        const gic_real t111 = t110 + m[157] * rate[18];
+        const gic_real t112 = m[131] * t99 + (m[130] * t100 + m[129] * t101);
+        const gic_real t113 = m[144] + (rate[15] + (m[140] * y[16] - m[139] * y[17])) + m[150] * rate[22];
+        const gic_real t114 = t113 + m[156] * rate[18];
+        const gic_real t115 = t92 * t104 - t94 * t107 + (t102 * t109 + (t106 * t111 + t112 * t114));
+        const gic_real t116 = m[134] * R(0.09182100000000004);
+        const gic_real t117 = m[132] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[133] * R(0.08910630000000008));
+        const gic_real t119 = m[131] * R(0.09182100000000004);
+        const gic_real t120 = m[129] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[130] * R(0.08910630000000008));
+        const gic_real t122 = m[137] * R(0.09182100000000004);
+        const gic_real t123 = m[135] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[136] * R(0.08910630000000008));
+        const gic_real t125 = m[140] * t121 - m[138] * t124;
+        const gic_real t126 = m[139] * t124 - m[140] * t118;
+        const gic_real t127 = m[138] * t125 - m[139] * t126 + (m[144] * t118 - m[145] * t121);
+        const gic_real t128 = m[149] + t127;
+        const gic_real t129 = m[142] + t125;
+        const gic_real t130 = R(1.653405) + t121;
+        const gic_real t131 = m[128] + t124;
+        const gic_real t132 = t129 + (t129 + (y[17] * t130 - y[15] * t131));
+        const gic_real t133 = m[127] + t118;
+        const gic_real t134 = t126 + (t126 + (y[16] * t131 - y[17] * t133));
+        const gic_real t135 = y[15] * t132 - y[16] * t134 + (rate[15] * t133 - rate[16] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + rate[22] * (m[150] * t118 - m[151] * t121);
+        const gic_real t137 = t136 + rate[18] * (m[161] + (m[156] * t118 - m[157] * t121));
+        const gic_real t138 = t137 * R(90.555);
+        const gic_real t139 = m[138] * t118 - m[139] * t121;
+        const gic_real t140 = m[140] * t126 - m[138] * t139 + (m[146] * t121 - m[144] * t124);
+        const gic_real t141 = m[148] + t140;
+        const gic_real t142 = m[143] + t139;
+        const gic_real t143 = t142 + (t142 + (y[15] * t133 - y[16] * t130));
+        const gic_real t144 = y[17] * t134 - y[15] * t143 + (rate[17] * t130 - rate[15] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + rate[22] * (m[152] * t121 - m[150] * t124);
+        const gic_real t146 = t145 + rate[18] * (m[160] + (m[158] * t121 - m[156] * t124));
+        const gic_real t147 = t146 * R(90.555);
+        const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[127] * t138 - m[128] * t147));
+        const gic_real t150 = m[175] + y[16];
+        const gic_real t151 = m[173] * (m[173] * R(4.7728205)) + (m[172] * (m[172] * R(7.58122)) + m[171] * (m[171] * R(4.8947505)));
+        const gic_real t152 = m[176] + y[17];
+        const gic_real t153 = m[170] * R(4.7728205);
+        const gic_real t154 = m[169] * R(7.58122);
+        const gic_real t155 = m[168] * R(4.8947505);
+        const gic_real t156 = m[173] * t153 + (m[172] * t154 + m[171] * t155);
+        const gic_real t157 = m[167] * R(4.7728205);
+        const gic_real t158 = m[166] * R(7.58122);
+        const gic_real t159 = m[165] * R(4.8947505);
+        const gic_real t160 = m[173] * t157 + (m[172] * t158 + m[171] * t159);
+        const gic_real t161 = m[174] + y[15];
+        const gic_real t162 = t151 * t152 + (t156 * t150 + t160 * t161);
+        const gic_real t163 = m[170] * t153 + (m[169] * t154 + m[168] * t155);
+        const gic_real t164 = m[170] * t157 + (m[169] * t158 + m[168] * t159);
+        const gic_real t165 = t156 * t152 + (t163 * t150 + t164 * t161);
+        const gic_real t166 = m[182] + (rate[17] + (m[175] * y[15] - m[174] * y[16])) + m[188] * rate[22];
+        const gic_real t167 = t166 + m[194] * rate[19];
+        const gic_real t168 = m[181] + (rate[16] + (m[174] * y[17] - m[176] * y[15])) + m[187] * rate[22];
+        const gic_real t169 = t168 + m[193] * rate[19];
+        const gic_real t170 = m[167] * t157 + (m[166] * t158 + m[165] * t159);
+        const gic_real t171 = m[180] + (rate[15] + (m[176] * y[16] - m[175] * y[17])) + m[186] * rate[22];
+        const gic_real t172 = t171 + m[192] * rate[19];
+        const gic_real t173 = t150 * t162 - t152 * t165 + (t160 * t167 + (t164 * t169 + t170 * t172));
+        const gic_real t174 = m[170] * R(0.09182100000000004);
+        const gic_real t175 = m[168] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[169] * R(-0.08910630000000008));
+        const gic_real t177 = m[167] * R(0.09182100000000004);
+        const gic_real t178 = m[165] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[166] * R(-0.08910630000000008));
+        const gic_real t180 = m[173] * R(0.09182100000000004);
+        const gic_real t181 = m[171] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[172] * R(-0.08910630000000008));
+        const gic_real t183 = m[176] * t179 - m[174] * t182;
+        const gic_real t184 = m[175] * t182 - m[176] * t176;
+        const gic_real t185 = m[174] * t183 - m[175] * t184 + (m[180] * t176 - m[181] * t179);
+        const gic_real t186 = m[185] + t185;
+        const gic_real t187 = m[178] + t183;
+        const gic_real t188 = R(1.653405) + t179;
+        const gic_real t189 = m[164] + t182;
+        const gic_real t190 = t187 + (t187 + (y[17] * t188 - y[15] * t189));
+        const gic_real t191 = m[163] + t176;
+        const gic_real t192 = t184 + (t184 + (y[16] * t189 - y[17] * t191));
+        const gic_real t193 = y[15] * t190 - y[16] * t192 + (rate[15] * t191 - rate[16] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + rate[22] * (m[186] * t176 - m[187] * t179);
+        const gic_real t195 = t194 + rate[19] * (m[197] + (m[192] * t176 - m[193] * t179));
+        const gic_real t196 = R(90.555) * t195;
+        const gic_real t197 = m[174] * t176 - m[175] * t179;
+        const gic_real t198 = m[176] * t184 - m[174] * t197 + (m[182] * t179 - m[180] * t182);
+        const gic_real t199 = m[184] + t198;
+        const gic_real t200 = m[179] + t197;
+        const gic_real t201 = t200 + (t200 + (y[15] * t191 - y[16] * t188));
+        const gic_real t202 = y[17] * t192 - y[15] * t201 + (rate[17] * t188 - rate[15] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + rate[22] * (m[188] * t179 - m[186] * t182);
+        const gic_real t204 = t203 + rate[19] * (m[196] + (m[194] * t179 - m[192] * t182));
+        const gic_real t205 = R(90.555) * t204;
+        const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
+        const gic_real t207 = m[103] + y[16];
+        const gic_real t208 = m[101] * (m[101] * R(163.103702)) + (m[100] * (m[100] * R(15.48644)) + m[99] * (m[99] * R(163.347562)));
+        const gic_real t209 = m[104] + y[17];
+        const gic_real t210 = m[98] * R(163.103702);
+        const gic_real t211 = m[97] * R(15.48644);
+        const gic_real t212 = m[96] * R(163.347562);
+        const gic_real t213 = m[101] * t210 + (m[100] * t211 + m[99] * t212);
+        const gic_real t214 = m[95] * R(163.103702);
+        const gic_real t215 = m[94] * R(15.48644);
+        const gic_real t216 = m[93] * R(163.347562);
+        const gic_real t217 = m[101] * t214 + (m[100] * t215 + m[99] * t216);
+        const gic_real t218 = m[102] + y[15];
+        const gic_real t219 = t208 * t209 + (t213 * t207 + t217 * t218);
+        const gic_real t220 = m[98] * t210 + (m[97] * t211 + m[96] * t212);
+        const gic_real t221 = m[98] * t214 + (m[97] * t215 + m[96] * t216);
+        const gic_real t222 = t213 * t209 + (t220 * t207 + t221 * t218);
+        const gic_real t223 = m[110] + (rate[17] + (m[103] * y[15] - m[102] * y[16])) + m[116] * rate[20];
+        const gic_real t224 = t223 + m[122] * rate[21];
+        const gic_real t225 = m[109] + (rate[16] + (m[102] * y[17] - m[104] * y[15])) + m[115] * rate[20];
+        const gic_real t226 = t225 + m[121] * rate[21];
+        const gic_real t227 = m[95] * t214 + (m[94] * t215 + m[93] * t216);
+        const gic_real t228 = m[108] + (rate[15] + (m[104] * y[16] - m[103] * y[17])) + m[114] * rate[20];
+        const gic_real t229 = t228 + m[120] * rate[21];
+        const gic_real t230 = t207 * t219 - t209 * t222 + (t217 * t224 + (t221 * t226 + t227 * t229));
+        const gic_real t231 = m[98] * R(-0.17228899999999997);
+        const gic_real t232 = m[96] * R(-0.03340499999999991);
+        const gic_real t233 = t231 + (t232 + m[97] * R(0.12));
+        const gic_real t234 = m[95] * R(-0.17228899999999997);
+        const gic_real t235 = m[93] * R(-0.03340499999999991);
+        const gic_real t236 = t234 + (t235 + m[94] * R(0.12));
+        const gic_real t237 = m[101] * R(-0.17228899999999997);
+        const gic_real t238 = m[99] * R(-0.03340499999999991);
+        const gic_real t239 = t237 + (t238 + m[100] * R(0.12));
+        const gic_real t240 = m[104] * t236 - m[102] * t239;
+        const gic_real t241 = m[103] * t239 - m[104] * t233;
+        const gic_real t242 = m[102] * t240 - m[103] * t241 + (m[108] * t233 - m[109] * t236);
+        const gic_real t243 = m[113] + t242;
+        const gic_real t244 = m[106] + t240;
+        const gic_real t245 = m[90] + t236;
+        const gic_real t246 = m[92] + t239;
+        const gic_real t247 = t244 + (t244 + (y[17] * t245 - y[15] * t246));
+        const gic_real t248 = m[105] + t241;
+        const gic_real t249 = m[91] + t233;
+        const gic_real t250 = t248 + (t248 + (y[16] * t246 - y[17] * t249));
+        const gic_real t251 = y[15] * t247 - y[16] * t250 + (rate[15] * t249 - rate[16] * t245);
+        const gic_real t252 = t243 + (t28 + t251) + rate[20] * (m[119] + (m[114] * t233 - m[115] * t236));
+        const gic_real t253 = t252 + rate[21] * (m[125] + (m[120] * t233 - m[121] * t236));
+        const gic_real t254 = t253 * R(271.11);
+        const gic_real t255 = m[102] * t233 - m[103] * t236;
+        const gic_real t256 = m[104] * t241 - m[102] * t255 + (m[110] * t236 - m[108] * t239);
+        const gic_real t257 = m[112] + t256;
+        const gic_real t258 = m[107] + t255;
+        const gic_real t259 = t258 + (t258 + (y[15] * t249 - y[16] * t245));
+        const gic_real t260 = y[17] * t250 - y[15] * t259 + (rate[17] * t245 - rate[15] * t246);
+        const gic_real t261 = t257 + (t16 + t260) + rate[20] * (m[118] + (m[116] * t236 - m[114] * t239));
+        const gic_real t262 = t261 + rate[21] * (m[124] + (m[122] * t236 - m[120] * t239));
+        const gic_real t263 = t262 * R(271.11);
+        const gic_real t264 = t230 + (t233 * t254 - t239 * t263);
+        const gic_real t265 = t149 + (t206 + (m[163] * t196 - m[164] * t205)) + (t264 + (m[91] * t254 - m[92] * t263));
+        const gic_real t266 = t231 + (m[97] * R(1.029701) + t232);
+        const gic_real t267 = t234 + (m[94] * R(1.029701) + t235);
+        const gic_real t268 = m[91] + t266;
+        const gic_real t269 = m[90] + t267;
+        const gic_real t270 = m[107] + (m[102] * t266 - m[103] * t267) + (y[15] * t268 - y[16] * t269);
+        const gic_real t271 = t237 + (m[100] * R(1.029701) + t238);
+        const gic_real t272 = m[92] + t271;
+        const gic_real t273 = m[106] + (m[104] * t267 - m[102] * t271) + (y[17] * t269 - y[15] * t272);
+        const gic_real t274 = t13 + t14;
+        const gic_real t275 = m[105] + (m[103] * t271 - m[104] * t266) + (y[16] * t272 - y[17] * t268);
+        const gic_real t276 = y[13] + (t24 * t270 + (t12 * t273 + t274 * t275));
+        const gic_real t277 = R(1.0) - (t22 + t11);
+        const gic_real t278 = y[0] + (t27 * t272 + (t15 * t268 + t277 * t269));
+        const gic_real t279 = y[1] + (t24 * t272 + (t12 * t268 + t274 * t269));
+        gic_real road280[3];
+        if (!solid_axle_road_height(self, time, t278, t279, road280))
+            return GIC_ERROR_ROAD;
+        const gic_real t281 = y[12] + (t27 * t270 + (t15 * t273 + t277 * t275));
+        const gic_real t282 = t25 - t26;
+        const gic_real t283 = y[14] + (t23 * t270 + (t7 * t273 + t282 * t275));
+        const gic_real t284 = t276 * road280[2] + t281 * road280[1] - t283;
+        const gic_real t285 = y[2] + (t23 * t272 + (t7 * t268 + t282 * t269));
+        const gic_real t286 = R(0.4699) + road280[0] - t285;
+        const gic_real t287 = GIC_MIN(GIC_MAX(R(100.0) * t286, R(0.0)), R(1.0));
+        const gic_real t288 = t284 * (R(500.0) * ((R(3.0) - (t287 + t287)) * (t287 * t287)));
+        const gic_real t289 = GIC_MAX(t288 + R(283000.0) * t286, R(0.0));
+        const gic_real t290 = t23 * t289;
+        const gic_real t291 = t7 * t289;
+        const gic_real t292 = t231 + (t232 + m[97] * R(-0.789701));
+        const gic_real t293 = t234 + (t235 + m[94] * R(-0.789701));
+        const gic_real t294 = m[91] + t292;
+        const gic_real t295 = m[90] + t293;
+        const gic_real t296 = m[107] + (m[102] * t292 - m[103] * t293) + (y[15] * t294 - y[16] * t295);
+        const gic_real t297 = t237 + (t238 + m[100] * R(-0.789701));
+        const gic_real t298 = m[92] + t297;
+        const gic_real t299 = m[106] + (m[104] * t293 - m[102] * t297) + (y[17] * t295 - y[15] * t298);
+        const gic_real t300 = m[105] + (m[103] * t297 - m[104] * t292) + (y[16] * t298 - y[17] * t294);
+        const gic_real t301 = y[13] + (t24 * t296 + (t12 * t299 + t274 * t300));
+        const gic_real t302 = y[0] + (t27 * t298 + (t15 * t294 + t277 * t295));
+        const gic_real t303 = y[1] + (t24 * t298 + (t12 * t294 + t274 * t295));
+        gic_real road304[3];
+        if (!solid_axle_road_height(self, time, t302, t303, road304))
+            return GIC_ERROR_ROAD;
+        const gic_real t305 = y[12] + (t27 * t296 + (t15 * t299 + t277 * t300));
+        const gic_real t306 = y[14] + (t23 * t296 + (t7 * t299 + t282 * t300));
+        const gic_real t307 = t301 * road304[2] + t305 * road304[1] - t306;
+        const gic_real t308 = y[2] + (t23 * t298 + (t7 * t294 + t282 * t295));
+        const gic_real t309 = R(0.4699) + road304[0] - t308;
+        const gic_real t310 = GIC_MIN(GIC_MAX(R(100.0) * t309, R(0.0)), R(1.0));
+        const gic_real t311 = t307 * (R(500.0) * ((R(3.0) - (t310 + t310)) * (t310 * t310)));
+        const gic_real t312 = GIC_MAX(t311 + R(283000.0) * t309, R(0.0));
+        const gic_real t313 = t23 * t312;
+        const gic_real t314 = t7 * t312;
+        const gic_real t315 = t266 * t290 - t271 * t291 + (t292 * t313 - t297 * t314);
+        const gic_real t316 = t174 + (m[169] * R(-0.12319000000000002) + t175);
+        const gic_real t317 = t177 + (m[166] * R(-0.12319000000000002) + t178);
+        const gic_real t318 = m[163] + t316;
+        const gic_real t319 = R(1.653405) + t317;
+        const gic_real t320 = m[179] + (m[174] * t316 - m[175] * t317) + (y[15] * t318 - y[16] * t319);
+        const gic_real t321 = t180 + (m[172] * R(-0.12319000000000002) + t181);
+        const gic_real t322 = m[164] + t321;
+        const gic_real t323 = m[178] + (m[176] * t317 - m[174] * t321) + (y[17] * t319 - y[15] * t322);
+        const gic_real t324 = m[175] * t321 - m[176] * t316 + (y[16] * t322 - y[17] * t318);
+        const gic_real t325 = y[13] + (t24 * t320 + (t12 * t323 + t274 * t324));
+        const gic_real t326 = y[0] + (t27 * t322 + (t15 * t318 + t277 * t319));
+        const gic_real t327 = y[1] + (t24 * t322 + (t12 * t318 + t274 * t319));
+        gic_real road328[3];
+        if (!solid_axle_road_height(self, time, t326, t327, road328))
+            return GIC_ERROR_ROAD;
+        const gic_real t329 = y[12] + (t27 * t320 + (t15 * t323 + t277 * t324));
+        const gic_real t330 = y[14] + (t23 * t320 + (t7 * t323 + t282 * t324));
+        const gic_real t331 = t325 * road328[2] + t329 * road328[1] - t330;
+        const gic_real t332 = y[2] + (t23 * t322 + (t7 * t318 + t282 * t319));
+        const gic_real t333 = R(0.4699) + road328[0] - t332;
+        const gic_real t334 = GIC_MIN(GIC_MAX(R(100.0) * t333, R(0.0)), R(1.0));
+        const gic_real t335 = t331 * (R(500.0) * ((R(3.0) - (t334 + t334)) * (t334 * t334)));
+        const gic_real t336 = GIC_MAX(t335 + R(283000.0) * t333, R(0.0));
+        const gic_real t337 = t23 * t336;
+        const gic_real t338 = t7 * t336;
+        const gic_real t339 = t316 * t337 - t321 * t338;
+        const gic_real t340 = t116 + (m[133] * R(0.12319000000000002) + t117);
+        const gic_real t341 = t119 + (m[130] * R(0.12319000000000002) + t120);
+        const gic_real t342 = m[127] + t340;
+        const gic_real t343 = R(1.653405) + t341;
+        const gic_real t344 = m[143] + (m[138] * t340 - m[139] * t341) + (y[15] * t342 - y[16] * t343);
+        const gic_real t345 = t122 + (m[136] * R(0.12319000000000002) + t123);
+        const gic_real t346 = m[128] + t345;
+        const gic_real t347 = m[142] + (m[140] * t341 - m[138] * t345) + (y[17] * t343 - y[15] * t346);
+        const gic_real t348 = m[139] * t345 - m[140] * t340 + (y[16] * t346 - y[17] * t342);
+        const gic_real t349 = y[13] + (t24 * t344 + (t12 * t347 + t274 * t348));
+        const gic_real t350 = y[0] + (t27 * t346 + (t15 * t342 + t277 * t343));
+        const gic_real t351 = y[1] + (t24 * t346 + (t12 * t342 + t274 * t343));
+        gic_real road352[3];
+        if (!solid_axle_road_height(self, time, t350, t351, road352))
+            return GIC_ERROR_ROAD;
+        const gic_real t353 = y[12] + (t27 * t344 + (t15 * t347 + t277 * t348));
+        const gic_real t354 = y[14] + (t23 * t344 + (t7 * t347 + t282 * t348));
+        const gic_real t355 = t349 * road352[2] + t353 * road352[1] - t354;
+        const gic_real t356 = y[2] + (t23 * t346 + (t7 * t342 + t282 * t343));
+        const gic_real t357 = road352[0] + R(0.4699) - t356;
+        const gic_real t358 = GIC_MIN(GIC_MAX(t357 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t359 = t355 * ((R(3.0) - (t358 + t358)) * (t358 * t358) * R(500.0));
+        const gic_real t360 = GIC_MAX(t359 + t357 * R(283000.0), R(0.0));
+        const gic_real t361 = t23 * t360;
+        const gic_real t362 = t7 * t360;
+        const gic_real t363 = t340 * t361 - t345 * t362;
+        const gic_real t364 = t363 + (m[127] * t361 - m[128] * t362) + (m[163] * t337 - m[164] * t338);
+        const gic_real t365 = t290 + t313;
+        const gic_real t366 = t291 + t314;
+        const gic_real t367 = t315 + (t339 + t364 + (m[91] * t365 - m[92] * t366));
+        const gic_real t368 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t282);
+        const gic_real t369 = t282 * t8 + (t274 * rate[13] + t277 * rate[12]);
+        const gic_real t370 = t368 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t369));
+        const gic_real t371 = GIC_FABS(y[17]) + GIC_FABS(y[16]) + GIC_FABS(y[15]);
+        const gic_real t372 = GIC_FABS(rate[17]) + GIC_FABS(rate[16]) + GIC_FABS(rate[15]);
+        const gic_real t373 = t371 * t371 + t372;
+        const gic_real t374 = t370 + t373 * R(0.2690000000000001);
+        const gic_real t375 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[1]));
+        const gic_real t376 = GIC_FABS(rate[22]);
+        const gic_real t377 = t370 + t373 * t375 + t371 * GIC_FABS(m[16]) + t376;
+        const gic_real t378 = R(9.072) * t377;
+        const gic_real t379 = t374 * R(561.2738800000002) + t373 * R(7604.379999999999) + (R(3.0) * t373 + t375 * t378);
+        const gic_real t380 = GIC_FABS(t46);
+        const gic_real t381 = t380 + GIC_FABS(t45);
+        const gic_real t382 = t371 + GIC_FABS(m[42]);
+        const gic_real t383 = t372 + t382 * t382;
+        const gic_real t384 = t370 + t383 * (R(1.688965) + (t380 + GIC_FABS(t51))) + t371 * (GIC_FABS(t57) + GIC_FABS(-t47));
+        const gic_real t385 = GIC_FABS(rate[18]);
+        const gic_real t386 = GIC_FABS(m[54]);
+        const gic_real t387 = t385 * t386;
+        const gic_real t388 = t384 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t387 * t381;
+        const gic_real t389 = R(23.965) * t388;
+        const gic_real t390 = t381 * t389 + (t383 + GIC_FABS(m[48]) + t387) * R(1.7876);
+        const gic_real t391 = GIC_FABS(t76);
+        const gic_real t392 = t391 + GIC_FABS(t75);
+        const gic_real t393 = t371 + GIC_FABS(m[72]);
+        const gic_real t394 = t372 + t393 * t393;
+        const gic_real t395 = t370 + t394 * (R(1.688965) + (t391 + GIC_FABS(t80))) + t371 * (GIC_FABS(t85) + GIC_FABS(-t77));
+        const gic_real t396 = GIC_FABS(rate[19]);
+        const gic_real t397 = GIC_FABS(m[84]);
+        const gic_real t398 = t396 * t397;
+        const gic_real t399 = t395 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t398 * t392;
+        const gic_real t400 = R(23.965) * t399;
+        const gic_real t401 = t392 * t400 + R(1.7876) * (t394 + GIC_FABS(m[78]) + t398);
+        const gic_real t402 = t379 + (t390 + t388 * R(47.835362215)) + (t401 + R(47.835362215) * t399);
+        const gic_real t403 = (R(0.4699) + (GIC_FABS(t356) + GIC_FABS(road352[0]))) * R(283000.0);
+        const gic_real t404 = GIC_FABS(t359) + GIC_FABS(t403);
+        const gic_real t405 = t404 * (GIC_FABS(t345) + GIC_FABS(t340) + GIC_FABS(t341));
+        const gic_real t406 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
+        const gic_real t407 = t371 + (GIC_FABS(m[140]) + GIC_FABS(m[139]) + GIC_FABS(m[138]));
+        const gic_real t408 = t372 + t407 * t407;
+        const gic_real t409 = t408 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
+        const gic_real t410 = t371 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
+        const gic_real t411 = m[139] * t139 - m[140] * t125 + (m[145] * t124 - m[146] * t118);
+        const gic_real t412 = t370 + t409 + t410 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t411));
+        const gic_real t413 = GIC_FABS(m[152]) + GIC_FABS(m[151]) + GIC_FABS(m[150]);
+        const gic_real t414 = t376 * t413;
+        const gic_real t415 = GIC_FABS(m[158]) + GIC_FABS(m[157]) + GIC_FABS(m[156]);
+        const gic_real t416 = t385 * t415;
+        const gic_real t417 = GIC_FABS(m[161]) + GIC_FABS(m[160]);
+        const gic_real t418 = t412 + t414 * t406 + t406 * t416 + t385 * t417;
+        const gic_real t419 = R(90.555) * t418;
+        const gic_real t420 = t408 + (GIC_FABS(m[146]) + GIC_FABS(m[145]) + GIC_FABS(m[144]));
+        const gic_real t421 = t405 + (t406 * t419 + (t420 + t414 + t416) * R(17.248790999999997));
+        const gic_real t422 = t404 + t419;
+        const gic_real t423 = t421 + t422 * (R(1.653405) + (GIC_FABS(m[128]) + GIC_FABS(m[127])));
+        const gic_real t424 = R(283000.0) * (R(0.4699) + (GIC_FABS(t332) + GIC_FABS(road328[0])));
+        const gic_real t425 = GIC_FABS(t335) + GIC_FABS(t424);
+        const gic_real t426 = t425 * (GIC_FABS(t321) + GIC_FABS(t316) + GIC_FABS(t317));
+        const gic_real t427 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
+        const gic_real t428 = t371 + (GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]));
+        const gic_real t429 = t372 + t428 * t428;
+        const gic_real t430 = t429 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
+        const gic_real t431 = t371 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
+        const gic_real t432 = m[175] * t197 - m[176] * t183 + (m[181] * t182 - m[182] * t176);
+        const gic_real t433 = t370 + t430 + t431 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t432));
+        const gic_real t434 = GIC_FABS(m[188]) + GIC_FABS(m[187]) + GIC_FABS(m[186]);
+        const gic_real t435 = t376 * t434;
+        const gic_real t436 = GIC_FABS(m[194]) + GIC_FABS(m[193]) + GIC_FABS(m[192]);
+        const gic_real t437 = t396 * t436;
+        const gic_real t438 = GIC_FABS(m[197]) + GIC_FABS(m[196]);
+        const gic_real t439 = t433 + t435 * t427 + t427 * t437 + t396 * t438;
+        const gic_real t440 = R(90.555) * t439;
+        const gic_real t441 = t429 + (GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]));
+        const gic_real t442 = t426 + (t427 * t440 + R(17.248790999999997) * (t441 + t435 + t437));
+        const gic_real t443 = t425 + t440;
+        const gic_real t444 = t442 + t443 * (R(1.653405) + (GIC_FABS(m[164]) + GIC_FABS(m[163])));
+        const gic_real t445 = R(283000.0) * (R(0.4699) + (GIC_FABS(t285) + GIC_FABS(road280[0])));
+        const gic_real t446 = GIC_FABS(t288) + GIC_FABS(t445);
+        const gic_real t447 = t446 * (GIC_FABS(t271) + GIC_FABS(t266) + GIC_FABS(t267));
+        const gic_real t448 = R(283000.0) * (R(0.4699) + (GIC_FABS(t308) + GIC_FABS(road304[0])));
+        const gic_real t449 = GIC_FABS(t311) + GIC_FABS(t448);
+        const gic_real t450 = t449 * (GIC_FABS(t297) + GIC_FABS(t292) + GIC_FABS(t293));
+        const gic_real t451 = GIC_FABS(t239) + GIC_FABS(t233) + GIC_FABS(t236);
+        const gic_real t452 = t371 + (GIC_FABS(m[104]) + GIC_FABS(m[103]) + GIC_FABS(m[102]));
+        const gic_real t453 = t372 + t452 * t452;
+        const gic_real t454 = t453 * (GIC_FABS(t246) + GIC_FABS(t249) + GIC_FABS(t245));
+        const gic_real t455 = t371 * (GIC_FABS(t258) + GIC_FABS(t244) + GIC_FABS(t248));
+        const gic_real t456 = m[103] * t255 - m[104] * t240 + (m[109] * t239 - m[110] * t233);
+        const gic_real t457 = m[111] + t456;
+        const gic_real t458 = t370 + t454 + t455 + (GIC_FABS(t243) + GIC_FABS(t257) + GIC_FABS(t457));
+        const gic_real t459 = GIC_FABS(rate[20]);
+        const gic_real t460 = GIC_FABS(m[116]) + GIC_FABS(m[115]) + GIC_FABS(m[114]);
+        const gic_real t461 = t459 * t460;
+        const gic_real t462 = GIC_FABS(m[119]) + GIC_FABS(m[118]) + GIC_FABS(m[117]);
+        const gic_real t463 = GIC_FABS(rate[21]);
+        const gic_real t464 = GIC_FABS(m[122]) + GIC_FABS(m[121]) + GIC_FABS(m[120]);
+        const gic_real t465 = t463 * t464;
+        const gic_real t466 = t458 + t461 * t451 + t459 * t462 + t451 * t465;
+        const gic_real t467 = GIC_FABS(m[125]) + GIC_FABS(m[124]) + GIC_FABS(m[123]);
+        const gic_real t468 = R(271.11) * (t466 + t463 * t467);
+        const gic_real t469 = t453 + (GIC_FABS(m[110]) + GIC_FABS(m[109]) + GIC_FABS(m[108]));
+        const gic_real t470 = t447 + t450 + (t451 * t468 + (t469 + t461 + t465) * R(341.937704));
+        const gic_real t471 = t446 + t449 + t468;
+        const gic_real t472 = t471 * (GIC_FABS(m[92]) + GIC_FABS(m[91]) + GIC_FABS(m[90]));
+        const gic_real t473 = t402 + t423 + t444 + (t470 + t472);
+        const gic_real t474 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
+        const gic_real t475 = t369 + (rate[16] * R(0.21300000000000008) - (y[17] * t474 + y[16] * t17));
+        const gic_real t476 = y[16] * t34 - y[17] * t29 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
+        const gic_real t477 = t369 + t476;
+        const gic_real t478 = t477 * R(9.072);
+        const gic_real t479 = y[16] * t59 - y[17] * t50 + (rate[16] * t46 - rate[17] * t51);
+        const gic_real t480 = t369 + t479;
+        const gic_real t481 = t480 * R(23.965);
+        const gic_real t482 = y[16] * t86 - y[17] * t79 + (rate[16] * t76 - rate[17] * t80);
+        const gic_real t483 = t369 + t482;
+        const gic_real t484 = R(23.965) * t483;
+        const gic_real t485 = y[16] * t143 - y[17] * t132 + (rate[16] * t131 - rate[17] * t133);
+        const gic_real t486 = t411 + (t369 + t485) + rate[22] * (m[151] * t124 - m[152] * t118);
+        const gic_real t487 = (t486 + rate[18] * (m[157] * t124 - m[158] * t118)) * R(90.555);
+        const gic_real t488 = y[16] * t201 - y[17] * t190 + (rate[16] * t189 - rate[17] * t191);
+        const gic_real t489 = t432 + (t369 + t488) + rate[22] * (m[187] * t182 - m[188] * t176);
+        const gic_real t490 = R(90.555) * (t489 + rate[19] * (m[193] * t182 - m[194] * t176));
+        const gic_real t491 = t475 * R(2086.52) + t478 + t481 + t484 + t487 + t490;
+        const gic_real t492 = y[16] * t259 - y[17] * t247 + (rate[16] * t246 - rate[17] * t249);
+        const gic_real t493 = t457 + (t369 + t492) + rate[20] * (m[117] + (m[115] * t239 - m[116] * t233));
+        const gic_real t494 = t493 + rate[21] * (m[123] + (m[121] * t239 - m[122] * t233));
+        const gic_real t495 = t494 * R(271.11);
+        const gic_real t496 = t282 * t289;
+        const gic_real t497 = t282 * t312;
+        const gic_real t498 = t496 + t497;
+        const gic_real t499 = t282 * t360;
+        const gic_real t500 = t282 * t336;
+        const gic_real t501 = R(2086.52) * t374 + t378 + t389 + t400 + t422 + t443;
+        const gic_real t502 = t501 + t471;
+        const gic_real t503 = y[15] * R(1078.52);
+        const gic_real t504 = t28 + (y[15] * t474 - y[16] * t18 - rate[16] * R(0.056));
+        const gic_real t505 = y[17] * t503 - y[15] * t1 + rate[16] * R(2955.66) + (t475 * R(444.4287600000002) - t504 * R(116.84512));
+        const gic_real t506 = m[42] + y[15];
+        const gic_real t507 = R(0.4469) * t506;
+        const gic_real t508 = rate[17] - m[42] * y[16];
+        const gic_real t509 = rate[16] + m[42] * y[17];
+        const gic_real t510 = y[17] * t507 - t506 * t41 + (t40 * t508 + t42 * t509);
+        const gic_real t511 = t505 + (rate[16] + (t477 * R(0.4919654879999997) - t32 * R(13.051414655999999))) + (t510 + t46 * t481 - t55 * R(40.476046225));
+        const gic_real t512 = m[72] + y[15];
+        const gic_real t513 = R(0.4469) * t512;
+        const gic_real t514 = rate[17] - m[72] * y[16];
+        const gic_real t515 = rate[16] + m[72] * y[17];
+        const gic_real t516 = y[17] * t513 - t512 * t71 + (t70 * t514 + t72 * t515);
+        const gic_real t517 = t102 * t94 + (t106 * t92 + t112 * t103);
+        const gic_real t518 = t94 * t517 - t103 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
+        const gic_real t519 = t518 + (t124 * t487 - t121 * t138);
+        const gic_real t520 = t511 + (t516 + t76 * t484 - R(40.476046225) * t83) + (t519 + (m[128] * t487 - t137 * R(149.724089775)));
+        const gic_real t521 = t160 * t152 + (t164 * t150 + t170 * t161);
+        const gic_real t522 = t152 * t521 - t161 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
+        const gic_real t523 = t522 + (t182 * t490 - t179 * t196);
+        const gic_real t524 = t217 * t209 + (t221 * t207 + t227 * t218);
+        const gic_real t525 = t209 * t524 - t218 * t219 + (t213 * t224 + (t220 * t226 + t221 * t229));
+        const gic_real t526 = t525 + (t239 * t495 - t236 * t254);
+        const gic_real t527 = t520 + (t523 + (m[164] * t490 - R(149.724089775) * t195)) + (t526 + (m[92] * t495 - m[90] * t254));
+        const gic_real t528 = t271 * t496 - t267 * t290 + (t297 * t497 - t293 * t313);
+        const gic_real t529 = t321 * t500 - t317 * t337;
+        const gic_real t530 = t345 * t499 - t341 * t361;
+        const gic_real t531 = t530 + (m[128] * t499 - R(1.653405) * t361) + (m[164] * t500 - R(1.653405) * t337);
+        const gic_real t532 = t528 + (t529 + t531 + (m[92] * t498 - m[90] * t365));
+        const gic_real t533 = t36 * R(9.072);
+        const gic_real t534 = t20 * R(2086.52) + t533 + t64 + t90 + t147 + t205;
+        const gic_real t535 = y[15] * t2 - y[16] * t503 + rate[17] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t536 = t506 * t43 - y[16] * t507 + (t37 * t508 + t40 * t509);
+        const gic_real t537 = t536 - t45 * t481 + (t63 * R(40.476046225) - t480 * R(7.359315990000001));
+        const gic_real t538 = t535 + (rate[17] + (t36 * R(13.051414655999999) - m[1] * t478)) + t537;
+        const gic_real t539 = t512 * t73 - y[16] * t513 + (t67 * t514 + t70 * t515);
+        const gic_real t540 = t539 - t75 * t484 + (R(40.476046225) * t89 - t483 * R(-7.359315990000001));
+        const gic_real t541 = t103 * t107 - t92 * t517 + (t93 * t109 + (t98 * t111 + t102 * t114));
+        const gic_real t542 = t541 + (t121 * t147 - t118 * t487);
+        const gic_real t543 = t538 + t540 + (t542 + (t146 * R(149.724089775) - m[127] * t487));
+        const gic_real t544 = t161 * t165 - t150 * t521 + (t151 * t167 + (t156 * t169 + t160 * t172));
+        const gic_real t545 = t544 + (t179 * t205 - t176 * t490);
+        const gic_real t546 = t218 * t222 - t207 * t524 + (t208 * t224 + (t213 * t226 + t217 * t229));
+        const gic_real t547 = t546 + (t236 * t263 - t233 * t495);
+        const gic_real t548 = t543 + (t545 + (R(149.724089775) * t204 - m[163] * t490)) + (t547 + (m[90] * t263 - m[91] * t495));
+        const gic_real t549 = t267 * t291 - t266 * t496 + (t293 * t314 - t292 * t497);
+        const gic_real t550 = t317 * t338 - t316 * t500;
+        const gic_real t551 = t341 * t362 - t340 * t499;
+        const gic_real t552 = t551 + (R(1.653405) * t362 - m[127] * t499) + (R(1.653405) * t338 - m[163] * t500);
+        const gic_real t553 = t549 + (t550 + t552 + (m[90] * t366 - m[91] * t498));
+        const gic_real t554 = t504 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
+        const gic_real t555 = m[161] * t138 + m[160] * t147 + (m[158] * t542 + (m[157] * t519 + m[156] * t148));
+        const gic_real t556 = m[161] * t361 + m[160] * t362 + (m[158] * t551 + (m[157] * t530 + m[156] * t363));
+        const gic_real t557 = (x[0] - R(0.31907)) * R(167070.9);
+        const gic_real t558 = xd[0] * R(17490.8);
+        const gic_real t559 = GIC_FABS(t558) + GIC_FABS(t557) + R(167070.9) * (R(0.31907) + GIC_FABS(x[0]));
+        const gic_real t560 = t559 + t386 * t390 + t415 * t421 + t417 * t422;
+        const gic_real t561 = m[197] * t196 + m[196] * t205 + (m[194] * t545 + (m[193] * t523 + m[192] * t206));
+        const gic_real t562 = m[197] * t337 + m[196] * t338 + (m[194] * t550 + (m[193] * t529 + m[192] * t339));
+        const gic_real t563 = R(167070.9) * (x[1] - R(0.31907));
+        const gic_real t564 = xd[1] * R(17490.8);
+        const gic_real t565 = GIC_FABS(t564) + GIC_FABS(t563) + R(167070.9) * (R(0.31907) + GIC_FABS(x[1]));
+        const gic_real t566 = t565 + t397 * t401 + t436 * t442 + t438 * t443;
+        const gic_real t567 = m[119] * t254 + (m[118] * t263 + m[117] * t495) + (m[116] * t547 + (m[115] * t526 + m[114] * t264));
+        const gic_real t568 = m[119] * t365 + (m[118] * t366 + m[117] * t498) + (m[116] * t549 + (m[115] * t528 + m[114] * t315));
+        const gic_real t569 = (x[2] - R(0.41347)) * R(63000.0);
+        const gic_real t570 = xd[2] * R(4100.0);
+        const gic_real t571 = GIC_FABS(t570) + GIC_FABS(t569) + R(63000.0) * (R(0.41347) + GIC_FABS(x[2]));
+        const gic_real t572 = m[125] * t254 + (m[124] * t263 + m[123] * t495) + (m[122] * t547 + (m[121] * t526 + m[120] * t264));
+        const gic_real t573 = m[125] * t365 + (m[124] * t366 + m[123] * t498) + (m[122] * t549 + (m[121] * t528 + m[120] * t315));
+        const gic_real t574 = R(63000.0) * (x[3] - R(0.41347));
+        const gic_real t575 = xd[3] * R(4100.0);
+        const gic_real t576 = GIC_FABS(t575) + GIC_FABS(t574) + R(63000.0) * (R(0.41347) + GIC_FABS(x[3]));
+        const gic_real t577 = t533 + (m[152] * t542 + (m[151] * t519 + m[150] * t148));
+        const gic_real t578 = t577 + (m[188] * t545 + (m[187] * t523 + m[186] * t206));
+        const gic_real t579 = x[4] * R(100000.0);
+        const gic_real t580 = xd[4] * R(12000.0);
+        const gic_real t581 = m[152] * t551 + (m[151] * t530 + m[150] * t363) - (t579 + t580);
+        const gic_real t582 = t581 + (m[188] * t550 + (m[187] * t529 + m[186] * t339));
+        const gic_real t583 = GIC_FABS(t580) + GIC_FABS(t579) + R(100000.0) * GIC_FABS(x[4]);
+        const gic_real t584 = t265 - t367;
+        const gic_real t585 = t491 + t495 - (t498 + (t499 + t500));
+        const gic_real t586 = t527 - t532;
+        const gic_real t587 = t534 + t263 - (t366 + (t362 + t338));
+        const gic_real t588 = t548 - t553;
+        const gic_real t589 = t554 + t254 - (t365 + (t361 + t337));
+        const gic_real t590 = m[54] * t65 + t555 - (t556 - (t557 + t558));
+        const gic_real t591 = m[84] * t91 + t561 - (t562 - (t563 + t564));
+        const gic_real t592 = t567 - (t568 - (t569 + t570));
+        const gic_real t593 = t571 + t460 * t470 + t462 * t471;
+        const gic_real t594 = t572 - (t573 - (t574 + t575));
+        const gic_real t595 = t576 + t464 * t470 + t467 * t471;
+        const gic_real t596 = t578 - t582;
+        const gic_real t597 = t583 + t378 + t413 * t421 + t434 * t442;
+        tau[0] = t584;
+        size[0] = t473;
+        tau[3] = t585;
+        size[3] = t502;
+        tau[1] = t586;
+        size[1] = t473;
+        tau[4] = t587;
+        size[4] = t502;
+        tau[2] = t588;
+        size[2] = t473;
+        tau[5] = t589;
+        size[5] = t502;
+        tau[6] = t590;
+        size[6] = t560;
+        tau[7] = t591;
+        size[7] = t566;
+        tau[8] = t592;
+        size[8] = t593;
+        tau[9] = t594;
+        size[9] = t595;
+        tau[10] = t596;
+        size[10] = t597;
+    }
+    return GIC_OK;
+}
+
+/* The motions that were recovered last, against all constraints. */
+static GIC_COLD int solid_axle_check_constraints(solid_axle *self)
+{
+    gic_real largest[2];
+    const int bad = solid_axle_residual(self, largest);
+    self->head.residual = GIC_MAX(self->head.residual, largest[0]);
+    if (bad < 0)
+        return GIC_OK;
+    self->head.subset = bad;
+    self->recovered = 0;
+    return GIC_ERROR_RESIDUAL;
+}
+
+/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+static GIC_COLD GIC_APART int solid_axle_check(solid_axle *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate)
+{
+    gic_real tau[SOLID_AXLE_UNKNOWN_ROOM], size[SOLID_AXLE_UNKNOWN_ROOM];
+    int i, status = solid_axle_check_constraints(self);
+    self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&solid_axle_model, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        status = solid_axle_balance(self, time, y, e, rate, tau, size);
+    for (i = 0; status == GIC_OK && i < SOLID_AXLE_UNKNOWNS; ++i)
+        if (!(GIC_FABS(tau[i]) <= GIC_BALANCE_RESIDUAL * size[i]))
+            status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        self->head.unchecked = GIC_CHECK_EVERY;
+    return status;
+}
+
 /* ---- the functions of solid_axle.h ------------------------------------------------------------------------------------ */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
@@ -3129,6 +4159,7 @@ static int solid_axle_locate(solid_axle *self, gic_real time, const gic_real *y,
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
 static int solid_axle_evaluate(solid_axle *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[SOLID_AXLE_STATE_ROOM])
 {
+    const int32_t flip = self->head.flip;
     int status = solid_axle_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
@@ -3136,6 +4167,11 @@ static int solid_axle_evaluate(solid_axle *self, gic_real time, const gic_real *
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
     if (status == GIC_OK && !GIC_FINITE(rate + SOLID_AXLE_TWIST, SOLID_AXLE_STATES - SOLID_AXLE_TWIST))
         status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && --self->head.unchecked < 0) {
+        status = solid_axle_check(self, time, y, e, rate);
+        if (status != GIC_OK)
+            self->head.flip = flip; /* what was found is no start */
+    }
     return self->head.status = status;
 }
 
@@ -3210,7 +4246,13 @@ int solid_axle_outputs(solid_axle *self)
 int solid_axle_poses(solid_axle *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = solid_axle_locate(self, solid_axle_present(self), self->state, e);
+    const int32_t flip = self->head.flip;
+    int status = solid_axle_locate(self, solid_axle_present(self), self->state, e);
+    if (status == GIC_OK) {
+        status = self->head.status = solid_axle_check_constraints(self);
+        if (status != GIC_OK)
+            self->head.flip = flip;
+    }
     if (status == GIC_OK)
         solid_axle_place(self, self->state, e, pose);
     return status;
@@ -3483,6 +4525,8 @@ int solid_axle_setup_with(solid_axle *self, const gic_real *parameter)
     solid_axle_gather(self, self->state);
     if (status == GIC_OK)
         status = solid_axle_recover(self, turn, 0);
+    if (status == GIC_OK)
+        status = solid_axle_check_constraints(self);
     return self->head.status = status;
 }
 
@@ -4445,51 +5489,21 @@ static GIC_COLD int solid_axle_energy(const solid_axle *self, gic_real time, con
     return GIC_OK;
 }
 
-/* Largest constraint residual of all subsets, relative to their sizes. */
-static GIC_COLD gic_real solid_axle_residual(const solid_axle *self)
-{
-    const gic_real *const start = self->start[self->head.flip];
-    solid_axle_links links;
-    gic_real largest = R(0.0), one = R(0.0);
-    (void)start;
-    (void)one;
-    links.cold = 0;
-    links.x[0] = start[4];
-    one = solid_axle_residual_rack(solid_axle_k_rack[0], &links, self->motion + 0);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[0];
-    one = solid_axle_residual_lca_f_l(solid_axle_k_lca_f_l[0], &links, self->motion + 30);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[1];
-    one = solid_axle_residual_lca_f_l(solid_axle_k_lca_f_l[1], &links, self->motion + 60);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[2];
-    links.x[1] = start[3];
-    one = solid_axle_residual_axle(solid_axle_k_axle[0], &links, self->motion + 90);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = start[4];
-    links.x[1] = start[0];
-    one = solid_axle_residual_wheel_f_l(solid_axle_k_wheel_f_l[0], &links, self->motion + 126);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = start[4];
-    links.x[1] = start[1];
-    one = solid_axle_residual_wheel_f_l(solid_axle_k_wheel_f_l[1], &links, self->motion + 162);
-    largest = GIC_MAX(largest, one);
-    return largest;
-}
-
 GIC_COLD int solid_axle_self_test(solid_axle *self, gic_self_test *result)
 {
     gic_real e[4], acc[SOLID_AXLE_UNKNOWN_ROOM], unit[SOLID_AXLE_UNKNOWN_ROOM], tau0[SOLID_AXLE_UNKNOWN_ROOM], tau[SOLID_AXLE_UNKNOWN_ROOM];
-    gic_real M[SOLID_AXLE_UNKNOWN_ROOM][SOLID_AXLE_UNKNOWN_ROOM], energy[3], scale;
+    gic_real M[SOLID_AXLE_UNKNOWN_ROOM][SOLID_AXLE_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = solid_axle_time(self);
-    const gic_self_test none = {R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = solid_axle_refresh(self, e);
+    const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = solid_axle_refresh(self, e);
     *result = none;
+    if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
+        (void)solid_axle_residual(self, residual);
+        result->constraint = residual[0];
+        result->motion = residual[1];
+    }
     for (i = 0; i < SOLID_AXLE_UNKNOWNS; ++i)
         unit[i] = R(0.0);
     if (status == GIC_OK)
@@ -4498,7 +5512,6 @@ GIC_COLD int solid_axle_self_test(solid_axle *self, gic_self_test *result)
         status = solid_axle_inverse(self, time, self->state, e, unit, tau0);
     if (status != GIC_OK)
         return self->head.status = status;
-    result->constraint = solid_axle_residual(self);
     result->energy = GIC_FABS(energy[0] - energy[1]) / (energy[2] > R(0.0) ? energy[2] : R(1.0));
 
     /* the mass matrix column by column: what a unit acceleration adds to the residual */
@@ -4576,6 +5589,14 @@ static int solid_axle_any_self_test(void *self, gic_self_test *result)
     return solid_axle_self_test((solid_axle *)self, result);
 }
 
+static int solid_axle_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
+{
+    gic_real e[4];
+    const gic_real *turn;
+    const int status = solid_axle_orient((solid_axle *)self, state, e, &turn);
+    return status == GIC_OK ? solid_axle_check((solid_axle *)self, time, state, e, rate) : status;
+}
+
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define solid_axle_any_march NULL
 #else
@@ -4645,4 +5666,5 @@ const gic_model solid_axle_model = {
     NULL,
     NULL,
     NULL,
+    solid_axle_any_check,
 };

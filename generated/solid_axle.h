@@ -66,12 +66,12 @@
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H 0x33068f85
+#define SOLID_AXLE_H 0x633cbac1
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 5
-#error "solid_axle.h was generated for version 5 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
+#error "solid_axle.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -80,7 +80,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    SOLID_AXLE_ABI = 5,
+    SOLID_AXLE_ABI = 6,
     SOLID_AXLE_FREE_BASE = 1,
     SOLID_AXLE_STATES = 23,
     SOLID_AXLE_SLOW = 23,
@@ -275,7 +275,8 @@ const char *solid_axle_status_condition(const solid_axle *self);
 void solid_axle_snapshot(const solid_axle *self, solid_axle *copy);
 void solid_axle_restore(solid_axle *self, const solid_axle *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
+ * not as well as promised; other functions check that too, now and then. */
 int solid_axle_self_test(solid_axle *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

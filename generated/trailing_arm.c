@@ -70,7 +70,7 @@
  */
 #include "trailing_arm.h"
 
-#if TRAILING_ARM_H != 0x7d73270b
+#if TRAILING_ARM_H != 0xa580b6d5
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -160,6 +160,27 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
+ * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
+ * their terms. They are rounding, in single precision near a singular configuration too. */
+#ifdef GIC_FLOAT
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-5)
+#else
+#define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-10), R(1e-14) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_MOTION_RESIDUAL (R(1e-9) + R(64.0) * R(GIC_RECOVERY_ERROR))
+#define GIC_BALANCE_RESIDUAL R(1e-10)
+#endif
+
+/* Evaluations between two that are checked. */
+#define GIC_CHECK_EVERY 200
+
+/* By how much an error that tests plant is off. */
+#ifndef GIC_PLANT_BY
+#define GIC_PLANT_BY R(1e-3)
+#endif
 /* What a subset is connected to: motions of the bodies solved before it, its coordinates with their rates and their
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct trailing_arm_links {
@@ -224,22 +245,27 @@ static int trailing_arm_solve_rack(trailing_arm *self, const gic_real *GIC_RESTR
         const gic_real t20 = t1 * t16 - R(0.4919654879999997) * t12;
         inertia[12] = t20;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real trailing_arm_residual_rack(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void trailing_arm_residual_rack(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(motion[1] - x[0]));
-        worst = t1;
+        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        worst[0] = t2;
+        worst[1] = t1;
     }
-    return worst;
 }
 
 static const gic_real trailing_arm_k_lca_f_l[2][9] = {
@@ -351,24 +377,45 @@ static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RE
         const gic_real t58 = -t24;
         inertia[16] = t58;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real trailing_arm_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void trailing_arm_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_COS(x[0]) * (k[0] * (k[2] * motion[11] + R(0.9709689408513393) * motion[10]));
-        const gic_real t2 = t1 - GIC_SIN(x[0]) * (k[2] * motion[8] + R(0.9709689408513393) * motion[7]);
-        const gic_real t3 = GIC_MAX(R(0.0), GIC_FABS(t2));
-        worst = t3;
+        const gic_real t1 = GIC_COS(x[0]);
+        const gic_real t2 = k[2] * motion[11] + R(0.9709689408513393) * motion[10];
+        const gic_real t3 = k[0] * t2;
+        const gic_real t4 = GIC_SIN(x[0]);
+        const gic_real t5 = k[2] * motion[8] + R(0.9709689408513393) * motion[7];
+        const gic_real t6 = t1 * t5 + t4 * t3;
+        const gic_real t7 = GIC_FABS(t1 * t3 - t4 * t5) + (GIC_FABS(t6) - t6);
+        const gic_real t8 = t7 + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t10 = k[0] * (t4 * t2 + t1 * (k[0] * t5)) - t6;
+        const gic_real t11 = R(1.0) + GIC_FABS(-t6);
+        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t13 = t11 * GIC_FABS(rate[0]);
+        const gic_real t14 = GIC_FABS(motion[12] - k[0] * rate[0]) / (R(1e-30) + (t12 + t13));
+        const gic_real t15 = t5 * motion[12];
+        const gic_real t16 = t2 * motion[12];
+        const gic_real t17 = t4 * (motion[12] * t15) - t1 * (k[0] * (motion[12] * t16));
+        const gic_real t18 = rate[0] * (t4 * (k[0] * t15) - t1 * t16);
+        const gic_real t19 = GIC_FABS(t17 - (t18 + t18)) / (R(1e-30) + (t12 * t12 + t13 * t13));
+        const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + t19;
+        worst[0] = t9;
+        worst[1] = t20;
     }
-    return worst;
 }
 
 static const gic_real trailing_arm_k_wheel_f_l[2][16] = {
@@ -694,40 +741,118 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t223 = t217 + (t115 + t202);
         inertia[4] = t223;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real trailing_arm_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void trailing_arm_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_MAX(R(0.0), GIC_FABS(R(2.928075656552032) * (motion[1] - (k[0] * m1[7] + k[3]))));
-        const gic_real t2 = motion[2] + (R(0.10177780000000003) * motion[11] + (k[14] * motion[10] + R(-0.14025880000000002) * motion[9]));
-        const gic_real t3 = t2 - R(0.05422899999999997);
-        const gic_real t4 = motion[1] + (R(0.10177780000000003) * motion[8] + (k[14] * motion[7] + R(-0.14025880000000002) * motion[6]));
-        const gic_real t5 = t4 - (k[1] + m0[1]);
-        const gic_real t6 = R(1.653405) + (R(0.10177780000000003) * motion[5] + (k[14] * motion[4] + R(-0.14025880000000002) * motion[3]));
-        const gic_real t7 = t6 - R(1.438648);
-        const gic_real t8 = t3 * t3 + (t5 * t5 + t7 * t7) - R(0.14941089924212003);
-        const gic_real t9 = GIC_MAX(GIC_MAX(t1, GIC_FABS(R(2.928075656552032) * (motion[2] - k[0] * m1[10]))), GIC_FABS(t8 * R(3.9285226675160785)));
-        const gic_real t10 = motion[2] + (R(0.33360360000000006) * motion[11] + (k[15] * motion[10] + R(-0.017475200000000024) * motion[9]));
-        const gic_real t11 = t10 - R(0.23411769999999998);
-        const gic_real t12 = motion[1] + (R(0.33360360000000006) * motion[8] + (k[15] * motion[7] + R(-0.017475200000000024) * motion[6]));
-        const gic_real t13 = t12 - k[4];
-        const gic_real t14 = R(1.653405) + (R(0.33360360000000006) * motion[5] + (k[15] * motion[4] + R(-0.017475200000000024) * motion[3]));
-        const gic_real t15 = t14 - R(1.593883);
-        const gic_real t16 = t11 * t11 + (t13 * t13 + t15 * t15) - R(0.07115456010869);
-        const gic_real t17 = R(0.21526024724178433) * t11 + (k[5] * t13 + R(0.9665541626242249) * t15) - R(4.3116545195287515e-08);
-        const gic_real t18 = GIC_MAX(GIC_MAX(t9, GIC_FABS(t16 * R(5.571891251504317))), GIC_FABS(t17 * R(3.029396354366955)));
-        worst = t18;
+        const gic_real t1 = k[0] * m1[7];
+        const gic_real t2 = k[0] * m1[10];
+        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[1] - (t1 + k[3]))) + GIC_FABS(R(2.928075656552032) * (motion[2] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[14] * motion[10] + R(-0.14025880000000002) * motion[9]);
+        const gic_real t5 = motion[2] + t4 - R(0.05422899999999997);
+        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[14] * motion[7] + R(-0.14025880000000002) * motion[6]);
+        const gic_real t7 = motion[1] + t6;
+        const gic_real t8 = k[1] + m0[1];
+        const gic_real t9 = t7 - t8;
+        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[14] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t11 = R(1.653405) + t10 - R(1.438648);
+        const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
+        const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824065);
+        const gic_real t14 = R(2.0) / (t13 + R(0.12727430698933434));
+        const gic_real t15 = R(0.33360360000000006) * motion[11] + (k[15] * motion[10] + R(-0.017475200000000024) * motion[9]);
+        const gic_real t16 = motion[2] + t15 - R(0.23411769999999998);
+        const gic_real t17 = R(0.33360360000000006) * motion[8] + (k[15] * motion[7] + R(-0.017475200000000024) * motion[6]);
+        const gic_real t18 = motion[1] + t17 - k[4];
+        const gic_real t19 = R(0.33360360000000006) * motion[5] + (k[15] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t20 = R(1.653405) + t19 - R(1.593883);
+        const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
+        const gic_real t22 = R(0.3415212300824065) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
+        const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331868));
+        const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[5] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
+        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
+        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
+        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
+        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
+        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t33 = t6 * t5 - t4 * t9;
+        const gic_real t34 = t4 * t11 - t10 * t5;
+        const gic_real t35 = t10 * t9 - t6 * t11;
+        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t37 = t17 * t16 - t15 * t18;
+        const gic_real t38 = t15 * t20 - t19 * t16;
+        const gic_real t39 = t19 * t18 - t17 * t20;
+        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t41 = R(0.21526024724178433) * t17 - k[5] * t15;
+        const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
+        const gic_real t43 = k[5] * t19 - R(0.9665541626242249) * t17;
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
+        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
+        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[10] * R(0.49375935710120966) + motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[35] - m1[7] * R(0.49375935710120966)));
+        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
+        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
+        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[5] * motion[34];
+        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
+        const gic_real t53 = R(1.0) + t52;
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
+        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[17] - rate[1] * motion[35]));
+        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
+        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t60 = t46 * GIC_FABS(rate[0]);
+        const gic_real t61 = t53 * GIC_FABS(rate[1]);
+        const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
+        const gic_real t63 = GIC_FABS(R(2.928075656552032) * (m1[12] * (m1[12] * t1) + motion[22])) + GIC_FABS(R(2.928075656552032) * (m1[12] * (m1[12] * t2) + motion[23]));
+        const gic_real t64 = t6 * motion[12] - t10 * motion[13];
+        const gic_real t65 = motion[17] + t64;
+        const gic_real t66 = t10 * motion[14] - t4 * motion[12];
+        const gic_real t67 = motion[16] + t66 - m0[16];
+        const gic_real t68 = t4 * motion[13] - t6 * motion[14];
+        const gic_real t69 = motion[12] * t66 - motion[13] * t68 + (t6 * motion[18] - t10 * motion[19]);
+        const gic_real t70 = motion[14] * t68 - motion[12] * t64 + (t10 * motion[20] - t4 * motion[18]);
+        const gic_real t71 = motion[13] * t64 - motion[14] * t66 + (t4 * motion[19] - t6 * motion[20]);
+        const gic_real t72 = t5 * (motion[23] + t69) + (t9 * (motion[22] + t70) + t11 * t71);
+        const gic_real t73 = t65 * t65 + (t67 * t67 + t68 * t68) + t72;
+        const gic_real t74 = t17 * motion[12] - t19 * motion[13];
+        const gic_real t75 = motion[17] + t74;
+        const gic_real t76 = t19 * motion[14] - t15 * motion[12];
+        const gic_real t77 = motion[16] + t76;
+        const gic_real t78 = t15 * motion[13] - t17 * motion[14];
+        const gic_real t79 = motion[12] * t76 - motion[13] * t78 + (t17 * motion[18] - t19 * motion[19]);
+        const gic_real t80 = motion[23] + t79;
+        const gic_real t81 = motion[14] * t78 - motion[12] * t74 + (t19 * motion[20] - t15 * motion[18]);
+        const gic_real t82 = motion[22] + t81;
+        const gic_real t83 = motion[13] * t74 - motion[14] * t76 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t84 = t75 * t75 + (t77 * t77 + t78 * t78) + (t16 * t80 + (t18 * t82 + t20 * t83));
+        const gic_real t85 = t63 + GIC_FABS(t73 * t14) + GIC_FABS(t84 * t23);
+        const gic_real t86 = (R(0.21526024724178433) * t80 + (k[5] * t82 + R(0.9665541626242249) * t83)) * R(2.559750693852431);
+        const gic_real t87 = R(2.928075656552032) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t88 = R(2.928075656552032) * GIC_FABS(m0[16]);
+        const gic_real t89 = t58 * t58 + t59 * t59 + t87 + t88 * t88;
+        const gic_real t90 = GIC_FABS(m1[12]);
+        const gic_real t91 = t89 + t90 * t90 + t60 * t60 + t61 * t61;
+        const gic_real t92 = t62 + (t85 + GIC_FABS(t86)) / (R(1e-30) + t91);
+        worst[0] = t32;
+        worst[1] = t92;
     }
-    return worst;
 }
 
 static const gic_real trailing_arm_k_lca_f_l_2[2][4] = {
@@ -833,23 +958,44 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
         const gic_real t56 = -t29;
         inertia[17] = t56;
     }
+#ifdef GIC_PLANT_MOTION /* an error that tests plant */
+    motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
+#endif
     ++self->head.newton_count;
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size. */
-static GIC_COLD gic_real trailing_arm_residual_lca_f_l_2(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion)
+/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+ * magnitudes of their terms. */
+static GIC_COLD void trailing_arm_residual_lca_f_l_2(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
+    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const x = links->x;
-    gic_real worst;
+    const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = -(GIC_SIN(x[0]) * motion[3] + GIC_COS(x[0]) * motion[9]);
-        const gic_real t2 = GIC_MAX(R(0.0), GIC_FABS(t1));
-        worst = t2;
+        const gic_real t1 = GIC_SIN(x[0]);
+        const gic_real t2 = GIC_COS(x[0]);
+        const gic_real t3 = t2 * motion[3];
+        const gic_real t4 = t1 * motion[9];
+        const gic_real t5 = t3 - t4;
+        const gic_real t6 = GIC_FABS(-(t1 * motion[3] + t2 * motion[9])) + (GIC_FABS(t5) - t5);
+        const gic_real t7 = t6 + GIC_FABS(motion[9] * motion[9] + motion[3] * motion[3] - R(1.0));
+        const gic_real t8 = t7 + GIC_FABS(-(motion[5] + motion[9])) + GIC_FABS(motion[3] - motion[11]);
+        const gic_real t9 = t4 - t3;
+        const gic_real t10 = R(1.0) + GIC_FABS(t9);
+        const gic_real t11 = GIC_FABS(motion[13]);
+        const gic_real t12 = t10 * GIC_FABS(rate[0]);
+        const gic_real t13 = GIC_FABS(t9 + t5) / (t10 + R(1e-30)) + GIC_FABS(motion[13] - rate[0]) / (R(1e-30) + (t11 + t12));
+        const gic_real t14 = motion[3] * motion[13];
+        const gic_real t15 = motion[9] * motion[13];
+        const gic_real t16 = rate[0] * (t2 * t15 + t1 * t14);
+        const gic_real t17 = t1 * (motion[13] * t14) + t2 * (motion[13] * t15) - (t16 + t16);
+        const gic_real t18 = GIC_FABS(t17) / (R(1e-30) + (t11 * t11 + t12 * t12));
+        const gic_real t19 = t13 + t18;
+        worst[0] = t8;
+        worst[1] = t19;
     }
-    return worst;
 }
 
 /* ---- recovery of the whole vehicle, in computational sequence ------------------------------------------------ */
@@ -1035,6 +1181,8 @@ static int trailing_arm_recover(trailing_arm *self, const gic_real turn[3], int 
         way[3] = gic_unwound(way[3]);
     for (i = 0; i < TRAILING_ARM_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < trailing_arm_piece[i]);
+    if (far)
+        self->head.unchecked = 0; /* a jump: no state that was checked is near */
     /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
      * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
     if (far || TRAILING_ARM_FOLLOWED > 0) {
@@ -1579,6 +1727,13 @@ static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, co
         rate[11] = t403;
         rate[22] = t373;
     }
+#ifdef GIC_PLANT_RATE /* an error that tests plant */
+#ifndef GIC_PLANT_AFTER
+#define GIC_PLANT_AFTER R(-1.0) /* s */
+#endif
+    if (time > GIC_PLANT_AFTER)
+        rate[GIC_PLANT_RATE] += GIC_PLANT_BY + GIC_PLANT_BY * GIC_FABS(rate[GIC_PLANT_RATE]);
+#endif
     return GIC_OK;
 }
 
@@ -2391,6 +2546,815 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
     }
 }
 
+/* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
+
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
+ * whose are beyond what is promised, -1: there is none. */
+static GIC_COLD GIC_APART int trailing_arm_residual(const trailing_arm *self, gic_real largest[2])
+{
+    trailing_arm_links links;
+    gic_real one[2];
+    int bad = -1;
+    (void)self, (void)one;
+    largest[0] = largest[1] = R(0.0);
+    links.cold = 0;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    trailing_arm_residual_rack(trailing_arm_k_rack[0], &links, self->motion + 0, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 1;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[0];
+    links.rate[0] = self->xd[0];
+    trailing_arm_residual_lca_f_l(trailing_arm_k_lca_f_l[0], &links, self->motion + 30, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.7166550563875669)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 2;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[1];
+    links.rate[0] = self->xd[1];
+    trailing_arm_residual_lca_f_l(trailing_arm_k_lca_f_l[1], &links, self->motion + 60, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.7166550563875669)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 3;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[2];
+    links.rate[0] = self->xd[2];
+    trailing_arm_residual_lca_f_l_2(trailing_arm_k_lca_f_l_2[0], &links, self->motion + 90, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.3212403263600456)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 4;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.x[0] = self->x[3];
+    links.rate[0] = self->xd[3];
+    trailing_arm_residual_lca_f_l_2(trailing_arm_k_lca_f_l_2[1], &links, self->motion + 120, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.3212403263600456)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 5;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 30;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[0];
+    links.rate[1] = self->xd[0];
+    trailing_arm_residual_wheel_f_l(trailing_arm_k_wheel_f_l[0], &links, self->motion + 150, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 6;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    links.known[0] = self->motion + 0;
+    links.known[1] = self->motion + 60;
+    links.x[0] = self->x[4];
+    links.rate[0] = self->xd[4];
+    links.x[1] = self->x[1];
+    links.rate[1] = self->xd[1];
+    trailing_arm_residual_wheel_f_l(trailing_arm_k_wheel_f_l[1], &links, self->motion + 186, one);
+    if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
+        bad = 7;
+    largest[0] = GIC_MAX(largest[0], one[0]);
+    largest[1] = GIC_MAX(largest[1], one[1]);
+    return bad;
+}
+
+/* tau: residual of the equations of motion at `rate`, body by body: another way than trailing_arm_dynamics. size: magnitudes of
+ * the terms that it is the sum of. */
+static GIC_COLD GIC_APART int trailing_arm_balance(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *tau, gic_real *size)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    {
+        const gic_real t1 = y[17] * R(3570.2);
+        const gic_real t2 = y[16] * R(2955.66);
+        const gic_real t3 = e[2] + e[2];
+        const gic_real t4 = e[3] * t3;
+        const gic_real t5 = e[1] + e[1];
+        const gic_real t6 = e[0] * t5;
+        const gic_real t7 = t4 + t6;
+        const gic_real t8 = rate[14] - R(-9.81);
+        const gic_real t9 = e[1] * t5;
+        const gic_real t10 = e[3] + e[3];
+        const gic_real t11 = e[3] * t10;
+        const gic_real t12 = R(1.0) - (t9 + t11);
+        const gic_real t13 = e[2] * t5;
+        const gic_real t14 = e[0] * t10;
+        const gic_real t15 = t13 - t14;
+        const gic_real t16 = t7 * t8 + (t12 * rate[13] + t15 * rate[12]);
+        const gic_real t17 = y[16] * R(0.056);
+        const gic_real t18 = y[16] * R(0.21300000000000008);
+        const gic_real t19 = y[15] * t17 + y[17] * t18 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
+        const gic_real t20 = t16 + t19;
+        const gic_real t21 = y[16] * t1 - y[17] * t2 + rate[15] * R(1078.52) - t20 * R(444.4287600000002);
+        const gic_real t22 = e[2] * t3;
+        const gic_real t23 = R(1.0) - (t9 + t22);
+        const gic_real t24 = t4 - t6;
+        const gic_real t25 = e[1] * t10;
+        const gic_real t26 = e[0] * t3;
+        const gic_real t27 = t25 + t26;
+        const gic_real t28 = t23 * t8 + (t24 * rate[13] + t27 * rate[12]);
+        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
+        const gic_real t30 = R(0.05422899999999997) * y[16] - m[1] * y[17];
+        const gic_real t31 = y[15] * t29 - y[16] * t30 + (m[1] * rate[15] - R(1.438648) * rate[16]);
+        const gic_real t32 = t28 + t31;
+        const gic_real t33 = t32 * R(9.072);
+        const gic_real t34 = m[1] * y[15] - R(1.438648) * y[16];
+        const gic_real t35 = y[17] * t30 - y[15] * t34 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
+        const gic_real t36 = rate[22] + (t16 + t35);
+        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
+        const gic_real t38 = m[38] * R(0.8938);
+        const gic_real t39 = m[37] * R(0.4469);
+        const gic_real t40 = m[41] * t38 + m[40] * t39;
+        const gic_real t41 = y[17] * t37 + y[16] * t40;
+        const gic_real t42 = m[38] * t38 + m[37] * t39;
+        const gic_real t43 = y[17] * t40 + y[16] * t42;
+        const gic_real t44 = y[16] * t41 - y[17] * t43 + R(0.4469) * (rate[15] + rate[18]);
+        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t46 = R(1.688965) * y[17];
+        const gic_real t47 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
+        const gic_real t48 = m[42] * t47;
+        const gic_real t49 = t46 - y[15] * t47 - t48 - t48;
+        const gic_real t50 = R(0.307086) + t45;
+        const gic_real t51 = y[16] * t47 - y[17] * t50;
+        const gic_real t52 = R(1.688965) * rate[16];
+        const gic_real t53 = y[15] * t49 - y[16] * t51 + (rate[15] * t50 - t52);
+        const gic_real t54 = m[42] * t48;
+        const gic_real t55 = t28 + t53 - t54 + rate[18] * t45;
+        const gic_real t56 = t55 * R(23.965);
+        const gic_real t57 = m[42] * t45;
+        const gic_real t58 = R(1.688965) * y[16];
+        const gic_real t59 = t57 + (t57 + (y[15] * t50 - t58));
+        const gic_real t60 = R(1.688965) * rate[17];
+        const gic_real t61 = y[17] * t51 - y[15] * t59 + (t60 - rate[15] * t47);
+        const gic_real t62 = m[42] * t57;
+        const gic_real t63 = t16 + t61 - t62 - rate[18] * t47;
+        const gic_real t64 = t63 * R(23.965);
+        const gic_real t65 = t44 + (t45 * t56 - t47 * t64);
+        const gic_real t66 = t21 + (rate[15] + (m[1] * t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
+        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
+        const gic_real t68 = m[68] * R(0.8938);
+        const gic_real t69 = m[67] * R(0.4469);
+        const gic_real t70 = m[71] * t68 + m[70] * t69;
+        const gic_real t71 = y[17] * t67 + y[16] * t70;
+        const gic_real t72 = m[68] * t68 + m[67] * t69;
+        const gic_real t73 = y[17] * t70 + y[16] * t72;
+        const gic_real t74 = y[16] * t71 - y[17] * t73 + R(0.4469) * (rate[15] - rate[19]);
+        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
+        const gic_real t77 = m[72] * t76;
+        const gic_real t78 = t46 - y[15] * t76 - t77 - t77;
+        const gic_real t79 = R(-0.307086) + t75;
+        const gic_real t80 = y[16] * t76 - y[17] * t79;
+        const gic_real t81 = y[15] * t78 - y[16] * t80 + (rate[15] * t79 - t52);
+        const gic_real t82 = m[72] * t77;
+        const gic_real t83 = t28 + t81 - t82 - rate[19] * t75;
+        const gic_real t84 = R(23.965) * t83;
+        const gic_real t85 = m[72] * t75;
+        const gic_real t86 = t85 + (t85 + (y[15] * t79 - t58));
+        const gic_real t87 = y[17] * t80 - y[15] * t86 + (t60 - rate[15] * t76);
+        const gic_real t88 = m[72] * t85;
+        const gic_real t89 = t16 + t87 - t88 + rate[19] * t76;
+        const gic_real t90 = R(23.965) * t89;
+        const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
+        const gic_real t92 = m[163] + y[16];
+        const gic_real t93 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
+        const gic_real t94 = m[164] + y[17];
+        const gic_real t95 = m[158] * R(4.7728205);
+        const gic_real t96 = m[157] * R(7.58122);
+        const gic_real t97 = m[156] * R(4.8947505);
+        const gic_real t98 = m[161] * t95 + (m[160] * t96 + m[159] * t97);
+        const gic_real t99 = m[155] * R(4.7728205);
+        const gic_real t100 = m[154] * R(7.58122);
+        const gic_real t101 = m[153] * R(4.8947505);
+        const gic_real t102 = m[161] * t99 + (m[160] * t100 + m[159] * t101);
+        const gic_real t103 = m[162] + y[15];
+        const gic_real t104 = t93 * t94 + (t98 * t92 + t102 * t103);
+        const gic_real t105 = m[158] * t95 + (m[157] * t96 + m[156] * t97);
+        const gic_real t106 = m[158] * t99 + (m[157] * t100 + m[156] * t101);
+        const gic_real t107 = t98 * t94 + (t105 * t92 + t106 * t103);
+        const gic_real t108 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
+        const gic_real t109 = t108 + m[182] * rate[18];
+        const gic_real t110 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
+        const gic_real t111 = t110 + m[181] * rate[18];
+        const gic_real t112 = m[155] * t99 + (m[154] * t100 + m[153] * t101);
+        const gic_real t113 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
+        const gic_real t114 = t113 + m[180] * rate[18];
+        const gic_real t115 = t92 * t104 - t94 * t107 + (t102 * t109 + (t106 * t111 + t112 * t114));
+        const gic_real t116 = m[158] * R(0.09182100000000004);
+        const gic_real t117 = m[156] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[157] * R(0.08910630000000008));
+        const gic_real t119 = m[155] * R(0.09182100000000004);
+        const gic_real t120 = m[153] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[154] * R(0.08910630000000008));
+        const gic_real t122 = m[161] * R(0.09182100000000004);
+        const gic_real t123 = m[159] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[160] * R(0.08910630000000008));
+        const gic_real t125 = m[164] * t121 - m[162] * t124;
+        const gic_real t126 = m[163] * t124 - m[164] * t118;
+        const gic_real t127 = m[162] * t125 - m[163] * t126 + (m[168] * t118 - m[169] * t121);
+        const gic_real t128 = m[173] + t127;
+        const gic_real t129 = m[166] + t125;
+        const gic_real t130 = R(1.653405) + t121;
+        const gic_real t131 = m[152] + t124;
+        const gic_real t132 = t129 + (t129 + (y[17] * t130 - y[15] * t131));
+        const gic_real t133 = m[151] + t118;
+        const gic_real t134 = t126 + (t126 + (y[16] * t131 - y[17] * t133));
+        const gic_real t135 = y[15] * t132 - y[16] * t134 + (rate[15] * t133 - rate[16] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + rate[22] * (m[174] * t118 - m[175] * t121);
+        const gic_real t137 = t136 + rate[18] * (m[185] + (m[180] * t118 - m[181] * t121));
+        const gic_real t138 = t137 * R(90.555);
+        const gic_real t139 = m[162] * t118 - m[163] * t121;
+        const gic_real t140 = m[164] * t126 - m[162] * t139 + (m[170] * t121 - m[168] * t124);
+        const gic_real t141 = m[172] + t140;
+        const gic_real t142 = m[167] + t139;
+        const gic_real t143 = t142 + (t142 + (y[15] * t133 - y[16] * t130));
+        const gic_real t144 = y[17] * t134 - y[15] * t143 + (rate[17] * t130 - rate[15] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + rate[22] * (m[176] * t121 - m[174] * t124);
+        const gic_real t146 = t145 + rate[18] * (m[184] + (m[182] * t121 - m[180] * t124));
+        const gic_real t147 = t146 * R(90.555);
+        const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[151] * t138 - m[152] * t147));
+        const gic_real t150 = m[199] + y[16];
+        const gic_real t151 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
+        const gic_real t152 = m[200] + y[17];
+        const gic_real t153 = m[194] * R(4.7728205);
+        const gic_real t154 = m[193] * R(7.58122);
+        const gic_real t155 = m[192] * R(4.8947505);
+        const gic_real t156 = m[197] * t153 + (m[196] * t154 + m[195] * t155);
+        const gic_real t157 = m[191] * R(4.7728205);
+        const gic_real t158 = m[190] * R(7.58122);
+        const gic_real t159 = m[189] * R(4.8947505);
+        const gic_real t160 = m[197] * t157 + (m[196] * t158 + m[195] * t159);
+        const gic_real t161 = m[198] + y[15];
+        const gic_real t162 = t151 * t152 + (t156 * t150 + t160 * t161);
+        const gic_real t163 = m[194] * t153 + (m[193] * t154 + m[192] * t155);
+        const gic_real t164 = m[194] * t157 + (m[193] * t158 + m[192] * t159);
+        const gic_real t165 = t156 * t152 + (t163 * t150 + t164 * t161);
+        const gic_real t166 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
+        const gic_real t167 = t166 + m[218] * rate[19];
+        const gic_real t168 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
+        const gic_real t169 = t168 + m[217] * rate[19];
+        const gic_real t170 = m[191] * t157 + (m[190] * t158 + m[189] * t159);
+        const gic_real t171 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
+        const gic_real t172 = t171 + m[216] * rate[19];
+        const gic_real t173 = t150 * t162 - t152 * t165 + (t160 * t167 + (t164 * t169 + t170 * t172));
+        const gic_real t174 = m[194] * R(0.09182100000000004);
+        const gic_real t175 = m[192] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[193] * R(-0.08910630000000008));
+        const gic_real t177 = m[191] * R(0.09182100000000004);
+        const gic_real t178 = m[189] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[190] * R(-0.08910630000000008));
+        const gic_real t180 = m[197] * R(0.09182100000000004);
+        const gic_real t181 = m[195] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[196] * R(-0.08910630000000008));
+        const gic_real t183 = m[200] * t179 - m[198] * t182;
+        const gic_real t184 = m[199] * t182 - m[200] * t176;
+        const gic_real t185 = m[198] * t183 - m[199] * t184 + (m[204] * t176 - m[205] * t179);
+        const gic_real t186 = m[209] + t185;
+        const gic_real t187 = m[202] + t183;
+        const gic_real t188 = R(1.653405) + t179;
+        const gic_real t189 = m[188] + t182;
+        const gic_real t190 = t187 + (t187 + (y[17] * t188 - y[15] * t189));
+        const gic_real t191 = m[187] + t176;
+        const gic_real t192 = t184 + (t184 + (y[16] * t189 - y[17] * t191));
+        const gic_real t193 = y[15] * t190 - y[16] * t192 + (rate[15] * t191 - rate[16] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + rate[22] * (m[210] * t176 - m[211] * t179);
+        const gic_real t195 = t194 + rate[19] * (m[221] + (m[216] * t176 - m[217] * t179));
+        const gic_real t196 = R(90.555) * t195;
+        const gic_real t197 = m[198] * t176 - m[199] * t179;
+        const gic_real t198 = m[200] * t184 - m[198] * t197 + (m[206] * t179 - m[204] * t182);
+        const gic_real t199 = m[208] + t198;
+        const gic_real t200 = m[203] + t197;
+        const gic_real t201 = t200 + (t200 + (y[15] * t191 - y[16] * t188));
+        const gic_real t202 = y[17] * t192 - y[15] * t201 + (rate[17] * t188 - rate[15] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + rate[22] * (m[212] * t179 - m[210] * t182);
+        const gic_real t204 = t203 + rate[19] * (m[220] + (m[218] * t179 - m[216] * t182));
+        const gic_real t205 = R(90.555) * t204;
+        const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
+        const gic_real t207 = m[103] + y[16];
+        const gic_real t208 = m[101] * (m[101] * R(6.78001) + m[99] * R(-0.109132)) + m[99] * (m[101] * R(-0.109132) + m[99] * R(5.46131));
+        const gic_real t209 = m[101] * R(0.075632) + m[99] * R(0.729032);
+        const gic_real t210 = m[95] * R(6.78001) + m[93] * R(-0.109132);
+        const gic_real t211 = m[95] * R(-0.109132) + m[93] * R(5.46131);
+        const gic_real t212 = m[101] * t210 + m[99] * t211;
+        const gic_real t213 = y[17] * t208 + (t209 * t207 + y[15] * t212);
+        const gic_real t214 = m[95] * R(0.075632) + m[93] * R(0.729032);
+        const gic_real t215 = y[17] * t209 + (R(9.09449) * t207 + y[15] * t214);
+        const gic_real t216 = rate[17] + m[103] * y[15];
+        const gic_real t217 = rate[16] + rate[20];
+        const gic_real t218 = m[95] * t210 + m[93] * t211;
+        const gic_real t219 = rate[15] - m[103] * y[17];
+        const gic_real t220 = t207 * t213 - y[17] * t215 + (t212 * t216 + (t214 * t217 + t218 * t219));
+        const gic_real t221 = m[95] * R(-0.04753299999999999) + m[93] * R(-0.45756300000000016);
+        const gic_real t222 = R(-1.15) + t221;
+        const gic_real t223 = m[101] * R(-0.04753299999999999) + m[99] * R(-0.45756300000000016);
+        const gic_real t224 = R(0.026000000000000023) + t223;
+        const gic_real t225 = y[17] * t222 - y[15] * t224;
+        const gic_real t226 = m[103] * t223;
+        const gic_real t227 = t226 + (t226 + (y[16] * t224 - y[17] * R(0.843847)));
+        const gic_real t228 = y[15] * t225 - y[16] * t227 + (rate[15] * R(0.843847) - rate[16] * t222);
+        const gic_real t229 = m[103] * t226;
+        const gic_real t230 = t28 + t228 - t229 - rate[20] * t221;
+        const gic_real t231 = m[103] * t221;
+        const gic_real t232 = y[15] * R(0.843847) - y[16] * t222 - t231 - t231;
+        const gic_real t233 = y[17] * t227 - y[15] * t232 + (rate[17] * t222 - rate[15] * t224);
+        const gic_real t234 = t16 + t233;
+        const gic_real t235 = t234 * R(110.555);
+        const gic_real t236 = t220 + (t230 * R(21.430755085) - t223 * t235) + (t230 * R(71.86075000000001) - t234 * R(2.874430000000003));
+        const gic_real t237 = t149 + (t206 + (m[187] * t196 - m[188] * t205)) + t236;
+        const gic_real t238 = m[133] + y[16];
+        const gic_real t239 = m[131] * (m[131] * R(6.78001) + m[129] * R(-0.109132)) + m[129] * (m[131] * R(-0.109132) + m[129] * R(5.46131));
+        const gic_real t240 = m[131] * R(-0.075632) + m[129] * R(-0.729032);
+        const gic_real t241 = m[125] * R(6.78001) + m[123] * R(-0.109132);
+        const gic_real t242 = m[125] * R(-0.109132) + m[123] * R(5.46131);
+        const gic_real t243 = m[131] * t241 + m[129] * t242;
+        const gic_real t244 = y[17] * t239 + (t240 * t238 + y[15] * t243);
+        const gic_real t245 = m[125] * R(-0.075632) + m[123] * R(-0.729032);
+        const gic_real t246 = y[17] * t240 + (R(9.09449) * t238 + y[15] * t245);
+        const gic_real t247 = rate[17] + m[133] * y[15];
+        const gic_real t248 = rate[16] + rate[21];
+        const gic_real t249 = m[125] * t241 + m[123] * t242;
+        const gic_real t250 = rate[15] - m[133] * y[17];
+        const gic_real t251 = t238 * t244 - y[17] * t246 + (t243 * t247 + (t245 * t248 + t249 * t250));
+        const gic_real t252 = m[125] * R(-0.04753299999999999) + m[123] * R(-0.45756300000000016);
+        const gic_real t253 = R(-1.15) + t252;
+        const gic_real t254 = m[131] * R(-0.04753299999999999) + m[129] * R(-0.45756300000000016);
+        const gic_real t255 = R(0.026000000000000023) + t254;
+        const gic_real t256 = y[17] * t253 - y[15] * t255;
+        const gic_real t257 = m[133] * t254;
+        const gic_real t258 = t257 + (t257 + (y[16] * t255 - y[17] * R(-0.843847)));
+        const gic_real t259 = y[15] * t256 - y[16] * t258 + (rate[15] * R(-0.843847) - rate[16] * t253);
+        const gic_real t260 = m[133] * t257;
+        const gic_real t261 = t28 + t259 - t260 - rate[21] * t252;
+        const gic_real t262 = m[133] * t252;
+        const gic_real t263 = y[15] * R(-0.843847) - y[16] * t253 - t262 - t262;
+        const gic_real t264 = y[17] * t258 - y[15] * t263 + (rate[17] * t253 - rate[15] * t255);
+        const gic_real t265 = t16 + t264;
+        const gic_real t266 = R(110.555) * t265;
+        const gic_real t267 = t251 + (t261 * R(-21.430755085) - t254 * t266) + (t261 * R(-71.86075000000001) - R(2.874430000000003) * t265);
+        const gic_real t268 = m[131] * R(-0.03999999999999998) + m[129] * R(-0.40000000000000013);
+        const gic_real t269 = R(0.026000000000000023) + t268 - R(0.376);
+        const gic_real t270 = m[125] * R(-0.03999999999999998) + m[123] * R(-0.40000000000000013);
+        const gic_real t271 = R(-1.15) + t270 - R(-1.6);
+        const gic_real t272 = R(1.0) / GIC_SQRT(t269 * t269 + (R(0.0025000000000000044) + t271 * t271));
+        const gic_real t273 = t272 * (m[133] * t268 * t271 - m[133] * t270 * t269);
+        const gic_real t274 = R(9500.0) * t273;
+        const gic_real t275 = t272 * t274;
+        const gic_real t276 = R(-0.050000000000000044) * t275;
+        const gic_real t277 = m[125] * R(-0.052288999999999974) + m[123] * R(-0.5034050000000001);
+        const gic_real t278 = R(-1.15) + t277;
+        const gic_real t279 = y[15] * R(-0.909701) - y[16] * t278 - m[133] * t277;
+        const gic_real t280 = m[131] * R(-0.052288999999999974) + m[129] * R(-0.5034050000000001);
+        const gic_real t281 = R(0.026000000000000023) + t280;
+        const gic_real t282 = y[17] * t278 - y[15] * t281;
+        const gic_real t283 = t13 + t14;
+        const gic_real t284 = m[133] * t280 + (y[16] * t281 - y[17] * R(-0.909701));
+        const gic_real t285 = y[13] + (t24 * t279 + (t12 * t282 + t283 * t284));
+        const gic_real t286 = R(1.0) - (t22 + t11);
+        const gic_real t287 = y[0] + (t27 * t281 + (t15 * R(-0.909701) + t286 * t278));
+        const gic_real t288 = y[1] + (t24 * t281 + (t12 * R(-0.909701) + t283 * t278));
+        gic_real road289[3];
+        if (!trailing_arm_road_height(self, time, t287, t288, road289))
+            return GIC_ERROR_ROAD;
+        const gic_real t290 = y[12] + (t27 * t279 + (t15 * t282 + t286 * t284));
+        const gic_real t291 = t25 - t26;
+        const gic_real t292 = y[14] + (t23 * t279 + (t7 * t282 + t291 * t284));
+        const gic_real t293 = t285 * road289[2] + t290 * road289[1] - t292;
+        const gic_real t294 = y[2] + (t23 * t281 + (t7 * R(-0.909701) + t291 * t278));
+        const gic_real t295 = R(0.4699) + road289[0] - t294;
+        const gic_real t296 = GIC_MIN(GIC_MAX(R(100.0) * t295, R(0.0)), R(1.0));
+        const gic_real t297 = t293 * (R(500.0) * ((R(3.0) - (t296 + t296)) * (t296 * t296)));
+        const gic_real t298 = GIC_MAX(t297 + R(283000.0) * t295, R(0.0));
+        const gic_real t299 = t23 * t298;
+        const gic_real t300 = t7 * t298;
+        const gic_real t301 = m[101] * R(-0.03999999999999998) + m[99] * R(-0.40000000000000013);
+        const gic_real t302 = R(0.026000000000000023) + t301 - R(0.376);
+        const gic_real t303 = m[95] * R(-0.03999999999999998) + m[93] * R(-0.40000000000000013);
+        const gic_real t304 = R(-1.15) + t303 - R(-1.6);
+        const gic_real t305 = R(1.0) / GIC_SQRT(t302 * t302 + (R(0.0025000000000000044) + t304 * t304));
+        const gic_real t306 = t305 * (m[103] * t301 * t304 - m[103] * t303 * t302);
+        const gic_real t307 = t306 * R(9500.0);
+        const gic_real t308 = t305 * t307;
+        const gic_real t309 = R(0.050000000000000044) * t308;
+        const gic_real t310 = m[95] * R(-0.052288999999999974) + m[93] * R(-0.5034050000000001);
+        const gic_real t311 = R(-1.15) + t310;
+        const gic_real t312 = y[15] * R(0.909701) - y[16] * t311 - m[103] * t310;
+        const gic_real t313 = m[101] * R(-0.052288999999999974) + m[99] * R(-0.5034050000000001);
+        const gic_real t314 = R(0.026000000000000023) + t313;
+        const gic_real t315 = y[17] * t311 - y[15] * t314;
+        const gic_real t316 = m[103] * t313 + (y[16] * t314 - y[17] * R(0.909701));
+        const gic_real t317 = y[13] + (t24 * t312 + (t12 * t315 + t283 * t316));
+        const gic_real t318 = y[0] + (t27 * t314 + (t15 * R(0.909701) + t286 * t311));
+        const gic_real t319 = y[1] + (t24 * t314 + (t12 * R(0.909701) + t283 * t311));
+        gic_real road320[3];
+        if (!trailing_arm_road_height(self, time, t318, t319, road320))
+            return GIC_ERROR_ROAD;
+        const gic_real t321 = y[12] + (t27 * t312 + (t15 * t315 + t286 * t316));
+        const gic_real t322 = y[14] + (t23 * t312 + (t7 * t315 + t291 * t316));
+        const gic_real t323 = t317 * road320[2] + t321 * road320[1] - t322;
+        const gic_real t324 = y[2] + (t23 * t314 + (t7 * R(0.909701) + t291 * t311));
+        const gic_real t325 = R(0.4699) + road320[0] - t324;
+        const gic_real t326 = GIC_MIN(GIC_MAX(R(100.0) * t325, R(0.0)), R(1.0));
+        const gic_real t327 = t323 * (R(500.0) * ((R(3.0) - (t326 + t326)) * (t326 * t326)));
+        const gic_real t328 = GIC_MAX(t327 + R(283000.0) * t325, R(0.0));
+        const gic_real t329 = t23 * t328;
+        const gic_real t330 = t7 * t328;
+        const gic_real t331 = t174 + (m[193] * R(-0.12319000000000002) + t175);
+        const gic_real t332 = t177 + (m[190] * R(-0.12319000000000002) + t178);
+        const gic_real t333 = m[187] + t331;
+        const gic_real t334 = R(1.653405) + t332;
+        const gic_real t335 = m[203] + (m[198] * t331 - m[199] * t332) + (y[15] * t333 - y[16] * t334);
+        const gic_real t336 = t180 + (m[196] * R(-0.12319000000000002) + t181);
+        const gic_real t337 = m[188] + t336;
+        const gic_real t338 = m[202] + (m[200] * t332 - m[198] * t336) + (y[17] * t334 - y[15] * t337);
+        const gic_real t339 = m[199] * t336 - m[200] * t331 + (y[16] * t337 - y[17] * t333);
+        const gic_real t340 = y[13] + (t24 * t335 + (t12 * t338 + t283 * t339));
+        const gic_real t341 = y[0] + (t27 * t337 + (t15 * t333 + t286 * t334));
+        const gic_real t342 = y[1] + (t24 * t337 + (t12 * t333 + t283 * t334));
+        gic_real road343[3];
+        if (!trailing_arm_road_height(self, time, t341, t342, road343))
+            return GIC_ERROR_ROAD;
+        const gic_real t344 = y[12] + (t27 * t335 + (t15 * t338 + t286 * t339));
+        const gic_real t345 = y[14] + (t23 * t335 + (t7 * t338 + t291 * t339));
+        const gic_real t346 = t340 * road343[2] + t344 * road343[1] - t345;
+        const gic_real t347 = y[2] + (t23 * t337 + (t7 * t333 + t291 * t334));
+        const gic_real t348 = R(0.4699) + road343[0] - t347;
+        const gic_real t349 = GIC_MIN(GIC_MAX(R(100.0) * t348, R(0.0)), R(1.0));
+        const gic_real t350 = t346 * (R(500.0) * ((R(3.0) - (t349 + t349)) * (t349 * t349)));
+        const gic_real t351 = GIC_MAX(t350 + R(283000.0) * t348, R(0.0));
+        const gic_real t352 = t23 * t351;
+        const gic_real t353 = t7 * t351;
+        const gic_real t354 = t331 * t352 - t336 * t353;
+        const gic_real t355 = t116 + (m[157] * R(0.12319000000000002) + t117);
+        const gic_real t356 = t119 + (m[154] * R(0.12319000000000002) + t120);
+        const gic_real t357 = m[151] + t355;
+        const gic_real t358 = R(1.653405) + t356;
+        const gic_real t359 = m[167] + (m[162] * t355 - m[163] * t356) + (y[15] * t357 - y[16] * t358);
+        const gic_real t360 = t122 + (m[160] * R(0.12319000000000002) + t123);
+        const gic_real t361 = m[152] + t360;
+        const gic_real t362 = m[166] + (m[164] * t356 - m[162] * t360) + (y[17] * t358 - y[15] * t361);
+        const gic_real t363 = m[163] * t360 - m[164] * t355 + (y[16] * t361 - y[17] * t357);
+        const gic_real t364 = y[13] + (t24 * t359 + (t12 * t362 + t283 * t363));
+        const gic_real t365 = y[0] + (t27 * t361 + (t15 * t357 + t286 * t358));
+        const gic_real t366 = y[1] + (t24 * t361 + (t12 * t357 + t283 * t358));
+        gic_real road367[3];
+        if (!trailing_arm_road_height(self, time, t365, t366, road367))
+            return GIC_ERROR_ROAD;
+        const gic_real t368 = y[12] + (t27 * t359 + (t15 * t362 + t286 * t363));
+        const gic_real t369 = y[14] + (t23 * t359 + (t7 * t362 + t291 * t363));
+        const gic_real t370 = t364 * road367[2] + t368 * road367[1] - t369;
+        const gic_real t371 = y[2] + (t23 * t361 + (t7 * t357 + t291 * t358));
+        const gic_real t372 = road367[0] + R(0.4699) - t371;
+        const gic_real t373 = GIC_MIN(GIC_MAX(t372 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t374 = t370 * ((R(3.0) - (t373 + t373)) * (t373 * t373) * R(500.0));
+        const gic_real t375 = GIC_MAX(t374 + t372 * R(283000.0), R(0.0));
+        const gic_real t376 = t23 * t375;
+        const gic_real t377 = t7 * t375;
+        const gic_real t378 = t355 * t376 - t360 * t377;
+        const gic_real t379 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
+        const gic_real t380 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        const gic_real t381 = R(-0.307086) + t380 - R(-0.4977892);
+        const gic_real t382 = t379 - R(0.32313880000000006);
+        const gic_real t383 = R(1.0) / GIC_SQRT(t382 * t382 + (R(4.633797183999867e-05) + t381 * t381));
+        const gic_real t384 = t383 * (m[72] * t380 * t382 - m[72] * t379 * t381);
+        const gic_real t385 = R(17490.8) * t384;
+        const gic_real t386 = t383 * t385;
+        const gic_real t387 = t381 * t386;
+        const gic_real t388 = t379 * t387;
+        const gic_real t389 = t382 * t386;
+        const gic_real t390 = t380 * t389;
+        const gic_real t391 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
+        const gic_real t392 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        const gic_real t393 = R(0.307086) + t392 - R(0.4977892);
+        const gic_real t394 = t391 - R(0.32313880000000006);
+        const gic_real t395 = R(1.0) / GIC_SQRT(t394 * t394 + (t393 * t393 + R(4.633797183999867e-05)));
+        const gic_real t396 = t395 * (m[42] * t392 * t394 - m[42] * t391 * t393);
+        const gic_real t397 = t396 * R(17490.8);
+        const gic_real t398 = t395 * t397;
+        const gic_real t399 = t393 * t398;
+        const gic_real t400 = t394 * t398;
+        const gic_real t401 = t391 * t399 - t392 * t400;
+        const gic_real t402 = R(0.4977892) * t400 - R(0.32313880000000006) * t399 + (R(-0.4977892) * t389 - R(0.32313880000000006) * t387);
+        const gic_real t403 = t302 * t308;
+        const gic_real t404 = t269 * t275;
+        const gic_real t405 = t402 + (R(0.6) * t403 - t308 * R(0.018800000000000018)) + (R(-0.6) * t404 - t275 * R(-0.018800000000000018));
+        const gic_real t406 = t388 - t390 + (t401 + (t405 - R(0.307086) * t400) - R(-0.307086) * t389);
+        const gic_real t407 = t378 + (t406 + (m[151] * t376 - m[152] * t377)) + (m[187] * t352 - m[188] * t353);
+        const gic_real t408 = t329 - t403;
+        const gic_real t409 = t330 - t309;
+        const gic_real t410 = t301 * t309 + (R(0.25970099999999996) * t329 - t313 * t330) + (t354 + t407 + (R(0.65) * t408 - R(0.026000000000000023) * t409));
+        const gic_real t411 = t299 - t404;
+        const gic_real t412 = t300 - t276;
+        const gic_real t413 = t268 * t276 + (R(-0.25970099999999996) * t299 - t280 * t300) + (t410 + (R(-0.65) * t411 - R(0.026000000000000023) * t412));
+        const gic_real t414 = GIC_FABS(t397);
+        const gic_real t415 = GIC_FABS(t385);
+        const gic_real t416 = GIC_FABS(t307);
+        const gic_real t417 = GIC_FABS(t274);
+        const gic_real t418 = t414 * R(2.613906) + R(2.613906) * t415 + t416 * R(2.576) + R(2.576) * t417;
+        const gic_real t419 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t291);
+        const gic_real t420 = t291 * t8 + (t283 * rate[13] + t286 * rate[12]);
+        const gic_real t421 = t419 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t420));
+        const gic_real t422 = GIC_FABS(y[17]) + GIC_FABS(y[16]) + GIC_FABS(y[15]);
+        const gic_real t423 = GIC_FABS(rate[17]) + GIC_FABS(rate[16]) + GIC_FABS(rate[15]);
+        const gic_real t424 = t422 * t422 + t423;
+        const gic_real t425 = t421 + t424 * R(0.2690000000000001);
+        const gic_real t426 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[1]));
+        const gic_real t427 = GIC_FABS(rate[22]);
+        const gic_real t428 = t421 + t424 * t426 + t422 * GIC_FABS(m[16]) + t427;
+        const gic_real t429 = R(9.072) * t428;
+        const gic_real t430 = t418 + (t425 * R(561.2738800000002) + t424 * R(7604.379999999999)) + (R(3.0) * t424 + t426 * t429);
+        const gic_real t431 = GIC_FABS(t47);
+        const gic_real t432 = t431 + GIC_FABS(t45);
+        const gic_real t433 = t422 + GIC_FABS(m[42]);
+        const gic_real t434 = t423 + t433 * t433;
+        const gic_real t435 = t421 + t434 * (R(1.688965) + (t431 + GIC_FABS(t50))) + t422 * (GIC_FABS(t57) + GIC_FABS(-t48));
+        const gic_real t436 = t435 + (GIC_FABS(-t54) + GIC_FABS(-t62));
+        const gic_real t437 = GIC_FABS(rate[18]);
+        const gic_real t438 = R(23.965) * (t436 + t437 * t432);
+        const gic_real t439 = t414 * (R(0.09720579999999998) + (GIC_FABS(t391) + GIC_FABS(t392))) + (t432 * t438 + (t434 + t437) * R(1.7876));
+        const gic_real t440 = t414 + t438;
+        const gic_real t441 = GIC_FABS(t76);
+        const gic_real t442 = t441 + GIC_FABS(t75);
+        const gic_real t443 = t422 + GIC_FABS(m[72]);
+        const gic_real t444 = t423 + t443 * t443;
+        const gic_real t445 = t421 + t444 * (R(1.688965) + (t441 + GIC_FABS(t79))) + t422 * (GIC_FABS(t85) + GIC_FABS(-t77));
+        const gic_real t446 = t445 + (GIC_FABS(-t82) + GIC_FABS(-t88));
+        const gic_real t447 = GIC_FABS(rate[19]);
+        const gic_real t448 = R(23.965) * (t446 + t447 * t442);
+        const gic_real t449 = t415 * (R(0.09720579999999998) + (GIC_FABS(t379) + GIC_FABS(t380))) + (t442 * t448 + R(1.7876) * (t444 + t447));
+        const gic_real t450 = t415 + t448;
+        const gic_real t451 = t430 + (t439 + t440 * R(1.996051)) + (t449 + R(1.996051) * t450);
+        const gic_real t452 = (R(0.4699) + (GIC_FABS(t371) + GIC_FABS(road367[0]))) * R(283000.0);
+        const gic_real t453 = GIC_FABS(t374) + GIC_FABS(t452);
+        const gic_real t454 = t453 * (GIC_FABS(t360) + GIC_FABS(t355) + GIC_FABS(t356));
+        const gic_real t455 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
+        const gic_real t456 = t422 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t457 = t423 + t456 * t456;
+        const gic_real t458 = t457 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
+        const gic_real t459 = t422 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
+        const gic_real t460 = m[163] * t139 - m[164] * t125 + (m[169] * t124 - m[170] * t118);
+        const gic_real t461 = t421 + t458 + t459 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t460));
+        const gic_real t462 = GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]);
+        const gic_real t463 = t427 * t462;
+        const gic_real t464 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t465 = t437 * t464;
+        const gic_real t466 = GIC_FABS(m[185]) + GIC_FABS(m[184]);
+        const gic_real t467 = t461 + t463 * t455 + t455 * t465 + t437 * t466;
+        const gic_real t468 = R(90.555) * t467;
+        const gic_real t469 = t457 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t470 = t454 + (t455 * t468 + (t469 + t463 + t465) * R(17.248790999999997));
+        const gic_real t471 = t453 + t468;
+        const gic_real t472 = t470 + t471 * (R(1.653405) + (GIC_FABS(m[152]) + GIC_FABS(m[151])));
+        const gic_real t473 = R(283000.0) * (R(0.4699) + (GIC_FABS(t347) + GIC_FABS(road343[0])));
+        const gic_real t474 = GIC_FABS(t350) + GIC_FABS(t473);
+        const gic_real t475 = t474 * (GIC_FABS(t336) + GIC_FABS(t331) + GIC_FABS(t332));
+        const gic_real t476 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
+        const gic_real t477 = t422 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t478 = t423 + t477 * t477;
+        const gic_real t479 = t478 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
+        const gic_real t480 = t422 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
+        const gic_real t481 = m[199] * t197 - m[200] * t183 + (m[205] * t182 - m[206] * t176);
+        const gic_real t482 = t421 + t479 + t480 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t481));
+        const gic_real t483 = GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]);
+        const gic_real t484 = t427 * t483;
+        const gic_real t485 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t486 = t447 * t485;
+        const gic_real t487 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t488 = t482 + t484 * t476 + t476 * t486 + t447 * t487;
+        const gic_real t489 = R(90.555) * t488;
+        const gic_real t490 = t478 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t491 = t475 + (t476 * t489 + R(17.248790999999997) * (t490 + t484 + t486));
+        const gic_real t492 = t474 + t489;
+        const gic_real t493 = t491 + t492 * (R(1.653405) + (GIC_FABS(m[188]) + GIC_FABS(m[187])));
+        const gic_real t494 = R(283000.0) * (R(0.4699) + (GIC_FABS(t324) + GIC_FABS(road320[0])));
+        const gic_real t495 = GIC_FABS(t327) + GIC_FABS(t494);
+        const gic_real t496 = t416 * (GIC_FABS(t301) + GIC_FABS(t303)) + t495 * (R(0.25970099999999996) + GIC_FABS(t313) + GIC_FABS(t310));
+        const gic_real t497 = R(0.193847) + GIC_FABS(t223) + GIC_FABS(t221);
+        const gic_real t498 = t422 + GIC_FABS(m[103]);
+        const gic_real t499 = t423 + t498 * t498;
+        const gic_real t500 = t421 + t499 * (R(0.843847) + GIC_FABS(t224) + GIC_FABS(t222));
+        const gic_real t501 = t500 + t422 * (GIC_FABS(-t231) + GIC_FABS(t226));
+        const gic_real t502 = m[103] * t231;
+        const gic_real t503 = t501 + (GIC_FABS(-t229) + GIC_FABS(-t502));
+        const gic_real t504 = GIC_FABS(rate[20]);
+        const gic_real t505 = R(110.555) * (t503 + t504 * t497);
+        const gic_real t506 = t496 + (t497 * t505 + (t499 + t504) * R(21.335810000000002));
+        const gic_real t507 = t416 + t495 + t505;
+        const gic_real t508 = R(283000.0) * (R(0.4699) + (GIC_FABS(t294) + GIC_FABS(road289[0])));
+        const gic_real t509 = GIC_FABS(t297) + GIC_FABS(t508);
+        const gic_real t510 = t417 * (GIC_FABS(t268) + GIC_FABS(t270)) + t509 * (R(0.25970099999999996) + GIC_FABS(t280) + GIC_FABS(t277));
+        const gic_real t511 = R(0.193847) + GIC_FABS(t254) + GIC_FABS(t252);
+        const gic_real t512 = t422 + GIC_FABS(m[133]);
+        const gic_real t513 = t423 + t512 * t512;
+        const gic_real t514 = t421 + t513 * (R(0.843847) + GIC_FABS(t255) + GIC_FABS(t253));
+        const gic_real t515 = t514 + t422 * (GIC_FABS(-t262) + GIC_FABS(t257));
+        const gic_real t516 = m[133] * t262;
+        const gic_real t517 = t515 + (GIC_FABS(-t260) + GIC_FABS(-t516));
+        const gic_real t518 = GIC_FABS(rate[21]);
+        const gic_real t519 = R(110.555) * (t517 + t518 * t511);
+        const gic_real t520 = t510 + (t511 * t519 + R(21.335810000000002) * (t513 + t518));
+        const gic_real t521 = t417 + t509 + t519;
+        const gic_real t522 = t451 + t472 + t493 + (t506 + t507 * R(1.826)) + (t520 + R(1.826) * t521);
+        const gic_real t523 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
+        const gic_real t524 = t420 + (rate[16] * R(0.21300000000000008) - (y[17] * t523 + y[16] * t17));
+        const gic_real t525 = y[16] * t34 - y[17] * t29 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
+        const gic_real t526 = t420 + t525;
+        const gic_real t527 = t526 * R(9.072);
+        const gic_real t528 = y[16] * t59 - y[17] * t49 + (rate[16] * t47 - rate[17] * t50);
+        const gic_real t529 = t420 + t528;
+        const gic_real t530 = t529 * R(23.965);
+        const gic_real t531 = y[16] * t86 - y[17] * t78 + (rate[16] * t76 - rate[17] * t79);
+        const gic_real t532 = t420 + t531;
+        const gic_real t533 = R(23.965) * t532;
+        const gic_real t534 = y[16] * t143 - y[17] * t132 + (rate[16] * t131 - rate[17] * t133);
+        const gic_real t535 = t460 + (t420 + t534) + rate[22] * (m[175] * t124 - m[176] * t118);
+        const gic_real t536 = (t535 + rate[18] * (m[181] * t124 - m[182] * t118)) * R(90.555);
+        const gic_real t537 = y[16] * t201 - y[17] * t190 + (rate[16] * t189 - rate[17] * t191);
+        const gic_real t538 = t481 + (t420 + t537) + rate[22] * (m[211] * t182 - m[212] * t176);
+        const gic_real t539 = R(90.555) * (t538 + rate[19] * (m[217] * t182 - m[218] * t176));
+        const gic_real t540 = t524 * R(2086.52) + t527 + t530 + t533 + t536 + t539;
+        const gic_real t541 = y[16] * t232 - y[17] * t225 + (rate[16] * t224 - rate[17] * R(0.843847));
+        const gic_real t542 = t420 + t541 - t502 + rate[20] * t223;
+        const gic_real t543 = t542 * R(110.555);
+        const gic_real t544 = y[16] * t263 - y[17] * t256 + (rate[16] * t255 - rate[17] * R(-0.843847));
+        const gic_real t545 = t420 + t544 - t516 + rate[21] * t254;
+        const gic_real t546 = R(110.555) * t545;
+        const gic_real t547 = t291 * t298;
+        const gic_real t548 = t271 * t275;
+        const gic_real t549 = t547 - t548;
+        const gic_real t550 = t291 * t328;
+        const gic_real t551 = t304 * t308;
+        const gic_real t552 = t550 - t551;
+        const gic_real t553 = t291 * t351;
+        const gic_real t554 = t291 * t375;
+        const gic_real t555 = R(-0.006807199999999902) * t398;
+        const gic_real t556 = R(-0.006807199999999902) * t386;
+        const gic_real t557 = t554 + (t555 + t556 + t551 + t548 - t555 - t556);
+        const gic_real t558 = t540 + t543 + t546 - (t549 + (t552 + (t553 + t557)));
+        const gic_real t559 = t414 + t415 + t416 + t417 + R(2086.52) * t425 + t429;
+        const gic_real t560 = t559 + t440 + t450 + t471 + t492 + t507 + t521;
+        const gic_real t561 = y[15] * R(1078.52);
+        const gic_real t562 = t28 + (y[15] * t523 - y[16] * t18 - rate[16] * R(0.056));
+        const gic_real t563 = y[17] * t561 - y[15] * t1 + rate[16] * R(2955.66) + (t524 * R(444.4287600000002) - t562 * R(116.84512));
+        const gic_real t564 = m[42] + y[15];
+        const gic_real t565 = R(0.4469) * t564;
+        const gic_real t566 = rate[17] - m[42] * y[16];
+        const gic_real t567 = rate[16] + m[42] * y[17];
+        const gic_real t568 = y[17] * t565 - t564 * t41 + (t40 * t566 + t42 * t567);
+        const gic_real t569 = t563 + (rate[16] + (t526 * R(0.4919654879999997) - t32 * R(13.051414655999999))) + (t568 + t47 * t530 - t55 * R(40.476046225));
+        const gic_real t570 = m[72] + y[15];
+        const gic_real t571 = R(0.4469) * t570;
+        const gic_real t572 = rate[17] - m[72] * y[16];
+        const gic_real t573 = rate[16] + m[72] * y[17];
+        const gic_real t574 = y[17] * t571 - t570 * t71 + (t70 * t572 + t72 * t573);
+        const gic_real t575 = t102 * t94 + (t106 * t92 + t112 * t103);
+        const gic_real t576 = t94 * t575 - t103 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
+        const gic_real t577 = t576 + (t124 * t536 - t121 * t138);
+        const gic_real t578 = t569 + (t574 + t76 * t533 - R(40.476046225) * t83) + (t577 + (m[152] * t536 - t137 * R(149.724089775)));
+        const gic_real t579 = t160 * t152 + (t164 * t150 + t170 * t161);
+        const gic_real t580 = t152 * t579 - t161 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
+        const gic_real t581 = t580 + (t182 * t539 - t179 * t196);
+        const gic_real t582 = y[17] * t212 + (t214 * t207 + y[15] * t218);
+        const gic_real t583 = y[17] * t582 - y[15] * t213 + (t209 * t216 + (R(9.09449) * t217 + t214 * t219));
+        const gic_real t584 = t230 * R(110.555);
+        const gic_real t585 = t583 + (t223 * t543 - t221 * t584);
+        const gic_real t586 = t578 + (t581 + (m[188] * t539 - R(149.724089775) * t195)) + (t585 + (t542 * R(2.874430000000003) - t230 * R(-127.13825)));
+        const gic_real t587 = y[17] * t243 + (t245 * t238 + y[15] * t249);
+        const gic_real t588 = y[17] * t587 - y[15] * t244 + (t240 * t247 + (R(9.09449) * t248 + t245 * t250));
+        const gic_real t589 = R(110.555) * t261;
+        const gic_real t590 = t588 + (t254 * t546 - t252 * t589);
+        const gic_real t591 = t270 * t404 - t268 * t548 + (t280 * t547 - t277 * t299);
+        const gic_real t592 = t303 * t403 - t301 * t551 + (t313 * t550 - t310 * t329);
+        const gic_real t593 = t336 * t553 - t332 * t352;
+        const gic_real t594 = t360 * t554 - t356 * t376;
+        const gic_real t595 = t398 * R(-0.002199670439359969) - R(1.792978) * t400 + (R(-0.002199670439359969) * t386 - R(1.792978) * t389);
+        const gic_real t596 = t595 + (R(0.376) * t551 - R(-1.6) * t403) + (R(0.376) * t548 - R(-1.6) * t404);
+        const gic_real t597 = R(0.09720579999999998) * t400 - t391 * t555 + (t596 + R(1.688965) * t400);
+        const gic_real t598 = R(0.09720579999999998) * t389 - t379 * t556 + (t597 + R(1.688965) * t389);
+        const gic_real t599 = t594 + (t598 + (m[152] * t554 - R(1.653405) * t376)) + (m[188] * t553 - R(1.653405) * t352);
+        const gic_real t600 = t592 + (t593 + t599 + (R(0.026000000000000023) * t552 - R(-1.15) * t408));
+        const gic_real t601 = t586 + (t590 + (R(2.874430000000003) * t545 - R(-127.13825) * t261)) - (t591 + (t600 + (R(0.026000000000000023) * t549 - R(-1.15) * t411)));
+        const gic_real t602 = t36 * R(9.072);
+        const gic_real t603 = t20 * R(2086.52) + t602 + t64 + t90 + t147 + t205;
+        const gic_real t604 = t377 + (t399 + t387 + t309 + t276 - t399 - t387);
+        const gic_real t605 = t603 + t235 + t266 - (t412 + (t409 + (t353 + t604)));
+        const gic_real t606 = y[15] * t2 - y[16] * t561 + rate[17] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t607 = t564 * t43 - y[16] * t565 + (t37 * t566 + t40 * t567);
+        const gic_real t608 = t607 - t45 * t530 + (t63 * R(40.476046225) - t529 * R(7.359315990000001));
+        const gic_real t609 = t606 + (rate[17] + (t36 * R(13.051414655999999) - m[1] * t527)) + t608;
+        const gic_real t610 = t570 * t73 - y[16] * t571 + (t67 * t572 + t70 * t573);
+        const gic_real t611 = t610 - t75 * t533 + (R(40.476046225) * t89 - t532 * R(-7.359315990000001));
+        const gic_real t612 = t103 * t107 - t92 * t575 + (t93 * t109 + (t98 * t111 + t102 * t114));
+        const gic_real t613 = t612 + (t121 * t147 - t118 * t536);
+        const gic_real t614 = t609 + t611 + (t613 + (t146 * R(149.724089775) - m[151] * t536));
+        const gic_real t615 = t161 * t165 - t150 * t579 + (t151 * t167 + (t156 * t169 + t160 * t172));
+        const gic_real t616 = t615 + (t179 * t205 - t176 * t539);
+        const gic_real t617 = y[15] * t215 - t207 * t582 + (t208 * t216 + (t209 * t217 + t212 * t219));
+        const gic_real t618 = t617 + (t221 * t235 - t542 * R(21.430755085)) + (t234 * R(-127.13825) - t542 * R(71.86075000000001));
+        const gic_real t619 = t614 + (t616 + (R(149.724089775) * t204 - m[187] * t539)) + t618;
+        const gic_real t620 = y[15] * t246 - t238 * t587 + (t239 * t247 + (t240 * t248 + t243 * t250));
+        const gic_real t621 = t620 + (t252 * t266 - t545 * R(-21.430755085)) + (R(-127.13825) * t265 - t545 * R(-71.86075000000001));
+        const gic_real t622 = t332 * t353 - t331 * t553;
+        const gic_real t623 = t356 * t377 - t355 * t554;
+        const gic_real t624 = R(1.792978) * t399 - t398 * R(-0.003388550642239951) + (R(1.792978) * t387 - t386 * R(0.003388550642239951));
+        const gic_real t625 = t624 + (t308 * R(-0.08000000000000007) - R(0.6) * t551) + (t275 * R(0.08000000000000007) - R(-0.6) * t548);
+        const gic_real t626 = t392 * t555 - R(0.09720579999999998) * t399 + (t625 + (t398 * R(-0.00209039581919997) - R(1.688965) * t399));
+        const gic_real t627 = t380 * t556 - R(0.09720579999999998) * t387 + (t626 + (t386 * R(0.00209039581919997) - R(1.688965) * t387));
+        const gic_real t628 = t623 + (t627 + (R(1.653405) * t377 - m[151] * t554)) + (R(1.653405) * t353 - m[187] * t553);
+        const gic_real t629 = t310 * t330 - R(0.25970099999999996) * t550 - t303 * t309 + (t622 + t628 + (R(-1.15) * t409 - R(0.65) * t552));
+        const gic_real t630 = t277 * t300 - R(-0.25970099999999996) * t547 - t270 * t276 + (t629 + (R(-1.15) * t412 - R(-0.65) * t549));
+        const gic_real t631 = t562 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
+        const gic_real t632 = t376 + (t400 + t389 + t403 + t404 - t400 - t389);
+        const gic_real t633 = t631 + t584 + t589 - (t411 + (t408 + (t352 + t632)));
+        const gic_real t634 = m[185] * t138 + m[184] * t147 + (m[182] * t613 + (m[181] * t577 + m[180] * t148));
+        const gic_real t635 = (x[0] - R(-0.29722)) * R(9310.0);
+        const gic_real t636 = m[185] * t376 + m[184] * t377 + (m[182] * t623 + (m[181] * t594 + m[180] * t378));
+        const gic_real t637 = GIC_FABS(t635) + R(9310.0) * (R(0.29722) + GIC_FABS(x[0])) + t439;
+        const gic_real t638 = m[221] * t196 + m[220] * t205 + (m[218] * t616 + (m[217] * t581 + m[216] * t206));
+        const gic_real t639 = R(9310.0) * (x[1] - R(-0.29722));
+        const gic_real t640 = m[221] * t352 + m[220] * t353 + (m[218] * t622 + (m[217] * t593 + m[216] * t354));
+        const gic_real t641 = GIC_FABS(t639) + R(9310.0) * (R(0.29722) + GIC_FABS(x[1])) + t449;
+        const gic_real t642 = (x[2] - R(-0.11142)) * R(22680.0);
+        const gic_real t643 = GIC_FABS(t642) + R(22680.0) * (R(0.11142) + GIC_FABS(x[2])) + t506;
+        const gic_real t644 = R(22680.0) * (x[3] - R(-0.11142));
+        const gic_real t645 = GIC_FABS(t644) + R(22680.0) * (R(0.11142) + GIC_FABS(x[3])) + t520;
+        const gic_real t646 = t602 + (m[176] * t613 + (m[175] * t577 + m[174] * t148));
+        const gic_real t647 = t646 + (m[212] * t616 + (m[211] * t581 + m[210] * t206));
+        const gic_real t648 = x[4] * R(100000.0);
+        const gic_real t649 = xd[4] * R(12000.0);
+        const gic_real t650 = m[176] * t623 + (m[175] * t594 + m[174] * t378) - (t648 + t649);
+        const gic_real t651 = t650 + (m[212] * t622 + (m[211] * t593 + m[210] * t354));
+        const gic_real t652 = GIC_FABS(t649) + GIC_FABS(t648) + R(100000.0) * GIC_FABS(x[4]);
+        const gic_real t653 = t237 + t267 - t413;
+        const gic_real t654 = t619 + t621 - t630;
+        const gic_real t655 = t65 + t634 - (t401 - t635 + t636);
+        const gic_real t656 = t637 + t464 * t470 + t466 * t471;
+        const gic_real t657 = t638 - t91 - (t390 - t388 - t639 + t640);
+        const gic_real t658 = t641 + t485 * t491 + t487 * t492;
+        const gic_real t659 = t585 - (t592 - t642);
+        const gic_real t660 = t590 - (t591 - t644);
+        const gic_real t661 = t647 - t651;
+        const gic_real t662 = t652 + t429 + t462 * t470 + t483 * t491;
+        tau[0] = t653;
+        size[0] = t522;
+        tau[3] = t558;
+        size[3] = t560;
+        tau[1] = t601;
+        size[1] = t522;
+        tau[4] = t605;
+        size[4] = t560;
+        tau[2] = t654;
+        size[2] = t522;
+        tau[5] = t633;
+        size[5] = t560;
+        tau[6] = t655;
+        size[6] = t656;
+        tau[7] = t657;
+        size[7] = t658;
+        tau[8] = t659;
+        size[8] = t643;
+        tau[9] = t660;
+        size[9] = t645;
+        tau[10] = t661;
+        size[10] = t662;
+    }
+    return GIC_OK;
+}
+
+/* The motions that were recovered last, against all constraints. */
+static GIC_COLD int trailing_arm_check_constraints(trailing_arm *self)
+{
+    gic_real largest[2];
+    const int bad = trailing_arm_residual(self, largest);
+    self->head.residual = GIC_MAX(self->head.residual, largest[0]);
+    if (bad < 0)
+        return GIC_OK;
+    self->head.subset = bad;
+    self->recovered = 0;
+    return GIC_ERROR_RESIDUAL;
+}
+
+/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+static GIC_COLD GIC_APART int trailing_arm_check(trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate)
+{
+    gic_real tau[TRAILING_ARM_UNKNOWN_ROOM], size[TRAILING_ARM_UNKNOWN_ROOM];
+    int i, status = trailing_arm_check_constraints(self);
+    self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&trailing_arm_model, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        status = trailing_arm_balance(self, time, y, e, rate, tau, size);
+    for (i = 0; status == GIC_OK && i < TRAILING_ARM_UNKNOWNS; ++i)
+        if (!(GIC_FABS(tau[i]) <= GIC_BALANCE_RESIDUAL * size[i]))
+            status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        self->head.unchecked = GIC_CHECK_EVERY;
+    return status;
+}
+
 /* ---- the functions of trailing_arm.h ------------------------------------------------------------------------------------ */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
@@ -2413,6 +3377,7 @@ static int trailing_arm_locate(trailing_arm *self, gic_real time, const gic_real
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
 static int trailing_arm_evaluate(trailing_arm *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[TRAILING_ARM_STATE_ROOM])
 {
+    const int32_t flip = self->head.flip;
     int status = trailing_arm_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
@@ -2420,6 +3385,11 @@ static int trailing_arm_evaluate(trailing_arm *self, gic_real time, const gic_re
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
     if (status == GIC_OK && !GIC_FINITE(rate + TRAILING_ARM_TWIST, TRAILING_ARM_STATES - TRAILING_ARM_TWIST))
         status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && --self->head.unchecked < 0) {
+        status = trailing_arm_check(self, time, y, e, rate);
+        if (status != GIC_OK)
+            self->head.flip = flip; /* what was found is no start */
+    }
     return self->head.status = status;
 }
 
@@ -2494,7 +3464,13 @@ int trailing_arm_outputs(trailing_arm *self)
 int trailing_arm_poses(trailing_arm *self, gic_real *pose)
 {
     gic_real e[4];
-    const int status = trailing_arm_locate(self, trailing_arm_present(self), self->state, e);
+    const int32_t flip = self->head.flip;
+    int status = trailing_arm_locate(self, trailing_arm_present(self), self->state, e);
+    if (status == GIC_OK) {
+        status = self->head.status = trailing_arm_check_constraints(self);
+        if (status != GIC_OK)
+            self->head.flip = flip;
+    }
     if (status == GIC_OK)
         trailing_arm_place(self, self->state, e, pose);
     return status;
@@ -2776,6 +3752,8 @@ int trailing_arm_setup_with(trailing_arm *self, const gic_real *parameter)
     trailing_arm_gather(self, self->state);
     if (status == GIC_OK)
         status = trailing_arm_recover(self, turn, 0);
+    if (status == GIC_OK)
+        status = trailing_arm_check_constraints(self);
     return self->head.status = status;
 }
 
@@ -3820,53 +4798,21 @@ static GIC_COLD int trailing_arm_energy(const trailing_arm *self, gic_real time,
     return GIC_OK;
 }
 
-/* Largest constraint residual of all subsets, relative to their sizes. */
-static GIC_COLD gic_real trailing_arm_residual(const trailing_arm *self)
-{
-    const gic_real *const start = self->start[self->head.flip];
-    trailing_arm_links links;
-    gic_real largest = R(0.0), one = R(0.0);
-    (void)start;
-    (void)one;
-    links.cold = 0;
-    links.x[0] = start[4];
-    one = trailing_arm_residual_rack(trailing_arm_k_rack[0], &links, self->motion + 0);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[0];
-    one = trailing_arm_residual_lca_f_l(trailing_arm_k_lca_f_l[0], &links, self->motion + 30);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[1];
-    one = trailing_arm_residual_lca_f_l(trailing_arm_k_lca_f_l[1], &links, self->motion + 60);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[2];
-    one = trailing_arm_residual_lca_f_l_2(trailing_arm_k_lca_f_l_2[0], &links, self->motion + 90);
-    largest = GIC_MAX(largest, one);
-    links.x[0] = start[3];
-    one = trailing_arm_residual_lca_f_l_2(trailing_arm_k_lca_f_l_2[1], &links, self->motion + 120);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = start[4];
-    links.x[1] = start[0];
-    one = trailing_arm_residual_wheel_f_l(trailing_arm_k_wheel_f_l[0], &links, self->motion + 150);
-    largest = GIC_MAX(largest, one);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = start[4];
-    links.x[1] = start[1];
-    one = trailing_arm_residual_wheel_f_l(trailing_arm_k_wheel_f_l[1], &links, self->motion + 186);
-    largest = GIC_MAX(largest, one);
-    return largest;
-}
-
 GIC_COLD int trailing_arm_self_test(trailing_arm *self, gic_self_test *result)
 {
     gic_real e[4], acc[TRAILING_ARM_UNKNOWN_ROOM], unit[TRAILING_ARM_UNKNOWN_ROOM], tau0[TRAILING_ARM_UNKNOWN_ROOM], tau[TRAILING_ARM_UNKNOWN_ROOM];
-    gic_real M[TRAILING_ARM_UNKNOWN_ROOM][TRAILING_ARM_UNKNOWN_ROOM], energy[3], scale;
+    gic_real M[TRAILING_ARM_UNKNOWN_ROOM][TRAILING_ARM_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = trailing_arm_time(self);
-    const gic_self_test none = {R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
-    int i, j, l, status = trailing_arm_refresh(self, e);
+    const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
+    int i, j, l, status;
+    self->head.unchecked = 0;
+    status = trailing_arm_refresh(self, e);
     *result = none;
+    if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
+        (void)trailing_arm_residual(self, residual);
+        result->constraint = residual[0];
+        result->motion = residual[1];
+    }
     for (i = 0; i < TRAILING_ARM_UNKNOWNS; ++i)
         unit[i] = R(0.0);
     if (status == GIC_OK)
@@ -3875,7 +4821,6 @@ GIC_COLD int trailing_arm_self_test(trailing_arm *self, gic_self_test *result)
         status = trailing_arm_inverse(self, time, self->state, e, unit, tau0);
     if (status != GIC_OK)
         return self->head.status = status;
-    result->constraint = trailing_arm_residual(self);
     result->energy = GIC_FABS(energy[0] - energy[1]) / (energy[2] > R(0.0) ? energy[2] : R(1.0));
 
     /* the mass matrix column by column: what a unit acceleration adds to the residual */
@@ -3953,6 +4898,14 @@ static int trailing_arm_any_self_test(void *self, gic_self_test *result)
     return trailing_arm_self_test((trailing_arm *)self, result);
 }
 
+static int trailing_arm_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
+{
+    gic_real e[4];
+    const gic_real *turn;
+    const int status = trailing_arm_orient((trailing_arm *)self, state, e, &turn);
+    return status == GIC_OK ? trailing_arm_check((trailing_arm *)self, time, state, e, rate) : status;
+}
+
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
 #define trailing_arm_any_march NULL
 #else
@@ -4022,4 +4975,5 @@ const gic_model trailing_arm_model = {
     NULL,
     NULL,
     NULL,
+    trailing_arm_any_check,
 };

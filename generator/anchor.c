@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The frame in which a subset is solved. A subset that hangs on one body alone does not feel how that one moves: relative
- * to it, joints have constant axes, and nothing but the subset's own coordinates moves its bodies. */
+ * The frame in which a subset is solved. A subset that hangs on one body alone does not feel how that one moves:
+ * relative to it, joints have constant axes, and nothing but the subset's own coordinates moves its bodies. */
 #include "subset.h"
 
 #include <string.h>
@@ -18,8 +18,8 @@ int subset_anchor(const Model *model, const Sequence *sequence, int subset)
     return base ? BODY_BASE : own->known[0];
 }
 
-/* Velocity or acceleration of a point of a body that carries another: those of its reference point, `linear`, its angular
- * one, and the arm to there. */
+/* Velocity or acceleration of a point of a body that carries another: those of its reference point, `linear`, its
+ * angular one, and the arm to there. */
 static void carried(Dag *dag, const Ex angular[3], const Ex linear[3], const Ex arm[3], Ex out[3])
 {
     ex_cross(dag, angular, arm, out);
@@ -34,7 +34,8 @@ void motion_compose(Dag *dag, const Motion *anchor, const Motion *relative, Moti
     ex_add3(dag, anchor->c, arm, out->c);
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
-            out->A[3 * i + j] = ex_dot(dag, anchor->A + 3 * i, (Ex[]){relative->A[j], relative->A[3 + j], relative->A[6 + j]});
+            out->A[3 * i + j] =
+                ex_dot(dag, anchor->A + 3 * i, (Ex[]){relative->A[j], relative->A[3 + j], relative->A[6 + j]});
     ex_apply(dag, anchor->A, relative->omega, spin);
     ex_add3(dag, anchor->omega, spin, out->omega);
     ex_apply(dag, anchor->A, relative->velocity, glide);

@@ -27,21 +27,21 @@ static _Noreturn void assembly_fail(const Model *model, const Subset *subset)
               model->body[subset->body[0]].name, what);
 }
 
-/* World pose of a body frame from the pose of the reference point relative to the base. */
-static void move_body(Model *model, int body, const double q[7], const double origin[3])
+/* World pose of a body frame from the pose of its reference point relative to that of another body, or to the base. */
+static void move_body(Model *model, int from, int body, const double q[7], const double (*origin)[3])
 {
-    const Body *base = &model->body[BODY_BASE];
+    const Body *carrier = &model->body[from];
     Body *b = &model->body[body];
     double R[9], A[9], offset[3], local[3], cross[3];
-    const double *p0 = base->euler, *p = q + 3;
+    const double *p0 = carrier->euler, *p = q + 3;
     mat_from_euler(p0, R);
     mat_from_euler(p, A);
-    mat_apply(A, origin, offset);
+    mat_apply(A, origin[body], offset);
     for (int i = 0; i < 3; ++i)
-        local[i] = q[i] - offset[i];
+        local[i] = q[i] - offset[i] + (from == BODY_BASE ? 0 : origin[from][i]);
     mat_apply(R, local, b->position);
     for (int i = 0; i < 3; ++i)
-        b->position[i] += base->position[i];
+        b->position[i] += carrier->position[i];
     vec_cross(p0 + 1, p + 1, cross);
     b->euler[0] = p0[0] * p[0] - vec_dot(p0 + 1, p + 1);
     for (int i = 0; i < 3; ++i)
@@ -82,7 +82,7 @@ const Model *model_assemble(Pool *pool, const Model *drawn, const Sequence *sequ
             assembly_fail(drawn, subset);
         }
         for (int b = 0; b < subset->bodies; ++b)
-            move_body(model, subset->body[b], q + 7 * b, origin[subset->body[b]]);
+            move_body(model, subset_anchor(model, sequence, s), subset->body[b], q + 7 * b, fixed);
     }
     return model;
 }

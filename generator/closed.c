@@ -90,7 +90,8 @@ static void combine(Dag *dag, int count, const Ex *s, const Ex *const *a, Ex out
  * stop being independent, and a step can not tell whether a motion passes on or turns back. */
 static const double meeting = 0.01;
 
-/* The sign of an expression at the design; where geometry is tuned, at the drawing with the values of the parameters. */
+/* The sign of an expression at the design; where geometry is tuned, at the drawing with the values of the parameters.
+ */
 static double sign_at_design(const Work *w, int member, int e, int unused, Ex *formula)
 {
     (void)unused;

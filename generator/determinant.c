@@ -45,8 +45,7 @@ static bool joint_gives_directions(const Work *w, const Connection *tie)
 {
     for (int i = 0; i < w->connections; ++i) {
         const Connection *other = &w->connection[i];
-        if (other == tie || other->is_coordinate ||
-            !(joint_parts[w->model->joint[other->index].type] & PART_PARALLEL))
+        if (other == tie || other->is_coordinate || !(joint_parts[w->model->joint[other->index].type] & PART_PARALLEL))
             continue;
         for (int a = 0; a < 2; ++a)
             for (int b = 0; b < 2; ++b)
@@ -61,8 +60,7 @@ Ex determinant_check(Work *w, Formula *formula, const Factors *factors, bool clo
     Dag *dag = w->dag;
     for (int r = 0; r < w->n; ++r) {
         const Connection *tie = &w->connection[w->row_of[r]];
-        if (w->row[r].guard &&
-            !(closed && (tie->is_coordinate ? subset_is_hinged : joint_gives_directions)(w, tie)))
+        if (w->row[r].guard && !(closed && (tie->is_coordinate ? subset_is_hinged : joint_gives_directions)(w, tie)))
             block_check(&formula->solve, w->row[r].guard, false, 0, "GIC_ERROR_SINGULAR");
     }
     const Ex determinant = varying_determinant(dag, factors);

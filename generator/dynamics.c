@@ -7,6 +7,8 @@
  * base. */
 #include "gicgen.h"
 
+#include <string.h>
+
 /* A pivot of the mass matrix may be so many times smaller than its diagonal entry: what is left of that has lost as
  * many times its rounding, 2.2e-16, and accelerations, to which a dozen such roundings add up, are promised to 1e-8
  * (FORMAT.md section 14). */
@@ -487,6 +489,93 @@ Ex whole_power(Whole *whole, const Loads *loads)
 static Ex magnitude(Dag *dag, Ex e)
 {
     return ex_op(dag, OP_ABS, e, 0, 0);
+}
+
+static Ex magnitude3(Dag *dag, const Ex v[3])
+{
+    return ex_add(dag, magnitude(dag, v[0]), ex_add(dag, magnitude(dag, v[1]), magnitude(dag, v[2])));
+}
+
+/* Sum of magnitudes of what the acceleration of a point of a body is made of; alpha: its own size. */
+static Ex acceleration_size(Whole *whole, int b, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2,
+                            Ex *angular)
+{
+    Dag *dag = whole->dag;
+    const Motion *motion = &whole->motion[b];
+    Ex turn = magnitude3(dag, whole->turn), own = magnitude3(dag, motion->omega), all = ex_add(dag, turn, own);
+    Ex linear = ex_add(dag, magnitude3(dag, a), magnitude3(dag, whole->gravity));
+    *angular = ex_add(dag, magnitude3(dag, alpha), ex_mul(dag, all, all));
+    linear = ex_add(dag, linear, ex_mul(dag, *angular, magnitude3(dag, point->v)));
+    linear = ex_add(dag, linear, ex_mul(dag, turn, magnitude3(dag, point->rate)));
+    linear = ex_add(dag, linear, magnitude3(dag, point->bias));
+    *angular = ex_add(dag, *angular, magnitude3(dag, motion->alpha));
+    for (int j = 0; b != BODY_BASE && j < whole_subset(whole, b)->deps; ++j) {
+        const Ex *S = motion->S + 6 * j;
+        Ex rate = magnitude(dag, w2[whole_subset(whole, b)->dep[j]]), turning = ex_mul(dag, rate, magnitude3(dag, S));
+        *angular = ex_add(dag, *angular, turning);
+        linear = ex_add(dag, linear, ex_mul(dag, turning, magnitude3(dag, point->arm)));
+        linear = ex_add(dag, linear, ex_mul(dag, rate, magnitude3(dag, S + 3)));
+    }
+    return linear;
+}
+
+/* Sums of magnitudes of all that moves a body and that it takes: moment about its reference point, and force. */
+static void wrench_size(Whole *whole, const Loads *loads, int b, const Ex alpha[3], const Ex a[3], const Ex *w2,
+                        Ex size[2])
+{
+    Dag *dag = whole->dag;
+    const Body *body = &whole->model->body[b];
+    Vector com = whole_point(whole, b, body->com);
+    Ex angular, linear = acceleration_size(whole, b, &com, alpha, a, w2, &angular), inertia = 0;
+    for (int i = 0; i < 3; ++i)
+        inertia = ex_add(dag, inertia, whole_number(whole, &body->inertia[i]));
+    Ex force = ex_mul(dag, whole_number(whole, &body->mass), linear);
+    Ex moment = ex_add(dag, ex_mul(dag, inertia, angular), ex_mul(dag, magnitude3(dag, com.arm), force));
+    size[0] = ex_add(dag, loads->size[b][0], moment);
+    size[1] = ex_add(dag, loads->size[b][1], force);
+}
+
+/* tau[] and size[] of one unknown. */
+static void store_balance(Block *block, int unknown, Ex tau, Ex size)
+{
+    if (unknown < 0)
+        return;
+    block_store(block, tau, "tau[%d]", unknown);
+    block_store(block, size, "size[%d]", unknown);
+}
+
+Block *check_block(Whole *whole)
+{
+    Dag *dag = whole->dag;
+    const Model *model = whole->model;
+    Block *block = pool_alloc(dag->pool, sizeof *block);
+    block->dag = dag;
+    whole->sized = true;
+    Ex alpha[3], a[3], *w2, moment = 0, force = 0;
+    Ex *along = pool_alloc(dag->pool, (size_t)(model->coordinates + 1) * sizeof *along);
+    whole_accelerations(whole, alpha, a, &w2);
+    const Loads *loads = loads_make(whole);
+    const Projection p = project(whole, loads, alpha, a, w2);
+    memcpy(along, loads->own_size, (size_t)model->coordinates * sizeof *along);
+    for (int b = model->free_base ? 0 : 1; b < model->bodies; ++b) {
+        Ex size[2];
+        wrench_size(whole, loads, b, alpha, a, w2, size);
+        moment = ex_add(dag, moment, ex_add(dag, size[0], ex_mul(dag, size[1], magnitude3(dag, whole->motion[b].c))));
+        force = ex_add(dag, force, size[1]);
+        for (int j = 0; b != BODY_BASE && j < whole_subset(whole, b)->deps; ++j) {
+            const Ex *S = whole->motion[b].S + 6 * j;
+            Ex *w = &along[whole_subset(whole, b)->dep[j]];
+            *w = ex_add(dag, *w, ex_mul(dag, size[0], magnitude3(dag, S)));
+            *w = ex_add(dag, *w, ex_mul(dag, size[1], magnitude3(dag, S + 3)));
+        }
+    }
+    for (int i = 0; model->free_base && i < 3; ++i) {
+        store_balance(block, i, p.moment[i], moment);
+        store_balance(block, 3 + i, p.force[i], force);
+    }
+    for (int w = 0; w < model->coordinates; ++w)
+        store_balance(block, whole->plan->coordinate_unknown[w], p.along[w], along[w]);
+    return block;
 }
 
 Block *energy_block(Whole *whole)

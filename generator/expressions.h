@@ -338,8 +338,10 @@ typedef struct Sampling {
 
 Sampling *sampling_new(Pool *pool, const Model *model, const Sequence *sequence, const double (*origin)[3]);
 double sampling_coordinate(const Sampling *sampling, const Model *model, int step, int configuration, int coordinate);
-/* Design pose of a body's reference point relative to another body's, or to the base: place and Euler parameters. */
-void sampling_design(const Sampling *sampling, const Model *model, int anchor, int body, double q[7]);
+/* Design pose of a body's reference point relative to another body's, or to the base: place and Euler parameters. origin:
+ * reference points [bodies][3], body frames. */
+void sampling_design(const Sampling *sampling, const Model *model, const double (*origin)[3], int anchor, int body,
+                     double q[7]);
 double *sampling_pose(const Sampling *sampling, int step, int configuration, int body);
 
 /* ---- block.c: straight-line code before it is text ------------------------------------------------------------ */

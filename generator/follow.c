@@ -97,7 +97,7 @@ static void design_poses(const Work *w, const Sampling *sampling, const Subset *
 {
     const int anchor = w->anchored ? member->known[0] : BODY_BASE;
     for (int b = 0; b < member->bodies; ++b, q += 7)
-        sampling_design(sampling, w->model, anchor, member->body[b], q);
+        sampling_design(sampling, w->model, w->origin, anchor, member->body[b], q);
 }
 
 static void store_poses(Work *w, Sampling *sampling, const Subset *member, int s, int step)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * All formulas of a model, and the numbers that go with them: what emission turns into text and what the tape runs. */
-#include "gicgen.h"
+#include "plant.h"
 
 #include <string.h>
 
@@ -41,6 +41,7 @@ void formulation_blocks(Pool *pool, Formulation *f)
     f->poses = poses_block(whole_new(pool, plan));
     f->inverse = inverse_block(whole_new(pool, plan));
     f->energy = energy_block(whole_new(pool, plan));
+    f->check = check_block(whole_new(pool, plan));
     f->wrenches = reduced ? wrenches_block(whole_new(pool, plan)) : NULL;
     f->wheels = f->model->fast_states ? wheels_formulate(pool, plan) : NULL;
 }
@@ -64,6 +65,7 @@ const Formulation *formulate(Pool *pool, const Model *model, const Sequence *seq
         f->known_most = subset->knowns > f->known_most ? subset->knowns : f->known_most;
         f->dependence_most = subset->deps > f->dependence_most ? subset->deps : f->dependence_most;
     }
+    plant_stores(f, "all");
     return f;
 }
 
@@ -130,7 +132,7 @@ void body_design(const Formulation *f, int anchor, int body, double q[7])
             q[i] = ex_value(f->model->tuning->dag, c[i], 0);
         return;
     }
-    sampling_design(f->sampling, f->model, anchor, body, q);
+    sampling_design(f->sampling, f->model, f->plan->origin, anchor, body, q);
 }
 
 const char *subset_title(Pool *pool, const Model *model, const Subset *subset)

@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* The version of gic_runtime.h that emitted code is written for: GIC_ABI_VERSION. */
-enum { ABI_VERSION = 5 };
+enum { ABI_VERSION = 6 };
 
 /* ---- texts ------------------------------------------------------------------------------------------------ */
 
@@ -494,7 +494,8 @@ void insert_code(void *context, const char *name, Text *out, int indent)
         const Block *block;
     } blocks[] = {{"dynamics", g->formulation->dynamics}, {"outputs", g->formulation->outputs},
                   {"poses", g->formulation->poses},       {"inverse", g->formulation->inverse},
-                  {"energy", g->formulation->energy},     {"wrenches", g->formulation->wrenches}};
+                  {"energy", g->formulation->energy},     {"wrenches", g->formulation->wrenches},
+                  {"balance", g->formulation->check}};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
         if (!strcmp(name, blocks[i].name)) {
             block_emit(out, blocks[i].block, g->style, i ? &none : &g->packed, indent);

@@ -155,14 +155,21 @@ void write_residuals(Generation *g, Text *out, int indent)
         if (subset->class < 0 || narrowing_image(g->formulation->narrowing, s))
             continue;
         const Class *class = &sequence->class[subset->class];
+        const Formula *formula = g->plan->formula[subset->class];
         write_knowns(g, out, indent, subset);
-        for (int j = 0; j < subset->deps; ++j)
-            line(out, indent, "links.x[%d] = start[%d];", j, subset->dep[j]);
-        if (g->plan->formula[subset->class]->derived)
+        for (int j = 0; j < subset->deps; ++j) {
+            line(out, indent, "links.x[%d] = self->x[%d];", j, subset->dep[j]);
+            line(out, indent, "links.rate[%d] = self->xd[%d];", j, subset->dep[j]);
+        }
+        if (formula->derived)
             line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
-        line(out, indent, "one = %s_residual_%s(%s_k_%s[%d], &links, %s);", g->model->name, class->name, g->model->name,
+        line(out, indent, "%s_residual_%s(%s_k_%s[%d], &links, %s, one);", g->model->name, class->name, g->model->name,
              class->name, class_place(class, s), motion_text(g, s));
-        line(out, indent, "largest = GIC_MAX(largest, one);");
+        line(out, indent, "if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(%s) && one[1] <= GIC_MOTION_RESIDUAL))",
+             emit_number(g->pool, formula->distance));
+        line(out, indent + 4, "bad = %d;", s);
+        for (int i = 0; i < 2; ++i)
+            line(out, indent, "largest[%d] = GIC_MAX(largest[%d], one[%d]);", i, i, i);
     }
 }
 

@@ -70,7 +70,8 @@ typedef struct Formula {
     Block predict;      /* q from the start and `change`; reach: squared relative size of that move */
     Block chord;        /* one correction of q with the start's factors; step: its squared relative size */
     Block solve;        /* factors, S, last correction, motion and inertia */
-    Block residual;     /* worst: largest constraint residual of the motion, relative to size */
+    Block residual;     /* worst[0]: sum of the constraint residuals of the motion, relative to size; worst[1]:
+                           of their derivatives' residuals, relative to the magnitudes of their terms */
     Block react;        /* multipliers w from the wrenches w that the bodies need, f being those at their place; what
                            the joints put on the knowns is taken from theirs, w0, w1, ...; only what outputs need */
     int derived;        /* numbers d[] that follow tunable parameters */
@@ -186,6 +187,7 @@ typedef struct Whole {
     Ex gravity[3];             /* base frame */
     Ex *x, *xd;                /* [coordinates] */
     bool open;                 /* numbers that are known stay inputs, for block_pack to compare */
+    bool sized;                /* loads know the magnitudes of their terms */
 } Whole;
 
 Whole *whole_new(Pool *pool, const Plan *plan);
@@ -234,6 +236,9 @@ typedef struct Loads {
     Ex *element;                         /* [forces] Q or T of FORMAT.md section 7 */
     Ex (*wheel)[4];                      /* [wheels] fz, deflection, deflection rate, road height */
     Ex potential, potential_rate, power; /* of springs; of dampers and tires, W */
+    Ex terms;      /* of the element made last: the sum of its terms' magnitudes; only where sizes are asked for */
+    Ex (*size)[2]; /* [bodies] sums of magnitudes of moments about the reference point, and of forces */
+    Ex *own_size;  /* [coordinates] likewise along a coordinate */
 } Loads;
 
 Loads *loads_make(Whole *whole);
@@ -323,6 +328,8 @@ void whole_reaction(Whole *whole, int joint, Ex force[3], Ex torque[3]);
 Ex whole_drive_reaction(Whole *whole, int coordinate);
 /* tau[]: residual of the equations of motion for accelerations acc[] (order of the unknowns), body by body. */
 Block *inverse_block(Whole *whole);
+/* tau[]: the same residual at rate[], and size[]: the sum of magnitudes of the terms that it is made of. */
+Block *check_block(Whole *whole);
 /* energy[3]: both sides of the energy balance at rate[] and the sum of magnitudes; acc[]: the unknowns at rate[]. */
 Block *energy_block(Whole *whole);
 /* Accelerations at rate[]: alpha, a (base frame, less gravity), w2 of all coordinates [coordinates]. */
@@ -370,11 +377,12 @@ typedef struct Formulation {
     const Sampling *sampling;
     const Plan *plan;
     const char *hash; /* of the model, in hexadecimal digits */
-    const Block *dynamics, *outputs, *poses, *inverse, *energy;
+    const Block *dynamics, *outputs, *poses, *inverse, *energy, *check;
     const Block *wrenches;           /* of the reduced form */
     const Wheels *wheels;            /* NULL: none has a tire */
     int known_most, dependence_most; /* knowns and deps of a subset, at most */
     const Narrowing *narrowing;      /* for one scene; NULL: for all */
+    const struct Formulation *general; /* for one scene: the same model's for all; NULL: for all */
 } Formulation;
 
 /* From an assembled model. Models that can't be formulated end in diag_fail. */

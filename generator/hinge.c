@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Angles about the axis of a hinge. Their derivative is the relative angular velocity along that axis, whatever the angle
- * is: a constant for whom the axis is one. */
+ * Angles about the axis of a hinge. Their derivative is the relative angular velocity along that axis, whatever the
+ * angle is: a constant for whom the axis is one. */
 #include "rows.h"
 #include "subset.h"
 

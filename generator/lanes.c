@@ -2,6 +2,7 @@
  * The formulas of a model whose classes are solved in lanes. Where members of a class stand side by side, so do their
  * numbers in memory: the same number of all of them in one row, a lane a column. */
 #include "pack.h"
+#include "plant.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -273,5 +274,6 @@ const Formulation *formulation_lanes(Pool *pool, const Formulation *formulation,
             add_subset(&inputs, plan, s);
     if (plan->pack)
         f->dynamics = block_pack(pool, f->dynamics, inputs.input, inputs.count, plan->pack);
+    plant_stores(f, "lanes");
     return f;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Blocks of pivots that vanish nowhere but where the block's determinant does. A single entry of a matrix may be zero in
- * a configuration that is not singular at all (a direction that turns by a quarter loses a component); adjugates and
+ * Blocks of pivots that vanish nowhere but where the block's determinant does. A single entry of a matrix may be zero
+ * in a configuration that is not singular at all (a direction that turns by a quarter loses a component); adjugates and
  * reflections need no entry to be anything. */
 #include "linear.h"
 
@@ -111,8 +111,7 @@ static void solve_inverse(Dag *dag, const Factors *f, int first, int end, bool t
     for (int i = first; i < end; ++i)
         for (int j = first; j < end; ++j)
             x[i - first] =
-                ex_add(dag, x[i - first],
-                       ex_mul(dag, f->entry[transposed ? f->n * j + i : f->n * i + j], y[j]));
+                ex_add(dag, x[i - first], ex_mul(dag, f->entry[transposed ? f->n * j + i : f->n * i + j], y[j]));
     memcpy(y + first, x, (size_t)(end - first) * sizeof *x);
 }
 

@@ -1,8 +1,37 @@
 /* SPDX-License-Identifier: MIT
  * Applied forces (FORMAT.md sections 7 and 8), body by body and as generalised forces. */
-#include "gicgen.h"
+#include "plant.h"
 
 #include <string.h>
+
+static Ex magnitude(Dag *dag, Ex e)
+{
+    return ex_op(dag, OP_ABS, e, 0, 0);
+}
+
+static Ex magnitude3(Dag *dag, const Ex v[3])
+{
+    return ex_add(dag, magnitude(dag, v[0]), ex_add(dag, magnitude(dag, v[1]), magnitude(dag, v[2])));
+}
+
+/* The element made now has terms of that magnitude. */
+static void set_terms(const Whole *whole, Loads *loads, Ex a, Ex b)
+{
+    if (whole->sized)
+        loads->terms = ex_add(whole->dag, magnitude(whole->dag, a), magnitude(whole->dag, b));
+}
+
+/* A force or torque with terms of the present size acts on a body; arm NULL: a torque. */
+static void count_size(const Whole *whole, Loads *loads, int body, const Ex *arm)
+{
+    Dag *dag = whole->dag;
+    if (!whole->sized || body == BODY_GROUND)
+        return;
+    Ex *size = loads->size[body];
+    size[0] = ex_add(dag, size[0], arm ? ex_mul(dag, magnitude3(dag, arm), loads->terms) : loads->terms);
+    if (arm)
+        size[1] = ex_add(dag, size[1], loads->terms);
+}
 
 /* A force F (base frame) on a point of a body. */
 static void push(Whole *whole, Loads *loads, int body, const Vector *point, const Ex F[3])
@@ -14,6 +43,7 @@ static void push(Whole *whole, Loads *loads, int body, const Vector *point, cons
     ex_cross(dag, point->arm, F, moment);
     ex_add3(dag, wrench, moment, wrench);
     ex_add3(dag, wrench + 3, F, wrench + 3);
+    count_size(whole, loads, body, point->arm);
 }
 
 /* What acts on the bodies as forces on everything and along the coordinates. */
@@ -42,6 +72,7 @@ static void twist(Whole *whole, Loads *loads, int body, const Ex torque[3])
 {
     if (body != BODY_GROUND)
         ex_add3(whole->dag, loads->wrench[body], torque, loads->wrench[body]);
+    count_size(whole, loads, body, NULL);
 }
 
 static Ex table_lookup(Whole *whole, int table, Ex x)
@@ -101,9 +132,15 @@ static Ex elastic_force(Whole *whole, Loads *loads, const Force *force, Ex exten
 static Ex spring_damper(Whole *whole, Loads *loads, const Force *force, Ex value, Ex rate)
 {
     Dag *dag = whole->dag;
-    Ex extension = ex_sub(dag, value, whole_law(whole, force->free, NULL));
+    Ex free = whole_law(whole, force->free, NULL), extension = ex_sub(dag, value, free);
     Ex elastic = elastic_force(whole, loads, force, extension, rate);
-    Ex viscous = ex_mul(dag, whole_law(whole, force->damping, NULL), rate);
+    Ex viscous = ex_mul(dag, whole_law(whole, force->damping, NULL), planted("force") ? value : rate);
+    set_terms(whole, loads, elastic, viscous);
+    if (whole->sized && force->table < 0) { /* what the extension is the difference of */
+        Ex length = ex_add(dag, magnitude(dag, value), magnitude(dag, free));
+        Ex most = ex_mul(dag, magnitude(dag, whole_law(whole, force->stiffness, NULL)), length);
+        loads->terms = ex_add(dag, loads->terms, most);
+    }
     loads->power = ex_sub(dag, loads->power, ex_mul(dag, viscous, rate));
     return ex_add(dag, elastic, viscous);
 }
@@ -142,9 +179,13 @@ static Ex resistance(Whole *whole, Loads *loads, const Force *force, Ex value, E
     Dag *dag = whole->dag;
     if (force_is_spring(force))
         return spring_damper(whole, loads, force, value, rate);
-    if (force_is_stop(force))
-        return stop(whole, loads, force, value, rate);
+    if (force_is_stop(force)) {
+        Ex tension = stop(whole, loads, force, value, rate);
+        set_terms(whole, loads, tension, 0);
+        return tension;
+    }
     Ex tension = whole_law(whole, force->law[0], (const Ex[FORCE_LOCALS]){value, rate});
+    set_terms(whole, loads, tension, 0);
     loads->power = ex_sub(dag, loads->power, ex_mul(dag, tension, rate));
     return tension;
 }
@@ -157,12 +198,15 @@ static void add_along(Whole *whole, Loads *loads, int index)
     Ex Q;
     if (force_is_law(force)) {
         Q = whole_law(whole, force->law[0], NULL);
+        set_terms(whole, loads, Q, 0);
         loads->power = ex_add(dag, loads->power, ex_mul(dag, Q, whole->xd[w]));
     } else {
         Q = ex_neg(dag, resistance(whole, loads, force, whole->x[w], whole->xd[w]));
     }
     loads->element[index] = Q;
     loads->own[w] = ex_add(dag, loads->own[w], Q);
+    if (whole->sized)
+        loads->own_size[w] = ex_add(dag, loads->own_size[w], loads->terms);
 }
 
 static void add_between(Whole *whole, Loads *loads, int index)
@@ -229,6 +273,8 @@ static void add_about(Whole *whole, Loads *loads, int index)
     ex_sub3(dag, turn[1], turn[0], speed);
     Ex torque = resistance(whole, loads, force, ex_op(dag, OP_ATAN2, y, x, 0), ex_dot(dag, n, speed));
     loads->element[index] = torque;
+    if (whole->sized)
+        loads->terms = ex_mul(dag, loads->terms, magnitude3(dag, n));
     ex_scale3(dag, torque, n, n);
     twist(whole, loads, force->body[0], n);
     for (int i = 0; i < 3; ++i)
@@ -249,7 +295,11 @@ static void add_load(Whole *whole, Loads *loads, int body, int in, const double 
         ex_apply(dag, whole->motion[in].A, F, force);
         ex_apply(dag, whole->motion[in].A, T, torque);
     }
+    if (whole->sized)
+        loads->terms = magnitude3(dag, force);
     push(whole, loads, body, &point, force);
+    if (whole->sized)
+        loads->terms = magnitude3(dag, torque);
     twist(whole, loads, body, torque);
     whole_velocity_in_base(whole, &point, v);
     ex_add3(dag, whole->turn, whole->motion[body].omega, total);
@@ -300,6 +350,8 @@ static void add_rolling_wheel(Whole *whole, Loads *loads, int index)
         local[i] = whole_number(whole, &wheel->axis[i]);
     ex_apply(dag, whole->motion[wheel->body].A, local, axis);
     ex_scale3(dag, ex_neg(dag, grip[GRIP_DRIVE]), axis, axis);
+    if (whole->sized)
+        loads->terms = magnitude3(dag, axis);
     twist(whole, loads, wheel->drive_body, axis);
     if (wheel->drive_body == BODY_GROUND)
         return;
@@ -322,6 +374,11 @@ static void add_wheel(Whole *whole, Loads *loads, int index)
     Ex share = ex_div(dag, ex_literal(dag, 1), whole_number(whole, &wheel->fade));
     Ex s = ex_op(dag, OP_MAX, ex_mul(dag, share, deflection), 0, 0);
     Ex viscous = ex_mul(dag, ex_mul(dag, whole_number(whole, &wheel->damping), fade_in(dag, s)), rate);
+    if (whole->sized) {
+        Ex height = ex_add(dag, magnitude(dag, h), magnitude(dag, at[2]));
+        Ex most = ex_add(dag, whole_number(whole, &wheel->radius), height);
+        set_terms(whole, loads, ex_mul(dag, whole_number(whole, &wheel->stiffness), most), viscous);
+    }
     /* without contact the deflection is negative and fades the damping to 0, so the limit at 0 says it all */
     Ex fz =
         ex_op(dag, OP_MAX, ex_add(dag, ex_mul(dag, whole_number(whole, &wheel->stiffness), deflection), viscous), 0, 0);
@@ -343,6 +400,8 @@ Loads *loads_make(Whole *whole)
     loads->along = pool_alloc(pool, (size_t)(model->coordinates + 1) * sizeof *loads->along);
     loads->element = pool_alloc(pool, (size_t)(model->forces + 1) * sizeof *loads->element);
     loads->wheel = pool_alloc(pool, (size_t)(model->wheels + 1) * sizeof *loads->wheel);
+    loads->size = pool_alloc(pool, (size_t)model->bodies * sizeof *loads->size);
+    loads->own_size = pool_alloc(pool, (size_t)(model->coordinates + 1) * sizeof *loads->own_size);
     for (int i = 0; i < model->forces; ++i)
         add_force(whole, loads, i);
     for (int i = 0; i < model->wheels; ++i)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * gicgen: the command line. */
 #include "../runtime/gicrun.h"
+#include "validate.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -165,6 +166,7 @@ static Options read_options(int count, char **word)
 typedef struct Setting {
     const Model *drawn;
     const Facts *facts;
+    const Validation *validation;
 } Setting;
 
 static const Formulation *formulation_of(Pool *pool, const Model *model, const Sequence *sequence,
@@ -190,6 +192,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
     const Formulation *formulation = formulation_of(pool, model, sequence, options, setting);
     if (!batch && options->batch.lanes)
         formulation = formulation_lanes(pool, formulation, options->batch.lanes);
+    formulation_validate(pool, formulation, setting->validation);
     name = strcmp(path, "-") ? name : NULL;
     if (batch && batch_missing(formulation))
         diag_fail((Place){model->source, 0, 0}, "simulate such a model vehicle by vehicle, in threads of your own",
@@ -226,6 +229,7 @@ static void write_report(Pool *pool, const Model *model, const Sequence *sequenc
     if (strcmp(options->page, "-") && !path_ends(options->page, ".html"))
         usage_error("the report's name must end in .html", options->page);
     const Formulation *formulation = formulation_of(pool, model, sequence, options, setting);
+    formulation_validate(pool, formulation, setting->validation);
     generate(pool, formulation, &style_readable, options->templates, NULL, &c, &h);
     report_print(&page, options->page, options->templates, formulation, &c, &h);
     file_write(options->page, page.s, page.size);
@@ -247,13 +251,14 @@ int main(int count, char **word)
     Options options = read_options(count, word);
     Pool *pool = pool_new();
     const Model *model = model_read(pool, options.model);
-    Setting setting = {model, NULL};
+    Setting setting = {model, NULL, NULL};
     check_outputs(pool, &options, model->source);
     if (options.scene) {
         const Scene *scene = scene_read(pool, options.scene, model, NULL, 0);
         check_outputs(pool, &options, scene->source);
         model = scene_rig(pool, model, &scene);
         setting.facts = scene_facts(pool, model, scene, options.scene, false);
+        setting.validation = scene_validation(pool, model, scene);
     }
     const Sequence *sequence = sequence_find(pool, model);
     model = model_assemble(pool, model, sequence);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Rigid-body kinematics relative to the base, in expressions. */
-#include "gicgen.h"
+#include "plant.h"
 
 #include <string.h>
 
@@ -93,7 +93,7 @@ static void rotate(Dag *dag, const Motion *motion, const Ex u[3], bool point, Ex
     ex_scale3(dag, minus, u, opposite);
     for (int i = 0; i < motion->images; ++i) {
         const struct Image *image = &motion->image[i];
-        if (image->side && point)
+        if (image->side && point && !planted("image"))
             continue;
         if (!memcmp(image->s, u, sizeof image->s)) {
             memcpy(out, image->v, sizeof image->v);

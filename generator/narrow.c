@@ -3,6 +3,7 @@
  * into the blocks, and what generated code must check is written down. */
 #include "narrow_work.h"
 
+#include "plant.h"
 #include "powertrain.h"
 
 #include <math.h>
@@ -486,6 +487,7 @@ static void narrow_rest(Narrower *n)
     n->out->poses = narrow_block(n, n->whole, f->poses);
     n->out->inverse = narrow_block(n, n->whole, f->inverse);
     n->out->energy = narrow_block(n, n->whole, f->energy);
+    n->out->check = narrow_block(n, n->whole, f->check);
     n->out->wrenches = narrow_block(n, n->whole, f->wrenches);
     n->out->wheels = narrow_wheels(n);
 }
@@ -513,7 +515,7 @@ static void drop_inertia(Narrower *n)
 {
     const Formulation *f = n->out;
     const Sequence *sequence = n->plan->sequence;
-    const Block *const block[] = {f->dynamics, f->outputs, f->poses, f->inverse, f->energy, f->wrenches};
+    const Block *const block[] = {f->dynamics, f->outputs, f->poses, f->inverse, f->energy, f->check, f->wrenches};
     bool *read = pool_alloc(n->pool, (size_t)n->plan->inertia_size + 1);
     for (size_t i = 0; i < sizeof block / sizeof *block; ++i)
         if (block[i])
@@ -537,7 +539,7 @@ static void drop_inertia(Narrower *n)
 static void find_uses(Pool *pool, const Formulation *f, Narrowing *narrowing)
 {
     const Wheels none = {0}, *wheels = f->wheels ? f->wheels : &none;
-    const Block *const block[] = {f->dynamics, f->outputs,    f->poses,        f->inverse,     f->energy,
+    const Block *const block[] = {f->dynamics, f->outputs,    f->poses,        f->inverse,     f->energy,     f->check,
                                   f->wrenches, &wheels->link, &wheels->torque, &wheels->drive, &wheels->shift};
     for (size_t i = 0; i < sizeof block / sizeof *block; ++i) {
         if (!block[i] || !block[i]->dag)
@@ -646,6 +648,7 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
     n->out = narrow_copy(n->pool, n->general, 1, sizeof *n->out);
     n->out->plan = n->plan;
     n->out->narrowing = n->narrowing;
+    n->out->general = n->general;
     narrow_subsets(n);
     give_whole(n);
     give_subsets(n);
@@ -656,6 +659,7 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
     narrow_rest(n);
     drop_inertia(n);
     find_uses(n->pool, n->out, n->narrowing);
+    plant_stores(n->out, "scene");
     return n->out;
 }
 
@@ -672,7 +676,7 @@ const Formulation *formulate_narrow(Pool *pool, const Model *model, const Sequen
     if (n.mirror)
         hold_odd(&n);
     const Formulation *out = narrow(&n, sequence, solve, recovery);
-    const char *uneven = !n.mirror ? NULL : out ? narrow_uneven(&n) : narrow_unpaired(&n);
+    const char *uneven = !n.mirror || planted("mirror") ? NULL : out ? narrow_uneven(&n) : narrow_unpaired(&n);
     if (!uneven)
         return out;
     n.mirror = NULL;

@@ -2,6 +2,7 @@
  * Lane packing, from packs to vectors: the graph in which a pack that is worth it is one vector, whatever else is
  * needed is a number, and what one needs of the other is taken out of its lane, added up over lanes or set together. */
 #include "pack_work.h"
+#include "plant.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -207,7 +208,7 @@ static void make_number(Packing *p, Stack *stack, Ex e)
             set_number(p, e, ex_input(p->out, node->name, NULL));
     } else if (track >= 0 && p->group_of[p->group[e]]->usable) {
         if (have(p, stack, true, (uint32_t)p->group[e]))
-            set_number(p, e, ex_lane(p->out, p->vector[p->group[e]], track % p->lanes));
+            set_number(p, e, ex_lane(p->out, p->vector[p->group[e]], planted("lane") ? 0 : track % p->lanes));
     } else {
         Ex arg[3] = {0};
         for (int i = 0; i < ex_arity((Op)node->op); ++i)

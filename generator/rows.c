@@ -2,6 +2,7 @@
  * Constraint equations of joints and dual coordinates (FORMAT.md sections 4 and 5): value, Jacobian with respect to the
  * twists of both ends, and the quadratic-velocity term. Every equation is a sum of scalar products of body-fixed points
  * and axes. */
+#include "plant.h"
 #include "rows.h"
 
 #include <math.h>
@@ -226,8 +227,8 @@ static Row row_length(Dag *dag, const Link *link, Ex square)
 {
     Row row = {.value = ex_mul(dag, ex_literal(dag, 0.5), ex_sub(dag, ex_dot(dag, link->d, link->d), square))};
     add_rate(dag, &row, 1, &link->end[1], link->d, false);
-    add_rate(dag, &row, 0, &link->end[0], link->d, true);
-    row.bias = ex_add(dag, ex_dot(dag, link->d, link->bias), ex_dot(dag, link->rate, link->rate));
+    add_rate(dag, &row, 0, &link->end[0], link->d, !planted("row"));
+    row.bias = ex_add(dag, ex_dot(dag, link->d, link->bias), ex_dot(dag, link->rate, planted("bias") ? link->d : link->rate));
     return row;
 }
 

@@ -73,14 +73,29 @@ double *sampling_pose(const Sampling *sampling, int step, int configuration, int
     return sampling->pose + (row * (size_t)sampling->bodies + (size_t)body) * 12;
 }
 
-void sampling_design(const Sampling *sampling, const Model *model, int anchor, int body, double q[7])
+/* Where a body's reference point stands in the model. */
+static void reference_place(const Model *model, const double (*origin)[3], int body, double out[3])
 {
-    const double *own = sampling_pose(sampling, 0, 0, body), *from = sampling_pose(sampling, 0, 0, anchor);
-    double way[3];
+    double A[9];
+    mat_from_euler(model->body[body].euler, A);
+    mat_apply(A, origin[body], out);
     for (int i = 0; i < 3; ++i)
-        way[i] = own[i] - from[i];
-    mat_apply_transposed(from + 3, way, q);
-    if (anchor == BODY_BASE)
-        memcpy(q, own, 3 * sizeof *q);
+        out[i] += model->body[body].position[i];
+}
+
+void sampling_design(const Sampling *sampling, const Model *model, const double (*origin)[3], int anchor, int body,
+                     double q[7])
+{
+    double A[9], own[3], from[3];
     euler_relative(model->body[anchor].euler, model->body[body].euler, q + 3);
+    if (anchor == BODY_BASE) {
+        memcpy(q, sampling_pose(sampling, 0, 0, body), 3 * sizeof *q);
+        return;
+    }
+    reference_place(model, origin, body, own);
+    reference_place(model, origin, anchor, from);
+    for (int i = 0; i < 3; ++i)
+        own[i] -= from[i];
+    mat_from_euler(model->body[anchor].euler, A);
+    mat_apply_transposed(A, own, q);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Classes whose members need different pivots come apart: what is 0 or 1 in one of them stays so in its code. A class that
- * stays together is as right, for its factorization needs no pivot to be there (linear_block.c). */
+ * Classes whose members need different pivots come apart: what is 0 or 1 in one of them stays so in its code. A class
+ * that stays together is as right, for its factorization needs no pivot to be there (linear_block.c). */
 #include "subset.h"
 
 #include <math.h>

@@ -165,9 +165,9 @@ static void make_motions(Work *w)
 
 const Motion *subset_motion(const Work *w, const Motion *unknown, End end)
 {
-    return end.unknown >= 0                  ? &unknown[end.unknown]
-           : end.known >= 0 && !w->anchored ? &w->known[end.known]
-                                            : &w->base;
+    return end.unknown >= 0                               ? &unknown[end.unknown]
+           : end.known >= 0 && (w->plain || !w->anchored) ? &w->known[end.known]
+                                                          : &w->base;
 }
 
 /* All rows of the subset with the unknowns moving as given; row_of tells the link of each. */
@@ -179,7 +179,7 @@ static void make_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
         const Motion *end[2] = {subset_motion(w, unknown, tie->end[0]), subset_motion(w, unknown, tie->end[1])};
         Motion turned;
         int made = 1;
-        if (tie->still) {
+        if (tie->still && !w->plain) {
             turned = *end[0];
             for (int j = 0; j < 2; ++j)
                 motion_side(w->dag, &turned, tie->fixture.side[j][0], tie->across[j]);
@@ -188,7 +188,8 @@ static void make_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
         if (tie->is_coordinate) {
             row[rows] = coordinate_row(w->dag, w->model->coordinate[tie->index].type, &tie->fixture, end,
                                        w->x[tie->dep], w->rate[tie->dep]);
-            subset_hinge_row(w, tie, end, &row[rows]);
+            if (!w->plain)
+                subset_hinge_row(w, tie, end, &row[rows]);
         } else {
             made = joint_rows(w->dag, w->model->joint[tie->index].type, &tie->fixture, end,
                               tie->end[0].unknown >= 0 && tie->end[1].unknown < 0, row + rows);
@@ -196,6 +197,11 @@ static void make_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
         for (int r = 0; r < made; ++r)
             row_of[rows++] = i;
     }
+}
+
+void subset_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
+{
+    make_rows(w, unknown, row, row_of);
 }
 
 /* Columns of the unknowns, [n][n]. */
@@ -396,26 +402,6 @@ static void store_motion(Block *block, const Motion *m, int offset)
             block_store(block, part[p].e[i], "motion[%d]", offset + part[p].offset + i);
 }
 
-/* Rows are scaled to what a unit move of the subset's size changes in them at the design. */
-static void make_residual(Work *w, Formula *formula, const Row *row)
-{
-    Dag *dag = w->dag;
-    Ex worst = 0;
-    double scale[w->class->members];
-    for (int r = 0; r < w->n; ++r) {
-        for (int i = 0; i < w->class->members; ++i) {
-            double largest = 0;
-            for (int j = 0; j < w->n; ++j)
-                largest = fmax(largest, fabs(ex_value(dag, w->J[w->n * r + j], i * w->configurations)) /
-                                            (j % 6 < 3 ? w->size : 1));
-            scale[i] = 1 / (largest * w->size);
-        }
-        Ex value = ex_op(dag, OP_ABS, ex_mul(dag, ex_constant(dag, scale), row[r].value), 0, 0);
-        worst = r ? ex_op(dag, OP_MAX, worst, value, 0) : value;
-    }
-    block_store(&formula->residual, worst, "worst");
-}
-
 Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, const Class *class,
                   const double (*origin)[3], const Sampling *sampling)
 {
@@ -475,7 +461,7 @@ static Formula *formula_new(Work *w, bool closed)
     return formula;
 }
 
-/* The equations in the base's frame with the poses that were found, as residual and multipliers need them: [n]. */
+/* The equations in the base's frame with the poses that were found, as multipliers need them: [n]. */
 static Row *rows_from_memory(const Work *w, const Formula *formula)
 {
     Work in_base = *w;
@@ -515,7 +501,7 @@ static void finish(Work *w, Formula *formula, Solve solve, const Factors *factor
     for (int i = 0; i < w->connections; ++i)
         memcpy(formula->across[i], w->connection[i].across, sizeof formula->across[i]);
     const Row *row = rows_from_memory(w, formula);
-    make_residual(w, formula, row);
+    subset_residual(w, formula);
     if (solve == SOLVE_REDUCED)
         subset_react(w, remembered, row, &formula->react);
     if (formula->closed && !formula->react.stores)

@@ -37,6 +37,7 @@ typedef struct Work {
     Motion *pose; /* of the unknowns: c and A only, at q */
     Motion *known;
     Motion base;
+    bool plain;    /* rows are made in the base's frame and without what the solution knows of directions */
     bool anchored; /* q, S, pose, row, J and factors are relative to known 0, which is at rest at the origin then */
     Ex *x, *rate, *change;
     double size;    /* see Formula */
@@ -118,6 +119,12 @@ void subset_twist_in_base(const Work *w, int b, int s, const double carrier[6], 
 
 /* How an end of a connection moves in the subset's frame, the unknowns moving as given. */
 const Motion *subset_motion(const Work *w, const Motion *unknown, End end);
+
+/* All rows [n] of the class with the unknowns moving as given; row_of [n]: the connection of each. */
+void subset_rows(Work *w, const Motion *unknown, Row *row, int *row_of);
+
+/* residual.c: the class's block `residual`; formula->motion and layout are there. */
+void subset_residual(Work *w, Formula *formula);
 
 /* held.c: put what joints to known bodies say into poses [bodies]: c and A where they follow, with `directions` also
  * which way hinges point; and make 0 what remains of the equations [n] of joints that c and A fulfil. */

@@ -94,6 +94,7 @@ static Way open_way(const Bench *bench, Pool *pool, const Model *model, const ch
         scene->steady = 0;
     } else {
         options.facts = scene_facts(pool, model, scene, path, false);
+        options.validation = scene_validation(pool, model, scene);
     }
     Way way = {.engine = engine_open(pool, bench->engine_name, model, &options)};
     way.scene = scene_narrow(pool, scene, model, way.engine);

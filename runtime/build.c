@@ -6,6 +6,8 @@
 #include "cache.h"
 #include "gicrun.h"
 
+#include "../generator/validate.h"
+
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
@@ -268,7 +270,10 @@ static const Formulation *formulation_of(Pool *pool, const Model *model, const E
     const Sequence *sequence = sequence_find(pool, model);
     const Formulation *f = formulate_narrow(pool, model_assemble(pool, model, sequence), sequence, options->solve,
                                             options->recovery, options->facts);
-    return options->lanes ? formulation_lanes(pool, f, options->lanes) : f;
+    if (options->lanes)
+        f = formulation_lanes(pool, f, options->lanes);
+    formulation_validate(pool, f, options->validation);
+    return f;
 }
 
 static void check_command(const EngineOptions *options)

@@ -74,7 +74,8 @@ typedef struct EngineOptions {
     const char *object;   /* path where a compiled object is left too; NULL: nowhere */
     bool single;          /* the flags make the code single precision; its numbers are the caller's business */
     const Facts *facts;   /* generated code for one scene; NULL: for all. Interpreted engines know no facts */
-    bool quiet;           /* no notes */
+    const struct Validation *validation; /* with facts: states of that scene, generator/validate.h; NULL: none */
+    bool quiet;                          /* no notes */
 } EngineOptions;
 
 /* Open an engine, one of engine_name, for a model. Every failure ends in diag_fail. */

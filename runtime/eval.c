@@ -200,7 +200,7 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
     double *pose = pool_alloc(pool, sizeof *pose * 7 * (size_t)(model->body_count + 1));
     double *standard = pool_alloc(pool, sizeof *standard * (size_t)(model->parameter_count + 1));
     double *parameter = pool_alloc(pool, sizeof *parameter * (size_t)(model->parameter_count + 1));
-    int failures = 0;
+    int failures = 0, wrong = 0;
     model->setup(self);
     memcpy(standard, instance_array(self, model->parameter_offset), sizeof *standard * (size_t)model->parameter_count);
 
@@ -239,10 +239,15 @@ void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Reques
         if (status == GIC_OK)
             status = model->self_test(self, &test);
         failures += status != GIC_OK;
+        wrong += status == GIC_ERROR_RESIDUAL;
         write_row(pool, engine, &csv, self, status, rate, pose, output, test.constraint);
     }
     csv_close(&csv);
     interrupt_release();
+    if (wrong)
+        diag_fail((Place){table->source, 0, 0},
+                  "--engine gic shares no formulas with this code: please report model and states",
+                  "in %d of %d rows %s", wrong, table->rows, gic_status_text(GIC_ERROR_RESIDUAL));
     if (failures)
         diag_warn((Place){table->source, 0, 0}, "their status and message tell why", "%d of %d rows have no result",
                   failures, table->rows);

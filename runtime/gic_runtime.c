@@ -633,6 +633,36 @@ int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switch
     return GIC_OK;
 }
 
+int gic_rates_match(const gic_model *model, const gic_real *state, const gic_real e[4], const gic_real *rate)
+{
+#ifdef GIC_FLOAT
+    const gic_real rounding = GIC_R(1e-5);
+#else
+    const gic_real rounding = GIC_R(1e-13);
+#endif
+    const int32_t half = (model->slow_count - model->free_base) / 2; /* from a coordinate to its rate */
+    gic_real wrong = GIC_R(0.0), size = GIC_R(0.0);
+    for (int32_t c = 0; c < model->coordinate_count; ++c) {
+        const int32_t at = model->coordinate_state[c];
+        if (at >= 0 && rate[at] != state[at + half])
+            return 0;
+    }
+    if (!model->free_base)
+        return 1;
+    const gic_real *velocity = state + half + 1, *w = velocity + 3;
+    /* p' = 1/2 p (0, omega), a product of quaternions, omega in the base frame */
+    const gic_real turn[4] = {-e[1] * w[0] - e[2] * w[1] - e[3] * w[2], e[0] * w[0] + e[2] * w[2] - e[3] * w[1],
+                              e[0] * w[1] + e[3] * w[0] - e[1] * w[2], e[0] * w[2] + e[1] * w[1] - e[2] * w[0]};
+    for (int32_t i = 0; i < 3; ++i) {
+        if (rate[i] != velocity[i])
+            return 0;
+        size += absolute(w[i]);
+    }
+    for (int32_t i = 0; i < 4; ++i)
+        wrong += absolute(rate[3 + i] - GIC_R(0.5) * turn[i]);
+    return wrong <= rounding * size;
+}
+
 /* ---- tables and inputs ---------------------------------------------------------------------------------- */
 
 gic_real gic_table_value(const gic_table *table, gic_real x)

@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Raised when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 5
+#define GIC_ABI_VERSION 6
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. */
@@ -56,13 +56,15 @@ typedef double gic_real;
     X(GIC_ERROR_GEOMETRY, -11, "a parameter makes the geometry impossible") \
     X(GIC_ERROR_TUNED, -12, "a geometric parameter is not the one that the geometry is for: set up with it") \
     X(GIC_ERROR_ASSUMPTION, -13, "what code for one scene takes for granted does not hold") \
-    X(GIC_ERROR_UNSTABLE, -14, "a state moves too far within a step: the run is unstable, or the step too long")
+    X(GIC_ERROR_UNSTABLE, -14, "a state moves too far within a step: the run is unstable, or the step too long") \
+    X(GIC_ERROR_RESIDUAL, -15, \
+      "constraints, their derivatives or the equations of motion are not fulfilled: the code has an error")
 
 typedef enum gic_status {
 #define GIC_STATUS_ENUM(name, code, text) name = code,
     GIC_STATUS_LIST(GIC_STATUS_ENUM)
 #undef GIC_STATUS_ENUM
-        GIC_STATUS_LAST = -14
+        GIC_STATUS_LAST = -15
 } gic_status;
 
 /* What a status means, in one line; never NULL. */
@@ -111,19 +113,21 @@ typedef struct gic_head {
     int32_t subset;      /* that the status is about, -1: none; see the descriptor's subset_name */
     int32_t condition;  /* that GIC_ERROR_GEOMETRY or _ASSUMPTION is about, -1: none; the descriptor's condition_text */
     int32_t grown;      /* index in state[] of what GIC_ERROR_UNSTABLE or _MASS is about, -1: none */
+    int32_t unchecked;  /* evaluations until the next whose results are checked, GIC_ERROR_RESIDUAL; 0: the next one */
     int64_t rhs_count;  /* right-hand sides evaluated */
     int64_t fast_count; /* rates of the fast states alone evaluated, by gic_step_dual */
     int64_t newton_count; /* subset solutions, and the corrections they took in total */
     int64_t correction_count;
     int64_t switch_count; /* changes of the dependent Euler parameter */
     /* what was skipped, and what could not be: counted where it happens, so that it costs nothing elsewhere */
-    int64_t late_count;                 /* Newton corrections beyond the first check of a solution */
-    int64_t kept_count;                 /* subset solutions kept, for nothing that they follow from had changed */
-    int64_t air_count;                  /* wheels whose tire was not evaluated, for they were in the air */
-    int64_t steady_count;               /* fast rates not evaluated, for fast states moved steadily: gic_step_steady */
-    int64_t sleep_count;                /* steps in which the state was left as it is: for whoever makes steps */
-    gic_real largest_step;              /* largest last Newton correction accepted, relative to the subset's size */
-    const gic_road *road;               /* NULL: flat at z = 0 */
+    int64_t late_count;    /* Newton corrections beyond the first check of a solution */
+    int64_t kept_count;    /* subset solutions kept, for nothing that they follow from had changed */
+    int64_t air_count;     /* wheels whose tire was not evaluated, for they were in the air */
+    int64_t steady_count;  /* fast rates not evaluated, for fast states moved steadily: gic_step_steady */
+    int64_t sleep_count;   /* steps in which the state was left as it is: for whoever makes steps */
+    gic_real largest_step; /* largest last Newton correction accepted, relative to the subset's size */
+    gic_real residual;     /* largest constraint residual that checks found, relative to the subset's size */
+    const gic_road *road;  /* NULL: flat at z = 0 */
     gic_input_function *input_function; /* NULL: input[] is what the caller puts there */
     void *user;
 } gic_head;
@@ -134,9 +138,11 @@ typedef struct gic_signal {
     const char *name, *unit;
 } gic_signal;
 
-/* What the emitted self-test measured at one state; all relative, rounding-size when the code is sound. */
+/* What the emitted self-test measured at one state; all relative, rounding-size when the code is sound. Figures beyond
+ * what FORMAT.md section 14 promises come with GIC_ERROR_RESIDUAL. */
 typedef struct gic_self_test {
-    gic_real constraint;     /* largest constraint residual, relative to the subset's size */
+    gic_real constraint;     /* largest sum of a subset's constraint residuals, relative to its size */
+    gic_real motion;         /* of the constraints' first and second derivatives, relative to their terms */
     gic_real symmetry;       /* of the mass matrix built column by column by an independent path */
     gic_real smallest_pivot; /* of its Cholesky factorization, relative to the diagonal: > 0 means definite */
     gic_real balance;        /* residual of the equations of motion at the computed accelerations */
@@ -193,6 +199,10 @@ typedef struct gic_model {
     /* Discrete states at the present state, after a step (POWERTRAIN.md section 4): 1 where they change; NULL: they
      * change by themselves. Step functions call it. */
     int (*shift)(void *self);
+    /* What an evaluation at `time` and `state` left in the instance, and rate[], against constraints and equations of
+     * motion: GIC_OK or GIC_ERROR_RESIDUAL. Evaluations do this by themselves; code for many vehicles asks for it, one
+     * vehicle at a time. NULL: an engine of a host. */
+    int (*check)(void *self, gic_real time, const gic_real *state, const gic_real *rate);
 } gic_model;
 
 /* With n = slow_count + fast_count: state has n numbers; rate n, at the start of the last step; history
@@ -316,6 +326,11 @@ int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int s
  * (*switches counts it). Returns GIC_ERROR_ORIENTATION when `given` is not near unit length. e may be `given`. */
 #define gic_orientation GIC_NAME(gic_orientation)
 int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switches, gic_real e[4]);
+
+/* 1 where rates of positions and orientation are those of the velocities in the state: of the base, world frame and
+ * Euler parameters e[4], and of free coordinates. rate and state: slow_count numbers of each. */
+#define gic_rates_match GIC_NAME(gic_rates_match)
+int gic_rates_match(const gic_model *model, const gic_real *state, const gic_real e[4], const gic_real *rate);
 
 /* ---- tables -------------------------------------------------------------------------------------------- */
 

@@ -236,6 +236,7 @@ int main(int count, char **word)
                                      .facts = runs && !request.general && !request.page && !request.lanes
                                                   ? scene_facts(pool, model, scene, request.scene, drawn)
                                                   : NULL,
+                                     .validation = runs ? scene_validation(pool, model, scene) : NULL,
                                      .quiet = request.quiet});
     if (request.states)
         evaluate(pool, engine, scene, &request);

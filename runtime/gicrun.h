@@ -143,6 +143,8 @@ double scene_quiet_until(const Scene *scene, double time);
 void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene *scene);
 /* scene_facts.c: what is known about a run of the scene beforehand. path: of the scene; drawn: is there a picture? */
 const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, const char *path, bool drawn);
+/* The same file: states that the scene can have, for formulation_validate(). */
+const struct Validation *scene_validation(Pool *pool, const Model *model, const Scene *scene);
 /* Where the initial state is its own mirror image but for rounding, as static equilibrium leaves it, without that. */
 const Scene *scene_even(Pool *pool, const Model *model, const Scene *scene);
 /* The same scene for the engine's code: where that rests on facts, with signals of its outputs, and its road. */

@@ -217,6 +217,18 @@ void world_poses(const World *world, double *pose)
     }
 }
 
+/* Largest force and largest torque of a body: where all of one kind cancel to rounding, the other says what that is of.
+ */
+static void compare_sizes(const Body *body, double most[2])
+{
+    const double radius = sqrt((body->inertia[0] + body->inertia[1] + body->inertia[2]) / (2 * body->mass));
+    const double force = most[0], torque = most[1];
+    if (radius > 0 && isfinite(radius)) {
+        most[0] = fmax(force, torque / radius);
+        most[1] = fmax(torque, force * radius);
+    }
+}
+
 /* Newton's and Euler's equations with the constraints' forces, and the power of all that is neither gravity nor spring
  * against the growth of kinetic and potential energy: what remains relative to the sum of magnitudes. */
 static void balance(const World *world, gic_self_test *result)
@@ -247,7 +259,8 @@ static void balance(const World *world, gic_self_test *result)
                     }
                 }
         }
-        const double most[2] = {fmax(size[0], fmax(size[1], size[2])), fmax(size[3], fmax(size[4], size[5]))};
+        double most[2] = {fmax(size[0], fmax(size[1], size[2])), fmax(size[3], fmax(size[4], size[5]))};
+        compare_sizes(&world->model->body[b], most);
         for (int i = 0; i < 6; ++i) {
             const double rate = i < 3 ? world->qd[b][i] : omega[i - 3];
             worst = fmax(worst, rest[i] == 0 ? 0 : fabs(rest[i]) / most[i / 3]);

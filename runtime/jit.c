@@ -4,6 +4,8 @@
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #include "gicrun.h"
 
+#include "../generator/validate.h"
+
 #include <errno.h>
 #include <libtcc.h>
 #include <math.h>
@@ -56,6 +58,7 @@ static const char *jit_text(Pool *pool, const Model *model, const EngineOptions 
     const Sequence *sequence = sequence_find(pool, model);
     const Formulation *formulation = formulate_narrow(pool, model_assemble(pool, model, sequence), sequence,
                                                       options->solve, options->recovery, options->facts);
+    formulation_validate(pool, formulation, options->validation);
     generate(pool, formulation, &style_direct, NULL, NULL, &c, &h);
     template_expand(pool, &text, NULL, "jit.c.in", model->name, NULL, insert, &sources);
     return text.s;
@@ -100,6 +103,7 @@ static void add_host_functions(TCCState *state)
         HOST_FUNCTION(gic_orientation),
         HOST_FUNCTION(gic_table_value),
         HOST_FUNCTION(gic_restart),
+        HOST_FUNCTION(gic_rates_match),
     };
     for (size_t i = 0; i < sizeof function / sizeof *function; ++i)
         tcc_add_symbol(state, function[i].name, (const void *)function[i].address);
@@ -109,6 +113,20 @@ static void add_host_functions(TCCState *state)
 static void collect(void *said, const char *message)
 {
     text_print(said, "%s%s", ((Text *)said)->size ? "; " : "", message);
+}
+
+/* Errors that tests plant. */
+static void plant(TCCState *state)
+{
+    (void)state;
+#define PLANT_TEXT(x) #x
+#define PLANT_VALUE(x) PLANT_TEXT(x)
+#ifdef GIC_PLANT_MOTION
+    tcc_define_symbol(state, "GIC_PLANT_MOTION", PLANT_VALUE(GIC_PLANT_MOTION));
+#endif
+#ifdef GIC_PLANT_RATE
+    tcc_define_symbol(state, "GIC_PLANT_RATE", PLANT_VALUE(GIC_PLANT_RATE));
+#endif
 }
 
 /* Executable pages, or NULL with errno where the system refuses them. */
@@ -168,6 +186,7 @@ const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *op
     tcc_set_options(jit->state, "-nostdlib -nostdinc");
     tcc_set_output_type(jit->state, TCC_OUTPUT_MEMORY);
     add_host_functions(jit->state);
+    plant(jit->state);
     const int status = tcc_compile_string(jit->state, text) ? -1 : place(jit);
     if (status < 0)
         diag_fail(program_place(), "use another engine: --engine cc or --engine tape",

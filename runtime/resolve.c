@@ -125,9 +125,13 @@ struct Probe {
     double *speed, *gain; /* m/s; m/s^2, how much faster they became */
 };
 
-/* Where there is no memory for it a point is left out. */
+/* Each point once: code that checks itself looks the same ones up again. Where there is no memory for it a point is
+ * left out. */
 static void seen_add(Seen *seen, double x, double y)
 {
+    for (int i = 0; i < seen->count; ++i)
+        if (seen->point[i].x == x && seen->point[i].y == y)
+            return;
     if (seen->count == seen->room) {
         const int room = seen->room ? 2 * seen->room : 16;
         Point *point = realloc(seen->point, sizeof *point * (size_t)room);
@@ -221,6 +225,15 @@ bool probe_asked(const Probe *probe)
     return probe->last.count > 0;
 }
 
+/* Down to a number of few digits: speeds are differences of places, and engines whose roundings differ are to take the
+ * same steps. */
+static double rounded_down(double x)
+{
+    int exponent;
+    const double digits = 16, share = frexp(x, &exponent);
+    return isfinite(x) ? ldexp(floor(share * digits) / digits, exponent) : x;
+}
+
 double probe_longest(const Probe *probe)
 {
     const double unknown = 1e-5; /* s, where nobody knows how fast the points move: millimetres */
@@ -237,5 +250,5 @@ double probe_longest(const Probe *probe)
         const double speed = probe->speed[i], root = sqrt(speed * speed + 4 * probe->gain[i] * clear);
         longest = fmin(longest, 2 * clear / (speed + root + 1e-9));
     }
-    return probe->last.count ? longest : unknown;
+    return probe->last.count ? rounded_down(longest) : unknown;
 }

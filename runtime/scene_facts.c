@@ -3,6 +3,8 @@
 #include "../generator/mirror.h"
 #include "driver.h"
 
+#include "../generator/validate.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -277,4 +279,28 @@ const Scene *scene_narrow(Pool *pool, const Scene *scene, const Model *model, co
     if (engine->facts->plane)  /* part of the code */
         narrow->road = NULL;
     return narrow;
+}
+
+/* ---- for the validation of such code --------------------------------------------------------------------------------
+ */
+
+const Validation *scene_validation(Pool *pool, const Model *model, const Scene *scene)
+{
+    Validation *validation = pool_alloc(pool, sizeof *validation);
+    bool *driven = pool_alloc(pool, (size_t)model->inputs + 1);
+    double *moment = NULL;
+    *validation = (Validation){
+        .inputs = scene_inputs, .context = (void *)scene, .road = scene->road, .duration = scene->duration};
+    for (int i = 0; i < model->inputs; ++i)
+        driven[i] = true;
+    if (scene->driver)
+        driver_moves(scene->driver, driven);
+    for (int i = 0; i < model->inputs; ++i)
+        driven[i] = !driven[i];
+    for (double time = scene_next_kink(scene, 0); time < scene->duration && validation->moments < 64;
+         time = scene_next_kink(scene, time))
+        *POOL_PUSH(pool, moment, validation->moments) = time;
+    validation->moment = moment;
+    validation->free = driven;
+    return validation;
 }

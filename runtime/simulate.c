@@ -140,6 +140,7 @@ int scene_outputs(const gic_model *model, const Scene *scene, const gic_head *se
         return GIC_OK;
     memcpy(copy, self, model->size);
     copy->grown = -1;
+    copy->unchecked = 0; /* what is shown is checked */
     return model->outputs(copy);
 }
 
@@ -168,9 +169,7 @@ static void record(Run *run)
         for (int i = 0; i < drawn; ++i)
             *sample++ = scene_value(run->model, run->copy, run->drawn[i]);
     }
-    gic_self_test test;
-    if (run->model->self_test(run->copy, &test) == GIC_OK)
-        run->constraint = fmax(run->constraint, test.constraint);
+    run->constraint = fmax(run->constraint, run->copy->residual);
 }
 
 /* ---- for the person who waits --------------------------------------------------------------------------- */
@@ -256,6 +255,9 @@ static const char *remedy_of(int status)
         return "try a shorter step, or variable ones (--integrator adams); where that changes nothing, the model "
                "itself is unstable: gicrun --modes shows its eigenvalues";
     case GIC_ERROR_ASSUMPTION: return "--general makes code that takes nothing for granted";
+    case GIC_ERROR_RESIDUAL:
+        return "results so far are suspect too; --engine gic shares no formulas with this code: please report model "
+               "and scene";
     case GIC_ERROR_ARGUMENT: return "the tolerance can't be reached in double precision: write a larger one";
     default: return NULL;
     }
@@ -264,7 +266,8 @@ static const char *remedy_of(int status)
 static const char *remedy_at_start(int status)
 {
     switch (status) {
-    case GIC_ERROR_ASSUMPTION: return remedy_of(status);
+    case GIC_ERROR_ASSUMPTION:
+    case GIC_ERROR_RESIDUAL: return remedy_of(status);
     case GIC_ERROR_RESULT:
         return "does a formula divide by zero there, or take a root of a negative number? Are initial velocities or "
                "loads too large?";

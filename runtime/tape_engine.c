@@ -2,6 +2,9 @@
  * The functions of the descriptor: the second half of the template model.c.in, over tapes. */
 #include "tape_engine.h"
 
+#include "../templates/bounds.c.in"
+
+#include <math.h>
 #include <string.h>
 
 /* Where the rates of a free base stand in the state: v, omega. */
@@ -64,6 +67,7 @@ void tape_arrays(Instance *self, const double *time, const double *y, const doub
         [WHOLE_out] = out,
         [WHOLE_pose] = out,
         [WHOLE_tau] = out,
+        [WHOLE_size] = engine->size,
         [WHOLE_energy] = out,
         [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
         [WHOLE_GRIP] = tape_array(self, engine->grip_offset),
@@ -107,11 +111,43 @@ int tape_locate(Instance *self, double time, const double *y, double e[4])
     return self->head.status = status;
 }
 
+/* The motions that were recovered last, against all constraints. */
+static int check_constraints(Instance *self)
+{
+    double largest[2];
+    const int bad = tape_residual(self, largest);
+    self->head.residual = GIC_MAX(self->head.residual, largest[0]);
+    if (bad < 0)
+        return GIC_OK;
+    self->head.subset = bad;
+    tape_forget(self);
+    return GIC_ERROR_RESIDUAL;
+}
+
+/* The same, and a rate against the equations of motion. */
+static int check(Instance *self, double time, const double *y, const double *e, double *rate)
+{
+    const TapeEngine *engine = tape_of(self);
+    int status = check_constraints(self);
+    self->head.unchecked = 0;
+    if (status == GIC_OK && !gic_rates_match(&engine->code, y, e, rate))
+        status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        status = tape_whole(self, engine->check, time, y, e, rate, NULL, engine->tau);
+    for (int i = 0; status == GIC_OK && i < engine->formulation->plan->unknowns; ++i)
+        if (!(fabs(engine->tau[i]) <= GIC_BALANCE_RESIDUAL * engine->size[i]))
+            status = GIC_ERROR_RESIDUAL;
+    if (status == GIC_OK)
+        self->head.unchecked = GIC_CHECK_EVERY;
+    return status;
+}
+
 static int evaluate(Instance *self, double time, const double *y, double e[4], double *rate)
 {
     const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
     const int count = code->slow_count + code->fast_count;
+    const int32_t flip = self->head.flip;
     int status = tape_locate(self, time, y, e);
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     const double recovered = profile_clock(engine->profile);
@@ -119,10 +155,18 @@ static int evaluate(Instance *self, double time, const double *y, double e[4], d
         status = tape_turn_wheels(self, time, y, e, engine->result + code->slow_count);
     if (status == GIC_OK)
         status = tape_whole(self, engine->dynamics, time, y, e, engine->result, NULL, NULL);
+#ifdef GIC_PLANT_RATE /* an error that tests plant */
+    engine->result[GIC_PLANT_RATE] += 1e-3 + 1e-3 * fabs(engine->result[GIC_PLANT_RATE]);
+#endif
     engine->profile->acceleration += profile_clock(engine->profile) - recovered;
     engine->profile->evaluations += status != GIC_ERROR_INPUT;
     if (status == GIC_OK && !gic_finite(engine->result, count))
         status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && --self->head.unchecked < 0) {
+        status = check(self, time, y, e, engine->result);
+        if (status != GIC_OK)
+            self->head.flip = flip; /* what was found is no start */
+    }
     if (status == GIC_OK)
         memcpy(rate, engine->result, (size_t)count * sizeof *rate);
     return self->head.status = status;
@@ -191,7 +235,13 @@ static int poses(void *instance, double *pose)
     Instance *self = instance;
     double e[4];
     const double time = tape_present(self), *state = tape_array(self, tape_of(self)->code.state_offset);
-    const int status = tape_locate(self, time, state, e);
+    const int32_t flip = self->head.flip;
+    int status = tape_locate(self, time, state, e);
+    if (status == GIC_OK) {
+        status = self->head.status = check_constraints(self);
+        if (status != GIC_OK)
+            self->head.flip = flip;
+    }
     if (status == GIC_OK)
         tape_whole(self, tape_of(self)->poses, time, state, e, NULL, NULL, pose);
     return status;
@@ -234,6 +284,8 @@ static int setup_with(void *instance, const double *wanted)
     tape_gather(self, state);
     if (status == GIC_OK)
         status = tape_recover(self, turn, false);
+    if (status == GIC_OK)
+        status = check_constraints(self);
     return self->head.status = status;
 }
 

@@ -37,7 +37,7 @@ typedef struct TapeEngine {
     int *member; /* [subsets] */
     bool *keeps; /* [subsets] plan_keeps() */
     bool follows; /* are there subsets whose poses Newton's iteration finds? */
-    const Tape *dynamics, *outputs, *poses, *inverse, *energy;
+    const Tape *dynamics, *outputs, *poses, *inverse, *energy, *check;
     const Tape *wrenches;               /* NULL: no reactions to find after the accelerations */
     const Tape *derive, *draw, *design; /* NULL: no parameter is geometric */
     int first_piece;                    /* of set-up with those */
@@ -57,7 +57,7 @@ typedef struct TapeEngine {
     double *frame, *q, *result, *out;
     int slots;                              /* of the largest tape: room in `frame` */
     double *standard, *wanted;              /* [tunables] values in the file, and while one is set up */
-    double *acc, *unit, *tau0, *tau, *mass; /* [unknowns], and squared */
+    double *acc, *unit, *tau0, *tau, *size, *mass; /* [unknowns], and squared */
     TapeLinks links;
 } TapeEngine;
 
@@ -90,9 +90,8 @@ static inline double *tape_start(Instance *self)
     X(xd) \
     X(u) \
     X(m) \
-    X(n) \
-    X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(energy) X(lambda) X(link) X(fast) X(torque) X(hub) X(force) \
-        X(grip) X(gear) X(watch) X(choice)
+    X(n) X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(size) X(energy) X(lambda) X(link) X(fast) X(torque) X(hub) \
+        X(force) X(grip) X(gear) X(watch) X(choice)
 #define CLASS_ENUM(name) CLASS_##name,
 #define WHOLE_ENUM(name) WHOLE_##name,
 enum { CLASS_ARRAYS(CLASS_ENUM) CLASS_KNOWN };
@@ -106,11 +105,12 @@ TapeLinks tape_links_new(Pool *pool, const Formulation *f);
 TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve, Recovery recovery);
 
 /* tape_recover.c: all bodies at the coordinates of the instance, followed from the last good configuration; and the
- * largest constraint residual of all subsets there, relative to their sizes. */
+ * largest residuals of all subsets there, of the constraints and of their derivatives; -1, or a subset whose are beyond
+ * what is promised. */
 int tape_recover(Instance *self, const double turn[3], bool cold);
 /* The last recovery was of another geometry: none of it is kept by the next one. */
 void tape_forget(Instance *self);
-double tape_residual(Instance *self);
+int tape_residual(Instance *self, double largest[2]);
 
 /* The same file: links->array filled as far as it is about what a subset is connected to. */
 void tape_link(Instance *self, TapeLinks *links, const Subset *subset);

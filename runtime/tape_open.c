@@ -3,6 +3,7 @@
 #include "tape_engine.h"
 
 #include "../generator/powertrain.h"
+#include "../generator/validate.h"
 
 #include "../templates/bounds.c.in"
 
@@ -57,6 +58,7 @@ static void record_whole(Pool *pool, TapeEngine *engine)
     engine->poses = tape_record(pool, f->poses, array, WHOLE_COUNT);
     engine->inverse = tape_record(pool, f->inverse, array, WHOLE_COUNT);
     engine->energy = tape_record(pool, f->energy, array, WHOLE_COUNT);
+    engine->check = tape_record(pool, f->check, array, WHOLE_COUNT);
     if (f->wrenches && f->plan->multipliers) {
         engine->wrenches = tape_record(pool, f->wrenches, array, WHOLE_COUNT);
         engine->reacts = reactions_needed(pool, f->model, f->sequence);
@@ -87,7 +89,8 @@ TapeLinks tape_links_new(Pool *pool, const Formulation *f)
 static void make_scratch(Pool *pool, TapeEngine *engine)
 {
     const Formulation *f = engine->formulation;
-    const Tape *const whole[] = {engine->dynamics, engine->outputs, engine->poses, engine->inverse, engine->energy};
+    const Tape *const whole[] = {engine->dynamics, engine->outputs, engine->poses,
+                                 engine->inverse,  engine->energy,  engine->check};
     int slots = engine->wrenches ? engine->wrenches->slots : 0, bodies = 0, unknowns = f->plan->unknowns;
     if (engine->derive)
         slots = GIC_MAX(slots, GIC_MAX(engine->derive->slots, GIC_MAX(engine->draw->slots, engine->design->slots)));
@@ -123,6 +126,7 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
     engine->unit = numbers(pool, unknowns);
     engine->tau0 = numbers(pool, unknowns);
     engine->tau = numbers(pool, unknowns);
+    engine->size = numbers(pool, unknowns);
     engine->mass = numbers(pool, unknowns * unknowns);
     engine->links = tape_links_new(pool, f);
 }
@@ -157,6 +161,7 @@ TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve, Recovery reco
 {
     const Sequence *sequence = sequence_find(pool, model);
     const Formulation *f = formulate(pool, model_assemble(pool, model, sequence), sequence, solve, recovery);
+    formulation_validate(pool, f, NULL);
     TapeEngine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (TapeEngine){.formulation = f,
                            .code = descriptor_new(pool, f->model, f->sequence),

@@ -23,6 +23,15 @@ void tape_link(Instance *self, TapeLinks *links, const Subset *subset)
         array[CLASS_KNOWN + i] = motion + plan->motion_offset[subset->known[i]];
 }
 
+/* An error that tests plant. */
+static void plant(double *motion)
+{
+    (void)motion;
+#ifdef GIC_PLANT_MOTION
+    motion[GIC_PLANT_MOTION] += 1e-3;
+#endif
+}
+
 /* One subset. old, start: its parts of the Newton starts. */
 static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, double *start)
 {
@@ -46,6 +55,7 @@ static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, do
     array[CLASS_reach] = &reach;
     if (class->closed) {
         const int status = tape_play(class->solve, member, array, &none, frame);
+        plant(array[CLASS_motion]);
         ++engine->profile->factorizations;
         self->head.newton_count += status == GIC_OK;
         return status;
@@ -66,6 +76,7 @@ static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, do
     }
     for (int i = 0; i < GIC_PASSES; ++i) {
         int status = tape_play(class->solve, member, array, &none, frame);
+        plant(array[CLASS_motion]);
         ++engine->profile->newton;
         ++engine->profile->factorizations;
         if (status != GIC_OK)
@@ -204,6 +215,8 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
         if (!(parts < GIC_PIECES))
             return GIC_ERROR_REACH;
         pieces = GIC_MAX(pieces, (int)parts + 1);
+        if (!(fabs(way[i]) < engine->piece[i]))
+            self->head.unchecked = 0; /* a jump: no state that was checked is near */
     }
     const int status = recover_way(self, &links, way, pieces, &now);
     if (status != GIC_OK)
@@ -217,24 +230,33 @@ int tape_recover(Instance *self, const double turn[3], bool cold)
     return GIC_OK;
 }
 
-double tape_residual(Instance *self)
+int tape_residual(Instance *self, double largest[2])
 {
     const TapeEngine *engine = tape_of(self);
     const Plan *plan = engine->formulation->plan;
     const TapeWorld none = {.table = NULL};
-    double *start = tape_start(self), largest = 0, worst = 0;
+    const double *x = tape_array(self, engine->x_offset), *xd = tape_array(self, engine->xd_offset);
+    double one[2];
     TapeLinks links = engine->links;
+    int bad = -1;
+    largest[0] = largest[1] = 0;
     for (int s = 0; s < plan->sequence->subsets; ++s) {
         const Subset *subset = &plan->sequence->subset[s];
         if (subset->class < 0)
             continue;
-        for (int j = 0; j < subset->deps; ++j)
-            links.x[j] = start[subset->dep[j]];
+        for (int j = 0; j < subset->deps; ++j) {
+            links.x[j] = x[subset->dep[j]];
+            links.rate[j] = xd[subset->dep[j]];
+        }
         tape_link(self, &links, subset);
         links.array[CLASS_motion] = tape_array(self, engine->motion_offset) + plan->motion_offset[subset->body[0]];
-        links.array[CLASS_worst] = &worst;
+        links.array[CLASS_worst] = one;
         tape_play(engine->class[subset->class].residual, engine->member[s], links.array, &none, engine->frame);
-        largest = GIC_MAX(largest, worst);
+        if (bad < 0 &&
+            !(one[0] <= GIC_POSE_RESIDUAL(plan->formula[subset->class]->distance) && one[1] <= GIC_MOTION_RESIDUAL))
+            bad = s;
+        largest[0] = GIC_MAX(largest[0], one[0]);
+        largest[1] = GIC_MAX(largest[1], one[1]);
     }
-    return largest;
+    return bad;
 }

@@ -2,6 +2,8 @@
  * The self-test of the template model.c.in, over tapes. */
 #include "tape_engine.h"
 
+#include "../templates/bounds.c.in"
+
 #include <math.h>
 #include <string.h>
 
@@ -68,8 +70,15 @@ int tape_self_test(void *instance, gic_self_test *result)
     const gic_model *code = &engine->code;
     const int n = engine->formulation->plan->unknowns;
     double e[4], energy[3];
+    self->head.unchecked = 0;
     int status = tape_refresh(self, e);
     *result = (gic_self_test){.smallest_pivot = 1};
+    if (status == GIC_OK || status == GIC_ERROR_RESIDUAL) {
+        double residual[2];
+        tape_residual(self, residual);
+        result->constraint = residual[0];
+        result->motion = residual[1];
+    }
     memset(engine->unit, 0, (size_t)n * sizeof *engine->unit);
     if (status == GIC_OK)
         status = tape_whole(self, engine->energy, gic_time(self), tape_array(self, code->state_offset), e,
@@ -82,7 +91,6 @@ int tape_self_test(void *instance, gic_self_test *result)
         status = inverse(self, e, engine->acc, engine->tau);
     if (status != GIC_OK)
         return self->head.status = status;
-    result->constraint = tape_residual(self);
     result->energy = fabs(energy[0] - energy[1]) / (energy[2] > 0 ? energy[2] : 1);
     compare(engine, n, result);
     eliminate(engine, n, result);

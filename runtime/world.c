@@ -123,7 +123,7 @@ void world_adopt(World *world)
         tie->first = first;
     }
     set_size(world);
-    for (int b = world->first; b < world->bodies; ++b)
+    for (int b = world->first; b < world->bodies && world->equations; ++b)
         equations_mass(world->equations, b, world->model->body[b].mass, world->model->body[b].inertia);
     set_design(world, world->model->drawn);
 }
@@ -156,11 +156,8 @@ static void make_ties(Pool *pool, World *world)
     set_size(world);
 }
 
-World *world_new(Pool *pool, const Model *model, const Sequence *sequence)
+World *world_unsolved(Pool *pool, const Model *model, const Sequence *sequence)
 {
-    if (model_massless(model))
-        diag_fail((Place){model->source, 0, 0}, "use --engine tape, tcc or cc",
-                  "an engine with the coordinates of bodies needs the mass of '%s'", model_massless(model));
     World *world = pool_alloc(pool, sizeof *world);
     const size_t bodies = (size_t)model->bodies, coordinates = (size_t)model->coordinates + 1, number = sizeof(double);
     *world = (World){.model = model,
@@ -194,6 +191,15 @@ World *world_new(Pool *pool, const Model *model, const Sequence *sequence)
     world->alpha = pool_alloc(pool, bodies * sizeof *world->alpha);
     world->multiplier = pool_alloc(pool, rows * number);
     set_design(world, model->body);
+    return world;
+}
+
+World *world_new(Pool *pool, const Model *model, const Sequence *sequence)
+{
+    if (model_massless(model))
+        diag_fail((Place){model->source, 0, 0}, "use --engine tape, tcc or cc",
+                  "an engine with the coordinates of bodies needs the mass of '%s'", model_massless(model));
+    World *world = world_unsolved(pool, model, sequence);
     world_set_solver(pool, world, &topology_solver);
     return world;
 }
@@ -566,16 +572,22 @@ void world_coordinate(World *world, int coordinate, double near, double out[2])
     out[1] = -rate / world->dual[coordinate];
 }
 
+double world_tie_residual(World *world, int index)
+{
+    const Tie *tie = &world->tie[index];
+    double worst = 0;
+    world_values(world, index);
+    /* squares of lengths are relative to the length, all other rows are lengths or angles */
+    const double length = tie->parts & PART_LENGTH ? fmax(wanted_length(world, tie), world->size) : 1;
+    for (int r = 0; r < tie->rows; ++r)
+        worst = fmax(worst, fabs(world->value[tie->first + r]) / (length * fmin(world->size, 1)));
+    return worst;
+}
+
 double world_residual(World *world)
 {
     double worst = 0;
-    for (int i = 0; i < world->ties; ++i) {
-        const Tie *tie = &world->tie[i];
-        world_values(world, i);
-        /* squares of lengths are relative to the length, all other rows are lengths or angles */
-        const double length = tie->parts & PART_LENGTH ? fmax(wanted_length(world, tie), world->size) : 1;
-        for (int r = 0; r < tie->rows; ++r)
-            worst = fmax(worst, fabs(world->value[tie->first + r]) / (length * fmin(world->size, 1)));
-    }
+    for (int i = 0; i < world->ties; ++i)
+        worst = fmax(worst, world_tie_residual(world, i));
     return worst;
 }

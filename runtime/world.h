@@ -98,6 +98,8 @@ typedef struct World {
 
 /* Everything that can be known before the first evaluation; bodies stand at the design. model: assembled. */
 World *world_new(Pool *pool, const Model *model, const Sequence *sequence);
+/* The same without a solver for accelerations; bodies may be without mass. */
+World *world_unsolved(Pool *pool, const Model *model, const Sequence *sequence);
 /* The model's numbers anew, after those that follow tunable parameters have changed: ties, masses, and as q_design the
  * poses of the drawing. */
 void world_adopt(World *world);
@@ -120,8 +122,9 @@ double world_product(const World *world, int tie, int row, const double (*x)[BOD
 /* A dual coordinate as the explicit function of q and q': out = w, w'. An angle is the one nearest to `near`. Leaves
  * the tie's vectors, J and dual for that w. */
 void world_coordinate(World *world, int coordinate, double near, double out[2]);
-/* Largest constraint residual at the present configuration, relative to world->size. */
+/* Largest constraint residual at the present configuration, relative to world->size; of one tie alone. */
 double world_residual(World *world);
+double world_tie_residual(World *world, int tie);
 
 /* ---- applied.c: forces ----------------------------------------------------------------------------------- */
 
