@@ -217,8 +217,7 @@ void world_poses(const World *world, double *pose)
     }
 }
 
-/* Largest force and largest torque of a body: where all of one kind cancel to rounding, the other says what that is of.
- */
+/* Largest force and largest torque of a body. Where all of one kind cancel to rounding, the other says of what. */
 static void compare_sizes(const Body *body, double most[2])
 {
     const double radius = sqrt((body->inertia[0] + body->inertia[1] + body->inertia[2]) / (2 * body->mass));
