@@ -120,42 +120,6 @@ static void make_connections(Work *w)
     }
 }
 
-/* Largest distance of a fixture's points from the reference points they are counted from, over all members; 1 m where
- * all of them are there, but for the rounding of differences of places in the drawing. */
-static double subset_size(const Work *w)
-{
-    const double rounding = 1e-12;
-    double size = 0, place = 0;
-    for (int m = 0; m < w->class->members; ++m)
-        for (int b = 0; b < w->first->bodies; ++b)
-            place = fmax(place, vec_norm(w->origin[subset_member(w, m)->body[b]]));
-    for (int i = 0; i < w->connections; ++i)
-        for (int end = 0; end < 2; ++end) {
-            if (w->connection[i].end[end].unknown < 0)
-                continue;
-            for (int s = 0; s < w->dag->samples; ++s) {
-                double s3[3];
-                for (int j = 0; j < 3; ++j)
-                    s3[j] = ex_value(w->dag, w->connection[i].fixture.point[end][j], s);
-                size = fmax(size, vec_norm(s3));
-            }
-        }
-    return size > rounding * place ? size : 1;
-}
-
-/* Largest distance of the bodies' reference points from the base's origin at the design. */
-static double subset_distance(const Work *w)
-{
-    double distance = 0, c[3];
-    for (int s = 0; s < w->dag->samples; s += w->configurations)
-        for (int b = 0; b < w->first->bodies; ++b) {
-            for (int i = 0; i < 3; ++i)
-                c[i] = ex_value(w->dag, w->pose[b].c[i], s);
-            distance = fmax(distance, vec_norm(c));
-        }
-    return distance;
-}
-
 static Ex *make_inputs(Work *w, const char *name, int count)
 {
     Ex *e = pool_alloc(w->pool, (size_t)(count ? count : 1) * sizeof *e);

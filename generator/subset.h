@@ -56,6 +56,12 @@ const Subset *subset_member(const Work *w, int i);
 typedef double SubsetNumber(const Work *w, int member, int a, int b, Ex *formula);
 Ex subset_constant(Work *w, SubsetNumber *get, int a, int b);
 
+/* size.c. Unit of lengths of a class, m: the largest distance of a connection's point from its body's reference point; where
+ * the bodies extend a hundred times as far, that up to 1 m; 1 m where all points are reference points. */
+double subset_size(const Work *w);
+/* Largest distance of the bodies' reference points from the base's origin at the design, m. */
+double subset_distance(const Work *w);
+
 /* drawing.c: an expression of the class's graph for a member, where the mechanism is as drawn and at rest, as a formula of
  * the model's tuning, which it must have. */
 Ex subset_at_drawing(const Work *w, int member, Ex e);

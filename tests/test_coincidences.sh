@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_coincidences.sh GICGEN GICRUN REFERENCE AGREE: what is so for the numbers in a file and not for others. Parameters that turn a
-# mechanism over, make masses unequal or move points by a table at set-up; numbers that differ by roundings; sines of many
-# turns. Judged by --engine gic on a file that has the same numbers without parameters, by the quad-precision reference, and by
+# mechanism over, make masses unequal or move points by a table at set-up; numbers that differ by roundings; points next to
+# those about which bodies are solved; sines of many turns. Judged by --engine gic on a file that has the same numbers without parameters, by the quad-precision reference, and by
 # the C library's sine.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
@@ -188,6 +188,51 @@ for small in 0 1e-17 1e-16 3e-16 1e-15 1.1e-15 3e-15 1e-14 1e-12 1e-8; do
         "$gicrun" --quiet --engine tape $options --eval states chain.veh -o found.csv 2>err &&
             "$agree" dump accelerations.csv found.csv --tolerance 1e-12 --reactions >out
         verdict $? "$small apart, $options"
+    done
+done
+
+# ---- points next to those about which bodies are solved -----------------------------------------------------------------------
+
+# slider DISTANCE MASS INERTIA: one that turns, drawn at that DISTANCE from the point that its coordinate is measured from
+slider() {
+    cat >slider.veh <<XXX
+gicgen: 1
+model: slider
+base: ground
+bodies:
+  sledge: {mass: $2, com: [$1, 0, 0.5], inertia: [$3, $3, $3]}
+  arm: {mass: 2, com: [0, 0, -0.5], inertia: [0.1, 0.1, 0.1]}
+joints:
+  guide: {type: cylindrical, bodies: [ground, sledge], point: [0, 0, 0], axis: [1, 0, 0]}
+  hinge: {type: revolute, bodies: [sledge, arm], point: [$1, 0, 0], axis: [0, 1, 0]}
+coordinates:
+  x: {type: translation, bodies: [ground, sledge], axis: [1, 0, 0], points: [[0, 0, 0], [$1, 0, 0]], range: [-2, 2]}
+  turn: {type: angle, bodies: [ground, sledge], axis: [1, 0, 0], range: [-7, 7]}
+  q: {type: angle, bodies: [sledge, arm], axis: [0, 1, 0], range: [-7, 7]}
+outputs:
+  tip: {type: position, body: arm, point: [0, 0, -1]}
+XXX
+}
+cat >states <<'XXX'
+x,turn,q,x.rate,turn.rate,q.rate
+0,0,0,1,1,1
+0.5,1,2,1,-1,0.5
+-0.5,3.141592653589793,-1.5707963267948966,1,0,2
+XXX
+for away in 0 1e-13 1e-11 1e-9 1e-6 1e-3 0.01 0.1 1; do
+    for inertia in "1 0.1" "0.001 1" "100 0.001"; do
+        # shellcheck disable=SC2086  # two numbers
+        slider $away $inertia
+        rm -f right.csv
+        "$gicrun" --quiet --engine gic --eval states slider.veh -o right.csv 2>err
+        verdict $? "slider $away m away, mass and inertia $inertia"
+        for options in tape "tape --recovery newton" "tape --solve augmented" tcc; do
+            rm -f found.csv
+            # shellcheck disable=SC2086  # a list of words
+            "$gicrun" --quiet --engine $options --eval states slider.veh -o found.csv 2>err &&
+                near right.csv found.csv 1e-9 >out && test ! -s err
+            verdict $? "slider $away m away, mass and inertia $inertia, $options"
+        done
     done
 done
 

@@ -8,7 +8,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 
 # What reads values of nodes or sampled configurations, and what says that a difference is nothing. In runtime/ numbers are
 # numbers: there only named tolerances decide.
-values='[^a-z_](ex_value|ex_is|ex_is_number|formula_value|formula_settled|node_evaluate|random_uniform|random_bits|sampling_pose|sampling_coordinate|is_steady|is_sound|steadiness|along_axis|is_light)\('
+values='[^a-z_](ex_value|ex_is|ex_is_number|formula_value|formula_settled|node_evaluate|random_uniform|random_bits|sampling_pose|sampling_coordinate|is_sound|along_axis|is_light)\('
 values="$values"'|dag->value|from->value \+|sampling->(S|swing|usable|pose|target)'
 tolerance='[^a-zA-Z0-9_.][0-9.]+e-([6-9]|1[0-9])'
 
