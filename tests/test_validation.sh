@@ -58,8 +58,8 @@ for what in row bias force; do
     found "$what" --lanes 4 "$models/hmmwv.veh"
 done
 sound "$models/hmmwv.veh"
-found image "$root/tests/validation/pendulums.veh"
-sound "$root/tests/validation/pendulums.veh"
+found image "$root/tests/validation/links.veh"
+sound "$root/tests/validation/links.veh"
 
 # lanes: always the first one; a number in the packed equations of motion
 found lane --lanes 4 "$models/hmmwv.veh"
@@ -89,7 +89,7 @@ mirrored() {
     printf 'gicgen: 1\nmodel: half\ninclude: %s.veh\n%s\n' "$1" "$3" >"$work/models/half.veh"
     found mirror --scene "$2" "$work/models/half.veh"
 }
-wheel='wheels: {tire_f_r: {body: wheel_f_r, center: [1.648579, -0.909701, 0.456211], tire: all, spin_inertia: 7.78782, brake: '
+wheel='wheels: {tire_f_r: {body: wheel_f_r, center: centre_f_r, tire: all, spin_inertia: 7.78782, brake: '
 scene=$root/tests/validation/brake.scene
 mirrored hmmwv_vehicle "$scene" "$wheel'4000 * brake * if(time > 1.2, 0, 1)'}}"
 mirrored hmmwv_vehicle "$scene" "$wheel'4000 * brake - 300 * max(0, spin - 21)'}}"
