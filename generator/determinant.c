@@ -5,6 +5,7 @@
 #include "rows.h"
 #include "subset.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A determinant this small relative to that at the design, or of the other sign, means that independence is lost
@@ -16,18 +17,24 @@ static const double determinant_loss = 8e-3;
  * may become faster. */
 static const double reserve = 0.5;
 
+/* A drawing with tuned geometry whose determinant is less than this share of the file's is singular itself. */
+static const double drawing_loss = 1e-4;
+
 /* What makes a determinant relative to that at the design; where geometry is tuned, at the drawing with the values of
  * the parameters. */
 static double scale_of_design(const Work *w, int member, int determinant, int unused, Ex *formula)
 {
+    const double at_file = ex_value(w->dag, (Ex)determinant, member * w->configurations);
     (void)unused;
     if (w->model->tuning) {
         Dag *dag = w->model->tuning->dag;
         const Ex drawn = subset_at_drawing(w, member, (Ex)determinant);
+        const double least = drawing_loss * fabs(at_file);
+        const Ex left = ex_sub(dag, ex_op(dag, OP_ABS, drawn, 0, 0), ex_literal(dag, least));
         if (dag->node[drawn].level == LEVEL_VARIABLE)
-            *formula = ex_div(dag, ex_literal(dag, reserve), drawn);
+            *formula = ex_op(dag, OP_POSITIVE, left, ex_div(dag, ex_literal(dag, reserve), drawn), ex_literal(dag, 0));
     }
-    return reserve / ex_value(w->dag, (Ex)determinant, member * w->configurations);
+    return reserve / at_file;
 }
 
 /* The determinant of J, but for constant factors; a constant where all of them are. */

@@ -217,11 +217,14 @@ void world_poses(const World *world, double *pose)
     }
 }
 
-/* Largest force and largest torque of a body. Where all of one kind cancel to rounding, the other says of what. */
+/* Largest force and largest torque of a body. Where all of one kind cancel to rounding, the other says of what; where
+ * nothing acts at all, 1e-6 m/s^2 does. */
 static void compare_sizes(const Body *body, double most[2])
 {
+    const double least = 1e-6;
     const double radius = sqrt((body->inertia[0] + body->inertia[1] + body->inertia[2]) / (2 * body->mass));
-    const double force = most[0], torque = most[1];
+    const double force = fmax(most[0], least * body->mass), torque = most[1];
+    most[0] = force;
     if (radius > 0 && isfinite(radius)) {
         most[0] = fmax(force, torque / radius);
         most[1] = fmax(torque, force * radius);

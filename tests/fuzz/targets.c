@@ -179,7 +179,7 @@ static void read_road(const Bytes *input)
     else if (input->bytes[0] == 'g')
         check_road(grid_file_read(pool, &map));
     else
-        csv_read(pool, input->path, "x");
+        csv_read(pool, input->path, "x", NULL);
 }
 
 const Target targets[] = {{"veh", NULL, read_veh},   {"formula", NULL, read_formula},
