@@ -509,6 +509,19 @@ typedef struct Serving {
     bool outermost; /* it hangs on a body that stands still, and determines one body alone */
 } Serving;
 
+/* Does a coordinate tell of this joint's motion already? */
+static bool is_told(const Model *model, const Link *joint, CoordinateType kind)
+{
+    for (int i = 0; i < model->coordinates; ++i) {
+        const Coordinate *c = &model->coordinate[i];
+        const bool same = c->body[0] == joint->owner[0] && c->body[1] == joint->owner[1];
+        const bool crossed = c->body[0] == joint->owner[1] && c->body[1] == joint->owner[0];
+        if (c->type == kind && (same || crossed))
+            return true;
+    }
+    return false;
+}
+
 static int find_serving(const Relax *relax, int joints, Serving *serving)
 {
     int count = 0;
@@ -519,7 +532,8 @@ static int find_serving(const Relax *relax, int joints, Serving *serving)
         Serving one = {.link = *joint, .outermost = joint->body[0] < 0 || joint->body[1] < 0};
         one.link.coordinate = true;
         one.link.kind = joint->type == JOINT_REVOLUTE ? COORDINATE_ANGLE : COORDINATE_TRANSLATION;
-        serving[count++] = one;
+        if (!is_told(relax->model, joint, one.link.kind))
+            serving[count++] = one;
     }
     return count;
 }

@@ -249,6 +249,22 @@ coordinates:
 END
 warned turn -0.424673 3.566265
 
+# the shoulder turns back where strut and rod are on one line, and is told to be an angle there is not yet
+model strut_and_rod <<'END'
+bodies:
+  upper: {mass: 1, com: [0, 0, -0.5], inertia: [0.1, 0.1, 0.1]}
+  lower: {mass: 1, com: [0, 0, -1.5], inertia: [0.1, 0.1, 0.1]}
+joints:
+  shoulder: {type: revolute, bodies: [ground, upper], point: [0, 0, 0], axis: [0, 1, 0]}
+  elbow: {type: revolute, bodies: [upper, lower], point: [0, 0, -1], axis: [0, 1, 0]}
+coordinates:
+  swing: {type: angle, bodies: [ground, upper], axis: [0, 1, 0], range: [-1, 1]}
+  strut: {type: length, bodies: [ground, lower], points: [[1, 0, -1], [0, 0, -2]], range: [1.2, 1.7]}
+END
+run 0
+grep -q "remedy: .*: .swing: {type: angle, bodies: \[upper, lower\], axis: \[0, 1, 0\]}" "$name.err"
+verdict $? "$name: another angle: $(cat "$name.err")"
+
 # ---- too many, too few ---------------------------------------------------------------------------------------
 
 model too_few <<'END'
