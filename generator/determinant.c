@@ -11,7 +11,8 @@
 /* A determinant this small relative to that at the design, or of the other sign, means that independence is lost
  * (Serban and Haug 2000, eq. 6). It is the distance to where two solutions meet, as an angle: poses are off by epsilon
  * divided by it, what follows from the matrix there by epsilon divided by its square, and by what chains of bodies make
- * of that. With 1e-3 accelerations at random states next to it were found 1e-7 off (tests/stress/near_singular.sh). */
+ * of that. With 1e-3 accelerations at random states next to it were found 1e-7 off (tests/stress/near_singular.sh). The
+ * same of a direction that tells an angle: what is left of it across the axis. */
 static const double determinant_loss = 8e-3;
 /* Of what the determinant says about the way to there: the design need not be as far from there as can be, and bodies
  * may become faster. */
@@ -68,7 +69,8 @@ Ex determinant_check(Work *w, Formula *formula, const Factors *factors, bool clo
     for (int r = 0; r < w->n; ++r) {
         const Connection *tie = &w->connection[w->row_of[r]];
         if (w->row[r].guard && !(closed && (tie->is_coordinate ? subset_is_hinged : joint_gives_directions)(w, tie)))
-            block_check(&formula->solve, w->row[r].guard, false, 0, "GIC_ERROR_SINGULAR");
+            block_check(&formula->solve, w->row[r].guard, false, tie->is_coordinate ? determinant_loss : 0,
+                        "GIC_ERROR_SINGULAR");
     }
     const Ex determinant = varying_determinant(dag, factors);
     if (dag->node[determinant].level < LEVEL_VARIABLE)

@@ -47,6 +47,10 @@ static bool scan_subset(Scan *scan, int s, double value, double *q)
     if (!subset_converge(w, q, sample, NULL))
         return false;
     subset_get_poses(w, subset, sample, scan->pose);
+    for (int r = 0; r < w->n; ++r)
+        if (w->connection[w->row_of[r]].is_coordinate && w->row[r].guard &&
+            !(ex_value(w->dag, w->row[r].guard, sample) > lost_below))
+            return false; /* the direction that tells an angle is on its axis */
     const double share = subset_determinant(w, sample) / scan->determinant[s];
     scan->near = fmin(scan->near, share);
     return share > lost_below;
