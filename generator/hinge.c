@@ -88,5 +88,9 @@ void subset_hinge_row(const Work *w, const Connection *angle, const Motion *cons
     Row turn = {.value = row->value, .guard = row->guard, .dual = ex_literal(w->dag, -1)};
     memcpy(turn.J[1], n.v, sizeof n.v);
     ex_scale3(w->dag, ex_literal(w->dag, -1), n.v, turn.J[0]);
-    *row = turn; /* without a bias: the axis turns with a velocity across itself */
+    /* the axis turns across itself: only what bodies solved before accelerate with is left */
+    Ex alpha[3];
+    ex_sub3(w->dag, end[1]->alpha, end[0]->alpha, alpha);
+    turn.bias = ex_dot(w->dag, n.v, alpha);
+    *row = turn;
 }

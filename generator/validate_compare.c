@@ -714,14 +714,16 @@ static void compare_inverse(Comparison *c)
         compare(c, KIND_INVERSE, unknown_name(c, i), run->tau[i][c->k] - tau[i], scale[i] + 1e-3 * c->push);
 }
 
-/* Are forces and rates of fast states numbers? Some formulas have none beyond what they are meant for, and a wheel that
- * lies flat on the road has no direction in which it would roll. */
+/* Are forces and rates of fast states numbers? Some formulas have none beyond what they are meant for; a wheel that lies
+ * flat on the road has no direction in which it would roll, and an element whose points meet none in which it pulls. */
 static bool forces_exist(Comparison *c)
 {
-    const double flat = 1.57;
+    const double flat = 1.57, meeting = 1e-6;
     const World *world = c->world;
     double sum = 0;
     if (world_forces(c->world) != GIC_OK)
+        return false;
+    if (world->shortest < meeting * world->size)
         return false;
     for (int b = world->first; b < world->bodies; ++b)
         for (int i = 0; i < 6; ++i)

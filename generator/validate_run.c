@@ -571,7 +571,7 @@ void run_inverse(Run *run, Values *acc)
 /* `change` of all coordinates, in shares of what is followed in one piece. */
 static void make_changes(Run *run, const bool *held, Values *change)
 {
-    const double share = 0.01;
+    const double share = 0.001;
     Random random = {.state = 1};
     for (int c = 0; c < run->model->coordinates; ++c)
         for (int k = 0; k < STATES; ++k) {

@@ -161,6 +161,7 @@ static void add_between(World *world, int index)
     sub3(b.v, a.v, rate);
     const double length = sqrt(dot3(d, d)), speed = dot3(d, rate) / length;
     const double tension = resistance(world, force, length, speed);
+    world->shortest = fmin(world->shortest, length);
     world->element[index] = tension;
     world->power -= tension * speed;
     for (int i = 0; i < 3; ++i)
@@ -357,6 +358,7 @@ int world_forces(World *world)
     }
     memset(world->along, 0, (size_t)model->coordinates * sizeof *world->along);
     world->potential = world->stored = world->power = 0;
+    world->shortest = INFINITY;
     for (int i = 0; i < model->forces; ++i)
         add_force(world, i);
     for (int i = 0; i < model->ports; ++i) {

@@ -82,6 +82,7 @@ typedef struct World {
     Driveline driveline; /* of the powertrain */
     double *fast_rate;   /* [fast states] */
     double potential;    /* J, of springs */
+    double shortest;     /* m, distance of the two points of an element that are nearest to each other */
     double stored;       /* W, its rate */
     double power;        /* W, of all applied forces but gravity and springs; drives of coordinates apart */
 
