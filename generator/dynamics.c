@@ -533,6 +533,14 @@ static void wrench_size(Whole *whole, const Loads *loads, int b, const Ex alpha[
     Ex moment = ex_add(dag, ex_mul(dag, inertia, angular), ex_mul(dag, magnitude3(dag, com.arm), force));
     size[0] = ex_add(dag, loads->size[b][0], moment);
     size[1] = ex_add(dag, loads->size[b][1], force);
+    /* where all of one kind cancel, as about a hinge through the centre of mass, multipliers bring the rounding of the
+     * other: a ten-thousandth of it counts */
+    const Ex mass = whole_number(whole, &body->mass), little = ex_literal(dag, 1e-4);
+    if (ex_is(dag, mass, 0) || ex_is(dag, inertia, 0))
+        return;
+    const Ex radius = ex_sqrt(dag, ex_div(dag, inertia, mass)), most[2] = {size[0], size[1]};
+    size[0] = ex_add(dag, size[0], ex_mul(dag, ex_mul(dag, little, radius), most[1]));
+    size[1] = ex_add(dag, size[1], ex_mul(dag, ex_div(dag, little, radius), most[0]));
 }
 
 /* tau[] and size[] of one unknown. */
