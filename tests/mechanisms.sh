@@ -107,7 +107,10 @@ compare() {
     case $2 in g*) ;; *) echo "$most" >>"$work/worst" ;; esac
     case $verdict in
     ok) ;;
-    refusal) [ "$REFUSALS" = ignore ] || wrong refusal "$1" "$2" "$without rows: $what" ;;
+    refusal)
+        # engines for comparison go by their own ways, and may lose one
+        case $2$REFUSALS in g* | *ignore) ;; *) wrong refusal "$1" "$2" "$without rows: $what" ;; esac
+        ;;
     *) wrong "$verdict" "$1" "$2" "$what" ;;
     esac
     return 0
@@ -182,6 +185,17 @@ regular() {
         awk -F, 'NR > 1 && !($NF == 0 && $(NF - 2) < 100 && $(NF - 1) > 0.05) { exit 1 }' "$work/$1.way"
 }
 
+# apart TABLE TABLE: the largest difference of two runs, relative to 1 + the number
+apart() {
+    paste -d, "$1" "$2" | awk -F, '
+            NR == 1 { for (i = 1; i <= NF / 2; ++i) either[i] = $i ~ /[.]e[0-3] /; next }
+            { for (i = 1; i <= NF / 2; ++i) {
+                # Euler parameters have a sign of their own where e0 is rounding
+                if (either[i]) { if ($i < 0) $i = -$i; if ($(i + NF / 2) < 0) $(i + NF / 2) = -$(i + NF / 2) }
+                d = $i - $(i + NF / 2); s = $i + $(i + NF / 2); if (d < 0) d = -d; if (s < 0) s = -s
+            d /= 1 + s; if (d > most || d != d) most = d } } END { printf "%.6g", most }'
+}
+
 # runs_well SEED WAY: a run by that way against one by gic, and its energy
 runs_well() {
     scene "$1" 0.002
@@ -198,16 +212,16 @@ runs_well() {
             [ "$REFUSALS" = ignore ] || wrong stops "$1" "$2" "$said"
         fi
     elif [ $status -eq 0 ] && [ $other -eq 0 ]; then
-        off=$(paste -d, "$work/$1.run.csv" "$work/$1.gic.csv" | awk -F, '
-            NR == 1 { for (i = 1; i <= NF / 2; ++i) either[i] = $i ~ /[.]e[0-3] /; next }
-            { for (i = 1; i <= NF / 2; ++i) {
-                # Euler parameters have a sign of their own where e0 is rounding
-                if (either[i]) { if ($i < 0) $i = -$i; if ($(i + NF / 2) < 0) $(i + NF / 2) = -$(i + NF / 2) }
-                d = $i - $(i + NF / 2); s = $i + $(i + NF / 2); if (d < 0) d = -d; if (s < 0) s = -s
-            d /= 1 + s; if (d > most || d != d) most = d } } END { printf "%.6g", most }')
+        off=$(apart "$work/$1.run.csv" "$work/$1.gic.csv")
         # shellcheck disable=SC2046
         set -- "$1" "$2" "$off" $(energies "$work/$1.run.csv")
-        awk "BEGIN { exit !($3 < 1e-8) }" || wrong run "$1" "$2" "off by $3 from gic"
+        # A shortcut of code for the scene is none of code for all scenes, whose right-hand sides the rows have judged.
+        # Where that is as far off, the motion has amplified roundings.
+        if ! awk "BEGIN { exit !($3 < 1e-8) }"; then
+            go "$1" 0.002 "$2 --general" "$work/$1.general.csv"
+            awk "BEGIN { exit !($(apart "$work/$1.general.csv" "$work/$1.gic.csv") > 1e-2 * $3) }" ||
+                wrong run "$1" "$2" "off by $3 from gic"
+        fi
         grep -q "damping\|type: force\|driven" "$work/$1.veh" || awk "BEGIN { exit !($4 > 1e-6 * $5) }" || return 0
         grep -q "damping\|type: force\|driven" "$work/$1.veh" && return 0
         # an integrator's error shrinks with its step

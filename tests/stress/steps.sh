@@ -104,7 +104,7 @@ hmmwv_tmeasy tires_brake ab3 6 4.8 8.5 32 29 28 27 26 25 24 22 20 18 16
 hmmwv_tires tires_park ab3 1 4.8 2.2 120 80 60 50 40 30 20
 hmmwv_tires tires_park ab3 2 4.8 4.4 60 50 40 30 20
 hmmwv_tires tires_park ab3 4 4.8 8.5 32 29 27 26 25 24 22 20 18
-hmmwv_tires tires_park rk4 1 4.8 11.2 27 24 22 20 18 16 14 12 10 8
+hmmwv_tires tires_park rk4 1 4.8 11.2 27 24 22 20 18 16 14 12 10 9 7
 hmmwv_tmeasy tires_park rk4 1 4.8 18.5 18 16 14 10 8 7
 hmmwv_tires tires_brake rk4 1 4.8 13.5 22 20 18 16 14 12
 hmmwv_vehicle full_run ab3 6 7.2 8.5 32 29 28 27 26 25 24 22 20 18 16
