@@ -537,10 +537,11 @@ static GIC_COLD GIC_APART int pendulum_balance(const pendulum *self, gic_real ti
         const gic_real t8 = t7 * t7;
         const gic_real t9 = R(19.62) + t8 * t6 + (GIC_FABS(-t3) + GIC_FABS(-t4));
         const gic_real t10 = GIC_FABS(rate[1]);
-        const gic_real t11 = t6 * (t9 + t6 * t10) + (t8 + t10) * R(0.75);
-        const gic_real t12 = rate[1] * R(0.25) + t5;
-        tau[0] = t12;
-        size[0] = t11;
+        const gic_real t11 = t9 + t6 * t10;
+        const gic_real t12 = t6 * t11 + (t8 + t10) * R(0.75) + t11 * R(8.660254037844386e-05);
+        const gic_real t13 = rate[1] * R(0.25) + t5;
+        tau[0] = t13;
+        size[0] = t12;
     }
     return GIC_OK;
 }
