@@ -5778,10 +5778,10 @@ static int five_link_any_self_test(void *self, gic_self_test *result)
 
 static int five_link_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
 {
-    gic_real e[4];
+    gic_real pose[4]; /* Euler parameters of the base; not `e`, which in C++ would hide a model of that name */
     const gic_real *turn;
-    const int status = five_link_orient((five_link *)self, state, e, &turn);
-    return status == GIC_OK ? five_link_check((five_link *)self, time, state, e, rate) : status;
+    const int status = five_link_orient((five_link *)self, state, pose, &turn);
+    return status == GIC_OK ? five_link_check((five_link *)self, time, state, pose, rate) : status;
 }
 
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */

@@ -5893,10 +5893,10 @@ static int hmmwv_tmeasy_any_self_test(void *self, gic_self_test *result)
 
 static int hmmwv_tmeasy_any_check(void *self, gic_real time, const gic_real *state, const gic_real *rate)
 {
-    gic_real e[4];
+    gic_real pose[4]; /* Euler parameters of the base; not `e`, which in C++ would hide a model of that name */
     const gic_real *turn;
-    const int status = hmmwv_tmeasy_orient((hmmwv_tmeasy *)self, state, e, &turn);
-    return status == GIC_OK ? hmmwv_tmeasy_check((hmmwv_tmeasy *)self, time, state, e, rate) : status;
+    const int status = hmmwv_tmeasy_orient((hmmwv_tmeasy *)self, state, pose, &turn);
+    return status == GIC_OK ? hmmwv_tmeasy_check((hmmwv_tmeasy *)self, time, state, pose, rate) : status;
 }
 
 #ifdef __TINYC__ /* the runtime's own loops, from an optimizing compiler, are quicker */
