@@ -14,6 +14,10 @@
  * of that. With 1e-3 accelerations at random states next to it were found 1e-7 off (tests/stress/near_singular.sh). The
  * same of a direction that tells an angle: what is left of it across the axis. */
 static const double determinant_loss = 8e-3;
+/* A design that is worse conditioned than most has less to lose: the condition, times 2.4 or more for the ratio of the
+ * largest to the least singular value, may become this before the determinant's share says stop. 2.2e-16 times its
+ * square is what accelerations are promised to, 1e-8. */
+static const double worst_condition = 2500;
 /* Of what the determinant says about the way to there: the design need not be as far from there as can be, and bodies
  * may become faster. */
 static const double reserve = 0.5;
@@ -21,11 +25,25 @@ static const double reserve = 0.5;
 /* A drawing with tuned geometry whose determinant is less than this share of the file's is singular itself. */
 static const double drawing_loss = 1e-4;
 
+double subset_condition(const Work *w, int s)
+{
+    double A[w->n * w->n];
+    for (int i = 0; i < w->n * w->n; ++i)
+        A[i] = ex_value(w->dag, w->J[i], s) / (i % w->n % 6 < 3 ? w->size : 1);
+    return linear_condition(w->n, A);
+}
+
+double subset_singular_share(const Work *w, int s)
+{
+    return fmax(determinant_loss, subset_condition(w, s) / worst_condition);
+}
+
 /* What makes a determinant relative to that at the design; where geometry is tuned, at the drawing with the values of
  * the parameters. */
 static double scale_of_design(const Work *w, int member, int determinant, int unused, Ex *formula)
 {
-    const double at_file = ex_value(w->dag, (Ex)determinant, member * w->configurations);
+    const double share = subset_singular_share(w, member * w->configurations);
+    const double at_file = ex_value(w->dag, (Ex)determinant, member * w->configurations) * (share / determinant_loss);
     (void)unused;
     if (w->model->tuning) {
         Dag *dag = w->model->tuning->dag;
@@ -33,7 +51,9 @@ static double scale_of_design(const Work *w, int member, int determinant, int un
         const double least = drawing_loss * fabs(at_file);
         const Ex left = ex_sub(dag, ex_op(dag, OP_ABS, drawn, 0, 0), ex_literal(dag, least));
         if (dag->node[drawn].level == LEVEL_VARIABLE)
-            *formula = ex_op(dag, OP_POSITIVE, left, ex_div(dag, ex_literal(dag, reserve), drawn), ex_literal(dag, 0));
+            *formula = ex_op(dag, OP_POSITIVE, left,
+                             ex_div(dag, ex_literal(dag, reserve * (determinant_loss / share)), drawn),
+                             ex_literal(dag, 0));
     }
     return reserve / at_file;
 }

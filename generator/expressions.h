@@ -231,6 +231,9 @@ void linear_solve_transposed(Dag *dag, const Factors *factors, const Ex *b, Ex *
 bool linear_solve_numeric(int n, double *A, double *b);
 /* Smallest pivot of A with its rows scaled to largest entries of 1, by elimination with full pivoting. A is destroyed. */
 double linear_least_pivot(int n, double *A);
+/* How far A is from having perpendicular rows, these scaled to norm 1: norm of the inverse (Frobenius) over sqrt(n), 1 at
+ * best; HUGE_VAL when singular. */
+double linear_condition(int n, const double *A);
 /* Determinant of A with its rows scaled to largest entries of 1; 0 when singular. A is destroyed. */
 double linear_determinant(int n, double *A);
 

@@ -104,3 +104,26 @@ double linear_least_pivot(int n, double *A)
     }
     return least;
 }
+
+double linear_condition(int n, const double *A)
+{
+    double rows[n * n + 1], squares = 0;
+    for (int i = 0; i < n; ++i) {
+        double size = 0;
+        for (int j = 0; j < n; ++j)
+            size = hypot(size, A[n * i + j]);
+        for (int j = 0; j < n; ++j)
+            rows[n * i + j] = A[n * i + j] / (size > 0 ? size : 1);
+    }
+    for (int k = 0; k < n; ++k) { /* a column of the inverse */
+        double copy[n * n + 1], b[n + 1];
+        memcpy(copy, rows, (size_t)(n * n) * sizeof *copy);
+        memset(b, 0, sizeof b);
+        b[k] = 1;
+        if (!linear_solve_numeric(n, copy, b))
+            return HUGE_VAL;
+        for (int i = 0; i < n; ++i)
+            squares += b[i] * b[i];
+    }
+    return sqrt(squares / n);
+}

@@ -18,10 +18,11 @@ typedef struct Scan {
     double **q;          /* [subsets] poses of its bodies at the last good value */
     double (*pose)[12];  /* [bodies] c, A of all bodies at the present value */
     double *determinant; /* [subsets] scaled, at the design */
+    double *least;       /* [subsets] the share of it below which generated code refuses the subset */
     double near;         /* smallest determinant of the present value, relative to that at the design */
 } Scan;
 
-/* The share of its determinant at the design below which generated code refuses a subset: determinant.c. */
+/* What is left of a direction that tells an angle, across its axis, below which generated code refuses it. */
 static const double lost_below = 8e-3;
 
 static bool depends(const Subset *subset, int coordinate)
@@ -53,7 +54,7 @@ static bool scan_subset(Scan *scan, int s, double value, double *q)
             return false; /* the direction that tells an angle is on its axis */
     const double share = subset_determinant(w, sample) / scan->determinant[s];
     scan->near = fmin(scan->near, share);
-    return share > lost_below;
+    return share > scan->least[s];
 }
 
 /* All subsets that follow the coordinate, at `value`; q is updated where all of them are good. Returns the lost one, or
@@ -93,6 +94,7 @@ static void reset(Scan *scan)
         scan->q[s] = pool_alloc(scan->pool, (size_t)(7 * subset->bodies) * sizeof(double));
         subset_to_design(w, scan->sampling, s, scan->q[s]);
         scan->determinant[s] = subset_determinant(w, sample);
+        scan->least[s] = subset_singular_share(w, sample);
     }
 }
 
@@ -177,7 +179,8 @@ void subsets_scan(Pool *pool, const Model *model, const Sequence *sequence, Work
                  .sampling = sampling,
                  .q = pool_alloc(pool, subsets * sizeof *scan.q),
                  .pose = pool_alloc(pool, (size_t)model->bodies * sizeof *scan.pose),
-                 .determinant = pool_alloc(pool, subsets * sizeof *scan.determinant)};
+                 .determinant = pool_alloc(pool, subsets * sizeof *scan.determinant),
+                 .least = pool_alloc(pool, subsets * sizeof *scan.least)};
     for (scan.coordinate = 0; scan.coordinate < model->coordinates; ++scan.coordinate) {
         for (int end = 0; end < 2; ++end)
             scan_end(&scan, model->coordinate[scan.coordinate].range[end]);

@@ -9,6 +9,9 @@
 
 /* Relative size below which a pivot is rounding. */
 static const double rank_zero = 1e-9;
+/* A design of this condition is so near a singular one that coordinates could hardly move from it before they are
+ * refused (determinant.c). */
+static const double worst_design = 1000;
 
 /* J at a sample, rows scaled to 1, angles in lengths. by_columns: its transpose. */
 static void scaled_jacobian(const Work *w, int sample, bool transposed, double *A)
@@ -208,6 +211,49 @@ static const char *suggest(const Work *w, const Subset *member, bool joints_stay
     return relax_suggest(w->pool, model, body, edge, joints_stay, at);
 }
 
+/* The coordinate whose error moves the bodies most: by how much, relative to the size of the subset. */
+static int weakest_coordinate(const Work *w, int sample, double *moves)
+{
+    int weakest = 0;
+    *moves = 0;
+    for (int r = 0; r < w->n; ++r) {
+        double A[w->n * w->n], b[w->n], largest = 0;
+        if (!w->connection[w->row_of[r]].is_coordinate)
+            continue;
+        scaled_jacobian(w, sample, false, A);
+        memset(b, 0, sizeof b);
+        b[r] = 1;
+        if (!linear_solve_numeric(w->n, A, b))
+            continue;
+        for (int i = 0; i < w->n; ++i)
+            largest = fmax(largest, fabs(b[i]));
+        if (largest > *moves)
+            *moves = largest, weakest = w->row_of[r];
+    }
+    return weakest;
+}
+
+/* A design that is nearly singular: positions and accelerations would have few right digits. */
+static void refuse_nearly_singular(const Work *w, const Subset *member, int sample)
+{
+    double moves;
+    const double condition = subset_condition(w, sample);
+    if (condition < worst_design)
+        return;
+    const int weakest = weakest_coordinate(w, sample, &moves);
+    const Coordinate *coordinate =
+        moves > 0 ? &w->model->coordinate[member->coordinate[weakest - member->joints]] : NULL;
+    Text bodies = {.pool = w->pool};
+    for (int b = 0; b < member->bodies; ++b)
+        text_print(&bodies, "%s'%s'", b ? ", " : "", w->model->body[member->body[b]].name);
+    diag_fail(coordinate ? coordinate->at : w->model->body[member->body[0]].at,
+              "draw the mechanism in another position, or choose another coordinate",
+              "the design configuration is next to a singular one: %s determines the pose of %s too poorly (condition "
+              "%.0f, up to %.0f is accepted)",
+              coordinate ? pool_print(w->pool, "coordinate '%s'", coordinate->name) : "what holds it",
+              bodies.s, condition, worst_design);
+}
+
 void subset_explain_singular(Work *w, const Sampling *sampling, int subset)
 {
     const Subset *member = &w->sequence->subset[subset];
@@ -216,8 +262,10 @@ void subset_explain_singular(Work *w, const Sampling *sampling, int subset)
     double q[7 * member->bodies];
     subset_to_design(w, sampling, subset, q);
     int rank = rank_at(w, sample);
-    if (rank == w->n)
+    if (rank == w->n) {
+        refuse_nearly_singular(w, member, sample);
         return;
+    }
     involved(w, sample, false, row);
     involved(w, sample, true, unknown);
     bool design_only = regular_nearby(w, sampling, subset, sample);

@@ -657,12 +657,28 @@ static void settle_knowns(Work *w, Formula *const *formula)
     make_jacobian(w, w->row, w->row_of, w->J);
 }
 
+/* Does the block end with a status at the design of a member? Near where two solutions meet closed forms do, where
+ * Newton's iterations still have their digits. */
+static bool refuses_design(const Work *w, const Block *block)
+{
+    for (int m = 0; m < w->class->members; ++m)
+        for (int i = 0; i < block->checks; ++i) {
+            const Check *check = &block->check[i];
+            const double value = ex_value(w->dag, check->value, m * w->configurations);
+            if (!((check->magnitude ? fabs(value) : value) > check->least))
+                return true;
+        }
+    return false;
+}
+
 static Formula *formulate_class(Work *w, Formula *const *made, Solve solve, Recovery recovery)
 {
     settle_knowns(w, made);
     Formula *closed = recovery == RECOVERY_NEWTON ? NULL : formulate_closed(w, solve);
     if (closed && recovery == RECOVERY_CLOSED)
         return closed;
+    if (closed && refuses_design(w, &closed->solve))
+        closed = NULL;
     Formula *newton = formulate_newton(w, solve);
     return closed && recovery_cost(closed) < recovery_cost(newton) ? closed : newton;
 }

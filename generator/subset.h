@@ -87,6 +87,11 @@ void subset_to_design(Work *w, const Sampling *sampling, int subset, double *q);
 void subset_get_poses(const Work *w, const Subset *member, int s, double (*pose)[12]);
 double subset_determinant(const Work *w, int s);
 
+/* determinant.c: condition of the subset's equations at a sample, at the design mostly: 1 at best, 3 to 10 is common;
+ * and the share of the design's determinant below which the subset is near a singular configuration. */
+double subset_condition(const Work *w, int s);
+double subset_singular_share(const Work *w, int s);
+
 /* scan.c: warn of coordinates that stop being independent inside their ranges. */
 void subsets_scan(Pool *pool, const Model *model, const Sequence *sequence, Work **work, const Sampling *sampling);
 

@@ -13,6 +13,7 @@
 
 enum {
     NEAR = 60,   /* steps in which the dead centre has to be found */
+    CLOSE = 60,  /* shorter ones, towards it */
     ROUND = 800, /* steps from there in which other coordinates are watched */
     CORRECTIONS = 12,
     UNKNOWNS_MOST = 280 /* larger mechanisms would keep people waiting */
@@ -370,16 +371,21 @@ static DeadCentre look_ahead(Search *search, double direction, double value)
     if (!set_out(search, direction, &value))
         return none;
     double before = speed(search, &value);
-    for (int i = 0; i < NEAR;) {
+    /* A place that stopped a step lies within that step: four of a quarter are stopped again. Where they pass, what
+     * stopped the long one was its length. */
+    for (int usual = 0, shorter = 0, passed = 0; usual < NEAR && shorter < CLOSE;) {
         const double from = value;
         save(search, place, false);
         const int sign = step_on(search, length);
         const double now = speed(search, &value);
         if (sign && sign * search->sign > 0 && now * before > 0) {
             before = now;
-            i += length == usual_step; /* the steps that close in on a place that is found are few */
+            ++*(length < usual_step ? &shorter : &usual);
+            if (length < usual_step && ++passed > 4)
+                length *= 4, passed = 0;
             continue;
         }
+        passed = 0;
         const bool cross = sign * search->sign <= 0 || search->least < crossing;
         save(search, place, true);
         value = from;

@@ -4,6 +4,7 @@
 # by hand beside each mechanism; the remedy, applied as it is printed, runs through. Links of 1 and 2 m, hinges along x,
 # y and z.
 gicrun=$(realpath "$1")
+found=$(realpath "$(dirname "$0")/random/found")
 # shellcheck source=tests/checking.sh
 . "$(dirname "$0")/checking.sh"
 cd "$work" || exit 1
@@ -172,5 +173,9 @@ for axis in x y z; do
     [ "$status" -eq 0 ] || ! says 'change point'
     verdict $? "rhombus $axis: motions part"
 done
+# a search that long steps do not get through ends all the same
+timeout 100 "$gicrun" -q --engine tape "$found/long_search.veh" "$found/long_search.scene" -o csv 2>said
+[ $? -eq 1 ] && grep -q 'near a singular configuration' said
+verdict $? "search from a place between two bars"
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -230,5 +230,33 @@ sed -i 's/^duration:.*/&\ninitial: {rates: {phi: -8}}/' "$work/bricard.scene"
 "$gicrun" --engine tape "$work/bricard.veh" "$work/bricard.scene" -o "$work/run.csv" >"$work/said" 2>&1
 same "Bricard's passage is refused" "1 1" "$? $(grep -c 'near a singular configuration' "$work/said")"
 
+# A strut that passes the hinge of its arm at a small distance: the design is near the place where its length stops
+# telling the pose, or, at 1e-4 of its own length, next to it.
+strut() {
+    cat <<END
+gicgen: 1
+model: strut
+base: ground
+bodies: {arm: {mass: 1, com: [0.5, 0, 0], inertia: [0.1, 0.2, 0.3]}}
+joints: {hinge: {type: revolute, bodies: [ground, arm], point: [0, 0, 0], axis: [0, 1, 0]}}
+coordinates: {w: {type: length, bodies: [ground, arm], points: [[1, 0, $1], [0.5, 0, 0]]}}
+END
+}
+for distance in 0.1 0.02 0.01 0.005 0.001; do
+    strut $distance >"$work/strut.veh"
+    awk -v e=$distance 'BEGIN { printf "w,w.rate\n%.17g,1\n%.17g,0\n", sqrt(0.25 + e * e), sqrt(0.25 + e * e) }' >"$work/states"
+    "$gicgen" --dump-model "$work/strut.veh" >"$work/dump" 2>"$work/said" &&
+        "$reference" "$work/dump" "$work/states" -o "$work/accelerations" 2>"$work/said"
+    for options in "" "--recovery newton" "--solve augmented"; do
+        # shellcheck disable=SC2086
+        "$gicrun" --engine tape $options --eval "$work/states" "$work/strut.veh" -o "$work/results" 2>/dev/null
+        "$agree" "$work/dump" "$work/accelerations" "$work/results" --tolerance 1e-8 --condition 1e9 >"$work/log" 2>&1
+        same "strut $distance from the hinge, $options" 0 $?
+    done
+done
+strut 0.0001 >"$work/strut.veh"
+"$gicgen" "$work/strut.veh" -o "$work/strut.c" >"$work/said" 2>&1
+same "strut next to the hinge" "1 1" "$? $(grep -c "next to a singular one: coordinate 'w'" "$work/said")"
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
