@@ -349,18 +349,35 @@ static DeadCentre turned_back(Search *search, double value)
     return found;
 }
 
+/* What is known where rows cease to determine the motion. A subset's only coordinate is not to blame for that: two
+ * motions of its mechanism cross. Several coordinates may be, as angles whose axes fall onto each other. */
 static DeadCentre crossed(const Search *search, double value)
 {
-    const Coordinate *c = &search->world->model->coordinate[search->released];
+    Pool *pool = search->pool;
+    const Model *model = search->world->model;
+    const Coordinate *c = &model->coordinate[search->released];
+    const char *unit = c->type == COORDINATE_ANGLE ? "rad" : "m";
+    if (search->lost->coordinates > 1) {
+        Text all = {.pool = pool};
+        for (int i = 0; i < search->lost->coordinates; ++i)
+            text_print(&all, "%s'%s'", i ? ", " : "", model->coordinate[search->lost->coordinate[i]].name);
+        return (DeadCentre){
+            .finding = pool_print(pool, "a singular configuration at '%s' = %.6g %s: there coordinates %s stop determining %s",
+                                  c->name, value, unit, all.s, names(search)),
+            .remedy = pool_print(pool,
+                                 "keep '%s' on this side of %.6g, or choose other coordinates, such as angles whose "
+                                 "axes do not fall onto each other there",
+                                 c->name, value)};
+    }
     return (DeadCentre){
-        .finding =
-            pool_print(search->pool,
-                       "a change point at '%s' = %.6g %s: two motions of %s cross there, and no coordinate tells "
-                       "which of them goes on",
-                       c->name, value, c->type == COORDINATE_ANGLE ? "rad" : "m", names(search)),
-        .remedy = pool_print(
-            search->pool, "make one link a little longer, so that the motions part, or keep '%s' on this side of %.6g",
-            c->name, value)};
+        .finding = pool_print(pool,
+                              "a change point at '%s' = %.6g %s: two motions of %s cross there, and no coordinate "
+                              "tells which of them goes on",
+                              c->name, value, unit, names(search)),
+        .remedy = pool_print(pool,
+                             "make the links' lengths differ, the one that '%s' moves a little shorter, so that the "
+                             "motions part, or keep '%s' on this side of %.6g",
+                             c->name, c->name, value)};
 }
 
 /* Look ahead along one coordinate. direction: of its rate, 0: both. */

@@ -251,6 +251,7 @@ static const char *remedy_of(int status)
                "stops that end the motion before";
     case GIC_ERROR_RESULT:
     case GIC_ERROR_INPUT: return "the run has probably become unstable: try a shorter step";
+    case GIC_ERROR_ORIENTATION: return "the base turns too far within a step, by more than 0.2 rad: try a shorter step";
     case GIC_ERROR_UNSTABLE:
         return "try a shorter step, or variable ones (--integrator adams); where that changes nothing, the model "
                "itself is unstable: gicrun --modes shows its eigenvalues";

@@ -29,15 +29,17 @@ outputs() {
   energy: {type: energy}"
 }
 
-# rhombus GROUND: crank, coupler and rocker 1 m long on a ground of GROUND, but for a rocker that is longer with it
+# rhombus GROUND [CRANK]: crank (1 m, or CRANK), coupler and rocker 1 m long on a ground of GROUND, but for a coupler that
+# makes up for the crank and a rocker that is longer with the ground
 rhombus() {
     printf '%s\n' "gicgen: 1" "model: rhombus" "gravity: [0, 0, 0]" "base: ground" "bodies:"
+    crank=${2:-1}
     body crank 0 0.5
     body coupler 0.5 1
     body rocker 1 0.5
     echo "joints:"
     hinge first revolute "ground, crank" 0 0
-    hinge second revolute "crank, coupler" 0 1
+    hinge second revolute "crank, coupler" 0 "$crank"
     hinge third revolute "ground, rocker" "$1" 0
     hinge last point_on_line "coupler, rocker" 1 1
     echo "coordinates:
@@ -166,7 +168,11 @@ for axis in x y z; do
     scene 1
     run --quiet m.veh scene -o csv
     ended "change point" 1.5707963 "rhombus $axis"
-    check "rhombus $axis: remedy" says 'remedy: make one link a little longer'
+    check "rhombus $axis: remedy" says "remedy: make the links' lengths differ, the one that 'turn' moves a little shorter"
+    # 0.9 + the longest, sqrt(1.01), is less than 1 + 1 (Grashof): the crank goes round
+    rhombus 1 0.9 >m.veh
+    run --quiet m.veh scene -o csv
+    verdict "$status" "rhombus $axis: a shorter crank goes round"
     # a ground longer by 0.02: then the crank turns back where coupler and rocker are on one line, or goes through
     rhombus 1.02 >m.veh
     run --quiet m.veh scene -o csv
