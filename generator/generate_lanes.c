@@ -101,10 +101,14 @@ void write_lane_types(Generation *g, Text *out)
         const char *const width = pool_print(g->pool, "%d", lanes);
         if (!has_width(g->plan, lanes))
             continue;
+        line(out, 0, "#ifndef GIC_LANE_%d /* as above */", lanes);
+        line(out, 0, "#define GIC_LANE_%d", lanes);
         template_expand(g->pool, out, g->templates, "lanes_width.c.in", g->model->name, width, insert_width, &lanes);
         for (FoldStep fold = {lanes, 0}; 1 << fold.step < lanes; ++fold.step)
             template_expand(g->pool, out, g->templates, "lanes_fold.c.in", pool_print(g->pool, "%d", fold.step), width,
                             insert_fold, &fold);
+        line(out, 0, "#endif");
+        text_print(out, "\n");
     }
 }
 

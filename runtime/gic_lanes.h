@@ -8,7 +8,7 @@
  *     #include "gic_lanes.h"
  *
  * declares gic_lane, gic_mask (all bits of a lane set where something holds) and LANE_SIN and its like. With another
- * GIC_LANES, a power of 2, it may be included again; the names then mean whatever GIC_LANES is where they stand.
+ * GIC_LANES, a power of 2, it may be included again, and with the same one too; the names then mean whatever GIC_LANES is where they stand.
  *
  * Errors in units of the last place (of the result, rounded; tests/lanes measures them), of gic_real double and float:
  *
@@ -118,6 +118,24 @@
 #define GIC_TAN_PI_8 GIC_R(0.41421356237309503)
 
 #endif
+
+/* Each number of lanes once: several models may stand in one translation unit. */
+#if GIC_LANES == 2 && !defined(GIC_LANES_2)
+#define GIC_LANES_2
+#define GIC_LANES_NEW
+#elif GIC_LANES == 4 && !defined(GIC_LANES_4)
+#define GIC_LANES_4
+#define GIC_LANES_NEW
+#elif GIC_LANES == 8 && !defined(GIC_LANES_8)
+#define GIC_LANES_8
+#define GIC_LANES_NEW
+#elif GIC_LANES == 16 && !defined(GIC_LANES_16)
+#define GIC_LANES_16
+#define GIC_LANES_NEW
+#elif GIC_LANES > 16 || GIC_LANES == 1
+#define GIC_LANES_NEW
+#endif
+#ifdef GIC_LANES_NEW
 
 typedef gic_real gic_lane __attribute__((vector_size(GIC_LANES * sizeof(gic_real))));
 #ifdef GIC_FLOAT
@@ -500,3 +518,6 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_pow_, GIC_LANES)(gic_lane x, gic_lane
     const gic_lane zero = {GIC_R(0.0)};
     return LANE_MEND_TWO((gic_mask)(zero <= zero), GIC_MATH(pow), x, y, zero);
 }
+
+#undef GIC_LANES_NEW
+#endif

@@ -82,6 +82,14 @@ for how in "gcc -std=c99" "g++ -std=c++11 -x c++"; do
     verdict $? "$how: all models in one translation unit"
 done
 
+mkdir lanes
+for name in hmmwv hmmwv_tires hmmwv_vehicle; do
+    "$gicgen" --lanes 4 "$models/$name.veh" -o "lanes/$name.c" 2>err
+    echo "#include \"$name.c\""
+done >lanes/unit.c
+gcc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -O0 -fsyntax-only -Ilanes -I. lanes/unit.c
+verdict $? "gcc: models in lanes in one translation unit"
+
 # ---- freestanding ------------------------------------------------------------------------------------------
 
 # objects SUFFIX OPTION...: optimized objects of everything, without a warning of what only optimization finds
