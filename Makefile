@@ -37,8 +37,8 @@ embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_ru
 generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 # what gicgen reads scenes with
-scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_outputs scene_rest scene_rig scene_road \
-    scene_road_file driver spline csv descriptor process gic_runtime gic_road)
+scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_fit scene_outputs scene_rest scene_rig \
+    scene_road scene_road_file driver spline csv descriptor process gic_runtime gic_road)
 # what gicgen checks its blocks with
 checking_objects := $(patsubst %,$(BUILD)/runtime/%.o,world applied rolling tires driveline interpreted_outputs accelerate \
     equations topology dense)
