@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_scenes.sh GICRUN: the table of scenes in models/README.md. Every scene of models/scenes/ is set up and runs to its
+# test_scenes.sh GICRUN: the table of scenes in README.md. Every scene of models/scenes/ is set up and runs to its
 # first output with every model that the table names for it, and with every other model it is refused as a scene for
 # other models, which the message names.
 gicrun=$(realpath "$1")
@@ -19,13 +19,15 @@ for scene in "$root"/models/scenes/*.scene; do
 done
 models=$(cd "$root/models" && echo *.veh | sed 's/\.veh//g')
 
-# the table's rows: `scene` | what happens | `model`, `model`; "all HMMWVs": named in the sentence above the table
-hmmwvs=$(sed -n 's/^All HMMWVs are \(.*\)\.$/\1/p' "$root/models/README.md" | tr -d '`,' | sed 's/ and / /')
-check 'the page says which all HMMWVs are' [ -n "$hmmwvs" ]
-sed -n 's/^| `\([a-z0-9_]*\)\.scene` |.*| \(.*\) |$/\1 \2/p' "$root/models/README.md" |
-    sed "s/all HMMWVs/$hmmwvs/" | tr -d '`,' >"$work/table"
-listed() { [ "$(cut -d' ' -f1 "$work/table" | sort)" = "$(cd "$root/models/scenes" && echo *.scene | sed 's/\.scene//g' | tr ' ' '\n')" ]; }
+# the table's rows: scenes | models
+sed -n '/^| scenes in/,/^$/p' "$root/README.md" | sed -n 's/^| `/`/p' | tr -d '`,' | while IFS='|' read -r scenes fitting _; do
+    for scene in $scenes; do echo "$scene $fitting" | sed "s/each the model of its name/$scene/"; done
+done >"$work/table"
+all_scenes() { (cd "$root/models/scenes" && echo *.scene | sed 's/\.scene//g' | tr ' ' '\n'); }
+listed() { [ "$(cut -d' ' -f1 "$work/table" | sort)" = "$(all_scenes | sort)" ]; }
 check 'the table has every scene once' listed
+described() { for scene in $(all_scenes); do grep -q "^| \`$scene\.scene\` |" "$root/models/README.md" || return 1; done; }
+check 'models/README.md says what happens in every scene' described
 
 cd "$work" || exit 1
 try() { "$gicrun" -q --engine tape "$1.veh" "scenes/$2.scene" -o out.csv >out 2>err; }
