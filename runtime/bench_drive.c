@@ -310,10 +310,15 @@ void bench_drive(const Bench *bench)
     for (int w = 0; compiled && w < WAYS; ++w)
         if (!way[w].compiler || bench_installed(pool, way[w].compiler))
             driven[subjects++] = driven_way(bench, &way[w]);
+    double seconds = 0;
+    /* a run for its CPU time, and one for its parts, in which all is computed about twice */
+    for (const Driven *d = driven; d < driven + subjects; ++d)
+        seconds += 3 * (double)steps_of(scene) * bench_step_seconds(d->engine, d->self, scene, NULL);
+    bench_expect(bench, bench->repetitions * seconds);
     for (int r = 0; r < bench->repetitions; ++r)
         for (Driven *d = driven; d < driven + subjects; ++d) {
             int status;
-            bench_progress("repetition %d of %d, %s", r + 1, bench->repetitions, d->name);
+            bench_progress(bench, "repetition %d of %d, %s", r + 1, bench->repetitions, d->name);
             d->measured[STEP][r] = run(d->engine, d->self, scene, &status);
             if (status == GIC_OK)
                 status = engine_look(d->engine, d->self, d->state, NULL);

@@ -70,7 +70,7 @@ void bench_worst(const Bench *bench)
         seconds[e] = pool_alloc(bench->pool, sizeof(double) * (size_t)(steps * bench->repetitions));
     for (int r = 0; r < bench->repetitions; ++r)
         for (int e = 0; e < bench->engines; ++e) {
-            bench_progress("longest step: repetition %d, %s", r + 1, bench->engine[e]->name);
+            bench_progress(bench, "longest step: repetition %d, %s", r + 1, bench->engine[e]->name);
             done[e] = time_steps(bench->engine[e], bench->instance[e], &scene, seconds[e] + r * steps, steps);
         }
 
