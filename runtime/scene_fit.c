@@ -16,6 +16,7 @@
 enum {
     MOST_SHOWN = 4,   /* names in a message */
     MOST_FILES = 100, /* of a folder that are looked at */
+    PATIENCE = 5      /* s for one of them */
 };
 
 /* One kind of name that a scene uses: the names that the model has, and the items in the scene that it lacks. */
@@ -160,6 +161,7 @@ static bool files_fit(const char *scene, const char *model)
     if (child < 0)
         return false;
     if (!child) {
+        alarm(PATIENCE);
         const int nowhere = open("/dev/null", O_WRONLY);
         if (nowhere < 0 || dup2(nowhere, STDERR_FILENO) < 0)
             _exit(1);
@@ -179,6 +181,12 @@ static const char *folder_of(Pool *pool, const char *path)
     return slash ? pool_print(pool, "%.*s", (int)(slash - path + 1), path) : "";
 }
 
+static bool is_file(const char *path)
+{
+    struct stat there;
+    return !stat(path, &there) && S_ISREG(there.st_mode);
+}
+
 static bool is_same(const char *a, const char *b)
 {
     struct stat x, y;
@@ -193,7 +201,7 @@ static void find_fitting(Pool *pool, const char *folder, const char *scene, cons
     const int entries = scandir(*folder ? folder : ".", &entry, NULL, alphasort);
     for (int i = 0, seen = 0; i < entries; free(entry[i++])) {
         const char *file = pool_print(pool, "%s%s", folder, entry[i]->d_name);
-        if (!path_ends(entry[i]->d_name, model ? ".scene" : ".veh") || ++seen > MOST_FILES)
+        if (!path_ends(entry[i]->d_name, model ? ".scene" : ".veh") || !is_file(file) || ++seen > MOST_FILES)
             continue;
         bool known = false;
         for (int k = 0; k < *count; ++k)
@@ -252,7 +260,8 @@ void scene_check_fit(Pool *pool, const Item *root, const char *path, const Model
     find_fitting(pool, pool_print(pool, "%s../", folder), path, NULL, &other, &others);
     if (!others)
         return;
-    find_fitting(pool, folder, NULL, model->source->path, &scene, &scenes);
+    if (is_file(model->source->path)) /* standard input can't be read again */
+        find_fitting(pool, folder, NULL, model->source->path, &scene, &scenes);
     Text needs = {.pool = pool}, lack = {.pool = pool}, names = {.pool = pool}, remedy = {.pool = pool};
     const Place at = say_needs(&fit, &needs, &lack);
     for (int i = 0; i < others; ++i)

@@ -115,7 +115,7 @@ def compare(folder):
         parts = [r for r in profile if r['engine'][0] == engine][0]
         ratio = [k for k in row if k.endswith('is faster by')][0]
         out.append([name_of(engine), spread(row, ratio, 1), spread(other, ratio, 1),
-                    '%s, %s' % (short(row['error'][0]), short(other['error'][0])), short(worst['median [us]'][0], 3),
+                    '%s, %s' % (short(row['error'][0]), short(other['error'][0])), short(parts['step'][0], 3),
                     short(parts['D'][0], 3), short(worst['over median'][0], 3)])
     return head, out, '.'
 
@@ -124,18 +124,18 @@ def start(folder):
     rows, later, even = table(folder, 'start.csv'), table(folder, 'start_steps.csv'), table(folder, 'break_even.csv')
     if not (rows and later and even):
         return None
-    against = [k for k in even[0] if k not in ('low', 'high', 'engine', 'generated')]
-    head = ['engine', 'compiling, ms', 'first step after, ms', 'right-hand side over `cc`'] + \
-        ['ahead of `%s` after steps' % re.sub(r'^.*\b(tape|gic|gcp1|gcp2)\b.*$', r'\1', k) for k in against]
+    first = next(iter(even[0]))
+    against = [k for k in even[0] if k not in ('low', 'high', first)]
+    head = ['engine', 'right-hand side over `cc`', 'compiling, ms', 'until the first step, ms'] + \
+        ['ahead of `%s` after steps' % k for k in against]
     out = []
     for row in rows:
         engine = row['engine'][0]
         ratio = [r for r in later if r['engine'][0] == engine][0]
-        first = [k for k in even[0]][0]
         found = [r for r in even if r[first][0] == engine]
         key = [k for k in ratio if k.startswith('right-hand side over')][0]
-        out.append(['`%s`' % engine, short(row['compiling [ms]'][0]), short(row['elapsed [ms]'][0]),
-                    spread(ratio, key, 2)] + [short(found[0][k][0]) if found else '' for k in against])
+        out.append(['`%s`' % engine, spread(ratio, key, 2), short(row['compiling [ms]'][0]), short(row['CPU [ms]'][0])] +
+                   [short(found[0][k][0]) if found else '' for k in against])
     return head, out, '.'
 
 
