@@ -2,7 +2,10 @@
 #
 #   make                build/gicgen, build/gicrun, build/gicsweep and build/gicbench
 #   make demo           the complete HMMWV for 30 s, and one over the paper's road: build/demo/
-#   make bench          engines and integrators, time against error, and the 30 s: build/bench/ (QUICK=1: the short way)
+#   make bench          engines and integrators, time against error, and the 30 s: build/bench/ (QUICK=1: the short way;
+#                       PARTS="drive rhs": some of drive compare rhs batch scenes)
+#   make tables         what `make bench` measured, into README.md and tests/bench/README.md
+#   make pictures       the picture of README.md's first model
 #   make test           every test
 #   make stress         attacks on everything, for an hour or two: build/stress/table.md (STRESS=short: ten minutes)
 #   make generated      generated/*.c and *.h from models/*.veh, and models/veh.schema.json
@@ -26,6 +29,12 @@ COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -Igenerator -Iruntime 
 # of host programs; gicgen needs libyaml alone, what it emits nothing
 LIBRARIES := -lyaml -lgsl -lgslcblas -ldmumps_seq -lklu -ltcc -lm -ldl
 
+# between the commands of a foreach
+define newline
+
+
+endef
+
 models := $(basename $(notdir $(wildcard models/*.veh)))
 generator := $(filter-out generator/main.c generator/embed.c,$(wildcard generator/*.c))
 benchmark := $(wildcard runtime/bench_*.c)
@@ -37,13 +46,13 @@ embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_ru
 generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 # what gicgen reads scenes with
-scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_outputs scene_rest scene_rig scene_road \
-    scene_road_file driver spline csv descriptor process gic_runtime gic_road)
+scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_fit scene_outputs scene_rest scene_rig \
+    scene_road scene_road_file driver spline csv descriptor process gic_runtime gic_road)
 # what gicgen checks its blocks with
 checking_objects := $(patsubst %,$(BUILD)/runtime/%.o,world applied rolling tires driveline interpreted_outputs accelerate \
     equations topology dense)
 
-.PHONY: all test test-programs list-tests stress demo bench generated debug fuzz deps install uninstall clean
+.PHONY: all test test-programs list-tests stress demo bench tables pictures generated debug fuzz deps install uninstall clean
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -279,14 +288,30 @@ demo: all
 compared := hmmwv/paper_run hmmwv/rough_road hmmwv/suspension_rig quarter_car/quarter_car hmmwv_tires/tires_jump \
     $(addprefix hmmwv_vehicle/,straight constant_steer cruise coasting parked full_run)
 
-# QUICK=1: fewer repetitions and settings
+# QUICK=1: fewer repetitions and settings; PARTS: some of these
+PARTS := drive compare rhs batch scenes
+measured_drive := --drive -o $(BUILD)/bench/full_run models/hmmwv_vehicle.veh models/scenes/full_run.scene
+measured_compare := -o $(BUILD)/bench models/hmmwv.veh models/scenes/paper_run.scene models/scenes/spin.scene
+measured_rhs := --rhs -o $(BUILD)/bench/rhs models/hmmwv.veh models/scenes/paper_run.scene
+measured_batch := --batch 64 -o $(BUILD)/bench/batch models/hmmwv.veh models/scenes/paper_run.scene
+measured_scenes := --scenes -o $(BUILD)/bench/scenes $(foreach run,$(compared), \
+    models/$(patsubst %/,%.veh,$(dir $(run))) models/scenes/$(notdir $(run)).scene)
+
+# one part after another, and how long each took, beside how many other programs
 bench: all
-	$(BUILD)/gicbench $(if $(QUICK),--quick) -o $(BUILD)/bench models/hmmwv.veh models/scenes/paper_run.scene \
-	    models/scenes/spin.scene
-	$(BUILD)/gicbench --drive $(if $(QUICK),--quick) -o $(BUILD)/bench/full_run models/hmmwv_vehicle.veh \
-	    models/scenes/full_run.scene
-	$(BUILD)/gicbench --scenes $(if $(QUICK),--quick) -o $(BUILD)/bench/scenes $(foreach run,$(compared), \
-	    models/$(patsubst %/,%.veh,$(dir $(run))) models/scenes/$(notdir $(run)).scene)
+	@mkdir -p $(BUILD)/bench
+	@sh tests/bench/parts.sh begin $(BUILD)/bench/parts.csv $(PARTS)
+	$(foreach part,$(PARTS),@sh tests/bench/parts.sh run $(BUILD)/bench/parts.csv $(part) \
+	    $(BUILD)/gicbench $(if $(QUICK),--quick) $(measured_$(part))$(newline))
+
+# what it measured, into the pages
+tables:
+	python3 tests/bench/tables.py $(BUILD)/bench README.md tests/bench/README.md
+
+# pictures that pages show
+pictures: $(BUILD)/gicrun
+	$(BUILD)/gicrun -q models/tutorial/1_arm.veh models/tutorial/1_arm.scene -o $(BUILD)/arm.csv \
+	    --plot models/tutorial/arm.svg
 
 generated: $(BUILD)/gicgen
 	@mkdir -p generated
@@ -309,7 +334,7 @@ deps:
 prefix := $(DESTDIR)$(PREFIX)
 share := $(prefix)/share/gicgen
 manuals := generator/gicgen.1 runtime/gicrun.1 runtime/gicsweep.1 runtime/gicbench.1
-installed_models := $(wildcard models/*.* models/parts/*.* models/roads/*.* models/tires/*.* models/scenes/*.*)
+installed_models := $(wildcard models/*.* models/parts/*.* models/tutorial/*.* models/roads/*.* models/tires/*.* models/scenes/*.*)
 version = $(shell sed -n 's/^.define GICGEN_VERSION "\(.*\)"/\1/p' generator/gicgen.h)
 # texts that name places
 PLACE = sed 's|@PREFIX@|$(PREFIX)|g; s|@VERSION@|$(version)|g'

@@ -10,6 +10,12 @@
 
 /* ---- gicbench.c: the command line ----------------------------------------------------------------------- */
 
+/* How long a benchmark takes. */
+typedef struct Progress {
+    double begun;    /* by the monotonic clock, s */
+    double expected; /* s in all; 0: not known yet */
+} Progress;
+
 typedef struct Bench {
     Pool *pool;
     const char *model_path, *scene_path, *spin_path;
@@ -29,6 +35,7 @@ typedef struct Bench {
     char *const *file;       /* [files] */
     const char *engine_name; /* that runs them */
     struct Report *report;
+    Progress *progress;
 } Bench;
 
 /* ---- bench_run.c: one engine, one integrator, one run ----------------------------------------------------- */
@@ -91,8 +98,19 @@ double bench_look(Pool *pool);
  * where such steps begin: [2], the shortest of some turns each; the instance stays as it is. Status of the one that
  * fails. */
 int step_parts(Pool *pool, const gic_model *code, gic_head *self, const double *state, double length, double *seconds);
-/* A line for the person who waits. */
-void bench_progress(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* Right-hand sides of a run with the first engine. */
+int64_t trial_evaluations(const Bench *bench, const Scene *scene, Setting setting);
+
+/* ---- bench_progress.c: the person who waits ---------------------------------------------------------------------- */
+
+/* A line of progress, with the time so far and the expected one. */
+void bench_progress(const Bench *bench, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* From now on the benchmark will take so many seconds; the first time that is known it is said. */
+void bench_expect(const Bench *bench, double seconds);
+/* The same where nothing is known but that so many of alike pieces are done. */
+void bench_extrapolate(const Bench *bench, int done, int all);
+/* Elapsed seconds of a step, over the first ones of a scene; *evaluation (may be NULL): of one right-hand side. */
+double bench_step_seconds(const Engine *engine, gic_head *self, const Scene *scene, double *evaluation);
 
 /* ---- bench_report.c, bench_chart.c: the folder --------------------------------------------------------------- */
 
@@ -150,6 +168,8 @@ void report_write(const Report *report, const char *folder);
 void bench_machine(const Bench *bench);
 /* bench_sweep.c: time against error; Tables 1 and 2, Figs. 6 to 9 of Serban and Haug 2000. */
 void bench_sweep(const Bench *bench);
+/* Right-hand sides of all its runs, each once with one engine. */
+double sweep_evaluations(const Bench *bench);
 /* bench_profile.c: where the time of a step goes; Table 3. */
 void bench_profile(const Bench *bench);
 /* bench_spin.c: what changes of the coordinate partition cost. */

@@ -11,15 +11,15 @@
 enum { START = 2 };
 
 /* What of a step is told apart, and all of it. */
-enum { MULTIBODY, TIRES, POWERTRAIN, STEP, PARTS };
+enum { MULTIBODY, TIRES, POWERTRAIN, REST, STEP, PARTS };
 
 /* An engine, the same for the model without its powertrain (NULL: it has none, or its rates can't be compared), and
- * seconds by part: [repetitions] each; of STEP CPU time, of the others elapsed time. */
+ * [repetitions] of each part: shares of a step, of STEP the seconds of CPU time of the run. */
 typedef struct Driven {
     const char *name;
     const Engine *engine, *plain;
     gic_head *self;
-    double *second[PARTS];
+    double *measured[PARTS];
     double *state; /* in which a run ends: FORMAT.md section 10 */
 } Driven;
 
@@ -70,88 +70,163 @@ static double run(const Engine *engine, gic_head *self, const Scene *scene, int 
     return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
 }
 
-/* Calls that are timed, in the order of a step's end and the next one's beginning; the first that comes to a new state
- * recovers dependent coordinates, the others find them known. PLAIN: fast rates without the powertrain. */
-enum { SETTLE, LINK, RHS, FAST, PLAIN, CALLS };
+/* Calls of a step that are timed where they happen. */
+enum { SETTLE, LINK, RHS, FAST, CALLS };
 
-/* Instances beside that of a run. */
-typedef struct Aside {
-    gic_head *before, *other; /* as it was before the step; of the model without its powertrain */
-    double look;              /* s that a look at the clock takes */
-} Aside;
+/* A run whose calls are timed: the instance's `user` while it lasts. */
+typedef struct Timed {
+    const gic_model *code;
+    const Scene *scene;
+    double second[CALLS]; /* of the present step, the looks at the clock included */
+    int calls[CALLS];
+} Timed;
 
-static double since(const Aside *aside, double before)
+static Timed *timed_of(void *self)
 {
-    return clock_seconds(CLOCK_MONOTONIC) - before - aside->look;
+    return ((gic_head *)self)->user;
 }
 
-/* Elapsed seconds of the calls at an instance's state. dual: are there links at the end of a step? */
-static void time_calls(const Driven *driven, gic_head *self, const Aside *aside, bool dual, double second[CALLS])
+static int tally(Timed *timed, int call, double before, int status)
 {
-    const gic_model *code = driven->engine->code;
-    gic_head *copy = aside->before;
+    timed->second[call] += clock_seconds(CLOCK_MONOTONIC) - before;
+    ++timed->calls[call];
+    return status;
+}
+
+static int timed_settle(void *self, double *state)
+{
+    Timed *timed = timed_of(self);
+    const double before = clock_seconds(CLOCK_MONOTONIC);
+    return tally(timed, SETTLE, before, timed->code->settle(self, state));
+}
+
+static int timed_link(void *self, double time, const double *slow, double *link)
+{
+    Timed *timed = timed_of(self);
+    const double before = clock_seconds(CLOCK_MONOTONIC);
+    return tally(timed, LINK, before, timed->code->link(self, time, slow, link));
+}
+
+static int timed_rhs(void *self, double time, const double *state, double *rate)
+{
+    Timed *timed = timed_of(self);
+    const double before = clock_seconds(CLOCK_MONOTONIC);
+    return tally(timed, RHS, before, timed->code->rhs(self, time, state, rate));
+}
+
+static int timed_fast(void *self, double time, const double *link, const double *fast, double *rate)
+{
+    Timed *timed = timed_of(self);
+    const double before = clock_seconds(CLOCK_MONOTONIC);
+    return tally(timed, FAST, before, timed->code->fast(self, time, link, fast, rate));
+}
+
+static void timed_inputs(void *user, int32_t lane, double time, double *input)
+{
+    const Timed *timed = user;
+    scene_inputs((void *)(uintptr_t)timed->scene, lane, time, input);
+}
+
+/* The code with its calls timed, for instances whose `user` is a Timed. */
+static gic_model timed_code(const gic_model *code)
+{
+    gic_model out = *code;
+    out.settle = timed_settle;
+    out.link = code->link ? timed_link : NULL;
+    out.rhs = timed_rhs;
+    out.fast = code->fast ? timed_fast : NULL;
+    out.march = NULL; /* it makes the step of its own calls */
+    return out;
+}
+
+/* Seconds of one evaluation of the fast rates at the instance's state, and of the same without the powertrain (0: the
+ * model has none, or it can't be compared), by turns, on other instances. */
+static void time_fast(const Driven *driven, gic_head *self, gic_head *copy, gic_head *other, double seconds[2])
+{
+    const gic_model *code = driven->engine->code, *plain = driven->plain ? driven->plain->code : NULL;
     double state[code->slow_count + code->fast_count], rate[code->slow_count + code->fast_count];
     double link[code->link_count + 1], *fast = state + code->slow_count;
     const double time = gic_time(self);
+    memcpy(copy, self, code->size);
     memcpy(state, instance_array(self, code->state_offset), sizeof state);
-    memcpy(instance_array(copy, code->input_offset), instance_array(self, code->input_offset),
-           sizeof(double) * (size_t)code->input_count);
-    double before = clock_seconds(CLOCK_MONOTONIC);
-    code->settle(copy, state);
-    second[SETTLE] = since(aside, before);
-    before = clock_seconds(CLOCK_MONOTONIC);
-    if (dual)
-        code->link(copy, time, state, link);
-    second[LINK] = dual ? since(aside, before) : 0;
-    before = clock_seconds(CLOCK_MONOTONIC);
     code->rhs(copy, time, state, rate);
-    second[RHS] = since(aside, before);
-    if (!code->fast)
-        return;
-    if (!dual)
-        code->link(copy, time, state, link);
-    before = clock_seconds(CLOCK_MONOTONIC);
+    code->link(copy, time, state, link);
+    double before = clock_seconds(CLOCK_MONOTONIC);
     code->fast(copy, time, link, fast, rate);
-    second[FAST] = since(aside, before);
-    if (!driven->plain)
+    seconds[0] = clock_seconds(CLOCK_MONOTONIC) - before;
+    if (!plain)
         return;
-    const gic_model *plain = driven->plain->code;
-    aside->other->road = copy->road;
-    memcpy(instance_array(aside->other, plain->input_offset), instance_array(copy, code->input_offset),
+    other->road = copy->road;
+    memcpy(instance_array(other, plain->input_offset), instance_array(copy, code->input_offset),
            sizeof(double) * (size_t)code->input_count);
     before = clock_seconds(CLOCK_MONOTONIC);
-    plain->fast(aside->other, time, link, fast, rate);
-    second[PLAIN] = since(aside, before);
+    plain->fast(other, time, link, fast, rate);
+    seconds[1] = clock_seconds(CLOCK_MONOTONIC) - before;
 }
 
-/* Medians over the steps of a run, s. */
-static void time_parts(const Driven *driven, gic_head *self, const Scene *scene, double part[STEP])
+/* What was measured of each step of a run, s: calls, all but those, and time_fast(). */
+enum { REMAINDER = CALLS, ONE_FAST, ONE_PLAIN, MEASURED };
+
+/* Shares of a step, which add up to 1, from medians over the steps of a run. */
+static void shares_of(const double median[MEASURED], bool plain, double share[PARTS])
+{
+    const double in_rhs = fmin(median[ONE_FAST], median[RHS]); /* a right-hand side has the fast rates too */
+    const double fast = median[FAST] + in_rhs;
+    const double beyond = plain && median[ONE_FAST] > 0 ? fmax(0, 1 - median[ONE_PLAIN] / median[ONE_FAST]) : 0;
+    share[MULTIBODY] = median[SETTLE] + median[LINK] + median[RHS] - in_rhs;
+    share[POWERTRAIN] = fast * beyond;
+    share[TIRES] = fast - share[POWERTRAIN];
+    share[REST] = median[REMAINDER];
+    double sum = 0;
+    for (int k = 0; k < STEP; ++k)
+        sum += share[k];
+    for (int k = 0; k < STEP; ++k)
+        share[k] /= sum;
+}
+
+/* Shares of a step of the run. Each call is timed where it happens, so that all but the calls is what remains of the
+ * same steps. Looks at the clock are taken off: one inside of a call's time, two outside of it. */
+static void time_parts(const Driven *driven, gic_head *self, const Scene *scene, double share[PARTS])
 {
     Pool *pool = pool_new();
     const Engine *engine = driven->engine;
+    const gic_model code = timed_code(engine->code);
     const int steps = (int)steps_of(scene) - START;
-    const double ratio = engine->code->fast ? scene->ratio : 0;
-    Aside aside = {.before = instance_new(pool, engine), .look = bench_look(pool)};
-    double *second[CALLS], call[CALLS] = {0}, median[CALLS];
-    for (int k = 0; k < CALLS; ++k)
+    const double look = bench_look(pool);
+    gic_head *copy = instance_new(pool, engine), *other = driven->plain ? instance_new(pool, driven->plain) : NULL;
+    double *second[MEASURED], median[MEASURED] = {0}, one[2] = {0};
+    for (int k = 0; k < MEASURED; ++k)
         second[k] = pool_alloc(pool, sizeof *second[k] * (size_t)(steps + 1));
-    if (driven->plain) {
-        aside.other = instance_new(pool, driven->plain);
-        driven->plain->code->setup_with(aside.other, scene->parameter);
-    }
+    if (other)
+        driven->plain->code->setup_with(other, scene->parameter);
     int status = scene_start(engine, scene, self);
+    Timed timed = {.code = engine->code, .scene = scene};
     for (int i = -START; i < steps && status == GIC_OK; ++i) {
-        memcpy(aside.before, self, engine->code->size);
-        status = scene_step(engine, engine->code, scene, NULL, self, 0);
-        time_calls(driven, self, &aside, ratio > 1, call);
-        for (int k = 0; k < CALLS && i >= 0; ++k)
-            second[k][i] = call[k];
+        timed = (Timed){.code = engine->code, .scene = scene};
+        self->input_function = timed_inputs;
+        self->user = &timed;
+        const double before = clock_seconds(CLOCK_MONOTONIC);
+        status = scene_step(engine, &code, scene, NULL, self, 0);
+        double rest = clock_seconds(CLOCK_MONOTONIC) - before - look;
+        self->input_function = scene_inputs;
+        self->user = (void *)(uintptr_t)scene;
+        if (engine->code->fast)
+            time_fast(driven, self, copy, other, one);
+        for (int k = 0; k < CALLS && i >= 0; ++k) {
+            rest -= timed.second[k] + timed.calls[k] * look;
+            second[k][i] = fmax(0, timed.second[k] - timed.calls[k] * look);
+        }
+        if (i >= 0) {
+            second[REMAINDER][i] = fmax(0, rest);
+            second[ONE_FAST][i] = fmax(0, one[0] - look);
+            second[ONE_PLAIN][i] = fmax(0, one[1] - look);
+        }
     }
-    for (int k = 0; k < CALLS; ++k)
+    for (int k = 0; k < MEASURED; ++k)
         median[k] = spread_of(pool, second[k], steps).median;
-    part[MULTIBODY] = median[SETTLE] + median[LINK] + median[RHS] - median[FAST];
-    part[TIRES] = ratio * (driven->plain ? median[PLAIN] : median[FAST]);
-    part[POWERTRAIN] = driven->plain ? ratio * (median[FAST] - median[PLAIN]) : 0;
+    if (!engine->code->fast)
+        median[ONE_FAST] = 0;
+    shares_of(median, driven->plain, share);
     pool_free(pool);
 }
 
@@ -160,7 +235,7 @@ static Driven driven_by(const Bench *bench, const char *name, const Engine *engi
     Pool *pool = bench->pool;
     Driven driven = {.name = name, .engine = engine, .self = instance_new(pool, engine)};
     for (int k = 0; k < PARTS; ++k)
-        driven.second[k] = pool_alloc(pool, sizeof(double) * (size_t)bench->repetitions);
+        driven.measured[k] = pool_alloc(pool, sizeof(double) * (size_t)bench->repetitions);
     driven.state = pool_alloc(pool, sizeof(double) * (size_t)(engine->standard_count + 1));
     if (!bench->model->powertrain)
         return driven;
@@ -196,12 +271,12 @@ static void drive_row(const Bench *bench, Sheet *table, const Driven *driven, co
 {
     Pool *pool = bench->pool;
     const double steps = (double)steps_of(bench->scene);
-    const Spread all = spread_of(pool, driven->second[STEP], bench->repetitions);
-    double part[STEP], rest = all.median / steps;
-    for (int k = 0; k < STEP; ++k) {
-        part[k] = spread_of(pool, driven->second[k], bench->repetitions).median;
-        rest -= part[k];
-    }
+    const Spread all = spread_of(pool, driven->measured[STEP], bench->repetitions);
+    double part[STEP], sum = 0;
+    for (int k = 0; k < STEP; ++k)
+        sum += part[k] = spread_of(pool, driven->measured[k], bench->repetitions).median;
+    for (int k = 0; k < STEP; ++k)
+        part[k] *= all.median / steps / sum; /* medians of shares add up to 1 but for their scatter */
     table_cell(pool, table, "%s", driven->name);
     spread_cells(pool, table, all, 1);
     table_cell(pool, table, "%.4g", steps * bench->scene->step / all.median);
@@ -209,9 +284,10 @@ static void drive_row(const Bench *bench, Sheet *table, const Driven *driven, co
     table_cell(pool, table, "%.3g", 1e6 * part[MULTIBODY]);
     table_cell(pool, table, "%.3g", 1e6 * part[TIRES]);
     table_cell(pool, table, driven->plain || !bench->model->powertrain ? "%.2g" : "with tires", 1e6 * part[POWERTRAIN]);
-    table_cell(pool, table, "%.2g", 1e6 * rest);
+    table_cell(pool, table, "%.2g", 1e6 * part[REST]);
     table_cell(pool, table, "%.0f", 100 * steps * (part[TIRES] + part[POWERTRAIN]) / all.median);
-    spread_cells(pool, table, spread_of_ratio(pool, first->second[STEP], driven->second[STEP], bench->repetitions), 1);
+    spread_cells(pool, table, spread_of_ratio(pool, first->measured[STEP], driven->measured[STEP], bench->repetitions),
+                 1);
     table_cell(pool, table, "%.1g", difference(first, driven));
 }
 
@@ -234,21 +310,26 @@ void bench_drive(const Bench *bench)
     for (int w = 0; compiled && w < WAYS; ++w)
         if (!way[w].compiler || bench_installed(pool, way[w].compiler))
             driven[subjects++] = driven_way(bench, &way[w]);
+    double seconds = 0;
+    /* a run for its CPU time, and one for its parts, in which all is computed about twice */
+    for (const Driven *d = driven; d < driven + subjects; ++d)
+        seconds += 3 * (double)steps_of(scene) * bench_step_seconds(d->engine, d->self, scene, NULL);
+    bench_expect(bench, bench->repetitions * seconds);
     for (int r = 0; r < bench->repetitions; ++r)
         for (Driven *d = driven; d < driven + subjects; ++d) {
             int status;
-            bench_progress("repetition %d of %d, %s", r + 1, bench->repetitions, d->name);
-            d->second[STEP][r] = run(d->engine, d->self, scene, &status);
+            bench_progress(bench, "repetition %d of %d, %s", r + 1, bench->repetitions, d->name);
+            d->measured[STEP][r] = run(d->engine, d->self, scene, &status);
             if (status == GIC_OK)
                 status = engine_look(d->engine, d->self, d->state, NULL);
             if (status != GIC_OK)
                 diag_fail(at, "a benchmark needs a scene that runs to its end",
                           "with %s the run ends at t = %.6g s: %s", d->name, gic_time(d->self),
                           instance_status(pool, d->engine->code, d->self, status));
-            double part[STEP];
-            time_parts(d, d->self, scene, part);
+            double share[PARTS];
+            time_parts(d, d->self, scene, share);
             for (int k = 0; k < STEP; ++k)
-                d->second[k][r] = part[k];
+                d->measured[k][r] = share[k];
         }
     report_heading(bench->report, "The scene as it stands");
     report_text(bench->report,
@@ -259,11 +340,12 @@ void bench_drive(const Bench *bench)
                 bench->repetitions);
     report_text(
         bench->report,
-        "Parts of a step are medians of single calls at the states of the run, timed from outside: multibody "
-        "is the recovery of dependent coordinates, a right-hand side without the rates of the fast states, and "
-        "the motion of wheels at the step's end; tires and powertrain are those rates, once for each fast step, "
-        "the powertrain being what they take beyond those of the same model without it. The rest of the step "
-        "is the integrator's, the inputs' and the driver's. Ratio: of the first row's CPU time to this one's, "
+        "Parts of a step add up to it. In a second run after each timed one, the calls of every step are timed where "
+        "they happen, the clock's own time taken off; parts are medians over the steps, scaled to the step of the "
+        "timed run. Multibody is the recovery of dependent coordinates, a right-hand side without the rates of the "
+        "fast states, and the motion of wheels at the step's end; tires and powertrain are those rates, once for each "
+        "fast step, the powertrain being the share of them that the same model without it does not take. The rest of "
+        "the step is the integrator's, the inputs' and the driver's. Ratio: of the first row's CPU time to this one's, "
         "repetition by "
         "repetition; difference: of a number x of the state at the end from the first row's, relative to 1 + |x|. "
         "Fast: "

@@ -205,7 +205,7 @@ static void open_subject(Course *course, const Variant *variant)
                                      variant->newton ? " --recovery newton" : "");
     if (variant->lanes)
         subject->name = pool_print(pool, "%s --lanes %d", subject->name, variant->lanes);
-    bench_progress("engine %s", subject->name);
+    bench_progress(bench, "engine %s", subject->name);
     options.solve = variant->solve;
     options.single = variant->single;
     options.lanes = variant->lanes;
@@ -659,6 +659,7 @@ void bench_rhs(const Bench *bench)
     for (int v = 0; v < VARIANTS; ++v)
         if (available(bench, &every_variant[v]))
             open_subject(&course, &every_variant[v]);
+    const double before = clock_seconds(CLOCK_MONOTONIC);
     find_stretches(&course);
     for (int s = 0; s < course.subjects; ++s) {
         Subject *subject = &course.subject[s];
@@ -670,10 +671,12 @@ void bench_rhs(const Bench *bench)
     }
     begin(&course);
     for (int r = 0; r < bench->repetitions; ++r) {
-        bench_progress("right-hand sides: repetition %d of %d", r + 1, bench->repetitions);
+        bench_progress(bench, "right-hand sides: repetition %d of %d", r + 1, bench->repetitions);
         course.limit[r] = limit_measure();
         for (int s = 0; s < course.subjects; ++s)
             time_subject(&course, &course.subject[s], r);
+        if (bench->rhs && !r)
+            bench_expect(bench, (clock_seconds(CLOCK_MONOTONIC) - before) * (bench->repetitions - 1));
     }
     const bool tires = course.subject->engine->code->link_count > 0;
     const Recovery usual = bench->options.recovery;

@@ -3,10 +3,8 @@
 #include "bench.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 bool setting_constant(Setting setting)
 {
@@ -33,16 +31,6 @@ Scene bench_scene(const Scene *scene, Setting setting)
     else
         changed.tolerance = setting.value;
     return changed;
-}
-
-void bench_progress(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    fputs(isatty(STDERR_FILENO) ? "\r" : "", stderr);
-    vfprintf(stderr, format, arguments);
-    fputs(isatty(STDERR_FILENO) ? "\x1b[K" : "\n", stderr);
-    va_end(arguments);
 }
 
 /* ---- statistics ------------------------------------------------------------------------------------------- */
@@ -186,7 +174,7 @@ Trajectory reference_run(const Bench *bench, const Scene *scene, double *uncerta
     for (int i = 0; i < 2; ++i) {
         Trial trial = {.engine = engine, .setting = setting[i]};
         trajectory[i] = trajectory_new(bench->pool, scene, engine->code);
-        bench_progress("reference with %s", integrator_name(setting[i].method));
+        bench_progress(bench, "reference with %s", integrator_name(setting[i].method));
         run(engine, bench->instance[0], scene, &trial, &trajectory[i]);
         if (trial.status != GIC_OK)
             diag_fail((Place){scene->source, 0, 0}, "a benchmark needs a scene that runs to its end",
@@ -197,6 +185,13 @@ Trajectory reference_run(const Bench *bench, const Scene *scene, double *uncerta
     return trajectory[0];
 }
 
+int64_t trial_evaluations(const Bench *bench, const Scene *scene, Setting setting)
+{
+    Trial trial = {.engine = bench->engine[0], .setting = setting};
+    run(bench->engine[0], bench->instance[0], scene, &trial, NULL);
+    return trial.evaluations;
+}
+
 void trials_run(const Bench *bench, const Scene *scene, Setting setting, const Trajectory *reference, Trial *trial)
 {
     for (int e = 0; e < bench->engines; ++e) {
@@ -204,7 +199,7 @@ void trials_run(const Bench *bench, const Scene *scene, Setting setting, const T
         Trajectory trajectory = trajectory_new(bench->pool, scene, engine->code);
         trial[e] = (Trial){.engine = engine, .setting = setting};
         trial[e].second = pool_alloc(bench->pool, sizeof(double) * (size_t)bench->repetitions);
-        bench_progress("%s %s: error of %s", integrator_name(setting.method), setting_text(bench->pool, setting),
+        bench_progress(bench, "%s %s: error of %s", integrator_name(setting.method), setting_text(bench->pool, setting),
                        engine->name);
         run(engine, bench->instance[e], scene, &trial[e], &trajectory);
         trial[e].error = trajectory_error(&trajectory, reference);
@@ -212,7 +207,7 @@ void trials_run(const Bench *bench, const Scene *scene, Setting setting, const T
     }
     for (int r = 0; r < bench->repetitions; ++r)
         for (int e = 0; e < bench->engines; ++e) {
-            bench_progress("%s %s: repetition %d of %d, %s", integrator_name(setting.method),
+            bench_progress(bench, "%s %s: repetition %d of %d, %s", integrator_name(setting.method),
                            setting_text(bench->pool, setting), r + 1, bench->repetitions, bench->engine[e]->name);
             trial[e].second[r] = run(bench->engine[e], bench->instance[e], scene, &trial[e], NULL);
         }

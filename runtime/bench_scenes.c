@@ -214,7 +214,7 @@ static void measure_scene(const Bench *bench, Sheet *table, const char *model_pa
         diag_fail(at, "write `integrator: ab3` and a step", "a scene is timed with constant steps");
     for (int r = 0; r < bench->repetitions; ++r)
         for (int k = 0; k < WAYS; ++k) {
-            bench_progress("%s, repetition %d of %d", file_name(scene_path), r + 1, bench->repetitions);
+            bench_progress(bench, "%s, repetition %d of %d", file_name(scene_path), r + 1, bench->repetitions);
             const int status = run(&way[k], &way[k].second[r]);
             if (status != GIC_OK)
                 diag_fail(at, "a benchmark needs a scene that runs to its end", "the run ends at t = %.6g s: %s",
@@ -242,6 +242,9 @@ void bench_scenes(const Bench *bench)
         report_table(bench->report, "scenes", "General and specialised",
                      "scene|model|rhs general|rhs specialised|general [M/s]|specialised [M/s]|operations ratio|"
                      "general [ms]|specialised [ms]|time ratio|lowest|highest|difference|left out");
-    for (int i = 0; i < bench->files; i += 2)
+    for (int i = 0; i < bench->files; i += 2) {
+        bench_progress(bench, "scene %d of %d", i / 2 + 1, bench->files / 2);
         measure_scene(bench, table, bench->file[i], bench->file[i + 1]);
+        bench_extrapolate(bench, i + 2, bench->files);
+    }
 }

@@ -81,7 +81,7 @@ static void convergence(const Bench *bench)
     Pool *pool = bench->pool;
     Spin finest = {.status = GIC_OK};
     const Scene fine = bench_scene(bench->spin, (Setting){GIC_RK4, step[STEPS - 1] / 4});
-    bench_progress("turning vehicle: reference");
+    bench_progress(bench, "turning vehicle: reference");
     spin_run(pool, bench->engine[0], bench->instance[0], &fine, &finest);
     Sheet *table = report_table(bench->report, "spin_order", "Distance at the end from a run with RK4 and 0.25 ms",
                                 "engine|4 ms|2 ms|1 ms|2 ms over 1 ms");
@@ -90,7 +90,7 @@ static void convergence(const Bench *bench)
         for (int i = 0; i < STEPS; ++i) {
             const Scene scene = bench_scene(bench->spin, (Setting){GIC_RK4, step[i]});
             Spin spin = {.status = GIC_OK};
-            bench_progress("turning vehicle: RK4 with %g ms, %s", 1e3 * step[i], bench->engine[e]->name);
+            bench_progress(bench, "turning vehicle: RK4 with %g ms, %s", 1e3 * step[i], bench->engine[e]->name);
             spin_run(pool, bench->engine[e], bench->instance[e], &scene, &spin);
             error[i] =
                 spin.status == GIC_OK && finest.status == GIC_OK ? trajectory_error(&spin.end, &finest.end) : INFINITY;
@@ -115,7 +115,7 @@ void bench_spin(const Bench *bench)
     Spin *spin = pool_alloc(bench->pool, sizeof *spin * (size_t)bench->engines);
     for (int r = 0; r < bench->repetitions; ++r)
         for (int e = 0; e < bench->engines; ++e) {
-            bench_progress("turning vehicle: repetition %d, %s", r + 1, bench->engine[e]->name);
+            bench_progress(bench, "turning vehicle: repetition %d, %s", r + 1, bench->engine[e]->name);
             spin_run(bench->pool, bench->engine[e], bench->instance[e], &scene, &spin[e]);
         }
     report_heading(bench->report, "A vehicle that turns");

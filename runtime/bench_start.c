@@ -289,7 +289,7 @@ void bench_start(const Bench *bench)
     bool generated = false, interpreted = false;
     for (int r = 0; r < bench->repetitions; ++r)
         for (int w = 0; w < starts.ways; ++w) {
-            bench_progress("start: repetition %d of %d, %s", r + 1, bench->repetitions, starts.way[w]->name);
+            bench_progress(bench, "start: repetition %d of %d, %s", r + 1, bench->repetitions, starts.way[w]->name);
             starts.start[w][r] = start_apart(bench, starts.way[w]);
             generated |= starts.way[w]->generated;
             interpreted |= !starts.way[w]->generated;

@@ -15,15 +15,38 @@ typedef struct Sweep {
     Trial *trial; /* [settings][engines] */
 } Sweep;
 
-static Sweep sweep_run(const Bench *bench, int32_t method, const Trajectory *reference)
+static const int32_t method[] = {METHOD_ADAMS, GIC_AB3, METHOD_RKCK, GIC_RK4};
+enum { METHODS = sizeof method / sizeof *method };
+
+/* Setting i of a method. */
+static Setting setting_of(int32_t integrator, int i)
 {
-    Sweep sweep = {.method = method};
+    Setting setting = {integrator, 0};
+    setting.value = setting_constant(setting) ? steps[i] : tolerances[i];
+    return setting;
+}
+
+static int setting_stride(const Bench *bench)
+{
+    return bench->quick ? 3 : 1;
+}
+
+double sweep_evaluations(const Bench *bench)
+{
+    double sum = 0;
+    for (int m = 0; m < METHODS; ++m)
+        for (int i = 0; i < SETTINGS; i += setting_stride(bench))
+            sum += (double)trial_evaluations(bench, bench->scene, setting_of(method[m], i));
+    return sum;
+}
+
+static Sweep sweep_run(const Bench *bench, int32_t integrator, const Trajectory *reference)
+{
+    Sweep sweep = {.method = integrator};
     sweep.trial = pool_alloc(bench->pool, sizeof(Trial) * (size_t)(SETTINGS * bench->engines));
-    for (int i = 0; i < SETTINGS; i += bench->quick ? 3 : 1) {
-        Setting setting = {method, 0};
-        setting.value = setting_constant(setting) ? steps[i] : tolerances[i];
-        trials_run(bench, bench->scene, setting, reference, sweep.trial + sweep.settings++ * bench->engines);
-    }
+    for (int i = 0; i < SETTINGS; i += setting_stride(bench))
+        trials_run(bench, bench->scene, setting_of(integrator, i), reference,
+                   sweep.trial + sweep.settings++ * bench->engines);
     return sweep;
 }
 
@@ -118,8 +141,6 @@ static void work_precision(const Bench *bench, const Sweep *sweep, int sweeps, d
 
 void bench_sweep(const Bench *bench)
 {
-    static const int32_t method[] = {METHOD_ADAMS, GIC_AB3, METHOD_RKCK, GIC_RK4};
-    enum { METHODS = sizeof method / sizeof *method };
     Sweep sweep[METHODS];
     double uncertainty;
     const Trajectory reference = reference_run(bench, bench->scene, &uncertainty);

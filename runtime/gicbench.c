@@ -140,7 +140,7 @@ static const Scene *read_scene(const Bench *bench, const char *path)
 static void open_engines(Bench *bench, const char *const *name)
 {
     for (int e = 0; name[e]; ++e) {
-        bench_progress("engine %s", name[e]);
+        bench_progress(bench, "engine %s", name[e]);
         *POOL_PUSH(bench->pool, bench->engine, bench->engines) =
             engine_open(bench->pool, name[e], bench->model, &bench->options);
     }
@@ -155,6 +155,25 @@ static void close_engines(const Bench *bench)
         engine_close(bench->engine[e]);
 }
 
+/* How long compare() will take once the engines are open, s. opened: what that took, s. Times of evaluations are those
+ * of the scene's first steps; their number is that of runs with the first engine. Right-hand sides are compiled in some
+ * twenty ways, and each start opens the engine anew. */
+static double comparison_seconds(const Bench *bench, double opened)
+{
+    enum { WAYS_TO_COMPILE = 20, ORDER_OF_SPIN = 4 * (250 + 500 + 1000) /* evaluations a second of the scene */ };
+    const Setting ab3 = {GIC_AB3, 0.005};
+    const Scene first = bench_scene(bench->scene, ab3);
+    double evaluation, all = 0;
+    for (int e = 0; e < bench->engines; ++e) {
+        bench_step_seconds(bench->engine[e], bench->instance[e], &first, &evaluation);
+        all += evaluation;
+    }
+    double seconds = all * sweep_evaluations(bench) * (1 + bench->repetitions);
+    if (bench->spin)
+        seconds += all * bench->spin->duration * (ORDER_OF_SPIN + bench->repetitions / ab3.value);
+    return seconds + opened * (WAYS_TO_COMPILE + bench->repetitions);
+}
+
 /* All engines and integrators on the scene. */
 static void compare(Bench *bench, const char *const *name)
 {
@@ -162,7 +181,9 @@ static void compare(Bench *bench, const char *const *name)
         diag_fail((Place){bench->scene->source, 0, 0}, "a longer duration", "a benchmark takes at least %g s",
                   bench_sample);
     make_folder(bench->folder);
+    const double before = clock_seconds(CLOCK_MONOTONIC);
     open_engines(bench, name);
+    bench_expect(bench, comparison_seconds(bench, clock_seconds(CLOCK_MONOTONIC) - before));
     bench_machine(bench);
     bench_sweep(bench);
     bench_profile(bench);
@@ -206,7 +227,9 @@ int main(int count, char **word)
     const char *const *name;
     Bench bench = read_command_line(pool, count, word, &name);
     Report report = {.pool = pool};
+    Progress progress = {.begun = clock_seconds(CLOCK_MONOTONIC)};
     bench.report = &report;
+    bench.progress = &progress;
     bench.model = bench.model_path ? model_read(pool, bench.model_path) : NULL;
     bench.scene = bench.scene_path ? read_scene(&bench, bench.scene_path) : NULL;
     bench.spin = bench.spin_path ? read_scene(&bench, bench.spin_path) : NULL;
@@ -217,9 +240,9 @@ int main(int count, char **word)
     else
         compare(&bench, name);
     if (bench.folder) {
-        bench_progress("writing %s", bench.folder);
+        bench_progress(&bench, "writing %s", bench.folder);
         report_write(&report, bench.folder);
-        bench_progress("see %s/index.html", bench.folder);
+        bench_progress(&bench, "see %s/index.html", bench.folder);
     }
     fputc('\n', stderr);
     pool_free(pool);

@@ -119,6 +119,9 @@ typedef struct Scene {
 /* Read a scene for a model. Any mistake ends in diag_fail. integrator: instead of the scene's, or NULL; tolerance: the
  * same, or 0. */
 const Scene *scene_read(Pool *pool, const char *path, const Model *model, const char *integrator, double tolerance);
+/* scene_fit.c: end with a message where the scene (root: of its file `path`) uses names that the model lacks and a model
+ * in its folder, in the folder above it or beside the model has: the scene is for that one. */
+void scene_check_fit(Pool *pool, const Item *root, const char *path, const Model *model);
 /* The velocity of a scene with `speed`, from the orientation. */
 void scene_along(Scene *scene);
 /* Say so where a coordinate's values from low to high are not all in its range. */

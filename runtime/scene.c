@@ -559,6 +559,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
         diag_fail(version->at, "write 1, or use a newer gicrun", "this gicrun reads version 1 of the scene format");
     if (doc_find(root, "description"))
         doc_word(doc_find(root, "description"), "description");
+    scene_check_fit(pool, root, path, model);
     read_integrator(&reader, root, integrator, tolerance);
     scene->ratio = 1;
     if (doc_find(root, "ratio"))

@@ -14,7 +14,7 @@ fits() {
     /usr/bin/python3 "$root/tests/schema.py" "$work/schema" "$1" >"$work/said" && grep -q '^good' "$work/said"
 }
 
-for model in "$root"/models/*.veh "$root"/models/parts/*.veh "$root"/tests/dump/*.veh "$root"/tests/dump/parts/*.veh \
+for model in "$root"/models/*.veh "$root"/models/parts/*.veh "$root"/models/tutorial/*.veh "$root"/tests/dump/*.veh "$root"/tests/dump/parts/*.veh \
     "$root"/tests/laws/*.veh "$root"/tests/elements/*.veh "$root"/tests/tuning/*.veh "$root"/tests/symmetry/*.veh; do
     fits "$model"
     verdict $? "$(cat "$work/said")"

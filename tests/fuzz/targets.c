@@ -126,9 +126,15 @@ static const Model *scene_model[2];
 static void prepare_scene(void)
 {
     static const char *const path[] = {"models/hmmwv_vehicle.veh", "models/quarter_car.veh"};
+    /* with no other models beside it, which would be read in child processes for messages (scene_fit.c) */
+    static const Source alone = {.path = "/proc/self/model.veh"};
     for (int i = 0; i < 2; ++i) {
         const Sequence *sequence;
-        scene_model[i] = whole_model(pool_new(), path[i], &sequence);
+        Pool *pool = pool_new();
+        Model *model = pool_alloc(pool, sizeof *model);
+        *model = *whole_model(pool, path[i], &sequence);
+        model->source = &alone;
+        scene_model[i] = model;
     }
 }
 
