@@ -27,7 +27,11 @@ STANDARD := -std=c11 -D_POSIX_C_SOURCE=200809L
 # no contraction: results must not depend on which multiply-add the compiler fuses
 COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -Igenerator -Iruntime $(CFLAGS) -MMD -MP
 # of host programs; gicgen needs libyaml alone, what it emits nothing
-LIBRARIES := -lyaml -lgsl -lgslcblas -ldmumps_seq -lklu -ltcc -lm -ldl
+LIBRARIES := -lyaml -lgsl -lgslcblas -lklu -ltcc -lm -ldl
+# of the plug-in that the engine gcp2 loads, where it is there: by the name for linking, or as programs load it
+MUMPS := $(if $(shell $(CC) -E -include dmumps_c.h -x c /dev/null >/dev/null 2>&1 && echo there),$(firstword \
+    $(if $(findstring /,$(shell $(CC) -print-file-name=libdmumps_seq.so)),-ldmumps_seq) \
+    $(wildcard /usr/lib/*/libdmumps_seq-*.so)))
 
 # between the commands of a foreach
 define newline
@@ -56,7 +60,10 @@ checking_objects := $(patsubst %,$(BUILD)/runtime/%.o,world applied rolling tire
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench
+# gicrun looks for it there, beside programs or beside their folder: runtime/mumps_load.c
+plugin := $(if $(MUMPS),$(BUILD)/lib/gicgen/mumps.so)
+
+all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(plugin)
 
 $(BUILD)/gicgen: $(BUILD)/generator/main.o $(scene_objects) $(checking_objects) $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lm
@@ -69,6 +76,12 @@ $(BUILD)/gicsweep: $(sweep:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_obje
 
 $(BUILD)/gicbench: $(BUILD)/runtime/gicbench.o $(benchmark:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
+
+$(BUILD)/runtime/plugin/mumps.o: COMPILE += -fPIC
+
+$(BUILD)/lib/gicgen/mumps.so: $(BUILD)/runtime/plugin/mumps.o
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -shared -o $@ $^ $(MUMPS)
 
 # gicgen and gicrun with errors that can be planted, to see that their validation finds them: generator/plant.h
 planting := $(patsubst %,generator/%.o,plant formulation lanes narrow rows motion loads pack_vectors)
@@ -130,7 +143,9 @@ $(BUILD)/check/test_%: $(BUILD)/tests/test_%.o $(tested)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBRARIES)
 
-# it counts allocations and calls of MUMPS
+# it counts allocations and calls of MUMPS, so that the plug-in is a part of it
+$(BUILD)/check/test_topology: $(BUILD)/runtime/plugin/mumps.o
+$(BUILD)/check/test_topology: LIBRARIES += $(MUMPS)
 $(BUILD)/check/test_topology: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=dmumps_c
 
 # what checks the generator shares no code with it
@@ -331,13 +346,11 @@ deps:
 
 # ---- installing
 
-prefix := $(DESTDIR)$(PREFIX)
-share := $(prefix)/share/gicgen
 manuals := generator/gicgen.1 runtime/gicrun.1 runtime/gicsweep.1 runtime/gicbench.1
 installed_models := $(wildcard models/*.* models/parts/*.* models/tutorial/*.* models/roads/*.* models/tires/*.* models/scenes/*.*)
 version = $(shell sed -n 's/^.define GICGEN_VERSION "\(.*\)"/\1/p' generator/gicgen.h)
-# texts that name places
-PLACE = sed 's|@PREFIX@|$(PREFIX)|g; s|@VERSION@|$(version)|g'
+# a place may have blanks in it, so only the shell takes it apart
+export DESTDIR PREFIX
 
 # both number types in one archive: names differ; position-independent, for shared objects may want it
 core := $(foreach part,gic_runtime gic_road,$(BUILD)/install/$(part).double.o $(BUILD)/install/$(part).float.o)
@@ -354,24 +367,10 @@ $(BUILD)/install/libgic_runtime.a: $(core)
 	$(AR) rcs $@ $^
 
 install: all $(BUILD)/install/libgic_runtime.a
-	install -d $(prefix)/bin $(prefix)/include $(prefix)/lib/pkgconfig $(prefix)/share/man/man1 \
-	    $(addprefix $(share)/,$(sort $(dir $(installed_models))))
-	install -m 755 $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(prefix)/bin
-	install -m 644 runtime/gic_runtime.h runtime/gic_road.h runtime/gic_batch.h runtime/gic_lanes.h $(prefix)/include
-	install -m 644 $(BUILD)/install/libgic_runtime.a $(prefix)/lib
-	install -m 644 runtime/gic_runtime.c runtime/gic_road.c $(share)
-	for file in $(installed_models); do install -m 644 $$file $(share)/$$file || exit 1; done
-	$(PLACE) generator/gicgen.pc.in > $(BUILD)/install/gicgen.pc
-	install -m 644 $(BUILD)/install/gicgen.pc $(prefix)/lib/pkgconfig
-	for page in $(manuals); do $(PLACE) $$page > $(BUILD)/install/$${page##*/} && \
-	    install -m 644 $(BUILD)/install/$${page##*/} $(prefix)/share/man/man1 || exit 1; done
+	BUILD=$(BUILD) VERSION=$(version) PLUGIN=$(plugin) sh runtime/install.sh $(manuals) $(installed_models)
 
 uninstall:
-	rm -f $(addprefix $(prefix)/bin/,gicgen gicrun gicsweep gicbench) \
-	    $(addprefix $(prefix)/include/,gic_runtime.h gic_road.h gic_batch.h gic_lanes.h) \
-	    $(prefix)/lib/libgic_runtime.a $(prefix)/lib/pkgconfig/gicgen.pc \
-	    $(addprefix $(prefix)/share/man/man1/,$(notdir $(manuals)))
-	rm -rf $(share)
+	sh runtime/install.sh --remove
 
 clean:
 	rm -rf $(BUILD)

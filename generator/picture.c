@@ -58,6 +58,6 @@ void picture_write(Pool *pool, const char *path, const Text *dot)
     Text svg = {.pool = pool};
     if (!picture_make(path, dot, &svg))
         picture_fail(path, "Graphviz's program `dot` is not installed",
-                     "install the package graphviz, or ask for a .dot file");
+                     "install it (Debian: apt-get install graphviz), or ask for a .dot file");
     file_write(path, svg.s, svg.size);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The engines by name, and instances of any of them. */
 #include "engine.h"
+#include "mumps.h"
 
 #include <string.h>
 #include <sys/resource.h>
@@ -29,6 +30,12 @@ bool engine_generates(const char *name)
 {
     Open *const open = engine_opener[engine_index(name)];
     return open != engine_gic && open != engine_gcp1 && open != engine_gcp2;
+}
+
+const char *engine_missing(Pool *pool, const char *name)
+{
+    const char *why;
+    return engine_opener[engine_index(name)] != engine_gcp2 || mumps_load(pool, &why) ? NULL : MUMPS_PACKAGES;
 }
 
 const Engine *engine_open(Pool *pool, const char *name, const Model *model, const EngineOptions *options)

@@ -64,6 +64,9 @@ bool engine_known(const char *name);
 /* Does it run generated code? The others interpret the model. */
 bool engine_generates(const char *name);
 
+/* The Debian packages without which it can't be opened here; NULL: nothing is missing. */
+const char *engine_missing(Pool *pool, const char *name);
+
 /* For those engines that generate or compile. */
 typedef struct EngineOptions {
     Solve solve;

@@ -121,9 +121,9 @@ typedef struct gic_head {
     int64_t switch_count; /* changes of the dependent Euler parameter */
     /* what was skipped, and what could not be: counted where it happens, so that it costs nothing elsewhere */
     int64_t late_count;    /* Newton corrections beyond the first check of a solution */
-    int64_t kept_count;    /* subset solutions kept, for nothing that they follow from had changed */
-    int64_t air_count;     /* wheels whose tire was not evaluated, for they were in the air */
-    int64_t steady_count;  /* fast rates not evaluated, for fast states moved steadily: gic_step_steady */
+    int64_t kept_count;    /* subset solutions reused: their inputs had not changed */
+    int64_t air_count;     /* tires not evaluated: their wheels were in the air */
+    int64_t steady_count;  /* fast rates not evaluated: fast states changed steadily, gic_step_steady */
     int64_t sleep_count;   /* steps in which the state was left as it is: for whoever makes steps */
     gic_real largest_step; /* largest last Newton correction accepted, relative to the subset's size */
     gic_real residual;     /* largest constraint residual that checks found, relative to the subset's size */

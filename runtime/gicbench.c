@@ -55,6 +55,26 @@ static const char *const *engine_list(Pool *pool, char *names)
     return list;
 }
 
+/* The engines from the `first` of engine_name on that can be had here, ended by NULL; says what is left out. */
+static const char *const *engines_here(Pool *pool, int first)
+{
+    int count = 0;
+    for (int i = first; engine_name[i]; ++i)
+        ++count;
+    const char **list = pool_alloc(pool, ((size_t)count + 1) * sizeof *list), **end = list;
+    for (int i = first; engine_name[i]; ++i) {
+        const char *package = engine_missing(pool, engine_name[i]);
+        if (package)
+            fprintf(
+                stderr,
+                "gicbench: note: the engine %s is left out: it needs MUMPS (Debian: apt-get install %s; then make)\n",
+                engine_name[i], package);
+        else
+            *end++ = engine_name[i];
+    }
+    return list;
+}
+
 /* What the command line asks for, and the names of the engines, ended by NULL. */
 static Bench read_command_line(Pool *pool, int count, char **word, const char *const **names)
 {
@@ -71,8 +91,7 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
     bool scenes = false;
     bench.options.compiler = compiler_default();
     bench.options.flags = "";
-    *names = engine_name + 2;         /* auto and tcc do what cc does, if more slowly: */
-    bench.starting = engine_name + 1; /* they are about the start, where auto is tcc */
+    *names = bench.starting = NULL;
     for (int option; (option = getopt_long(count, word, "o:h", options, NULL)) != -1;)
         switch (option) {
         case 'o': bench.folder = optarg; break;
@@ -93,6 +112,10 @@ static Bench read_command_line(Pool *pool, int count, char **word, const char *c
         case VERSION: puts("gicbench " GICGEN_VERSION); exit(0);
         default: fputs("  remedy: `gicbench -h` shows how\n", stderr); exit(2);
         }
+    if (!*names) {
+        bench.starting = engines_here(pool, 1); /* auto and tcc do what cc does, if more slowly: */
+        *names = bench.starting + 1;            /* they are about the start, where auto is tcc */
+    }
     const int files = count - optind;
     if (bench.rhs + bench.drive + scenes + (bench.vehicles > 0) > 1)
         usage_fail("gicbench", "one of --rhs, --drive, --batch and --scenes, please", NULL);

@@ -195,8 +195,10 @@ static void write_results(const Sweep *sweep, const char *path)
     csv_close(&csv);
 }
 
-static void summary(const Sweep *sweep, int64_t before, double seconds, const char *results)
+/* begun: when the program began, which reads and compiles first; start: when the runs did. */
+static void summary(const Sweep *sweep, int64_t before, double begun, double start, const char *results)
 {
+    const double end = clock_seconds(CLOCK_MONOTONIC);
     const Journal *journal = sweep->journal;
     const int64_t done = journal->finished - before;
     fprintf(stderr, "%s: %lld runs in %s", sweep->engine->code->name, (long long)journal->finished, results);
@@ -205,7 +207,8 @@ static void summary(const Sweep *sweep, int64_t before, double seconds, const ch
     fprintf(stderr, "; %s", sweep->many ? "in lanes" : "each by itself");
     if (sweep->processes > 1)
         fprintf(stderr, ", up to %d processes", sweep->processes);
-    fprintf(stderr, ", %.3g s, %.4g runs/s\n", seconds, (double)done / fmax(seconds, 1e-9));
+    fprintf(stderr, ", %.3g s: %.3g s to read and compile, %.3g s of runs, %.4g runs/s\n", end - begun, start - begun,
+            end - start, (double)done / fmax(end - start, 1e-9));
     if (journal->failed)
         fprintf(stderr, "  %lld failed, the first is run %lld: %s\n", (long long)journal->failed,
                 (long long)journal->first_failed,
@@ -214,6 +217,7 @@ static void summary(const Sweep *sweep, int64_t before, double seconds, const ch
 
 int main(int count, char **word)
 {
+    const double begun = clock_seconds(CLOCK_MONOTONIC);
     Pool *pool = pool_new();
     Options o = read_command_line(pool, count, word);
     const Model *model = model_read(pool, o.model);
@@ -250,7 +254,7 @@ int main(int count, char **word)
     journal_remove(&journal);
     interrupt_release();
     if (!o.quiet)
-        summary(&sweep, before, clock_seconds(CLOCK_MONOTONIC) - start, o.results);
+        summary(&sweep, before, begun, start, o.results);
     engine_close(sweep.engine);
     pool_free(pool);
     return 0;

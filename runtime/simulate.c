@@ -197,10 +197,10 @@ static void summary_of_skips(const gic_head *head)
         int64_t count;
         const char *name, *what;
     } skip[] = {
-        {head->kept_count, "recoveries kept", "subset solutions, for nothing they follow from had changed"},
-        {head->air_count, "tires left out", "times, for the wheel was in the air"},
-        {head->steady_count, "fast rates left out", "for fast states moved steadily"},
-        {head->sleep_count, "steps asleep", "for the vehicle was at rest"},
+        {head->kept_count, "recoveries reused", "subset solutions whose inputs had not changed"},
+        {head->air_count, "tires skipped", "evaluations of wheels in the air"},
+        {head->steady_count, "fast rates skipped", "evaluations while fast states changed steadily"},
+        {head->sleep_count, "steps asleep", "steps while the vehicle was at rest"},
     };
     for (size_t i = 0; i < sizeof skip / sizeof *skip; ++i)
         if (skip[i].count)
@@ -225,9 +225,9 @@ static void summary(const Run *run, double total)
     fprintf(stderr, "  right-hand sides     %lld\n", (long long)head->rhs_count);
     if (head->fast_count)
         fprintf(stderr, "  fast rates           %lld\n", (long long)head->fast_count);
-    fprintf(stderr, "  Newton corrections   %.3f a subset solution (%lld in %lld), %lld beyond the first check\n",
-            solutions > 0 ? (double)head->correction_count / solutions : 0.0, (long long)head->correction_count,
-            (long long)head->newton_count, (long long)head->late_count);
+    fprintf(stderr, "  Newton corrections   %lld in %lld subset solutions (%.3f each), %lld after the first check\n",
+            (long long)head->correction_count, (long long)head->newton_count,
+            solutions > 0 ? (double)head->correction_count / solutions : 0.0, (long long)head->late_count);
     summary_of_skips(head);
     fprintf(stderr, "  parameter switches   %lld\n", (long long)head->switch_count);
     fprintf(stderr, "  constraint residual  %.2g at most, relative to the subset's size\n", run->constraint);

@@ -1,12 +1,19 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# run.sh [NAME...]: installs what is missing, builds and runs every test, or those named (test_read test_runtime ...).
-# The last line is `N passed, N failed`; the exit status is 0 when none failed.
+# run.sh [--dry-run] [NAME...]: installs what is missing, builds and runs every test, or those named (test_read
+# test_runtime ...). The last line is `N passed, N failed`; the exit status is 0 when none failed. --dry-run: only says
+# what it would do.
 #
 # A test is either tests/test_NAME.c, a cmocka program, or tests/test_NAME.sh, a script that prints `N passed, N failed`
 # at its end. A script's first line of comment names the programs that it wants as arguments: tests/paths.sh.
 cd "$(dirname "$0")/.." || exit 1
+if [ "$1" = --dry-run ]; then
+    sh tests/install.sh --dry-run test || exit 1
+    echo "Then it builds in ${BUILD:-build}, some minutes, and runs every test, which takes half an hour to an hour."
+    exit 0
+fi
 sh tests/install.sh test || exit 1
+echo "Building, some minutes; all tests take half an hour to an hour ..." >&2
 build=${BUILD:-build}
 . tests/paths.sh
 make --no-print-directory -s -j2 WERROR=-Werror BUILD="$build" test-programs || exit 1

@@ -124,7 +124,7 @@ mkdir bin
 PATH=$work/bin "$gicgen" --graph none.svg "$model" 2>err
 [ $? -eq 1 ] && [ ! -e none.svg ]
 verdict $? "a picture without Graphviz"
-says err "install the package graphviz"
+says err "apt-get install graphviz"
 
 # what is no file stays what it is: as root a rename would replace a device
 mkfifo pipe

@@ -7,10 +7,10 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 . "$(dirname "$0")/checking.sh"
 build=$(cd "$(dirname "$1")" && pwd)
 
-# a blank-free prefix that is not the default, collected elsewhere as packagers do
-prefix=/opt/gic
+# a prefix with a blank that is not the default, collected elsewhere as packagers do
+prefix='/opt/vehicle dynamics'
 made() {
-    make --no-print-directory -s -C "$root" BUILD="$build" WERROR=-Werror DESTDIR="$work/stage" PREFIX=$prefix "$@"
+    make --no-print-directory -s -C "$root" BUILD="$build" WERROR=-Werror DESTDIR="$work/stage" PREFIX="$prefix" "$@"
 }
 umask 077 # modes of what is installed must not depend on it
 check 'make install' made install
@@ -23,7 +23,7 @@ check 'folders may be read by all' modes -type d ! -perm 0755
 check 'programs may be run by all' modes -path "$there/bin/*" ! -perm 0755
 check 'other files may be read by all and run by none' modes -type f ! -path "$there/bin/*" ! -perm 0644
 for file in bin/gicgen bin/gicrun bin/gicsweep bin/gicbench include/gic_runtime.h include/gic_road.h include/gic_batch.h include/gic_lanes.h \
-    lib/libgic_runtime.a \
+    lib/libgic_runtime.a lib/gicgen/mumps.so \
     lib/pkgconfig/gicgen.pc share/gicgen/gic_runtime.c share/gicgen/gic_road.c share/gicgen/models/hmmwv.veh \
     share/gicgen/models/parts/chassis.veh share/gicgen/models/scenes/paper_run.scene \
     share/gicgen/models/roads/field_track.csv share/gicgen/models/tires/hmmwv_pac2002.tir \
@@ -34,7 +34,7 @@ done
 models() { find "$1/models" -type f | wc -l; }
 check 'all models are there' [ "$(models "$there/share/gicgen")" -eq "$(models "$root")" ]
 check 'nothing speaks of the place of collection, and nothing is left to fill in' \
-    sh -c "! grep -rIl -e '$work' -e '@PREFIX@' -e '@VERSION@' '$there'"
+    sh -c "! grep -rIl -e '$work' -e '@PREFIX@' -e '@VERSION@' \"$there\""
 
 # ---- manuals -----------------------------------------------------------------------------------------------
 
@@ -69,17 +69,14 @@ config() { pkg-config --define-variable=prefix="$there" "$@" gicgen; }
 
 check 'gicgen works' gicgen "$there/share/gicgen/models/hmmwv.veh" -o hmmwv.c
 sed -n '/^```c$/,/^```$/p' "$root/README.md" | sed '/^```/d' >main.c
-# shellcheck disable=SC2046  # lists of words
-{
-    check "README's example in double precision" cc -std=c99 -Wall -Wextra -Werror -O1 $(config --cflags) \
-        main.c hmmwv.c $(config --libs) -o double
-    check "README's example in single precision" cc -std=c99 -Wall -Wextra -Werror -O1 -DGIC_FLOAT $(config --cflags) \
-        main.c hmmwv.c $(config --libs) -o single
-    check "README's example with the runtime as source" cc -std=c99 -O1 $(config --cflags) main.c hmmwv.c \
-        "$(config --variable=runtime)" -lm -o source
-    check 'the runtime in a shared object' cc -shared -fPIC -O0 $(config --cflags) hmmwv.c $(config --libs) -Wl,-z,defs \
-        -o model.so
-}
+# with words as pkg-config quotes them
+compile() { eval "cc $1 $(config --cflags) $2 $(config --libs) $3"; }
+strict='-std=c99 -Wall -Wextra -Werror -O1'
+check "README's example in double precision" compile "$strict" 'main.c hmmwv.c' '-o double'
+check "README's example in single precision" compile "$strict -DGIC_FLOAT" 'main.c hmmwv.c' '-o single'
+check "README's example with the runtime as source" eval "cc -std=c99 -O1 $(config --cflags) main.c hmmwv.c \
+    '$(config --variable=runtime)' -lm -o source"
+check 'the runtime in a shared object' compile '-shared -fPIC -O0' hmmwv.c '-Wl,-z,defs -o model.so'
 # its chassis stands at 0.474 m
 for program in double single source; do
     stands() { "./$program" | awk '/^ok: / { z = $6 } END { exit !(z > 0.473 && z < 0.475) }'; }
@@ -87,19 +84,76 @@ for program in double single source; do
 done
 version() { [ "gicgen $(pkg-config --modversion gicgen)" = "$(gicgen --version)" ]; }
 check "pkg-config's version is gicgen's" version
-recorded() { [ "$(pkg-config --variable=runtime gicgen)" = $prefix/share/gicgen/gic_runtime.c ]; }
+recorded() { [ "$(pkg-config --variable=runtime gicgen | tr -d '\\')" = "$prefix/share/gicgen/gic_runtime.c" ]; }
 check 'pkg-config names the installed place' recorded
 check 'gicrun works' gicrun "$there/share/gicgen/models/pendulum.veh" \
     "$there/share/gicgen/models/scenes/pendulum.scene" -o run.csv
 check 'its results are there' grep -q '^time' run.csv
 check 'gicbench works' gicbench --version
 
+# ---- the plug-in with MUMPS --------------------------------------------------------------------------------
+
+shared=$there/share/gicgen/models
+pendulum() { gicrun "$@" -q "$shared/pendulum.veh" "$shared/scenes/pendulum.scene" -o mumps.csv >"$work/out" 2>"$work/err"; }
+check 'the programs themselves need no MUMPS' sh -c "! ldd '$there/bin/gicrun' | grep -i -e mumps -e fortran"
+check 'gcp2 finds its plug-in' pendulum --engine gcp2
+check 'its results are those of gcp1' sh -c "gicrun --engine gcp1 -q '$shared/pendulum.veh' '$shared/scenes/pendulum.scene' |
+    paste -d, - mumps.csv | awk -F, 'NR > 1 { for (i = 1; i <= NF / 2; ++i) if ((\$i - \$(i + NF / 2))^2 > 1e-16) bad = 1 }
+    END { exit bad || NR < 10 }'"
+# names WHAT: the run failed and says so, with packages to install
+names() { grep -q "engine gcp2 needs MUMPS: $1" "$work/err" && grep -q 'apt-get install libmumps-' "$work/err"; }
+refused() { ! pendulum --engine gcp2 && [ ! -e mumps.csv ]; }
+rm mumps.csv
+mv "$there/lib/gicgen" "$work/aside"
+check 'without the plug-in gcp2 is refused' refused
+check 'the message names what to install' names 'it was not there'
+check 'other engines run without it' pendulum --engine gcp1
+rm mumps.csv
+check 'the benchmark leaves gcp2 out' gicbench --rhs --quick "$shared/pendulum.veh" >"$work/said" 2>"$work/err"
+check 'and says so' grep -q 'the engine gcp2 is left out.*apt-get install libmumps-' "$work/err"
+check 'and has the other engines' sh -c "grep -q gcp1 '$work/said' && ! grep -q gcp2 '$work/said'"
+mkdir "$there/lib/gicgen"
+echo 'no library' >"$there/lib/gicgen/mumps.so"
+check 'with a plug-in that is no library gcp2 is refused' refused
+check 'the message says which' names '.*lib/gicgen/mumps.so'
+rm -r "$there/lib/gicgen"
+mv "$work/aside" "$there/lib/gicgen"
+
 # ---- uninstall ---------------------------------------------------------------------------------------------
 
+# what is foreign stays, in our folders too; what an earlier version left goes
 : >"$there/bin/foreign"
+: >"$there/share/gicgen/models/my own.veh"
+: >"$there/share/gicgen/models/old.veh"
+echo share/gicgen/models/old.veh >>"$there/share/gicgen/installed"
+check 'make install over an older one' made install
 check 'make uninstall' made uninstall
-check 'only what is foreign stays' [ "$(find "$work/stage" -type f)" = "$there/bin/foreign" ]
-check 'no folder of its own stays' [ ! -e "$there/share/gicgen" ]
+find "$work/stage" -type f | sort >"$work/left"
+printf '%s\n' "$there/bin/foreign" "$there/share/gicgen/models/my own.veh" >"$work/wanted"
+check 'only what is foreign stays' diff "$work/left" "$work/wanted"
+check 'no folder of its own stays' [ ! -e "$there/lib/gicgen" -a ! -e "$there/share/gicgen/models/parts" ]
+gone() { ! made uninstall >"$work/said" 2>&1 && grep -q 'gicgen is not installed in' "$work/said"; }
+check 'a second time there is nothing to uninstall' gone
+
+# ---- a home of one's own -----------------------------------------------------------------------------------
+
+home="$work/my home"
+mine() { make --no-print-directory -s -C "$root" BUILD="$build" WERROR=-Werror DESTDIR= "$@" >"$work/said" 2>&1; }
+unset PKG_CONFIG_PATH
+check 'make install in a place of its own' mine PREFIX="$home/.local" install
+# what it says is what makes them found
+grep '^[^:]*:  *export ' "$work/said" | sed 's/^[^:]*:  *//' >"$work/exports"
+# shellcheck source=/dev/null
+found() { (. "$work/exports" && [ "$(command -v gicgen)" = "$home/.local/bin/gicgen" ] && pkg-config --exists gicgen); }
+check 'it says how programs and pkg-config are found' found
+check 'only then' sh -c '! pkg-config --exists gicgen'
+# shellcheck disable=SC1091
+quiet() { . "$work/exports" && mine PREFIX="$home/.local" install && [ ! -s "$work/said" ]; }
+check 'who is set up is told nothing' quiet
+check 'make uninstall there' mine PREFIX="$home/.local" uninstall
+check 'nothing is left there' [ -z "$(find "$home" -type f)" ]
+relative() { ! mine PREFIX=local install && grep -q 'PREFIX is not a whole path: local' "$work/said" && [ ! -e "$root/local" ]; }
+check 'a relative prefix is refused' relative
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

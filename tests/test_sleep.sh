@@ -151,9 +151,9 @@ XXX
 eased ''
 cp "$work/eased.csv" "$work/full.csv"
 all=$(count 'fast rates')
-check 'fast steps all along' [ "$(count 'fast rates left out')" = 0 ]
+check 'fast steps all along' [ "$(count 'fast rates skipped')" = 0 ]
 eased 'steady: 1e-5'
-few=$(count 'fast rates') less=$(count 'fast rates left out')
+few=$(count 'fast rates') less=$(count 'fast rates skipped')
 check "what is left out and what is not add up ($few + $less)" [ $((few + less)) -eq "$all" ]
 check 'a third of them is left out' within $((all / 3)) "$less" "$all"
 # tires of 0.1 m of relaxation and more settle within some steps; m and m/s of the chassis follow their slips

@@ -96,7 +96,7 @@ check 'gcp2' changes_at "$rows" --engine gcp2
 cp "$root"/runtime/gic_runtime.[ch] .
 line 0.3 0.3
 "$gicgen" now.veh -o line.c >out 2>err && "$gicgen" --main now.veh |
-    sed 's/GIC_R(0.002)/GIC_R(0.006)/; s/i % 10 == 0/1/; s/i <= 1000/i <= 160/' >main.c
+    sed 's/GIC_R(0.02)/GIC_R(0.006)/; s/steps = 10;/steps = 1;/; s/rows = 100,/rows = 160,/' >main.c
 for real in '' -DGIC_FLOAT; do
     # shellcheck disable=SC2086  # nothing or one word
     cc -std=c99 -Wall -Wextra -Werror -O1 $real main.c line.c gic_runtime.c -lm -o program >out 2>err &&
