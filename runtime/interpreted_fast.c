@@ -100,5 +100,7 @@ int interpreted_roll(void *instance)
         if (wheel->tire >= 0)
             wheel_roll(wheel, &model->tire[wheel->tire], &world->rolling[i], fast + wheel->fast);
     }
+    if (status == GIC_OK)
+        gic_restart(self, gic_time(&self->head));
     return status;
 }

@@ -62,6 +62,7 @@ asleep=$(count 'steps asleep') rhs=$(count 'right-hand sides')
 check "it sleeps from half a second on until the brake lets go ($asleep)" within 374 "$asleep" 376
 # two starts of two steps of RK4 in halves take 16 right-hand sides each, in place of two
 check "it does nothing meanwhile ($rhs)" within 1 "$rhs" $((750 - asleep + 28))
+check "it starts anew when it wakes ($rhs)" within $((750 - asleep + 15)) "$rhs" 750
 # what was within 1e-6 of rest for half a second stays within that
 check "asleep it is where it would be ($(gap awake asleep 0 2))" within 0 "$(gap awake asleep 0 2)" 2e-6
 # after that both roll: what differed by 1e-6 m/s and less at the beginning differs by some of that

@@ -176,6 +176,16 @@ for engine in '' '--engine tcc' '--engine tape'; do
     check "and gicrun's numbers" [ "$(sed -n 2p "$work/inputs.csv" | cut -d, -f5-)" = "$(ranges "$work/one.csv")" ]
 done
 
+# least and greatest of what stays negative
+sed 's/^inputs/initial: {coordinates: {s: -3}}\ninputs/' "$work/cart.scene" >"$work/left.scene"
+"$gicrun" -q "$work/cart.veh" "$work/left.scene" -o "$work/one.csv" 2>"$work/err"
+for engine in '' '--engine tape'; do
+    # shellcheck disable=SC2086  # words
+    "$gicsweep" -q $engine "$work/cart.veh" "$work/cart.scene" --vary s=-3:-2:2 -o "$work/left.csv" 2>"$work/err"
+    check "negative numbers $engine" [ "$(sed -n 2p "$work/left.csv" | cut -d, -f5-)" = "$(ranges "$work/one.csv")" ]
+done
+check "all of them" [ "$(sed -n 2p "$work/left.csv" | cut -d, -f7 | cut -c1)" = - ]
+
 # ---- runs that fail are rows
 
 "$gicsweep" "$car" "$work/s.scene" --vary spring_f_l=0.24:2:2 -o "$work/fail.csv" 2>"$work/err"

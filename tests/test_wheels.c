@@ -456,6 +456,36 @@ static void test_link(void **unused)
         }
 }
 
+/* What rolls begins anew: AB3 goes on as it does from the same state without a past. */
+static void test_roll_history(void **unused)
+{
+    (void)unused;
+    static const char *const rolling[] = {"tape", "gic", "gcp1", "tcc"};
+    for (size_t e = 0; e < sizeof rolling / sizeof *rolling; ++e) {
+        const Opened o = opened(models[0], rolling[e]);
+        const gic_model *code = o.engine->code;
+        const size_t states = (size_t)(code->slow_count + code->fast_count);
+        double begin[states], wanted[states], input[code->input_count],
+            *state = instance_array(o.self, code->state_offset);
+        for (int n = 0; n < 20; ++n)
+            assert_int_equal(gic_step(code, o.self, 0.001, GIC_AB3), GIC_OK);
+        assert_int_equal(code->roll(o.self), GIC_OK);
+        memcpy(begin, state, sizeof begin);
+        for (int n = 0; n < 3; ++n)
+            assert_int_equal(gic_step(code, o.self, 0.001, GIC_AB3), GIC_OK);
+        memcpy(wanted, state, sizeof wanted);
+        memcpy(input, instance_array(o.self, code->input_offset), sizeof input);
+        assert_int_equal(code->setup(o.self), GIC_OK);
+        memcpy(instance_array(o.self, code->input_offset), input, sizeof input);
+        memcpy(state, begin, sizeof begin);
+        for (int n = 0; n < 3; ++n)
+            assert_int_equal(gic_step(code, o.self, 0.001, GIC_AB3), GIC_OK);
+        for (size_t i = 0; i < states; ++i)
+            close_to(state[i], wanted[i], 1e-9 * (1 + fabs(wanted[i])));
+        closed(o);
+    }
+}
+
 /* Failures change nothing. */
 static void test_refused(void **unused)
 {
@@ -483,10 +513,10 @@ static void test_refused(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_contact), cmocka_unit_test(test_slope), cmocka_unit_test(test_mirror),
-        cmocka_unit_test(test_roll),    cmocka_unit_test(test_power), cmocka_unit_test(test_tmeasy),
-        cmocka_unit_test(test_pac2002), cmocka_unit_test(test_brake), cmocka_unit_test(test_link),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_contact), cmocka_unit_test(test_slope),        cmocka_unit_test(test_mirror),
+        cmocka_unit_test(test_roll),    cmocka_unit_test(test_power),        cmocka_unit_test(test_tmeasy),
+        cmocka_unit_test(test_pac2002), cmocka_unit_test(test_brake),        cmocka_unit_test(test_link),
+        cmocka_unit_test(test_refused), cmocka_unit_test(test_roll_history),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
