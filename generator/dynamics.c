@@ -5,7 +5,7 @@
  * coordinates' accelerations. The subsets have already summed up their bodies: what is left is the composite inertia,
  * one row a coordinate, and an elimination that takes the suspension coordinates first, because they couple only to the
  * base. */
-#include "gicgen.h"
+#include "dynamics.h"
 
 #include <string.h>
 
@@ -14,21 +14,7 @@
  * (FORMAT.md section 14). */
 static const double most_loss = 1e6;
 
-/* Sums over all subsets. */
-typedef struct Composite {
-    Ex mass, first[3], second[6]; /* about the base origin */
-    Ex force[3], moment[3];       /* quadratic-velocity terms */
-    Ex (*coupling)[7];            /* [coordinates] force and moment of a unit acceleration, quadratic-velocity force */
-    Ex *M;                        /* [coordinates][coordinates] upper triangle */
-} Composite;
-
-/* Add up numbers of the subsets' inertias. */
-typedef struct Summation {
-    const Whole *whole;
-    bool settled; /* those that are the same in every configuration, or those in memory */
-} Summation;
-
-static void add_all(const Summation *now, Ex *sum, int subset, int offset, int count)
+void dynamics_add(const Summation *now, Ex *sum, int subset, int offset, int count)
 {
     const Plan *plan = now->whole->plan;
     Dag *dag = now->whole->dag;
@@ -54,7 +40,8 @@ static void add_base(Whole *whole, Composite *c)
     const Body *base = &whole->model->body[BODY_BASE];
     Ex x[3], J[6], t[3], total = 0;
     for (int b = 0; b < whole->model->bodies; ++b)
-        total = ex_add(dag, total, whole_number(whole, &whole->model->body[b].mass));
+        if (whole_carrier(whole, b) == BODY_BASE)
+            total = ex_add(dag, total, whole_number(whole, &whole->model->body[b].mass));
     c->mass = total;
     Ex mass = whole_number(whole, &base->mass), square[3];
     for (int i = 0; i < 3; ++i) {
@@ -87,23 +74,23 @@ static void add_subset(const Summation *now, Composite *c, int s)
     const Model *model = now->whole->model;
     const Subset *subset = &now->whole->plan->sequence->subset[s];
     if (model->free_base) {
-        add_all(now, c->first, s, INERTIA_FIRST, 3);
-        add_all(now, c->second, s, INERTIA_SECOND, 6);
-        add_all(now, c->force, s, INERTIA_FORCE, 3);
-        add_all(now, c->moment, s, INERTIA_MOMENT, 3);
+        dynamics_add(now, c->first, s, INERTIA_FIRST, 3);
+        dynamics_add(now, c->second, s, INERTIA_SECOND, 6);
+        dynamics_add(now, c->force, s, INERTIA_FORCE, 3);
+        dynamics_add(now, c->moment, s, INERTIA_MOMENT, 3);
     }
     for (int j = 0; j < subset->deps; ++j) {
-        add_all(now, c->coupling[subset->dep[j]], s, INERTIA_COORDINATE + 7 * j, 7);
+        dynamics_add(now, c->coupling[subset->dep[j]], s, INERTIA_COORDINATE + 7 * j, 7);
         for (int k = j; k < subset->deps; ++k) {
             int row = subset->dep[j], column = subset->dep[k];
             if (row > column)
                 row = subset->dep[k], column = subset->dep[j];
-            add_all(now, &c->M[row * model->coordinates + column], s, inertia_mass(subset->deps, j, k), 1);
+            dynamics_add(now, &c->M[row * model->coordinates + column], s, inertia_mass(subset->deps, j, k), 1);
         }
     }
 }
 
-static Composite compose(Whole *whole)
+Composite dynamics_compose(Whole *whole)
 {
     const Sequence *sequence = whole->plan->sequence;
     Dag *dag = whole->dag;
@@ -113,7 +100,7 @@ static Composite compose(Whole *whole)
     /* constants come together */
     for (int settled = 1; settled >= 0; --settled)
         for (int s = 0; s < sequence->subsets; ++s)
-            if (sequence->subset[s].class >= 0)
+            if (sequence->subset[s].class >= 0 && sequence->subset[s].carrier == BODY_BASE)
                 add_subset(&(Summation){whole, settled}, &c, s);
     if (whole->model->free_base)
         add_base(whole, &c);
@@ -136,8 +123,7 @@ Ex *whole_driven_accelerations(Whole *whole)
     return w2;
 }
 
-/* Upper triangle of the reduced mass matrix. */
-static void mass_matrix(Whole *whole, const Composite *c, Ex *M, int n)
+void dynamics_matrix(Whole *whole, const Composite *c, Ex *M, int n)
 {
     Dag *dag = whole->dag;
     if (whole->model->free_base) {
@@ -166,8 +152,7 @@ static void mass_matrix(Whole *whole, const Composite *c, Ex *M, int n)
     }
 }
 
-/* Applied less quadratic-velocity forces less those of the driven accelerations. */
-static void right_hand_side(Whole *whole, const Composite *c, const Loads *loads, const Ex *driven, Ex *b)
+void dynamics_right(Whole *whole, const Composite *c, const Loads *loads, const Ex *driven, Ex *b)
 {
     Dag *dag = whole->dag;
     const Model *model = whole->model;
@@ -286,9 +271,7 @@ static int first_unknown(const Plan *plan, int number)
     return number;
 }
 
-/* What is left of an inertia must be more than lost of what there was, or accelerations along an unknown have lost too
- * many digits. Both may have a common factor. */
-static void check_left(Whole *whole, Block *block, int unknown, Ex left, Ex whole_of_it)
+void dynamics_check(Whole *whole, Block *block, int unknown, Ex left, Ex whole_of_it)
 {
     Dag *dag = whole->dag;
     const Plan *plan = whole->plan;
@@ -325,11 +308,11 @@ static void check_pivots(Whole *whole, Block *block, int n, const Ex *M, const F
             product = ex_mul(dag, product, f->pivot[end]);
         for (int own = end - 1; own >= k; --own) { /* of two that lose as much the later one, as without blocks */
             const Ex entry = M[n * f->row[own] + f->row[own]];
-            check_left(whole, block, first_unknown(whole->plan, f->row[own]), f->determinant[k],
+            dynamics_check(whole, block, first_unknown(whole->plan, f->row[own]), f->determinant[k],
                        end - k > 1 ? ex_mul(dag, entry, f->entry[n * own + own]) : entry);
         }
         if (end - k > 2)
-            check_left(whole, block, first_unknown(whole->plan, f->row[k]), f->determinant[k], product);
+            dynamics_check(whole, block, first_unknown(whole->plan, f->row[k]), f->determinant[k], product);
     }
 }
 
@@ -343,13 +326,13 @@ Block *dynamics_block(Whole *whole)
     int n = plan->unknowns;
     Ex *M = pool_alloc(dag->pool, ((size_t)n * (size_t)n + 1) * sizeof *M);
     Ex *z = pool_alloc(dag->pool, (size_t)(n + 1) * sizeof *z);
-    Composite c = compose(whole);
-    mass_matrix(whole, &c, M, n);
+    Composite c = dynamics_compose(whole);
+    dynamics_matrix(whole, &c, M, n);
     const Loads *loads = loads_make(whole);
     block_loads(block, loads->moment, 3);
     block_loads(block, loads->force, 3);
     block_loads(block, loads->along, whole->model->coordinates);
-    right_hand_side(whole, &c, loads, whole_driven_accelerations(whole), z);
+    dynamics_right(whole, &c, loads, whole_driven_accelerations(whole), z);
     if (plan->reduction) {
         reduce(dag, plan->reduction, n, &M, &z);
         n = plan->reduction->unknowns;
@@ -366,7 +349,7 @@ Block *dynamics_block(Whole *whole)
 /* ---- the same equations a second time, body by body: what the emitted self-test compares with ------------------- */
 
 /* Residual of Newton's and Euler's equations, projected on the coordinates, plus what moves it: nothing is shared with
- * compose(). */
+ * dynamics_compose(). */
 typedef struct Projection {
     Ex moment[3], force[3], *along;
 } Projection;
@@ -391,10 +374,11 @@ void whole_inertial_wrench(Whole *whole, int b, const Ex alpha[3], const Ex a[3]
     ex_add3(dag, moment, t, moment);
 }
 
-static void project_body(Whole *whole, int b, const Ex alpha[3], const Ex a[3], const Ex *w2, Projection *out)
+static void project_body(Whole *whole, int b, const Ex alpha[3], const Ex a[3], const Ex *w2, Ex wrench[6],
+                         Projection *out)
 {
     Dag *dag = whole->dag;
-    Ex wrench[6], t[3], *moment = wrench, *force = wrench + 3;
+    Ex t[3], *moment = wrench, *force = wrench + 3;
     whole_inertial_wrench(whole, b, alpha, a, w2, wrench);
     ex_cross(dag, whole->motion[b].c, force, t);
     ex_add3(dag, t, moment, t);
@@ -411,8 +395,10 @@ static Projection project(Whole *whole, const Loads *loads, const Ex alpha[3], c
 {
     Dag *dag = whole->dag;
     Projection p = {.along = pool_alloc(dag->pool, (size_t)(whole->model->coordinates + 1) * sizeof(Ex))};
+    Ex(*wrench)[6] = pool_alloc(dag->pool, (size_t)whole->model->bodies * sizeof *wrench);
     for (int b = whole->model->free_base ? 0 : 1; b < whole->model->bodies; ++b)
-        project_body(whole, b, alpha, a, w2, &p);
+        project_body(whole, b, alpha, a, w2, wrench[b], &p);
+    whole_hand_on(whole, (const Ex(*)[6])wrench, p.along);
     ex_sub3(dag, p.moment, loads->moment, p.moment);
     ex_sub3(dag, p.force, loads->force, p.force);
     for (int w = 0; w < whole->model->coordinates; ++w)
@@ -491,31 +477,27 @@ static Ex magnitude(Dag *dag, Ex e)
     return ex_op(dag, OP_ABS, e, 0, 0);
 }
 
-static Ex magnitude3(Dag *dag, const Ex v[3])
-{
-    return ex_add(dag, magnitude(dag, v[0]), ex_add(dag, magnitude(dag, v[1]), magnitude(dag, v[2])));
-}
-
 /* Sum of magnitudes of what the acceleration of a point of a body is made of; alpha: its own size. */
 static Ex acceleration_size(Whole *whole, int b, const Vector *point, const Ex alpha[3], const Ex a[3], const Ex *w2,
                             Ex *angular)
 {
     Dag *dag = whole->dag;
     const Motion *motion = &whole->motion[b];
-    Ex turn = magnitude3(dag, whole->turn), own = magnitude3(dag, motion->omega), all = ex_add(dag, turn, own);
-    Ex linear = ex_add(dag, magnitude3(dag, a), magnitude3(dag, whole->gravity));
-    *angular = ex_add(dag, magnitude3(dag, alpha), ex_mul(dag, all, all));
-    linear = ex_add(dag, linear, ex_mul(dag, *angular, magnitude3(dag, point->v)));
-    linear = ex_add(dag, linear, ex_mul(dag, turn, magnitude3(dag, point->rate)));
-    linear = ex_add(dag, linear, magnitude3(dag, point->bias));
-    *angular = ex_add(dag, *angular, magnitude3(dag, motion->alpha));
+    Ex turn = whole_magnitude3(whole, whole->turn), own = whole_magnitude3(whole, motion->omega), all = ex_add(dag, turn, own);
+    Ex linear = ex_add(dag, whole_magnitude3(whole, a), whole_magnitude3(whole, whole->gravity));
+    *angular = ex_add(dag, whole_magnitude3(whole, alpha), ex_mul(dag, all, all));
+    linear = ex_add(dag, linear, ex_mul(dag, *angular, whole_magnitude3(whole, point->v)));
+    linear = ex_add(dag, linear, ex_mul(dag, turn, whole_magnitude3(whole, point->rate)));
+    linear = ex_add(dag, linear, whole_magnitude3(whole, point->bias));
+    *angular = ex_add(dag, *angular, whole_magnitude3(whole, motion->alpha));
     for (int j = 0; b != BODY_BASE && j < whole_subset(whole, b)->deps; ++j) {
         const Ex *S = motion->S + 6 * j;
-        Ex rate = magnitude(dag, w2[whole_subset(whole, b)->dep[j]]), turning = ex_mul(dag, rate, magnitude3(dag, S));
+        Ex rate = magnitude(dag, w2[whole_subset(whole, b)->dep[j]]), turning = ex_mul(dag, rate, whole_magnitude3(whole, S));
         *angular = ex_add(dag, *angular, turning);
-        linear = ex_add(dag, linear, ex_mul(dag, turning, magnitude3(dag, point->arm)));
-        linear = ex_add(dag, linear, ex_mul(dag, rate, magnitude3(dag, S + 3)));
+        linear = ex_add(dag, linear, ex_mul(dag, turning, whole_magnitude3(whole, point->arm)));
+        linear = ex_add(dag, linear, ex_mul(dag, rate, whole_magnitude3(whole, S + 3)));
     }
+    whole_carry_size(whole, b, w2, point->v, angular, &linear);
     return linear;
 }
 
@@ -530,7 +512,7 @@ static void wrench_size(Whole *whole, const Loads *loads, int b, const Ex alpha[
     for (int i = 0; i < 3; ++i)
         inertia = ex_add(dag, inertia, whole_number(whole, &body->inertia[i]));
     Ex force = ex_mul(dag, whole_number(whole, &body->mass), linear);
-    Ex moment = ex_add(dag, ex_mul(dag, inertia, angular), ex_mul(dag, magnitude3(dag, com.arm), force));
+    Ex moment = ex_add(dag, ex_mul(dag, inertia, angular), ex_mul(dag, whole_magnitude3(whole, com.arm), force));
     size[0] = ex_add(dag, loads->size[b][0], moment);
     size[1] = ex_add(dag, loads->size[b][1], force);
     /* where all of one kind cancel, as about a hinge through the centre of mass, multipliers bring the rounding of the
@@ -564,19 +546,21 @@ Block *check_block(Whole *whole)
     whole_accelerations(whole, alpha, a, &w2);
     const Loads *loads = loads_make(whole);
     const Projection p = project(whole, loads, alpha, a, w2);
+    Ex(*sizes)[2] = pool_alloc(dag->pool, (size_t)model->bodies * sizeof *sizes);
     memcpy(along, loads->own_size, (size_t)model->coordinates * sizeof *along);
     for (int b = model->free_base ? 0 : 1; b < model->bodies; ++b) {
-        Ex size[2];
+        Ex *size = sizes[b];
         wrench_size(whole, loads, b, alpha, a, w2, size);
-        moment = ex_add(dag, moment, ex_add(dag, size[0], ex_mul(dag, size[1], magnitude3(dag, whole->motion[b].c))));
+        moment = ex_add(dag, moment, ex_add(dag, size[0], ex_mul(dag, size[1], whole_magnitude3(whole, whole->motion[b].c))));
         force = ex_add(dag, force, size[1]);
         for (int j = 0; b != BODY_BASE && j < whole_subset(whole, b)->deps; ++j) {
             const Ex *S = whole->motion[b].S + 6 * j;
             Ex *w = &along[whole_subset(whole, b)->dep[j]];
-            *w = ex_add(dag, *w, ex_mul(dag, size[0], magnitude3(dag, S)));
-            *w = ex_add(dag, *w, ex_mul(dag, size[1], magnitude3(dag, S + 3)));
+            *w = ex_add(dag, *w, ex_mul(dag, size[0], whole_magnitude3(whole, S)));
+            *w = ex_add(dag, *w, ex_mul(dag, size[1], whole_magnitude3(whole, S + 3)));
         }
     }
+    whole_hand_size_on(whole, (const Ex(*)[2])sizes, along);
     for (int i = 0; model->free_base && i < 3; ++i) {
         store_balance(block, i, p.moment[i], moment);
         store_balance(block, 3 + i, p.force[i], force);

@@ -11,7 +11,10 @@ static const char *model_hash(Pool *pool, const Model *model, const Sequence *se
     return pool_print(pool, "%016llx", (unsigned long long)text_hash(dump.s, dump.size));
 }
 
-const char *const solve_name[SOLVES] = {[SOLVE_REDUCED] = "reduced", [SOLVE_AUGMENTED] = "augmented"};
+const char *const solve_name[SOLVES] = {[SOLVE_AUTO] = "auto",
+                                         [SOLVE_REDUCED] = "reduced",
+                                         [SOLVE_ARTICULATED] = "articulated",
+                                         [SOLVE_AUGMENTED] = "augmented"};
 
 Solve solve_of(const char *name)
 {
@@ -35,18 +38,21 @@ Recovery recovery_of(const char *name)
 void formulation_blocks(Pool *pool, Formulation *f)
 {
     const Plan *plan = f->plan;
-    const bool reduced = plan->solve == SOLVE_REDUCED;
-    f->dynamics = (reduced ? dynamics_block : augmented_block)(whole_open(pool, plan, plan->pack));
+    Block *(*const dynamics[SOLVES])(Whole *) = {[SOLVE_REDUCED] = dynamics_block,
+                                                 [SOLVE_ARTICULATED] = articulated_block,
+                                                 [SOLVE_AUGMENTED] = augmented_block};
+    f->dynamics = dynamics[plan->solve](whole_open(pool, plan, plan->pack));
     f->outputs = outputs_block(whole_new(pool, plan));
     f->poses = poses_block(whole_new(pool, plan));
     f->inverse = inverse_block(whole_new(pool, plan));
     f->energy = energy_block(whole_new(pool, plan));
     f->check = check_block(whole_new(pool, plan));
-    f->wrenches = reduced ? wrenches_block(whole_new(pool, plan)) : NULL;
+    f->wrenches = plan->solve == SOLVE_AUGMENTED ? NULL : wrenches_block(whole_new(pool, plan));
     f->wheels = f->model->fast_states ? wheels_formulate(pool, plan) : NULL;
 }
 
-const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery)
+static Formulation *formulate_as(Pool *pool, const Model *model, const Sequence *sequence, Solve solve,
+                                 Recovery recovery)
 {
     double(*origin)[3] = reference_points(pool, model, sequence);
     const double(*fixed)[3] = (const double(*)[3])origin;
@@ -69,9 +75,46 @@ const Formulation *formulate(Pool *pool, const Model *model, const Sequence *seq
     return f;
 }
 
+/* Operations of a right-hand side, with one correction of Newton's iteration. */
+static int operations(Pool *pool, const Formulation *f)
+{
+    return count_sum(figures_rhs(figures_new(pool, f), 1, 1));
+}
+
+/* Coordinates that some subset's motion relative to the base depends on, at most. */
+static int deepest(const Sequence *sequence)
+{
+    int most = 0;
+    for (int s = 0; s < sequence->subsets; ++s)
+        most = sequence->subset[s].deps > most ? sequence->subset[s].deps : most;
+    return most;
+}
+
+const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery)
+{
+    /* work in the reduced form grows with the cube of this: beyond, the other form is not compared but taken */
+    const int compared = 12;
+    const bool chains = solve == SOLVE_ARTICULATED || (solve == SOLVE_AUTO && !articulated_missing(model));
+    const Sequence *chained = chains ? sequence_chain(pool, model, sequence) : NULL;
+    if (solve == SOLVE_ARTICULATED && articulated_missing(model))
+        diag_fail((Place){model->source, 0, 0}, "use the reduced form", "the articulated form has no %s",
+                  articulated_missing(model));
+    if (solve == SOLVE_ARTICULATED && !chained)
+        diag_fail((Place){model->source, 0, 0}, "use the reduced form, which is the same then",
+                  "the articulated form is for chains: every subset of this model hangs on the base or on several bodies");
+    if (!chained)
+        return formulate_as(pool, model, sequence, solve == SOLVE_AUGMENTED ? solve : SOLVE_REDUCED, recovery);
+    const bool only = solve == SOLVE_ARTICULATED || deepest(sequence) > compared;
+    const Formulation *articulated = formulate_as(pool, model, chained, SOLVE_ARTICULATED, recovery);
+    if (only)
+        return articulated;
+    const Formulation *reduced = formulate_as(pool, model, sequence, SOLVE_REDUCED, recovery);
+    return operations(pool, articulated) < operations(pool, reduced) ? articulated : reduced;
+}
+
 bool formulation_reacts(const Formulation *f)
 {
-    return f->plan->solve == SOLVE_REDUCED && f->plan->multipliers;
+    return f->plan->solve != SOLVE_AUGMENTED && f->plan->multipliers;
 }
 
 static StateNumber fast_number(Pool *pool, const Model *model, int index)

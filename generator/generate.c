@@ -51,6 +51,8 @@ static void write_counts(Generation *g, Text *out)
         out,
         g->plan->solve == SOLVE_AUGMENTED
             ? " * Equations of motion in the augmented form (Serban and Haug 2000, eq. 16), bodies eliminated first.\n"
+        : g->plan->solve == SOLVE_ARTICULATED
+            ? " * Equations of motion in the articulated form: coordinates eliminated along chains, from the tips.\n"
             : " * Equations of motion in the reduced form (Serban and Haug 2000, Proposition 2.1).\n");
     text_print(
         out,
@@ -562,6 +564,9 @@ void insert_code(void *context, const char *name, Text *out, int indent)
         if (g->plan->solve == SOLVE_AUGMENTED)
             text_print(out, "/* Applied forces, multipliers of all constraints once the bodies are eliminated, "
                             "accelerations.\n * rate = d state / dt; lambda: the multipliers that outputs need. */\n");
+        else if (g->plan->solve == SOLVE_ARTICULATED)
+            text_print(out, "/* Applied forces; coordinates of what is carried eliminated from the tips to the base, "
+                            "accelerations from the base\n * to the tips. rate = d state / dt. */\n");
         else
             text_print(out,
                        "/* Applied forces, composite inertia, and elimination of %d accelerations: alpha and a of a "

@@ -410,6 +410,14 @@ static void write_kept(const LaneRow *row, Text *out, int indent, int members)
         for (int l = 0; l < members; ++l)
             if (!l || row_subset(row, l)->dep[j] != first->dep[j])
                 text_print(out, " && links->same[%d]", row_subset(row, l)->dep[j]);
+    for (int l = 0; l < members; ++l) {
+        /* and of all that carries it */
+        for (const Subset *at = row_subset(row, l); at->carrier != BODY_BASE;) {
+            at = &row->g->sequence->subset[row->g->sequence->body_subset[at->carrier]];
+            for (int j = 0; j < at->deps; ++j)
+                text_print(out, " && links->same[%d]", at->dep[j]);
+        }
+    }
     text_print(out, ";\n");
     line(out, indent, "self->head.kept_count += kept ? %d : 0;", members);
     if (plan->formula[first->class]->layout.start_size)

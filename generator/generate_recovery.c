@@ -59,10 +59,15 @@ static const char *start_text(const Generation *g, int s)
 static int open_kept(Generation *g, Text *out, int indent, const Subset *subset, int s)
 {
     const int offset = g->plan->start_offset[s], numbers = g->plan->formula[subset->class]->layout.start_size;
-    text_print(out, "%*sif (links->again", indent, "");
+    const int carrier = subset->carrier == BODY_BASE ? -1 : g->sequence->body_subset[subset->carrier];
+    const char *before = carrier < 0 ? "links->again" : pool_print(g->pool, "kept_%d", carrier);
+    const bool carries = sequence_carries(g->sequence, s);
+    text_print(out, "%*s%s%s", indent, "", carries ? pool_print(g->pool, "const int kept_%d = ", s) : "if (", before);
     for (int j = 0; j < subset->deps; ++j)
         text_print(out, " && links->same[%d]", subset->dep[j]);
-    text_print(out, ") {\n");
+    text_print(out, carries ? ";\n" : ") {\n");
+    if (carries)
+        line(out, indent, "if (kept_%d) {", s);
     line(out, indent + 4, "++self->head.kept_count;");
     if (numbers)
         line(out, indent + 4, "memcpy(start + %d, old + %d, %d * sizeof *start);", offset, offset, numbers);

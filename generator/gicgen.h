@@ -20,9 +20,10 @@
 
 /* ---- subset.c, follow.c, inertia.c: recovery of one class of decoupled subsets ----------------------------- */
 
-/* How accelerations are found: in the reduced form of Proposition 2.1 of Serban and Haug 2000, or in the augmented form
- * of their eq. 16. */
-typedef enum Solve { SOLVE_REDUCED, SOLVE_AUGMENTED, SOLVES } Solve;
+/* How accelerations are found: in the reduced form of Proposition 2.1 of Serban and Haug 2000; the same equations
+ * eliminated along chains of bodies, from their tips; or in the augmented form of their eq. 16. Auto: of the first two
+ * the one with fewer operations. A Plan has never auto. */
+typedef enum Solve { SOLVE_AUTO, SOLVE_REDUCED, SOLVE_ARTICULATED, SOLVE_AUGMENTED, SOLVES } Solve;
 
 extern const char *const solve_name[SOLVES]; /* as on the command line: "reduced" */
 /* By that name; SOLVES: there is none of that name. */
@@ -45,7 +46,7 @@ typedef struct Layout {
     int inertia_size;
 } Layout;
 
-/* inertia: first and second moments about the base origin in the base frame, force and moment of the quadratic-velocity
+/* inertia: first and second moments about the base origin (the carrier's reference point) in the base frame, force and moment of the quadratic-velocity
  * terms, then 7 numbers a coordinate (force and moment of its unit acceleration, quadratic-velocity force along it),
  * then the upper triangle of the coordinates' mass matrix. */
 enum { INERTIA_FIRST = 0, INERTIA_SECOND = 3, INERTIA_FORCE = 9, INERTIA_MOMENT = 12, INERTIA_COORDINATE = 15 };
@@ -86,8 +87,6 @@ Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **seq
  * numbers are not in memory. */
 bool formula_settled(const Formula *f, Ex e);
 double formula_value(const Formula *f, Ex e, int member);
-/* anchor.c: the body in whose frame a subset is solved, or BODY_BASE. */
-int subset_anchor(const Model *model, const Sequence *sequence, int subset);
 /* Reference points of all bodies [bodies][3], body frames: where a joint to something known sits. */
 double (*reference_points(Pool *pool, const Model *model, const Sequence *sequence))[3];
 
@@ -188,6 +187,9 @@ typedef struct Whole {
     Ex *x, *xd;                /* [coordinates] */
     bool open;                 /* numbers that are known stay inputs, for block_pack to compare */
     bool sized;                /* loads know the magnitudes of their terms */
+    const Ex *carried_by;      /* carry.c: the accelerations of coordinates that these belong to; NULL: there are none */
+    Ex (*carried)[6];          /* [bodies] what they give: angular, that of the reference point */
+    Ex (*carried_size)[2];     /* [bodies] sums of magnitudes of the terms */
 } Whole;
 
 Whole *whole_new(Pool *pool, const Plan *plan);
@@ -215,8 +217,24 @@ Ex whole_fast(Whole *whole, const char *array, int wheel, int state);
 Ex whole_grip(Whole *whole, int wheel, int number);
 /* What the powertrain does: a number of its watch[]. */
 Ex whole_watch(Whole *whole, int number);
-/* Coordinates that a body's motion depends on. */
+/* Coordinates that a body's motion relative to its carrier depends on. */
 const Subset *whole_subset(const Whole *whole, int body);
+
+/* ---- carry.c: chained sequences ------------------------------------------------------------------------------ */
+
+/* The body that carries this one, or BODY_BASE. */
+int whole_carrier(const Whole *whole, int body);
+/* Add to the angular acceleration of a body, and to the acceleration of a point of it at `at` relative to the base, what
+ * the accelerations w2 [coordinates] of others than its own coordinates give them. Nothing where the base carries it. */
+void whole_carry(Whole *whole, int body, const Ex *w2, const Ex at[3], Ex angular[3], Ex linear[3]);
+/* The same for sums of magnitudes of their terms. */
+void whole_carry_size(Whole *whole, int body, const Ex *w2, const Ex at[3], Ex *angular, Ex *linear);
+/* Wrenches [bodies], moment about the reference point and force, go from bodies to those that carry them; along
+ * [coordinates] gets what they add there, those of the bodies themselves not counted. */
+void whole_hand_on(Whole *whole, const Ex (*wrench)[6], Ex *along);
+/* The same for sums of magnitudes of moments and of forces. */
+void whole_hand_size_on(Whole *whole, const Ex (*size)[2], Ex *along);
+Ex whole_magnitude3(Whole *whole, const Ex v[3]); /* |x| + |y| + |z| */
 
 /* ---- table.c: tables of FORMAT.md section 7 ----------------------------------------------------------------- */
 
@@ -307,6 +325,10 @@ int wheel_rolling(const Model *model, int wheel);
 
 /* rate[] of the whole state, reduced form; checks the pivots of the mass matrix. */
 Block *dynamics_block(Whole *whole);
+/* articulated.c: the same of a chained sequence, coordinates of carried subsets eliminated from the tips. */
+Block *articulated_block(Whole *whole);
+/* What the model has that the articulated form is not for, NULL: nothing. */
+const char *articulated_missing(const Model *model);
 /* Accelerations of the driven coordinates, as inputs give them; 0 for the others [coordinates]. */
 Ex *whole_driven_accelerations(Whole *whole);
 /* rate[] from the accelerations z [unknowns]. */
@@ -385,7 +407,8 @@ typedef struct Formulation {
     const struct Formulation *general; /* for one scene: the same model's for all; NULL: for all */
 } Formulation;
 
-/* From an assembled model. Models that can't be formulated end in diag_fail. */
+/* From an assembled model. The sequence of the articulated form is chained. Models that can't be formulated end in
+ * diag_fail. */
 const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery);
 
 /* The blocks of a formulation, from its plan. */

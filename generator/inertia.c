@@ -71,17 +71,20 @@ static void accumulate(Dag *dag, Ex *sum, const Ex *more, int count)
 
 /* What one body adds to the subset's inertia numbers. Velocities are taken in the inertial frame that moves with the
  * base's origin, and the acceleration of the base enters as a = acceleration - gravity: both then appear in the global
- * equations alone. */
+ * equations alone. Moments are about the base's origin, or about the carrier's reference point. */
 static void add_body_inertia(Work *w, int b, const Motion *m, const Ex turn[3], Ex *sum)
 {
     Dag *dag = w->dag;
     int deps = m->deps;
-    Ex mass = subset_constant(w, get_mass, b, 0), J[6], s[3], arm[3], x[3], mx[3], t[3], u[3];
+    Ex mass = subset_constant(w, get_mass, b, 0), J[6], s[3], arm[3], x[3], at[3], mx[3], t[3], u[3];
     rotated_inertia(w, b, m->A, J);
     for (int i = 0; i < 3; ++i)
         s[i] = subset_constant(w, get_origin, b, i);
     ex_apply(dag, m->A, s, arm);
     ex_add3(dag, m->c, arm, x);
+    memcpy(at, x, sizeof at);
+    if (w->first->carrier != BODY_BASE)
+        ex_sub3(dag, x, w->known[0].c, x);
     ex_scale3(dag, mass, x, mx);
     accumulate(dag, sum + INERTIA_FIRST, mx, 3);
     Ex xx = ex_mul(dag, mx[0], x[0]), yy = ex_mul(dag, mx[1], x[1]), zz = ex_mul(dag, mx[2], x[2]);
@@ -95,7 +98,7 @@ static void add_body_inertia(Work *w, int b, const Motion *m, const Ex turn[3], 
     Ex velocity[3], force[3], whirl[3];
     ex_cross(dag, m->omega, arm, whirl);
     ex_add3(dag, m->velocity, whirl, velocity);
-    ex_cross(dag, turn, x, t);
+    ex_cross(dag, turn, at, t);
     ex_add3(dag, t, velocity, t);
     ex_add3(dag, t, velocity, t);
     ex_cross(dag, turn, t, force);

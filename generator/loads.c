@@ -65,6 +65,7 @@ static void project(Whole *whole, Loads *loads)
             *along = ex_add(dag, *along, ex_add(dag, ex_dot(dag, moment, S), ex_dot(dag, force, S + 3)));
         }
     }
+    whole_hand_on(whole, (const Ex(*)[6])loads->wrench, loads->along);
 }
 
 /* A torque (base frame) on a body. */

@@ -26,7 +26,8 @@ static const char usage[] =
     "  -o FILE          where to write; FILE.c gets a FILE.h beside it; `-` is standard output\n"
     "  --lanes W        alike parts of the vehicle side by side in vectors of up to W numbers, a power of 2 up to 16;\n"
     "                   with --batch: vehicles in one vector (default 4). The code is for gcc and clang\n"
-    "  --solve FORM     of the equations of motion: reduced (default) or augmented, with all multipliers\n"
+    "  --solve FORM     of the equations of motion: auto (default: fewer operations), reduced, articulated for long\n"
+    "                   chains, or augmented, with all multipliers\n"
     "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
     "  --scene FILE     also with --report: what the scene saves, and why\n"
     "  --templates DIR  take templates from DIR instead of the built-in ones\n"
@@ -116,7 +117,7 @@ static Options read_options(int count, char **word)
             formed = true;
             options.solve = solve_of(form);
             if (options.solve == SOLVES)
-                usage_error("--solve takes reduced or augmented, not", form);
+                usage_error("--solve takes auto, reduced, articulated or augmented, not", form);
         } else if (!strcmp(w, "--recovery")) {
             const char *way = argument(count, word, &i);
             recovered = true;

@@ -613,7 +613,7 @@ static const Mirror *find_mirror(Narrower *n, Solve solve)
         *why = "the base is fixed";
     if (!*why && n->model->tuning)
         *why = "geometric parameters are not those of the file";
-    if (!*why && solve != SOLVE_REDUCED)
+    if (!*why && solve == SOLVE_AUGMENTED)
         *why = "the equations of motion are in the augmented form";
     if (!*why && has_reactions(n->model))
         *why = "reaction forces of joints are asked for";
@@ -635,7 +635,9 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
 {
     n->whole = givens_new(n->pool);
     n->fast = givens_new(n->pool);
-    n->general = formulate(n->pool, n->model, split_classes(n, sequence), solve, recovery);
+    /* what a scene holds still is told by the coordinates that a body depends on, all the way to the base */
+    n->general = formulate(n->pool, n->model, split_classes(n, sequence), solve == SOLVE_AUGMENTED ? solve : SOLVE_REDUCED,
+                           recovery);
     const Plan *plan = n->general->plan;
     n->plan = narrow_copy(n->pool, plan, 1, sizeof *n->plan);
     n->plan->formula =

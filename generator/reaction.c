@@ -129,7 +129,7 @@ void whole_reaction(Whole *whole, int index, Ex force[3], Ex torque[3])
     tuning_copy(whole->model, origin[joint->body[0]], plan->origin[joint->body[0]], 3);
     tuning_copy(whole->model, origin[joint->body[1]], joint->point[1], 3);
     Fixture fixture = whole_joint_fixture(whole, joint, (const double(*)[3])origin);
-    if (plan->solve == SOLVE_REDUCED)
+    if (plan->solve != SOLVE_AUGMENTED)
         add_across(whole, index, &fixture, &first);
     Row row[ROWS_MAX];
     int rows = joint_rows(dag, joint->type, &fixture, end, sequence_known_end(plan->sequence, joint), row),

@@ -174,19 +174,36 @@ static Ex unit_error(const Residual *r, int j, Ex *norm)
     return error;
 }
 
+/* Velocity that a body would have as a part of the subset's carrier: angular, linear. */
+static void carried_velocity(const Residual *r, const Motion *motion, Ex out[6])
+{
+    Dag *dag = r->dag;
+    const Motion *carrier = &r->w->known[0];
+    Ex arm[3];
+    if (r->w->first->carrier == BODY_BASE)
+        return;
+    ex_sub3(dag, motion->c, carrier->c, arm);
+    ex_cross(dag, carrier->omega, arm, out + 3);
+    ex_add3(dag, out + 3, carrier->velocity, out + 3);
+    memcpy(out, carrier->omega, sizeof carrier->omega);
+}
+
 /* Velocities against unit velocities times rates. */
 static Ex velocity_error(const Residual *r)
 {
     Dag *dag = r->dag;
     Ex error = 0;
-    for (int b = 0; b < r->w->first->bodies; ++b)
+    for (int b = 0; b < r->w->first->bodies; ++b) {
+        const Motion *motion = &r->found[b];
+        Ex carried[6] = {0};
+        carried_velocity(r, motion, carried);
         for (int i = 0; i < 6; ++i) {
-            const Motion *motion = &r->found[b];
-            Ex excess = i < 3 ? motion->omega[i] : motion->velocity[i - 3];
+            Ex excess = ex_sub(dag, i < 3 ? motion->omega[i] : motion->velocity[i - 3], carried[i]);
             for (int j = 0; j < r->w->first->deps; ++j)
                 excess = ex_sub(dag, excess, ex_mul(dag, motion->S[6 * j + i], r->w->rate[j]));
             error = plus(dag, error, i < 3 ? excess : ex_mul(dag, r->per_size, excess));
         }
+    }
     return error;
 }
 
@@ -215,7 +232,10 @@ static Ex motion_error(const Residual *r)
     const Subset *first = r->w->first;
     Ex sum = 0, speed = 0, growth = 0;
     for (int b = 0; b < first->bodies; ++b) {
+        Ex carried[6] = {0};
+        carried_velocity(r, &r->found[b], carried);
         speed = ex_add(dag, speed, twist_size(r, r->found[b].omega, r->found[b].velocity));
+        speed = ex_add(dag, speed, twist_size(r, carried, carried + 3));
         growth = ex_add(dag, growth, acceleration_size(r, &r->found[b]));
     }
     for (int k = 0; k < first->knowns; ++k)

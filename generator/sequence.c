@@ -252,14 +252,14 @@ static void edge_rank(const Finder *finder, Vertex *vertex, Vertex *edge)
 }
 
 /* Ranks, ends and first colours. A known ranks by the number of coordinates that it depends on, and its first colour
- * tells how many of them it shares with other knowns. */
-static void vertices_paint(Finder *finder, Vertex *vertex, int count)
+ * tells how many of them it shares with other knowns. How a carrier moves makes no difference. */
+static void vertices_paint(Finder *finder, Vertex *vertex, int count, int carrier)
 {
     knowns_share(finder, vertex, count, 1);
     for (int i = 0; i < count; ++i)
         if (vertex[i].kind >= VERTEX_JOINT)
             edge_rank(finder, vertex, &vertex[i]);
-        else if (vertex[i].kind == VERTEX_KNOWN)
+        else if (vertex[i].kind == VERTEX_KNOWN && vertex[i].index != carrier)
             vertex[i].rank = subset_of(finder, vertex[i].index)->deps;
     for (int i = 0; i < count; ++i) {
         uint64_t shared = 0;
@@ -273,7 +273,7 @@ static void vertices_paint(Finder *finder, Vertex *vertex, int count)
     knowns_share(finder, vertex, count, -1);
 }
 
-/* Own coordinates, then those of the knowns, each once. Leaves their positions in finder->position. */
+/* Own coordinates, then those of the knowns but for a carrier, each once. Leaves their positions in finder->position. */
 static void deps_fill(Finder *finder, Subset *subset)
 {
     int most = subset->coordinates;
@@ -286,7 +286,7 @@ static void deps_fill(Finder *finder, Subset *subset)
     }
     for (int i = 0; i < subset->knowns; ++i) {
         const Subset *known = subset_of(finder, subset->known[i]);
-        for (int d = 0; d < known->deps; ++d)
+        for (int d = 0; d < known->deps && subset->known[i] != subset->carrier; ++d)
             if (finder->position[known->dep[d]] < 0) {
                 finder->position[known->dep[d]] = subset->deps;
                 subset->dep[subset->deps++] = known->dep[d];
@@ -305,7 +305,7 @@ static void subset_order(Finder *finder, Subset *subset)
         vertex_add(finder, &vertex, &count, VERTEX_JOINT, subset->joint[i]);
     for (int i = 0; i < subset->coordinates; ++i)
         vertex_add(finder, &vertex, &count, VERTEX_COORDINATE, subset->coordinate[i]);
-    vertices_paint(finder, vertex, count);
+    vertices_paint(finder, vertex, count, subset->carrier);
     Vertex *sorted = pool_alloc(finder->pool, (size_t)count * sizeof *sorted);
     vertices_order(vertex, count, sorted);
     subset->knowns = count - subset->bodies - subset->joints - subset->coordinates;
@@ -368,7 +368,10 @@ static Signature signature_make(Finder *finder, int index)
         signature_add_edge(finder, &signature, (int)coordinate->type, coordinate->body);
     }
     for (int i = 0; i < subset->knowns; ++i)
-        signature_add_known(finder, &signature, subset_of(finder, subset->known[i]));
+        if (subset->known[i] == subset->carrier)
+            signature_add(finder, &signature, -1);
+        else
+            signature_add_known(finder, &signature, subset_of(finder, subset->known[i]));
     return signature;
 }
 
@@ -469,7 +472,8 @@ int sequence_known_end(const Sequence *sequence, const Joint *joint)
     return sequence->body_subset[joint->body[0]] > sequence->body_subset[joint->body[1]];
 }
 
-const Sequence *sequence_find(Pool *pool, const Model *model)
+/* carrier [subsets]; NULL: the base carries all. */
+static const Sequence *find(Pool *pool, const Model *model, const int *carrier)
 {
     Graph *graph = graph_new(pool, model);
     int *component = ints(pool, model->bodies, 0);
@@ -486,6 +490,7 @@ const Sequence *sequence_find(Pool *pool, const Model *model)
     Signature *signature = pool_alloc(pool, (size_t)count * sizeof *signature);
     for (int i = 0; i < count; ++i) {
         Subset *subset = &sequence->subset[i + model->free_base];
+        subset->carrier = carrier ? carrier[i + model->free_base] : BODY_BASE;
         subset_order(&finder, subset);
         deps_fill(&finder, subset);
         signature[i] = signature_make(&finder, i + model->free_base);
@@ -499,4 +504,37 @@ const Sequence *sequence_find(Pool *pool, const Model *model)
         sequence->equations += joint_equations[model->joint[i].type];
     sequence->dof = sequence->unknowns - sequence->equations;
     return sequence;
+}
+
+const Sequence *sequence_find(Pool *pool, const Model *model)
+{
+    return find(pool, model, NULL);
+}
+
+const Sequence *sequence_chain(Pool *pool, const Model *model, const Sequence *sequence)
+{
+    int *carrier = ints(pool, sequence->subsets, 0);
+    bool any = false;
+    for (int s = 0; s < sequence->subsets; ++s)
+        carrier[s] = sequence->subset[s].class < 0 ? BODY_BASE : subset_anchor(model, sequence, s);
+    /* knowns stand before those that need them relative to the base */
+    for (int s = sequence->subsets - 1; s >= 0; --s) {
+        const Subset *subset = &sequence->subset[s];
+        any = any || carrier[s] != BODY_BASE;
+        for (int i = 0; carrier[s] == BODY_BASE && i < subset->knowns; ++i)
+            carrier[sequence->body_subset[subset->known[i]]] = BODY_BASE;
+    }
+    if (!any)
+        return NULL;
+    Sequence *chained = (Sequence *)find(pool, model, carrier);
+    chained->chained = true;
+    return chained;
+}
+
+bool sequence_carries(const Sequence *sequence, int subset)
+{
+    for (int s = subset + 1; s < sequence->subsets; ++s)
+        if (sequence->subset[s].carrier != BODY_BASE && sequence->body_subset[sequence->subset[s].carrier] == subset)
+            return true;
+    return false;
 }

@@ -16,7 +16,8 @@ typedef struct Subset {
     int joints, *joint;           /* their joints, canonical order */
     int coordinates, *coordinate; /* dual coordinates whose definition is among the equations, canonical order */
     int knowns, *known;           /* bodies other than the base, solved before, that a joint or coordinate refers to */
-    int deps, *dep; /* coordinates that its bodies' motion relative to the base depends on: own ones first */
+    int carrier;    /* BODY_BASE; of a chained sequence also the one body that the subset hangs on */
+    int deps, *dep; /* coordinates that its bodies' motion relative to the carrier depends on: own ones first */
     int class;      /* isomorphism class, index into Sequence.class; -1 for the base */
 } Subset;
 
@@ -33,11 +34,19 @@ typedef struct Sequence {
     Class *class;
     int *body_subset;             /* [bodies] subset that yields a body */
     int unknowns, equations, dof; /* of the whole model in Euler parameters: 7 a body, normalizations counted */
+    bool chained;                 /* some subset has a carrier other than the base */
 } Sequence;
 
 /* Find the finest sequence over whole bodies and joints. Over- and under-determined models end in diag_fail
  * naming the bodies, joints and coordinates concerned and what to add or remove. */
 const Sequence *sequence_find(Pool *pool, const Model *model);
+/* anchor.c: the body in whose frame a subset is solved, or BODY_BASE. */
+int subset_anchor(const Model *model, const Sequence *sequence, int subset);
+/* The same sequence with carriers: a subset that hangs on one body other than the base is described relative to that
+ * body, unless a subset with several known bodies needs it relative to the base. NULL: nothing hangs so. */
+const Sequence *sequence_chain(Pool *pool, const Model *model, const Sequence *sequence);
+/* Does a body of the subset carry another subset? */
+bool sequence_carries(const Sequence *sequence, int subset);
 /* Stages, subsets, unknowns, equations, joints, classes as a table for people. */
 void sequence_print(Text *out, const Model *model, const Sequence *sequence);
 /* Which member of a class a subset is, which body of a subset a body. */

@@ -128,13 +128,20 @@ static Ex *make_inputs(Work *w, const char *name, int count)
     return e;
 }
 
+/* How many coordinates of a known are among ours: none of a carrier's. */
+static int known_deps(const Work *w, int known)
+{
+    const int body = w->first->known[known];
+    return body == w->first->carrier ? 0 : w->sequence->subset[w->sequence->body_subset[body]].deps;
+}
+
 /* S of a known refers to the deps of its own subset: order it by ours. */
 static void order_by_deps(Work *w, int known)
 {
     Motion *m = &w->known[known];
     const Subset *own = &w->sequence->subset[w->sequence->body_subset[w->first->known[known]]];
     Ex *S = pool_alloc(w->pool, (size_t)(6 * w->first->deps) * sizeof *S);
-    for (int j = 0; j < own->deps; ++j)
+    for (int j = 0; j < known_deps(w, known); ++j)
         memcpy(S + 6 * place_of(w->first->dep, w->first->deps, own->dep[j]), m->S + 6 * j, 6 * sizeof *S);
     m->S = S;
     m->deps = w->first->deps;
@@ -146,8 +153,7 @@ static void make_motions(Work *w)
     motion_base(w->dag, &w->base);
     w->known = pool_alloc(w->pool, (size_t)(first->knowns + 1) * sizeof *w->known);
     for (int i = 0; i < first->knowns; ++i) {
-        const Subset *own = &w->sequence->subset[w->sequence->body_subset[first->known[i]]];
-        motion_input(w->dag, &w->known[i], pool_print(w->pool, "m%d", i), 0, 1, own->deps);
+        motion_input(w->dag, &w->known[i], pool_print(w->pool, "m%d", i), 0, 1, known_deps(w, i));
         order_by_deps(w, i);
     }
     w->q = make_inputs(w, "q", 7 * first->bodies);
@@ -447,7 +453,7 @@ static Layout make_layout(const Work *w, int factors, Solve solve, bool closed)
                     .start_factors = start_factors,
                     .start_size = start_factors + factors,
                     .motion_size = MOTION_S + 6 * deps,
-                    .inertia_size = solve == SOLVE_REDUCED ? inertia_mass(deps, deps, deps) : 0};
+                    .inertia_size = solve != SOLVE_AUGMENTED ? inertia_mass(deps, deps, deps) : 0};
 }
 
 static Formula *formula_new(Work *w, bool closed)
@@ -502,7 +508,7 @@ static void finish(Work *w, Formula *formula, Solve solve, const Factors *factor
         memcpy(formula->across[i], w->connection[i].across, sizeof formula->across[i]);
     const Row *row = rows_from_memory(w, formula);
     subset_residual(w, formula);
-    if (solve == SOLVE_REDUCED)
+    if (solve != SOLVE_AUGMENTED)
         subset_react(w, remembered, row, &formula->react);
     if (formula->closed && !formula->react.stores)
         *layout = make_layout(w, count = 0, solve, true);
@@ -513,10 +519,10 @@ static void finish(Work *w, Formula *formula, Solve solve, const Factors *factor
     }
     for (int i = 0; i < count; ++i)
         block_store(&formula->solve, stored[i], "start[%d]", layout->start_factors + i);
-    if (solve == SOLVE_REDUCED)
+    if (solve != SOLVE_AUGMENTED)
         formula->inertia = subset_inertia(w, layout, motion);
     /* a fixed base has no equations of its own */
-    for (int i = w->model->free_base ? 0 : INERTIA_COORDINATE; i < layout->inertia_size; ++i)
+    for (int i = w->model->free_base || w->first->carrier != BODY_BASE ? 0 : INERTIA_COORDINATE; i < layout->inertia_size; ++i)
         block_store(&formula->solve, formula->inertia[i], "inertia[%d]", i);
     if (!formula->closed)
         make_step(w, remembered, &formula->chord, pool_alloc(w->pool, (size_t)(7 * layout->bodies) * sizeof(Ex)));
@@ -646,8 +652,7 @@ static int recovery_cost(const Formula *formula)
 static void settle_knowns(Work *w, Formula *const *formula)
 {
     for (int i = 0; i < w->first->knowns; ++i) {
-        const Subset *own = &w->sequence->subset[w->sequence->body_subset[w->first->known[i]]];
-        motion_input(w->dag, &w->known[i], pool_print(w->pool, "m%d", i), 0, 1, own->deps);
+        motion_input(w->dag, &w->known[i], pool_print(w->pool, "m%d", i), 0, 1, known_deps(w, i));
         subset_settle(w, formula, i, &w->known[i]);
         order_by_deps(w, i);
     }

@@ -139,18 +139,56 @@ static void accelerate_base(Comparison *c, const double a[3], const double alpha
     set_rate(world, BODY_BASE, out, alpha, world->qdd);
 }
 
+/* Add S of a body, of its reference point, times a rate, for the j-th coordinate of a body that carries it or of itself. */
+static void add_unit_motion(const Comparison *c, int b, int from, int j, double rate, double out[6])
+{
+    double at[3], origin[3], arm[3], swing[3], S[6];
+    motion3(c, b, MOTION_C, at);
+    motion3(c, from, MOTION_C, origin);
+    sub3(at, origin, arm);
+    for (int i = 0; i < 6; ++i)
+        S[i] = rate * run_motion(c->v.run, from, MOTION_S + 6 * j + i, c->k);
+    cross3(S, arm, swing);
+    for (int i = 0; i < 6; ++i)
+        out[i] += S[i] + (i < 3 || from == b ? 0 : swing[i - 3]);
+}
+
+static const Subset *subset_of(const Comparison *c, int body)
+{
+    const Sequence *sequence = c->v.run->plan->sequence;
+    return &sequence->subset[sequence->body_subset[body]];
+}
+
+/* What the accelerations of all coordinates give a body. */
+static void add_unit_motions(const Comparison *c, int b, double own[6])
+{
+    for (int body = b; body != BODY_BASE; body = subset_of(c, body)->carrier)
+        for (int j = 0; j < subset_of(c, body)->deps; ++j)
+            add_unit_motion(c, b, body, j, c->world->xdd[subset_of(c, body)->dep[j]], own);
+}
+
+/* S of one coordinate; false: the body does not move with it. */
+static bool find_unit_motion(const Comparison *c, int b, int coordinate, double S[6])
+{
+    bool found = false;
+    for (int body = b; body != BODY_BASE; body = subset_of(c, body)->carrier)
+        for (int j = 0; j < subset_of(c, body)->deps; ++j)
+            if (subset_of(c, body)->dep[j] == coordinate) {
+                found = true;
+                add_unit_motion(c, b, body, j, 1, S);
+            }
+    return found;
+}
+
 static void accelerate_body(Comparison *c, int b, const double base_a[3], const double base_alpha[3])
 {
     World *world = c->world;
     const Run *run = c->v.run;
     const double *B = world->A[BODY_BASE], *turn = world->omega[BODY_BASE], *omega = world->omega[b];
-    const Subset *subset = &run->plan->sequence->subset[run->plan->sequence->body_subset[b]];
     double own[6], alpha[3], a[3], t[3], s[3], to_point[3], to_mass[3], arm[3], relative[3];
     motion3(c, b, MOTION_ALPHA, own);
     motion3(c, b, MOTION_ACCELERATION, own + 3);
-    for (int j = 0; j < subset->deps; ++j)
-        for (int i = 0; i < 6; ++i)
-            own[i] += run_motion(run, b, MOTION_S + 6 * j + i, c->k) * world->xdd[subset->dep[j]];
+    add_unit_motions(c, b, own);
     motion3(c, b, MOTION_C, t);
     apply3(B, t, to_point);
     motion3(c, b, MOTION_OMEGA, t);
@@ -251,20 +289,15 @@ static void unit_rates(Comparison *c, int coordinate)
     const double *B = world->A[BODY_BASE];
     memset(c->twist, 0, sizeof *c->twist * (size_t)world->bodies);
     for (int b = 1; b < world->bodies; ++b) {
-        const Subset *subset = &run->plan->sequence->subset[run->plan->sequence->body_subset[b]];
-        for (int j = 0; j < subset->deps; ++j) {
-            double arm[3], to_mass[3], t[3], *twist = c->twist[b];
-            if (subset->dep[j] != coordinate)
-                continue;
-            motion3(c, b, MOTION_S + 6 * j, t);
-            apply3(B, t, twist + 3);
-            motion3(c, b, MOTION_S + 6 * j + 3, t);
-            apply3(B, t, twist);
-            sub3(c->v.model->body[b].com, run->plan->origin[b], arm);
-            apply3(world->A[b], arm, to_mass);
-            cross3(twist + 3, to_mass, t);
-            add3(twist, t, twist);
-        }
+        double S[6] = {0}, arm[3], to_mass[3], t[3], *twist = c->twist[b];
+        if (!find_unit_motion(c, b, coordinate, S))
+            continue;
+        apply3(B, S, twist + 3);
+        apply3(B, S + 3, twist);
+        sub3(c->v.model->body[b].com, run->plan->origin[b], arm);
+        apply3(world->A[b], arm, to_mass);
+        cross3(twist + 3, to_mass, t);
+        add3(twist, t, twist);
     }
 }
 

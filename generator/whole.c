@@ -350,6 +350,7 @@ void whole_acceleration(Whole *whole, int body, const Vector *point, const Ex al
         ex_scale3(dag, w2[subset->dep[j]], t, t);
         ex_add3(dag, out, t, out);
     }
+    whole_carry(whole, body, w2, point->v, t, out);
 }
 
 void whole_angular_acceleration(Whole *whole, int body, const Ex alpha[3], const Ex *w2, Ex out[3])
@@ -367,4 +368,5 @@ void whole_angular_acceleration(Whole *whole, int body, const Ex alpha[3], const
         ex_scale3(dag, w2[subset->dep[j]], m->S + 6 * j, t);
         ex_add3(dag, out, t, out);
     }
+    whole_carry(whole, body, w2, m->c, out, t);
 }

@@ -387,6 +387,8 @@ static void operations_table(const Course *course, const Kinds *kinds)
     operations_row(pool, table, "recovery", figures_recovery(reduced, chords, 1));
     operations_row(pool, table, "recovery (newton)", figures_recovery(kinds->newton, newton_chords, 1));
     for (int solve = 0; solve < SOLVES; ++solve) {
+        if (!kinds->usual[solve])
+            continue;
         Count equations = kinds->usual[solve]->dynamics;
         count_add(&equations, kinds->usual[solve]->loads, -1);
         operations_row(pool, table, pool_print(pool, "equations of motion (%s)", solve_name[solve]), equations);
@@ -680,7 +682,8 @@ void bench_rhs(const Bench *bench)
     }
     const bool tires = course.subject->engine->code->link_count > 0;
     const Recovery usual = bench->options.recovery;
-    const Kinds kinds = {{figures_of(bench, SOLVE_REDUCED, usual), figures_of(bench, SOLVE_AUGMENTED, usual)},
+    const Kinds kinds = {{[SOLVE_REDUCED] = figures_of(bench, SOLVE_REDUCED, usual),
+                          [SOLVE_AUGMENTED] = figures_of(bench, SOLVE_AUGMENTED, usual)},
                          figures_of(bench, SOLVE_REDUCED, RECOVERY_NEWTON)};
     report_heading(bench->report, "One right-hand side");
     report_text(bench->report,

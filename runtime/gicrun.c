@@ -40,7 +40,7 @@ static const char help[] =
     "                     cc, the second; tape, formulas for any scene interpreted; with\n"
     "                     --general all four give the same digits, and only cc needs a\n"
     "                     compiler. gic, gcp1, gcp2: the paper's methods interpreted\n"
-    "      --solve FORM   of the equations of motion: reduced (default) or augmented\n"
+    "      --solve FORM   of the equations of motion: auto (default), reduced, articulated or augmented\n"
     "      --recovery WAY of dependent coordinates: newton; closed, in closed form wherever there\n"
     "                     is one; auto (default), whichever takes fewer operations\n"
     "      --general      generated code as for any scene; without it a run has code for its scene\n"
@@ -136,7 +136,7 @@ static Request read_command_line(int count, char **word)
         case SOLVE:
             request.solve = solve_of(optarg);
             if (request.solve == SOLVES)
-                usage_fail("gicrun", "--solve takes reduced or augmented, not", optarg);
+                usage_fail("gicrun", "--solve takes auto, reduced, articulated or augmented, not", optarg);
             break;
         case RECOVERY:
             request.recovery = recovery_of(optarg);

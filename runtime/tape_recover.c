@@ -101,11 +101,16 @@ static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, do
 /* Is the last solution of a subset the one for the numbers that it has now? */
 static bool is_kept(const TapeEngine *engine, const TapeLinks *links, int s)
 {
-    const Subset *subset = &engine->formulation->plan->sequence->subset[s];
+    const Sequence *sequence = engine->formulation->plan->sequence;
     bool same = links->again && engine->keeps[s];
-    for (int j = 0; j < subset->deps && same; ++j)
-        same = links->same[subset->dep[j]];
-    return same;
+    for (;;) { /* and of all that carries it */
+        const Subset *subset = &sequence->subset[s];
+        for (int j = 0; j < subset->deps && same; ++j)
+            same = links->same[subset->dep[j]];
+        if (!same || subset->carrier == BODY_BASE)
+            return same;
+        s = sequence->body_subset[subset->carrier];
+    }
 }
 
 /* start[] from old[], both with the coordinates in front. */
