@@ -126,10 +126,21 @@ void begin_way(Solver *solver)
     solver->way_determinant = 1;
 }
 
+double angles_told(const Solver *solver)
+{
+    const Model *model = solver->model;
+    double least = 1;
+    for (int c = 0; c < model->coordinates; ++c)
+        if (model->coordinate[c].type == ANGLE)
+            least = fmin(least, (double)-solver->row[joint_row(model, model->joints) + c].w_slope);
+    return least;
+}
+
 void go_on(Solver *solver)
 {
     const Model *model = solver->model;
     solver->way_condition = fmax(solver->way_condition, worst_condition(solver));
+    solver->way_determinant = fmin(solver->way_determinant, angles_told(solver));
     for (int i = 0; i < model->subsets; ++i)
         if (!is_base(&model->subset[i]))
             solver->way_determinant = fmin(solver->way_determinant, subset_determinant(solver, &model->subset[i]) /

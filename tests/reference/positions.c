@@ -278,8 +278,10 @@ static bool walk(Solver *solver, const quad *to)
         configuration_copy(model, trial, good);
         for (int c = 0; c < model->coordinates; ++c)
             trial->w[c] = from[c] + (done + step) * (to[c] - from[c]);
-        /* a change of the determinant's sign means that a singular configuration was jumped over */
-        if (continue_to(solver, trial) && refactor(solver, trial) && solver->dependent->sign == sign) {
+        /* a change of the determinant's sign means that a singular configuration was jumped over; a direction that
+         * points away from its angle, that it was, along the axis, where it tells none */
+        if (continue_to(solver, trial) && refactor(solver, trial) && solver->dependent->sign == sign &&
+            angles_told(solver) > 0) {
             configuration_copy(model, good, trial);
             if (solver->brisk)
                 go_on(solver);
