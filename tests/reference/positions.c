@@ -317,11 +317,11 @@ static bool turns_round(Solver *solver, int coordinate)
     return round && apart < 1e-4 * (1 + model->length) && refactor(solver, at);
 }
 
-/* From the design to the coordinates, but for whole turns of angles far away where one of them leads back to where it
- * began: a thousand turns are not followed. */
+/* From the design to the coordinates, but for whole turns of angles more than 100 rad away (FORMAT.md section 14: a
+ * thousand pieces of a tenth) where one of them leads back to where it began. */
 static bool go_from_design(Solver *solver, const State *state)
 {
-    const quad turn = 2 * acosq(-1), far = 3 * turn;
+    const quad turn = 2 * acosq(-1), far = 100;
     const Model *model = solver->model;
     if (!refactor(solver, solver->configuration) || !continue_to(solver, solver->configuration) ||
         !refactor(solver, solver->configuration))
