@@ -37,8 +37,8 @@ embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_ru
 generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 # what gicgen reads scenes with
-scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_outputs scene_rest scene_rig scene_road \
-    scene_road_file driver spline csv descriptor process gic_runtime gic_road)
+scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_course scene_driver scene_facts scene_outputs scene_rest scene_rig \
+    scene_road scene_road_file driver spline csv descriptor process gic_runtime gic_road)
 # what gicgen checks its blocks with
 checking_objects := $(patsubst %,$(BUILD)/runtime/%.o,world applied rolling tires driveline interpreted_outputs accelerate \
     equations topology dense)
@@ -280,13 +280,15 @@ compared := hmmwv/paper_run hmmwv/rough_road hmmwv/suspension_rig quarter_car/qu
     $(addprefix hmmwv_vehicle/,straight constant_steer cruise coasting parked full_run)
 
 # QUICK=1: fewer repetitions and settings
+# the first page comes last: it links to the others
 bench: all
-	$(BUILD)/gicbench $(if $(QUICK),--quick) -o $(BUILD)/bench models/hmmwv.veh models/scenes/paper_run.scene \
-	    models/scenes/spin.scene
+	@mkdir -p $(BUILD)/bench
 	$(BUILD)/gicbench --drive $(if $(QUICK),--quick) -o $(BUILD)/bench/full_run models/hmmwv_vehicle.veh \
 	    models/scenes/full_run.scene
 	$(BUILD)/gicbench --scenes $(if $(QUICK),--quick) -o $(BUILD)/bench/scenes $(foreach run,$(compared), \
 	    models/$(patsubst %/,%.veh,$(dir $(run))) models/scenes/$(notdir $(run)).scene)
+	$(BUILD)/gicbench $(if $(QUICK),--quick) -o $(BUILD)/bench models/hmmwv.veh models/scenes/paper_run.scene \
+	    models/scenes/spin.scene
 
 generated: $(BUILD)/gicgen
 	@mkdir -p generated
