@@ -88,6 +88,13 @@ if command -v gnuplot >/dev/null; then
     check 'panels of one output over another have axes' [ 2 -eq \
         "$(grep -oE '>(drive.value \[m\]|drive.rate \[m/s\]|x.value \[m\])<' "$work/over.svg" | sort | uniq -c |
             awk '/drive.value/ {n = $1} END {print n}')" ]
+    check 'axes say what is measured, and in what' grep -q '>length \[m\]<' "$work/over.svg"
+    # one scale where both are lengths, and no number upright
+    sed '$a plot: [{x: x.value, y: drive.value}]' "$work/swing.scene" >"$work/equal.scene"
+    run "$work/carts.veh" "$work/equal.scene" --plot "$work/equal.svg"
+    check 'panels over one another have a title' grep -q '>drive.value over x.value<' "$work/equal.svg"
+    check 'ticks of both axes are equally far apart, and numbers do not meet' \
+        /usr/bin/python3 -B "$(dirname "$0")/gicrun_ticks.py" "$work/equal.svg"
     check 'inputs are curves' grep -q 'input.drive' "$work/over.svg"
 fi
 mkdir "$work/bin"
