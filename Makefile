@@ -50,7 +50,7 @@ embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_ru
 generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
 # what gicgen reads scenes with
-scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_driver scene_facts scene_fit scene_outputs scene_rest scene_rig \
+scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_course scene_driver scene_facts scene_fit scene_outputs scene_rest scene_rig \
     scene_road scene_road_file driver spline csv descriptor process gic_runtime gic_road)
 # what gicgen checks its blocks with
 checking_objects := $(patsubst %,$(BUILD)/runtime/%.o,world applied rolling tires driveline interpreted_outputs accelerate \
@@ -304,7 +304,7 @@ compared := hmmwv/paper_run hmmwv/rough_road hmmwv/suspension_rig quarter_car/qu
     $(addprefix hmmwv_vehicle/,straight constant_steer cruise coasting parked full_run)
 
 # QUICK=1: fewer repetitions and settings; PARTS: some of these
-PARTS := drive compare rhs batch scenes
+PARTS := drive rhs batch scenes compare
 measured_drive := --drive -o $(BUILD)/bench/full_run models/hmmwv_vehicle.veh models/scenes/full_run.scene
 measured_compare := -o $(BUILD)/bench models/hmmwv.veh models/scenes/paper_run.scene models/scenes/spin.scene
 measured_rhs := --rhs -o $(BUILD)/bench/rhs models/hmmwv.veh models/scenes/paper_run.scene
@@ -312,7 +312,8 @@ measured_batch := --batch 64 -o $(BUILD)/bench/batch models/hmmwv.veh models/sce
 measured_scenes := --scenes -o $(BUILD)/bench/scenes $(foreach run,$(compared), \
     models/$(patsubst %/,%.veh,$(dir $(run))) models/scenes/$(notdir $(run)).scene)
 
-# one part after another, and how long each took, beside how many other programs
+# one part after another, the first page last, which links to the others; and how long each took, beside how many other
+# programs
 bench: all
 	@mkdir -p $(BUILD)/bench
 	@sh tests/bench/parts.sh begin $(BUILD)/bench/parts.csv $(PARTS)

@@ -76,6 +76,22 @@ static void begin(Text *out, int i, const char *name)
     string(out, name);
 }
 
+/* null: follows from mass and inertia */
+static void shape_pair(Text *out, const BodyShape *shape)
+{
+    const bool box = shape->type == SHAPE_BOX, cylinder = shape->type == SHAPE_CYLINDER;
+    text_print(out, ", \"shape\": {\"type\": ");
+    string(out, shape_type_name[shape->type]);
+    number_pair(out, "size", shape->size, 3, box && shape->size[0] > 0);
+    number_pair(out, "radius", &shape->radius, 0, cylinder && shape->radius > 0);
+    number_pair(out, "length", &shape->length, 0, cylinder && shape->length > 0);
+    number_pair(out, "axis", shape->axis, 3, shape->along);
+    number_pair(out, "center", shape->center, 3, shape->placed);
+    integer_pair(out, "corners", shape->corners);
+    integer_pair(out, "triangles", shape->triangles);
+    add(out, "}");
+}
+
 static void bodies(Text *out, const Model *model)
 {
     for (int i = 0; i < model->bodies; ++i) {
@@ -86,6 +102,8 @@ static void bodies(Text *out, const Model *model)
         number_pair(out, "inertia", body->inertia, 6, true);
         number_pair(out, "position", body->position, 3, true);
         number_pair(out, "euler", body->euler, 4, true);
+        if (body->shape)
+            shape_pair(out, body->shape);
         add(out, "}");
     }
 }

@@ -51,12 +51,29 @@ double law_number(const Law *law, const struct Model *model);
 
 enum { BODY_BASE = 0, BODY_GROUND = -1 };
 
+typedef enum ShapeType { SHAPE_BOX, SHAPE_CYLINDER, SHAPE_MESH, SHAPE_TYPES } ShapeType;
+
+/* How a body is drawn; own frame. No part of the mechanics. */
+typedef struct BodyShape {
+    Place at;
+    ShapeType type;
+    double size[3];        /* edges of a box, m; 0: follow from the inertia */
+    double radius, length; /* of a cylinder, m; likewise */
+    bool along, placed;    /* are axis and center given? Else as the inertia suggests, and the centre of mass */
+    double axis[3], center[3];
+    const char *file; /* of a mesh, as it is written */
+    int corners, triangles;
+    double (*corner)[3];
+    int (*triangle)[3]; /* anticlockwise from outside */
+} BodyShape;
+
 typedef struct Body {
     const char *name;
     Place at;
     double mass, com[3] /* own frame */;
     double inertia[6]; /* xx yy zz xy xz yz, own axes, about com; less the spin inertia of the wheels that it carries */
     double position[3], euler[4]; /* body frame at design, model frame */
+    const BodyShape *shape;       /* NULL: the model names none */
 } Body;
 
 typedef enum JointType {
@@ -285,6 +302,7 @@ typedef struct Output {
     int count;                                    /* components */
     const char *component[OUTPUT_MAX_COMPONENTS]; /* full names: "chassis.x" */
     const char *unit[OUTPUT_MAX_COMPONENTS];
+    bool hidden; /* for our own pages: scenes neither write nor name it */
 } Output;
 
 typedef struct Model {
@@ -319,6 +337,7 @@ extern const char *const joint_type_name[JOINT_TYPES]; /* as in the file: "revol
 extern const int joint_equations[JOINT_TYPES];         /* FORMAT.md section 4 */
 extern const char *const coordinate_type_name[COORDINATE_TYPES];
 extern const char *const output_type_name[OUTPUT_TYPES];
+extern const char *const shape_type_name[SHAPE_TYPES];
 
 /* schema.c: a JSON Schema of `.veh` files for editors, and all their keys as a table for people; both from the reader's
  * own tables. */
@@ -327,6 +346,8 @@ void keys_print(Text *out);
 
 /* Read and resolve a `.veh` file. Any mistake ends in diag_fail. */
 const Model *model_read(Pool *pool, const char *path);
+/* The model with hidden outputs of type wheel, and of tires tire and contact, of each wheel that has none. */
+const Model *model_watch_wheels(Pool *pool, const Model *model);
 
 /* States of a free base, as FORMAT.md section 10 names them: pose, then twist. */
 enum { BASE_STATES = 13 };

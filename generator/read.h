@@ -49,6 +49,8 @@ typedef enum KeyKind {
     KEY_TIRE,          /* index[0] */
     KEY_WHEEL,         /* index[0] */
     KEY_TABLE,         /* index[0] */
+    KEY_SHAPE,         /* item: a word, a path or a map of shape_section */
+    KEY_PATH,          /* text: a path; its item is negated where a mirror image is meant */
     KEY_SERIES,        /* a list of any length: item */
     KEY_OUTPUTS,       /* names of one or two wheels or differentials: item */
     KEY_ENGINE,        /* item: a map of engine_section, and so on */
@@ -116,7 +118,8 @@ typedef struct Entry {
 /* The tables of the sections whose entries hold values that a mirror, a move or a prefix changes. */
 extern const Section file_section, part_section;
 extern const Section parameter_section, table_section, port_section;
-extern const Section body_section, inertia_section, orientation_section, joint_section, coordinate_section;
+extern const Section body_section, shape_section, inertia_section, orientation_section, joint_section;
+extern const Section coordinate_section;
 extern const Section input_section, force_section, tire_section, wheel_section, output_section;
 extern const Section powertrain_section, engine_section, converter_section, transmission_section, differential_section;
 
@@ -199,6 +202,11 @@ void body_point(const Reader *reader, int body, const double x[3], const Ex tune
 void body_direction(const Reader *reader, int body, const double x[3], const Ex tuned[3], double out[3]);
 /* Take the spin inertia of a wheel off the inertia of the body that carries it, which must leave that of a body. */
 void spin_take(const Reader *reader, const Wheel *wheel, const char *what, Place at);
+
+/* ---- read_shape.c ---- */
+
+/* The `shape` of a body that has mass, centre of mass and frame; NULL where item is. */
+const BodyShape *shape_read(Reader *reader, const Item *item, const Entry *body, int index);
 
 /* ---- read_links.c: joints and dual coordinates; read_loads.c: inputs, forces; read_outputs.c ---- */
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BODY_MASS, BODY_COM, BODY_INERTIA, BODY_POSITION, BODY_ORIENTATION, BODY_KEYS };
+enum { BODY_MASS, BODY_COM, BODY_INERTIA, BODY_POSITION, BODY_ORIENTATION, BODY_SHAPE, BODY_KEYS };
 
 static const Key body_key[BODY_KEYS] = {
     [BODY_MASS] = {"mass", KEY_MEASURE, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
@@ -13,6 +13,7 @@ static const Key body_key[BODY_KEYS] = {
     [BODY_INERTIA] = {"inertia", KEY_INERTIA, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [BODY_POSITION] = {"position", KEY_POINT, ALL_FORMS, 0, BOUND_NONE, 0},
     [BODY_ORIENTATION] = {"orientation", KEY_ORIENTATION, ALL_FORMS, 0, BOUND_NONE, 0},
+    [BODY_SHAPE] = {"shape", KEY_SHAPE, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
 enum { INERTIA_KEYS = 6 };
@@ -49,6 +50,7 @@ static const char *const body_about[BODY_KEYS] = {
     [BODY_INERTIA] = "about the centre of mass, in axes parallel to the body frame, kg m^2; a list or a map",
     [BODY_POSITION] = "origin of the body frame at design, m, model frame; default: com",
     [BODY_ORIENTATION] = "axes of the body frame at design; default: those of the model frame",
+    [BODY_SHAPE] = "how it is drawn by gicrun --animate: box, cylinder, a path of an .obj file, or a map",
 };
 
 static const char *const inertia_about[INERTIA_KEYS] = {
@@ -263,6 +265,7 @@ static void body_read(Reader *reader, const Entry *entry)
         orientation_read(reader, value[BODY_ORIENTATION].item, entry, body->euler);
     inertia_read(reader, value[BODY_INERTIA].item, entry, body->inertia);
     body_point(reader, index, com, value[BODY_COM].tuned, value[BODY_COM].item->at, body->com);
+    body->shape = shape_read(reader, value[BODY_SHAPE].item, entry, index);
 }
 
 void bodies_read(Reader *reader, const Item *base, const Item *bodies)

@@ -49,6 +49,8 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_TIRE] = "tire",
     [KEY_WHEEL] = "wheel",
     [KEY_TABLE] = "table",
+    [KEY_SHAPE] = "box",
+    [KEY_PATH] = "name.obj",
     [KEY_SERIES] = "[first, ...]",
     [KEY_OUTPUTS] = "[first, second]",
     [KEY_ENGINE] = "{...}",
@@ -335,6 +337,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     const Model *model = reader->model;
     switch (key->kind) {
     case KEY_TEXT:
+    case KEY_PATH:
     case KEY_NAME:
         value->text = doc_word(item, what);
         text_check(value->text, what, item->at);
@@ -413,6 +416,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     case KEY_TORQUE_VECTOR:
     case KEY_INERTIA:
     case KEY_ORIENTATION:
+    case KEY_SHAPE:
     case KEY_SERIES:
     case KEY_OUTPUTS:
     case KEY_ENGINE:

@@ -114,14 +114,14 @@ static bool of_angle(const Model *model, const Output *output)
     return coordinate >= 0 && model->coordinate[coordinate].type == COORDINATE_ANGLE;
 }
 
-static void components_set(Reader *reader, Output *output)
+static void components_set(Pool *pool, const Model *model, Output *output)
 {
     const OutputKind *kind = output_kind + output->type;
-    const char *const *unit = of_angle(reader->model, output) ? kind->angle_unit : kind->unit;
+    const char *const *unit = of_angle(model, output) ? kind->angle_unit : kind->unit;
     output->count = kind->count;
     for (int i = 0; i < kind->count; ++i) {
         const char *suffix = kind->component[i];
-        output->component[i] = pool_print(reader->pool, suffix[0] ? "%s.%s" : "%s%s", output->name, suffix);
+        output->component[i] = pool_print(pool, suffix[0] ? "%s.%s" : "%s%s", output->name, suffix);
         output->unit[i] = unit[i];
     }
 }
@@ -153,7 +153,7 @@ static void output_read(Reader *reader, const Entry *entry, Output *output)
     if (type == OUTPUT_POWERTRAIN && !reader->model->powertrain)
         diag_fail(entry->at, "add a `powertrain`, or ask for something else", "%s: the model has no powertrain",
                   entry->what);
-    components_set(reader, output);
+    components_set(reader->pool, reader->model, output);
 }
 
 /* Without `outputs`: pose and velocity of a free base, and every coordinate. */
@@ -188,7 +188,7 @@ static void default_outputs(Reader *reader)
             .index = i,
         };
     for (int i = 0; i < model->outputs; ++i)
-        components_set(reader, model->output + i);
+        components_set(reader->pool, model, model->output + i);
 }
 
 void outputs_read(Reader *reader, const Item *map)
@@ -210,4 +210,39 @@ void outputs_read(Reader *reader, const Item *map)
             at[model->output_components++] = model->output[i].at;
         }
     generated_names_check(reader, "output", name, at, model->output_components);
+}
+
+/* ---- outputs that a page of ours wants ----------------------------------------------------------------------- */
+
+static bool is_watched(const Model *model, OutputType type, int wheel)
+{
+    for (int i = 0; i < model->outputs; ++i)
+        if (model->output[i].type == type && model->output[i].index == wheel)
+            return true;
+    return false;
+}
+
+const Model *model_watch_wheels(Pool *pool, const Model *model)
+{
+    static const OutputType wanted[] = {OUTPUT_WHEEL, OUTPUT_TIRE, OUTPUT_CONTACT};
+    Model *out = pool_alloc(pool, sizeof *out);
+    *out = *model;
+    out->output = pool_alloc(pool, sizeof *out->output * (size_t)(model->outputs + 3 * model->wheels + 1));
+    memcpy(out->output, model->output, sizeof *out->output * (size_t)model->outputs);
+    for (int w = 0; w < model->wheels; ++w)
+        for (int k = 0; k < (model->wheel[w].tire >= 0 ? 3 : 1); ++k) {
+            if (is_watched(model, wanted[k], w))
+                continue;
+            Output *output = &out->output[out->outputs++];
+            *output = (Output){.name = pool_print(pool, "_%s_%s", output_type_name[wanted[k]], model->wheel[w].name),
+                               .at = model->wheel[w].at,
+                               .type = wanted[k],
+                               .body = BODY_GROUND,
+                               .in = BODY_GROUND,
+                               .index = w,
+                               .hidden = true};
+            components_set(pool, model, output);
+            out->output_components += output->count;
+        }
+    return out;
 }

@@ -9,7 +9,7 @@
 enum { X = 1 << 0, Y = 1 << 1, Z = 1 << 2, LONGEST = 4 /* list of numbers whose components differ */ };
 
 /* Formulas name coordinates, inputs and what else can stand in them. */
-typedef enum Words { WORDS_NONE, WORDS_FORMULA, WORDS_NAME, WORDS_SIDE } Words;
+typedef enum Words { WORDS_NONE, WORDS_FORMULA, WORDS_NAME, WORDS_SIDE, WORDS_PATH } Words;
 
 typedef struct Rule {
     unsigned odd;           /* bit i: component i changes its sign in the mirror y -> -y */
@@ -53,6 +53,9 @@ static const Rule rule[KEY_KINDS] = {
     [KEY_COORDINATE] = {.words = WORDS_NAME, .group = "coordinates"},
     [KEY_JOINT] = {.words = WORDS_NAME, .group = "joints"},
     [KEY_FORCE] = {.words = WORDS_NAME, .group = "forces"},
+    /* what a file shows has no side of its own: its item is marked */
+    [KEY_SHAPE] = {.odd = X, .words = WORDS_PATH, .section = &shape_section},
+    [KEY_PATH] = {.odd = X, .words = WORDS_PATH},
     [KEY_TIRE] = {.words = WORDS_NAME, .group = "tires"},
     [KEY_SIDE] = {.words = WORDS_SIDE},
     [KEY_WHEEL] = {.words = WORDS_NAME, .group = "wheels"},
@@ -180,7 +183,8 @@ static Item *number_rewrite(const Rewrite *rewrite, const Rule *how, int compone
     other->negated = item->negated != (rewrite->mirror && (how->odd >> component & 1));
     if (how->place)
         other->shift += rewrite->shift[component];
-    bool formula = how->words == WORDS_FORMULA || how->place || how->odd; /* any component may be one */
+    /* any component may be one */
+    bool formula = how->words == WORDS_FORMULA || ((how->place || how->odd) && how->words != WORDS_PATH);
     if (formula && item->text[0])
         other->text = formula_renamed(rewrite, item->text);
     if (how->words == WORDS_SIDE && rewrite->mirror)

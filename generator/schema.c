@@ -90,6 +90,12 @@ static void value(Text *out, const Key *key, int indent)
         object(out, &inertia_section, indent);
         text_print(out, "]}");
         break;
+    case KEY_SHAPE:
+        text_print(out, "{\"anyOf\": [{\"type\": \"string\", \"pattern\": \"^(box|cylinder|.*\\\\.obj)$\"}, ");
+        object(out, &shape_section, indent);
+        text_print(out, "]}");
+        break;
+    case KEY_PATH: text_print(out, "{\"type\": \"string\", \"pattern\": \"\\\\.obj$\"}"); break;
     case KEY_ORIENTATION: object(out, &orientation_section, indent); break;
     case KEY_ITEM: text_print(out, "{}"); break;
     case KEY_LIST: reference(out, "numbers"); break;
@@ -293,4 +299,5 @@ void keys_print(Text *out)
     section_keys(out, "an entry of include", &part_section);
     section_keys(out, "inertia as a map", &inertia_section);
     section_keys(out, "orientation (one of the three ways)", &orientation_section);
+    section_keys(out, "shape as a map", &shape_section);
 }

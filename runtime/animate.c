@@ -267,6 +267,8 @@ static void json_bodies(const Animation *a, Text *out)
         json_vector(out, "com", shape->com);
         text_print(out, ",");
         json_vector(out, "box", shape->box);
+        text_print(out, ",");
+        json_look(out, shape);
         text_print(out, ",\"points\":[");
         for (int i = 0; i < shape->points; ++i)
             text_print(out, "%s[%.6g,%.6g,%.6g]", i ? "," : "", shape->point[i].x[0], shape->point[i].x[1],
@@ -323,6 +325,7 @@ static void json_curves(const Animation *a, Text *out)
         text_print(out, "%s\n{", k ? "," : "");
         json_key(out, "name", signal->name);
         json_key(out, "unit", signal->unit);
+        json_key(out, "quantity", unit_quantity(signal->unit));
         text_print(out, "\"values\":%d}", a->curves + k);
     }
     text_print(out, "],\n");
@@ -387,6 +390,8 @@ static void json_run(const Animation *a, Text *out)
     json_lines(a, out);
     json_wheels(a, out);
     json_curves(a, out);
+    json_course(out, a->scene);
+    text_print(out, ",\n");
     text_print(out, "\"road\":");
     const gic_road_plane below = {.head = {gic_plane_height}, .z0 = lowest - 0.05 * size};
     const gic_road_plane level = {.head = {gic_plane_height}};

@@ -12,12 +12,22 @@ typedef struct Point {
     double x[3];
 } Point;
 
+/* How a body is drawn: as a frame of bars about its points (the base of a vehicle) or the points alone (ground); as the
+ * hull of its points; as a box of glass with the points that it carries (heavy bodies of a vehicle, bodies of one
+ * point); as its model says. */
+typedef enum Look { LOOK_FRAME, LOOK_POINTS, LOOK_HULL, LOOK_GLASS, LOOK_BOX, LOOK_CYLINDER, LOOK_MESH, LOOKS } Look;
+
+extern const char *const look_name[LOOKS];
+
 /* Body frame: what is fixed to the body, points of joints, springs, wheels and its centre of mass. box: edges of the
  * solid box that has the body's mass and moments of inertia. */
 typedef struct Shape {
     Point *point;
     int points;
     double com[3], box[3];
+    Look look;
+    double middle[3], axis[3], size[3]; /* of a box: edges along x, y, z; of a cylinder: radius, length */
+    const BodyShape *mesh;
 } Shape;
 
 /* From a point of a body to one of another (BODY_GROUND: world). kind: "link", "spring" or "damper". */
@@ -36,6 +46,18 @@ typedef struct Shapes {
 
 /* With the scene's values of parameters. */
 Shapes shapes_of(Pool *pool, const Model *model, const Scene *scene);
+
+/* ---- animate_look.c: which shape a body has ---------------------------------------------------------------------- */
+
+/* After points, box and wheels of all bodies are known; JSON of one. */
+void looks_choose(Pool *pool, const Model *model, Shapes *shapes);
+void json_look(Text *out, const Shape *shape);
+
+/* ---- animate_course.c: what stands and is painted on the road -----------------------------------------------------
+ */
+
+/* JSON: cones, edges of lanes and the driver's path of a scene. */
+void json_course(Text *out, const Scene *scene);
 
 /* ---- animate_road.c: the road along a way ------------------------------------------------------------------------ */
 

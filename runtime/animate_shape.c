@@ -211,6 +211,7 @@ Shapes shapes_of(Pool *pool, const Model *model, const Scene *scene)
         for (int k = 0; k < 2; ++k)
             add_point(&shaper, shapes.line[i].body[k], shapes.line[i].point[k]);
     add_hinges(&shaper);
+    looks_choose(pool, model, &shapes);
     set_parameters(pool, model, NULL);
     return shapes;
 }

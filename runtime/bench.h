@@ -141,11 +141,13 @@ typedef struct Piece {
 
 typedef struct Report {
     Pool *pool;
-    int pieces;
+    int pieces, headlines;
     Piece *piece;
+    const char **headline; /* results in a sentence each, which stand first */
 } Report;
 
 void report_heading(Report *report, const char *text);
+void report_headline(Report *report, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void report_text(Report *report, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* columns: names separated by | */
 Sheet *report_table(Report *report, const char *name, const char *title, const char *columns);

@@ -30,8 +30,13 @@ static const char *chart_script(Pool *pool, const Chart *chart)
         plot_text(&out, label[i][1]);
         text_print(&out, "\n");
     }
-    text_print(&out, "set logscale xy\nset format xy '%%g'\nset grid\nset key outside right\nset pointsize 0.7\n");
-    text_print(&out, "set linetype 5 linecolor rgb '#e51e10'\n"); /* is yellow, which white paper swallows */
+    text_print(&out, "set logscale xy\nset format xy '%%g'\nset key outside right\nset pointsize 0.6\n"
+                     "set grid back linetype 1 linewidth 0.5 linecolor rgb '#d5dce2'\n"
+                     "set border 3 linewidth 0.8 linecolor rgb '#5c6873'\nset tics nomirror out scale 0.5\n");
+    /* as in runtime/plot.c */
+    static const char *const ink[] = {"#0072b2", "#d55e00", "#007d5c", "#a5457f", "#a66f00", "#3a8fc4", "#333333"};
+    for (int i = 0; i < (int)(sizeof ink / sizeof *ink); ++i)
+        text_print(&out, "set linetype %d linecolor rgb '%s'\n", i + 1, ink[i]);
     for (int i = 0; i < chart->count; ++i) {
         const Series *s = &chart->series[i];
         text_print(&out, "$data%d << END\n", i);

@@ -267,6 +267,21 @@ static double difference(const Driven *a, const Driven *b)
     return largest;
 }
 
+/* The first engine's run in a sentence, and how much longer the other engines take. */
+static void drive_headline(const Bench *bench, const Driven *driven)
+{
+    Pool *pool = bench->pool;
+    const double time = (double)steps_of(bench->scene) * bench->scene->step;
+    const double seconds = spread_of(pool, driven->second[STEP], bench->repetitions).median;
+    Text others = {.pool = pool};
+    for (const Driven *d = driven + 1; d < driven + bench->engines; ++d)
+        text_print(&others, d > driven + 1 ? ", %s %.3g times" : "; %s takes %.3g times as long", d->name,
+                   spread_of_ratio(pool, d->second[STEP], driven->second[STEP], bench->repetitions).median);
+    text_print(&others, ".");
+    report_headline(bench->report, "%s computes %.4g s of the scene in %.3g s, %.3g times faster than real time%s",
+                    driven->name, time, seconds, time / seconds, others.s);
+}
+
 static void drive_row(const Bench *bench, Sheet *table, const Driven *driven, const Driven *first)
 {
     Pool *pool = bench->pool;
@@ -332,6 +347,7 @@ void bench_drive(const Bench *bench)
                 d->measured[k][r] = share[k];
         }
     report_heading(bench->report, "The scene as it stands");
+    drive_headline(bench, driven);
     report_text(bench->report,
                 "%.6g s with %s at steps of %g ms, %d fast ones in each: CPU time without outputs, median of %d runs "
                 "and extremes, engines alternating. The paper's third experiment, 30 s of the complete vehicle, took "

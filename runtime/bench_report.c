@@ -2,11 +2,17 @@
  * The folder of results: one page, the same as text, a CSV file a table and a picture a chart. */
 #include "bench.h"
 
+#include <ctype.h>
+#include <dirent.h>
 #include <errno.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+/* By which we know our own pages. */
+static const char own_title[] = "<title>gicbench</title>";
 
 static const char *print_list(Pool *pool, const char *format, va_list arguments)
 {
@@ -29,6 +35,14 @@ static Piece *piece_new(Report *report)
 void report_heading(Report *report, const char *text)
 {
     piece_new(report)->heading = text;
+}
+
+void report_headline(Report *report, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    *POOL_PUSH(report->pool, report->headline, report->headlines) = print_list(report->pool, format, arguments);
+    va_end(arguments);
 }
 
 void report_text(Report *report, const char *format, ...)
@@ -101,6 +115,8 @@ static void page_text(Text *out, const Report *report)
         text_print(out, i ? "\n" : "");
         if (piece->heading)
             text_print(out, "== %s\n", piece->heading);
+        for (int k = 0; !i && k < report->headlines; ++k)
+            text_print(out, "%s* %s\n", k ? "" : "\n", report->headline[k]);
         if (piece->text)
             text_print(out, "%s\n", piece->text);
         if (piece->table)
@@ -135,38 +151,129 @@ static void element(Text *out, const char *name, const char *content)
     text_print(out, "</%s>", name);
 }
 
+/* Numbers and their units stay in one piece; words may be broken at blanks, and names of files at `_` and `.`. */
+static bool is_words(const char *cell)
+{
+    return isalpha((unsigned char)cell[0]);
+}
+
+static void words(Text *out, const char *cell)
+{
+    for (size_t length; (length = strcspn(cell, "_.")), cell[length]; cell += length + 1) {
+        escaped(out, pool_print(out->pool, "%.*s", (int)length, cell));
+        text_print(out, cell[length] == '_' ? "_<wbr>" : "<wbr>.");
+    }
+    escaped(out, cell);
+}
+
 static void table_html(Text *out, const Sheet *table)
 {
-    text_print(out, "<table>\n");
+    text_print(out, "<div class=\"wide\"><table>\n");
     element(out, "caption", table->title);
     for (int i = 0; i < table->cells; ++i) {
+        const char *const kind = i < table->columns ? "th" : "td";
         text_print(out, i % table->columns ? "" : "<tr>");
-        element(out, i < table->columns ? "th" : "td", table->cell[i]);
-        text_print(out, (i + 1) % table->columns ? "" : "</tr>\n");
+        text_print(out, is_words(table->cell[i]) ? "<%s class=\"text\">" : "<%s>", kind);
+        (is_words(table->cell[i]) ? words : escaped)(out, table->cell[i]);
+        text_print(out, "</%s>%s", kind, (i + 1) % table->columns ? "" : "</tr>\n");
     }
-    text_print(out, "</table>\n<p><a href=\"%s.csv\">as CSV</a></p>\n", table->name);
+    text_print(out, "</table></div>\n<p><a href=\"%s.csv\">as CSV</a></p>\n", table->name);
     if (table->note)
         element(out, "p", table->note);
 }
 
-static void page_html(Text *out, const Report *report)
+static const char style[] =
+    "body {font: 15px/1.45 system-ui, sans-serif; color: #1f2933; max-width: 1200px; margin: 2em auto; padding: 0 "
+    "1em}\n"
+    "h2 {margin: 2em 0 .4em; border-bottom: 1px solid #aab4bd}\np {max-width: 62em}\n"
+    ".headline {padding: .7em 1.2em .7em 2.2em; background: #eef4fa; border-left: 4px solid #0072b2; font-size: 16px}\n"
+    "nav ul {columns: 3 16em; padding-left: 1.2em}\n.wide {overflow-x: auto}\n"
+    "table {border-collapse: collapse; margin: 1em 0; font-size: 13px; font-variant-numeric: tabular-nums}\n"
+    "caption {text-align: left; font-weight: bold; font-size: 15px}\n"
+    "th, td {padding: .15em .45em; text-align: right; border-bottom: 1px solid #d5dce2; vertical-align: bottom}\n"
+    "td {white-space: nowrap}\ntd.text {white-space: normal}\n"
+    "th:first-child, td:first-child {text-align: left}\nimg {max-width: 100%; height: auto}\n";
+
+/* Is this a folder of ours? */
+static bool is_report(Pool *pool, const char *folder)
+{
+    const char *index = pool_print(pool, "%s/index.html", folder);
+    FILE *file = fopen(index, "r");
+    if (!file)
+        return false;
+    fclose(file);
+    size_t size;
+    return strstr(file_read(pool, index, SIZE_MAX, &size), own_title) != NULL;
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Reports in folders within this one. */
+static void sub_pages(Text *out, const char *folder)
+{
+    Pool *pool = out->pool;
+    const char **name = NULL;
+    int names = 0;
+    DIR *in = opendir(folder);
+    for (struct dirent *entry; in && (entry = readdir(in));)
+        if (entry->d_name[0] != '.' && is_report(pool, pool_print(pool, "%s/%s", folder, entry->d_name)))
+            *POOL_PUSH(pool, name, names) = pool_print(pool, "%s", entry->d_name);
+    if (in)
+        closedir(in);
+    if (names)
+        qsort(name, (size_t)names, sizeof *name, by_name);
+    for (int i = 0; i < names; ++i) {
+        text_print(out, "<li>page <a href=\"");
+        escaped(out, name[i]);
+        text_print(out, "/index.html\">");
+        escaped(out, name[i]);
+        text_print(out, "</a></li>\n");
+    }
+}
+
+/* What matters first: results in a sentence, and where the rest is. */
+static void page_top(Text *out, const Report *report, const char *folder)
+{
+    for (int i = 0; i < report->headlines; ++i) {
+        text_print(out, i ? "" : "<ul class=\"headline\">\n");
+        element(out, "li", report->headline[i]);
+        text_print(out, i + 1 < report->headlines ? "\n" : "\n</ul>\n");
+    }
+    text_print(out, "<nav><ul>\n");
+    for (int i = 1; i < report->pieces; ++i)
+        if (report->piece[i].heading) {
+            text_print(out, "<li><a href=\"#part%d\">", i);
+            escaped(out, report->piece[i].heading);
+            text_print(out, "</a></li>\n");
+        }
+    sub_pages(out, folder);
+    text_print(out, "<li>all of this as <a href=\"bench.txt\">text</a></li>\n</ul></nav>\n");
+}
+
+static void page_html(Text *out, const Report *report, const char *folder)
 {
     text_print(out,
-               "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>gicbench</title>\n<style>\n"
-               "body {font-family: sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; line-height: 1.4}\n"
-               "table {border-collapse: collapse; margin: 1em 0}\ncaption {text-align: left; font-weight: bold}\n"
-               "th, td {padding: 0.1em 0.6em; text-align: right; border-bottom: 1px solid #ccc}\n"
-               "th:first-child, td:first-child {text-align: left}\nimg {max-width: 100%%}\n</style>\n");
+               "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
+               "<meta name=\"viewport\" content=\"width=device-width\">\n%s\n<style>\n%s</style>\n",
+               own_title, style);
     for (int i = 0; i < report->pieces; ++i) {
         const Piece *piece = &report->piece[i];
-        if (piece->heading)
-            element(out, i ? "h2" : "h1", piece->heading);
+        if (piece->heading) {
+            text_print(out, i ? "<h2 id=\"part%d\">" : "<h1 id=\"part%d\">", i);
+            escaped(out, piece->heading);
+            text_print(out, i ? "</h2>" : "</h1>\n");
+        }
+        if (!i)
+            page_top(out, report, folder);
         if (piece->text)
             element(out, "p", piece->text);
         if (piece->table)
             table_html(out, piece->table);
         if (piece->chart && piece->chart->count) {
-            text_print(out, "<p><img src=\"%s.svg\" alt=\"", piece->chart->name);
+            text_print(out, "<p><img src=\"%s.svg\" width=\"900\" height=\"560\" alt=\"", piece->chart->name);
             escaped(out, piece->chart->title);
             text_print(out, "\"></p>");
             if (piece->chart->note)
@@ -208,14 +315,14 @@ void report_tell(const Report *report, FILE *file)
  * Without an index a folder is not finished. */
 static void remove_earlier(Pool *pool, const char *folder)
 {
-    static const char title[] = "<title>gicbench</title>", *const mark[] = {"<img src=\"", "<a href=\""};
+    static const char *const mark[] = {"<img src=\"", "<a href=\""};
     const char *index = pool_print(pool, "%s/index.html", folder);
     FILE *file = fopen(index, "r");
     if (file) {
         fclose(file);
         size_t size;
         const char *page = file_read(pool, index, SIZE_MAX, &size);
-        for (int i = 0; i < 2 && strstr(page, title); ++i)
+        for (int i = 0; i < 2 && strstr(page, own_title); ++i)
             for (const char *at = page; (at = strstr(at, mark[i]));) {
                 at += strlen(mark[i]);
                 const int length = (int)strspn(at, "abcdefghijklmnopqrstuvwxyz0123456789_.");
@@ -233,7 +340,7 @@ void report_write(const Report *report, const char *folder)
     Pool *pool = report->pool;
     Text text = {.pool = pool}, html = {.pool = pool};
     page_text(&text, report);
-    page_html(&html, report);
+    page_html(&html, report, folder);
     remove_earlier(pool, folder);
     for (int i = 0; i < report->pieces; ++i) {
         const Piece *piece = &report->piece[i];

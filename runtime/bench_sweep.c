@@ -109,6 +109,30 @@ static void sweep_charts(const Bench *bench, const Sweep *sweep, const char *x, 
     }
 }
 
+/* At the longest step that all engines can take: how much longer the others need than the first. */
+static void sweep_headline(const Bench *bench, const Sweep *sweep)
+{
+    Pool *pool = bench->pool;
+    const Trial *best = NULL;
+    for (int i = 0; i < sweep->settings; ++i) {
+        const Trial *trial = &sweep->trial[i * bench->engines];
+        bool stable = true;
+        for (int e = 0; e < bench->engines; ++e)
+            stable = stable && !trial[e].unstable;
+        if (stable && (!best || trial->setting.value > best->setting.value))
+            best = trial;
+    }
+    if (!best || bench->engines < 2)
+        return;
+    Text ratios = {.pool = pool};
+    for (int e = 1; e < bench->engines; ++e)
+        text_print(&ratios, "%s%.3g times as fast as %s", e > 1 ? ", " : "",
+                   spread_of_ratio(pool, best[e].second, best->second, bench->repetitions).median,
+                   best[e].engine->name);
+    report_headline(bench->report, "%s with steps of %s: %s is %s.", integrator_name(sweep->method),
+                    setting_text(pool, best->setting), best->engine->name, ratios.s);
+}
+
 static void work_precision(const Bench *bench, const Sweep *sweep, int sweeps, double uncertainty)
 {
     Pool *pool = bench->pool;
@@ -163,6 +187,7 @@ void bench_sweep(const Bench *bench)
     sweep_table(bench, &sweep[0], "table1", "Table 1. Adams, variable step and order (paper: DDABM)", "tolerance");
     sweep_charts(bench, &sweep[0], "tolerance", "fig6", "Fig. 6. Adams: CPU time", "fig7", "Fig. 7. Adams: speed-up");
     sweep_table(bench, &sweep[1], "table2", "Table 2. AB3, constant steps", "step");
+    sweep_headline(bench, &sweep[1]);
     sweep_charts(bench, &sweep[1], "step [ms]", "fig8", "Fig. 8. AB3: CPU time", "fig9", "Fig. 9. AB3: speed-up");
     work_precision(bench, sweep, METHODS, uncertainty);
 }

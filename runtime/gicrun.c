@@ -217,6 +217,8 @@ int main(int count, char **word)
     const Request request = read_command_line(count, word);
     Pool *pool = pool_new();
     const Model *model = model_read(pool, request.model);
+    if (request.page) /* arrows of the forces at all wheels */
+        model = model_watch_wheels(pool, model);
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
     check_outputs(&request, model, scene);

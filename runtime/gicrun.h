@@ -81,6 +81,18 @@ typedef struct Profile {
 typedef struct Driver Driver; /* driver.h */
 typedef struct Rest Rest;     /* rest.h */
 
+/* A line on the road: its points, m, world. */
+typedef struct Mark {
+    int count;
+    double (*point)[2];
+} Mark;
+
+/* Cones and the edges of lanes, models/SCENE.md section 12. The vehicle does not feel them. */
+typedef struct RoadCourse {
+    Mark cones, *edge;
+    int edges;
+} RoadCourse;
+
 typedef struct Scene {
     const Source *source;
     double duration, step, output_step; /* step is 0 where a scene of variable steps has none */
@@ -101,8 +113,9 @@ typedef struct Scene {
     double *parameter;    /* [tunables] */
     int profiles, columns, curves, panels;
     Profile *profile;
-    Driver *driver; /* changes as the run goes on; NULL: nobody drives */
-    Rest *rest;     /* the same; NULL: the vehicle never sleeps */
+    Driver *driver;     /* changes as the run goes on; NULL: nobody drives */
+    Rest *rest;         /* the same; NULL: the vehicle never sleeps */
+    RoadCourse *course; /* what pages draw on the road; NULL: nothing */
     /* What can be written and drawn: components of outputs, in the order of output[], then inputs. Indices into it:
      * columns of the results; curves over time of the picture; its panels of one over another, x and y. */
     const gic_signal *signal;
@@ -154,6 +167,8 @@ const Scene *scene_even(Pool *pool, const Model *model, const Scene *scene);
 const Scene *scene_narrow(Pool *pool, const Scene *scene, const Model *model, const Engine *engine);
 /* scene_driver.c: the driver of a `driver:` item; step: s, 0 where steps vary. */
 Driver *driver_read(Pool *pool, const Item *item, const Model *model, double step);
+/* scene_course.c: what a `course:` item describes. */
+RoadCourse *course_read(Pool *pool, const Item *item);
 /* scene_road.c: the road a `road:` item describes. */
 const gic_road *road_read(Pool *pool, const Item *item);
 /* scene_road_file.c: the table in the file that `item` names, seen from the folder of the scene; what: "road". header:
@@ -231,6 +246,10 @@ typedef struct Plot {
 
 /* Picture by gnuplot, SVG or PNG by the ending of `path`; curves of the same unit share a panel. */
 void plot_write(Pool *pool, const Plot *plot, const char *path);
+/* quantity.c: what is measured in a unit, "force"; of units that we do not know "value". */
+const char *unit_quantity(const char *unit);
+/* "force [N]"; of numbers without a unit "no unit" */
+const char *quantity_text(Pool *pool, const char *unit);
 /* For scripts of gnuplot: a text in quotes, with a blank in front of a `>` behind `]]`. */
 void plot_text(Text *text, const char *s);
 

@@ -7,7 +7,12 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { WIDTH = 900, PANEL_HEIGHT = 420 };
+/* Pixels: of the picture; of the plane of a panel over time, and at most of one with equal scales; round about them. */
+enum { WIDTH = 900, TALL = 230, TALLEST = 460, LEFT = 104, RIGHT = 28, HEAD = 30, FOOT = 62, TITLE = 46, ROW = 19 };
+
+/* After Okabe and Ito: colour-blind people tell them apart; then dashed. As on the page of --animate. */
+static const char *const ink[] = {"#0072b2", "#d55e00", "#007d5c", "#a5457f", "#a66f00", "#3a8fc4", "#333333"};
+enum { INKS = sizeof ink / sizeof *ink };
 
 bool plot_known(const char *path)
 {
@@ -61,16 +66,61 @@ static void data_block(Text *script, const Plot *plot)
     text_print(script, "END\n");
 }
 
+/* ---- where panels are ---------------------------------------------------------------------------------------- */
+
+/* Pixels from the picture's upper left corner. scale: pixels of a unit of both axes, 0: each axis has its own. */
+typedef struct Frame {
+    int left, right, top, bottom;
+    double scale, low[2], high[2], tick;
+} Frame;
+
+static void place(Text *script, const Frame *frame, int height)
+{
+    text_print(script, "set lmargin at screen %.6f\nset rmargin at screen %.6f\n", (double)frame->left / WIDTH,
+               (double)frame->right / WIDTH);
+    text_print(script, "set tmargin at screen %.6f\nset bmargin at screen %.6f\n", 1 - (double)frame->top / height,
+               1 - (double)frame->bottom / height);
+    text_print(script, "set key at screen %.6f, screen %.6f\n", (double)frame->left / WIDTH,
+               1 - (double)(frame->top - 5) / height);
+}
+
+/* Columns and rows of a legend of `names` names. Characters are some 8 pixels wide. */
+static int legend_columns(size_t longest)
+{
+    const int columns = (WIDTH - LEFT - RIGHT) / (int)(8 * longest + 56);
+    return columns > 1 ? columns : 1;
+}
+
+static int legend_rows(const Plot *plot, int first, int *columns)
+{
+    size_t longest = 0;
+    int names = 0;
+    for (int i = first; i < plot->curves; ++i)
+        if (!strcmp(plot->signal[i].unit, plot->signal[first].unit)) {
+            const size_t length = strlen(plot->signal[i].name);
+            longest = length > longest ? length : longest;
+            ++names;
+        }
+    *columns = legend_columns(longest);
+    return (names + *columns - 1) / *columns;
+}
+
+/* ---- panels -------------------------------------------------------------------------------------------------- */
+
 static void panel(Text *script, const Plot *plot, int first, bool last)
 {
+    int columns;
+    legend_rows(plot, first, &columns);
     text_print(script, "set xlabel %s\nset ylabel ", last ? "'time [s]'" : "''");
-    plot_text(script, plot->signal[first].unit);
-    text_print(script, "\nplot ");
+    plot_text(script, quantity_text(script->pool, plot->signal[first].unit));
+    text_print(script, "\nset key maxcols %d\nplot ", columns);
     for (int i = first, drawn = 0; i < plot->curves; ++i) {
         if (strcmp(plot->signal[i].unit, plot->signal[first].unit))
             continue;
-        text_print(script, "%s$data using 1:%d with lines linewidth 1.5 title ", drawn++ ? ", " : "", i + 2);
+        text_print(script, "%s$data using 1:%d with lines linewidth 1.5 linecolor rgb '%s' dashtype %d title ",
+                   drawn ? ", " : "", i + 2, ink[drawn % INKS], drawn / INKS % 5 + 1);
         plot_text(script, plot->signal[i].name);
+        ++drawn;
     }
     text_print(script, "\n");
 }
@@ -82,57 +132,123 @@ static void axis_label(Text *script, char axis, const gic_signal *signal)
     text_print(script, "\n");
 }
 
-/* From the least to the largest value of a signal. */
-static double spread(const Plot *plot, int signal)
+/* The least and the largest value of a signal. */
+static void limits(const Plot *plot, int signal, double *low, double *high)
 {
     const int row = plot->curves + 2 * plot->panels + 1;
-    double low = INFINITY, high = -INFINITY;
+    *low = INFINITY;
+    *high = -INFINITY;
     for (int i = 0; i < plot->rows; ++i) {
-        low = fmin(low, plot->sample[i * row + signal + 1]);
-        high = fmax(high, plot->sample[i * row + signal + 1]);
+        *low = fmin(*low, plot->sample[i * row + signal + 1]);
+        *high = fmax(*high, plot->sample[i * row + signal + 1]);
     }
-    return high - low;
 }
 
-/* Of lengths over lengths the shape is to be seen as it is, where both extend far enough to be seen at all. */
-static bool equal_scales(const Plot *plot, int x, int y)
+/* 1, 2 or 5 times a power of ten: the smallest that is not below x. */
+static double round_up(double x)
 {
-    const double most = 10, across = spread(plot, x), up = spread(plot, y);
-    return !strcmp(plot->signal[x].unit, plot->signal[y].unit) && across <= most * up && up <= most * across;
+    const double ten = pow(10, floor(log10(x))), over = x / ten;
+    return ten * (over <= 1 ? 1 : over <= 2 ? 2 : over <= 5 ? 5 : 10);
 }
 
-static void panel_over(Text *script, const Plot *plot, int panel)
+/* Of lengths over lengths the shape is to be seen as it is, where both extend far enough to be seen at all: then the
+ * plane has the shape of what is drawn in it, and ticks of both axes are as far apart. */
+static Frame frame_over(const Plot *plot, int panel, int top)
+{
+    const int x = plot->curves + 2 * panel, y = x + 1, wide = WIDTH - LEFT - RIGHT;
+    const double most = 10, narrowest = 70; /* pixels between ticks: room for numbers side by side */
+    Frame frame = {.left = LEFT, .right = WIDTH - RIGHT, .top = top + HEAD, .bottom = top + HEAD + TALL};
+    limits(plot, x, &frame.low[0], &frame.high[0]);
+    limits(plot, y, &frame.low[1], &frame.high[1]);
+    const double across = frame.high[0] - frame.low[0], up = frame.high[1] - frame.low[1];
+    if (strcmp(plot->signal[x].unit, plot->signal[y].unit) || !(across <= most * up && up <= most * across))
+        return frame;
+    for (int k = 0; k < 2; ++k) { /* a line does not lie on the edge */
+        frame.low[k] -= 0.04 * fmax(across, up);
+        frame.high[k] += 0.04 * fmax(across, up);
+    }
+    const double size[2] = {frame.high[0] - frame.low[0], frame.high[1] - frame.low[1]};
+    frame.scale = fmin(wide / size[0], TALLEST / size[1]);
+    frame.tick = round_up(narrowest / frame.scale);
+    frame.right = LEFT + (int)(frame.scale * size[0]);
+    frame.bottom = frame.top + (int)(frame.scale * size[1]);
+    return frame;
+}
+
+static void panel_over(Text *script, const Plot *plot, int panel, const Frame *frame)
 {
     const int x = plot->curves + 2 * panel, y = x + 1;
     axis_label(script, 'x', &plot->signal[x]);
     axis_label(script, 'y', &plot->signal[y]);
-    /* numbers below a narrow panel stand upright */
-    text_print(script, equal_scales(plot, x, y) ? "set size ratio -1\nset xtics rotate\n"
-                                                : "set size noratio\nset xtics norotate\n");
-    text_print(script, "plot $data using %d:%d with lines linewidth 1.5 notitle\n", x + 2, y + 2);
+    for (int k = 0; k < 2 && frame->scale > 0; ++k)
+        text_print(script, "set %crange [%.9g:%.9g]\nset %ctics %.9g\n", "xy"[k], frame -> low[k], frame -> high[k],
+                   "xy"[k], frame -> tick);
+    if (!(frame->scale > 0))
+        text_print(script, "set autoscale\nset xtics autofreq\nset ytics autofreq\n");
+    text_print(script, "set key maxcols 1\nplot $data using %d:%d with lines linewidth 1.5 linecolor rgb '%s' title ",
+               x + 2, y + 2, ink[0]);
+    plot_text(script, pool_print(script->pool, "%s over %s", plot->signal[y].name, plot->signal[x].name));
+    text_print(script, "\n");
+}
+
+/* ---- the picture --------------------------------------------------------------------------------------------- */
+
+/* Where each panel is, over time first; returns the picture's height. */
+static int arrange(const Plot *plot, Frame *frame)
+{
+    int top = TITLE, panels = 0;
+    for (int i = 0; i < plot->curves; ++i) {
+        if (!opens_panel(plot, i))
+            continue;
+        int columns;
+        const int plane = top + HEAD + ROW * (legend_rows(plot, i, &columns) - 1);
+        frame[panels++] = (Frame){.left = LEFT, .right = WIDTH - RIGHT, .top = plane, .bottom = plane + TALL};
+        top = plane + TALL + FOOT;
+    }
+    for (int i = 0; i < plot->panels; ++i) {
+        frame[panels] = frame_over(plot, i, top);
+        top = frame[panels++].bottom + FOOT;
+    }
+    return top;
+}
+
+static void style(Text *script, const Plot *plot, const char *path, int height)
+{
+    text_print(script, "set encoding utf8\nset terminal %s size %d,%d noenhanced\n",
+               path_ends(path, ".svg") ? "svg background 'white' font 'sans-serif,13'" : "pngcairo font 'sans,10'",
+               WIDTH, height);
+    text_print(script, "set grid back linetype 1 linewidth 0.5 linecolor rgb '#d5dce2'\n"
+                       "set border 3 linewidth 0.8 linecolor rgb '#5c6873'\n"
+                       "set tics nomirror out scale 0.5 textcolor rgb '#1f2933'\n"
+                       "set offsets graph 0, graph 0, graph 0.05, graph 0.05\n"
+                       "set key left bottom Left reverse horizontal samplen 2 spacing 1.1\n"
+                       "set multiplot\nset label 1 ");
+    plot_text(script, plot->title);
+    text_print(script, " at screen %.6f, screen %.6f left font ',%d'\n", (double)LEFT / WIDTH, 1 - 24.0 / height,
+               path_ends(path, ".svg") ? 17 : 13);
 }
 
 static const char *plot_script(Pool *pool, const Plot *plot, const char *path)
 {
     Text script = {.pool = pool};
+    Frame *frame = pool_alloc(pool, sizeof *frame * (size_t)(plot->curves + plot->panels + 1));
     int over_time = 0, done = 0;
     for (int i = 0; i < plot->curves; ++i)
         over_time += opens_panel(plot, i);
-    const int panels = over_time + plot->panels;
+    const int height = arrange(plot, frame);
     data_block(&script, plot);
-    text_print(&script, "set terminal %s size %d,%d noenhanced\n",
-               path_ends(path, ".svg") ? "svg background 'white'" : "pngcairo", WIDTH, PANEL_HEIGHT * panels + 40);
-    text_print(&script,
-               "set grid\nset key outside center top horizontal\nset lmargin 10\nset tmargin 4\n"
-               "set multiplot layout %d,1 title ",
-               panels);
-    plot_text(&script, plot->title);
-    text_print(&script, "\n");
+    style(&script, plot, path, height);
     for (int i = 0; i < plot->curves; ++i)
-        if (opens_panel(plot, i))
-            panel(&script, plot, i, ++done == over_time);
-    for (int i = 0; i < plot->panels; ++i)
-        panel_over(&script, plot, i);
+        if (opens_panel(plot, i)) {
+            place(&script, &frame[done], height);
+            panel(&script, plot, i, done == over_time - 1);
+            text_print(&script, done++ ? "" : "unset label 1\n");
+        }
+    for (int i = 0; i < plot->panels; ++i, ++done) {
+        place(&script, &frame[done], height);
+        panel_over(&script, plot, i, &frame[done]);
+        text_print(&script, done ? "" : "unset label 1\n");
+    }
     text_print(&script, "unset multiplot\n");
     return script.s;
 }

@@ -552,7 +552,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
         diag_fail(other->at, "name the model first, then the scene", "this is a model, where a scene is wanted");
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
                "steady", "sleep", "massless", "base", "driven", "output_step", "initial", "road", "inputs", "driver",
-               "parameters", "outputs", "plot");
+               "course", "parameters", "outputs", "plot");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
     if (doc_number(version, "gicscene") != 1)
@@ -594,6 +594,8 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
             scene->parameter[model->parameter[i].index] = model->parameter[i].value;
     if (doc_find(root, "parameters"))
         read_parameters(&reader, doc_find(root, "parameters"));
+    if (doc_find(root, "course"))
+        scene->course = course_read(pool, doc_find(root, "course"));
     rig_read(pool, root, model, scene);
     scene_read_outputs(pool, root, model, scene);
     return scene;

@@ -40,11 +40,13 @@ static Names all_names(Pool *pool, const Model *model, const gic_signal *signal)
     names.size = pool_alloc(pool, sizeof *names.size * most);
     names.name = pool_alloc(pool, sizeof *names.name * most);
     int at = 0;
-    for (int i = 0; i < model->outputs; ++i) {
+    for (int i = 0; i < model->outputs; at += model->output[i++].count) {
         const Output *output = &model->output[i];
+        if (output->hidden)
+            continue;
         add_name(&names, output->name, at, output->count);
-        for (int k = 0; k < output->count; ++k, ++at)
-            add_name(&names, signal[at].name, at, 1);
+        for (int k = 0; k < output->count; ++k)
+            add_name(&names, signal[at + k].name, at + k, 1);
     }
     for (int i = 0; i < model->inputs; ++i, ++at)
         add_name(&names, signal[at].name, at, 1);
@@ -92,6 +94,14 @@ static void read_panel(const Names *names, const Item *item, Scene *scene)
     }
 }
 
+/* All components of the model's own outputs. */
+static void add_all(Pool *pool, const Model *model, int **out, int *count)
+{
+    for (int i = 0, at = 0; i < model->outputs; at += model->output[i++].count)
+        for (int k = 0; k < model->output[i].count && !model->output[i].hidden; ++k)
+            *POOL_PUSH(pool, *out, *count) = at + k;
+}
+
 /* Without a list the picture shows heights, as the paper's does, or else values of coordinates, or else all. */
 static void default_curves(Pool *pool, const Model *model, Scene *scene)
 {
@@ -101,8 +111,8 @@ static void default_curves(Pool *pool, const Model *model, Scene *scene)
                 *POOL_PUSH(pool, scene->curve, scene->curves) = component + 2;
             else if (pass && model->output[i].type == OUTPUT_COORDINATE)
                 *POOL_PUSH(pool, scene->curve, scene->curves) = component;
-    for (int i = 0; !scene->curves && i < model->output_components; ++i)
-        *POOL_PUSH(pool, scene->curve, scene->curves) = i;
+    if (!scene->curves)
+        add_all(pool, model, &scene->curve, &scene->curves);
 }
 
 void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene *scene)
@@ -114,8 +124,8 @@ void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene 
         check_list(outputs, "outputs");
     for (int i = 0; outputs && i < outputs->count; ++i)
         add_signals(&names, outputs->value[i], &scene->column, &scene->columns);
-    for (int i = 0; !outputs && i < model->output_components; ++i)
-        *POOL_PUSH(pool, scene->column, scene->columns) = i;
+    if (!outputs)
+        add_all(pool, model, &scene->column, &scene->columns);
     scene->plotted = plot;
     if (plot)
         check_list(plot, "plot");

@@ -94,11 +94,37 @@ check 'the joint is where the parameter puts it' grep -q '"name":"bob".*\[0,0,0.
 # 100001 output times; at most 6000 frames of two numbers that change, three curves
 check 'a long run has a small page' [ "$(wc -c <"$work/odd.html")" -lt 300000 ]
 
+# shapes that models name, and those of bodies of which little is known; wheels whose forces no output tells
+cat >"$work/shapes.scene" <<'END'
+gicscene: 1
+duration: 0.5
+step: 0.002
+output_step: 0.01
+initial: {speed: 8}
+END
+shapes=$root/tests/animate/shapes.veh
+run "$shapes" "$work/shapes.scene" -o "$work/shapes.csv" --animate "$work/shapes.html"
+check 'bodies look as their model says or their mass suggests' page looks "$work/shapes.html"
+cp "$root/tests/animate/wing.obj" "$work"
+{
+    cat "$shapes"
+    echo 'outputs:'
+    for wheel in front_l rear_l trailer_l; do echo "  load_$wheel: {type: wheel, wheel: $wheel}"; done
+} >"$work/loads.veh"
+run "$work/loads.veh" "$work/shapes.scene" -o "$work/loads.csv"
+check 'forces of wheels without an output are those that an output tells' page forces "$work/shapes.html" "$work/loads.csv"
+run --general "$shapes" "$work/shapes.scene" -o "$work/plain.csv"
+check 'a page leaves no trace in the results' cmp "$work/shapes.csv" "$work/plain.csv"
+
+lanes=$root/models/scenes/lane_change.scene
+run "$root/models/hmmwv_vehicle.veh" "$lanes" --animate "$work/lanes.html"
+check 'cones, lanes and path are those of the scene' page course "$work/lanes.html"
+
 # ---- in the browser
 
 run "$model" "$root/models/scenes/spin.scene" -o "$work/spin.csv" --animate "$work/spin.html"
-timeout 300 /usr/bin/python3 -B "$root/tests/animate/browser.py" "$work/profile" "$work/run.html" "$work/run.csv" \
-    "$work/spin.html" "$work/spin.csv" "$work/odd.html" >"$work/notes" 2>"$work/err"
+timeout 600 /usr/bin/python3 -B "$root/tests/animate/browser.py" "$work/profile" "$work/run.html" "$work/run.csv" \
+    "$work/spin.html" "$work/spin.csv" "$work/odd.html" "$work/lanes.html" >"$work/notes" 2>"$work/err"
 check 'the browser is used to the end' [ $? -eq 0 ]
 while read -r how what; do
     check "$what" [ "$how" = good ]

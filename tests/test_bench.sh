@@ -46,9 +46,17 @@ done
 check 'no temporary file is left' [ -z "$(find "$work/page" -name '*.tmp')" ]
 check 'the page is whole' grep -q '^</html>' "$work/page/index.html"
 # shellcheck disable=SC2013  # names without spaces
-for file in $(sed -n 's/.*\(src\|href\)="\([^"]*\)".*/\2/p' "$work/page/index.html"); do
+for file in $(sed -n 's/.*\(src\|href\)="\([^"#]*\)".*/\2/p' "$work/page/index.html"); do
     check "the page's $file exists" [ -s "$work/page/$file" ]
 done
+parts=$(grep -c '^<h2' "$work/page/index.html")
+linked=$(sed -n '/<nav>/,/<\/nav>/s/.*href="#\(part[0-9]*\)".*/\1/p' "$work/page/index.html" | while read -r part; do
+        grep -c "^<h2 id=\"$part\">" "$work/page/index.html"
+    done | grep -cx 1)
+check 'there are parts' [ "$parts" -gt 4 ]
+check 'contents link to every part' [ "$linked" -eq "$parts" ]
+check 'results and contents stand before all else' awk '/<h1/ {h = NR} /class="headline"/ {r = NR} /<nav>/ {n = NR} /<h2/ && !p {p = NR}
+    END {exit !(h && h < r && r < n && n < p)}' "$work/page/index.html"
 for file in "$work"/page/*.csv; do
     check "$(basename "$file") has as many cells in each row" awk -F, 'NR == 1 {n = NF} NF != n {bad = 1}
         END {exit bad || NR < 2 || n < 3}' "$file"
@@ -148,8 +156,13 @@ check 'break-even follows from starts and steps' awk -F, '
 
 # an undamped one: the order of AB3 shows, eight times less error for half the step: 512 times from 4 to 0.5 ms
 vehicle 0 >"$work/soft.veh"
-"$gicbench" --quick --engines cc -o "$work/page" "$work/soft.veh" "$work/cart.scene" >"$work/out" 2>"$work/err"
+mkdir "$work/page/part" "$work/page/other"
+cp "$work/page/index.html" "$work/page/part"
+echo '<title>another</title>' >"$work/page/other/index.html"
+"$gicbench" --quick --engines cc,tape -o "$work/page" "$work/soft.veh" "$work/cart.scene" >"$work/out" 2>"$work/err"
 check 'a folder may be there already' [ $? -eq 0 ]
+check 'it links to reports in folders within it, and to nothing else' [ "$(grep -o '[a-z]*/index.html' "$work/page/index.html")" = part/index.html ]
+check 'the first result compares the engines' grep -q "^\* ab3 with steps of .*: cc is [0-9.e+]* times as fast as tape" "$work/page/bench.txt"
 check 'the order of AB3 shows' awk -F, '$1 == "4 ms" {coarse = $3} $1 == "0.5 ms" {fine = $3}
     END {exit !(fine > 0 && coarse > 100 * fine)}' "$work/page/table2.csv"
 check 'without a second scene there is no table of it' \
@@ -262,6 +275,15 @@ check 'what sleeps hardly moves' awk -F, '
     NR == 1 {for (i = 1; i <= NF; ++i) at[$i] = i; next}
     $1 == "parked.scene" {++n; if (!($at["difference"] < 1e-2 && $at["operations ratio"] < 0.05 && /asleep [1-9]/)) bad = 1}
     END {exit bad || n != 1}' "$work/scenes/scenes.csv"
+
+# ---- in the browser
+
+/usr/bin/python3 -B "$(dirname "$0")/bench/width.py" "$work/profile" "$work/page/index.html" "$work/box/index.html" \
+    "$work/drive/index.html" "$work/lanes/index.html" "$work/scenes/index.html" >"$work/notes" 2>"$work/err"
+check 'the browser is used to the end' [ $? -eq 0 ]
+while read -r how what; do
+    check "$what" [ "$how" = good ]
+done <"$work/notes"
 
 # fails STATUS TEXT ARGUMENT...
 fails() {

@@ -88,6 +88,13 @@ if command -v gnuplot >/dev/null; then
     check 'panels of one output over another have axes' [ 2 -eq \
         "$(grep -oE '>(drive.value \[m\]|drive.rate \[m/s\]|x.value \[m\])<' "$work/over.svg" | sort | uniq -c |
             awk '/drive.value/ {n = $1} END {print n}')" ]
+    check 'axes say what is measured, and in what' grep -q '>length \[m\]<' "$work/over.svg"
+    # one scale where both are lengths, and no number upright
+    sed '$a plot: [{x: x.value, y: drive.value}]' "$work/swing.scene" >"$work/equal.scene"
+    run "$work/carts.veh" "$work/equal.scene" --plot "$work/equal.svg"
+    check 'panels over one another have a title' grep -q '>drive.value over x.value<' "$work/equal.svg"
+    check 'ticks of both axes are equally far apart, and numbers do not meet' \
+        /usr/bin/python3 -B "$(dirname "$0")/gicrun_ticks.py" "$work/equal.svg"
     check 'inputs are curves' grep -q 'input.drive' "$work/over.svg"
 fi
 mkdir "$work/bin"
@@ -238,6 +245,14 @@ change '$a outputs: [input.drives]' 9:11 "no output 'input.drives'"
 change '$a outputs: [{x: x.value, y: x.rate}]' 9:11 'name of an output'
 change '$a plot: [{x: x.value}]' 9:8 "needs the key 'y'"
 change '$a plot: [{x: x.value, y: x}]' 9:24 "output 'x' has 3 components"
+change '$a course: {cone: [[0, 0]]}' 9:10 "unknown key 'cone'"
+change '$a course: {cones: [0, 0]}' 9:18 'a list of 2 numbers'
+change '$a course: {lanes: {points: [[0, 0], [1, 0]]}}' 9:17 'lanes must be a list'
+change '$a course: {lanes: [{points: [[0, 0]], width: 3}]}' 9:27 'at least 2 points'
+change '$a course: {lanes: [{points: [[0, 0], [0, 0]], width: 3}]}' 9:18 'are the same'
+change '$a course: {lanes: [{points: [[0, 0], [5, 0], [0, 0]], width: 3}]}' 9:18 'turns back at point 2'
+change '$a course: {lanes: [{points: [[0, 0], [5, 0]], width: 0}]}' 9:52 'must be positive'
+change '$a course: {lanes: [{points: [[0, 0], [5, 0]], width: 3, cones: 1.5}]}' 9:62 'whole number'
 change '$a road: {type: bump}' 9:14 "no road of type 'bump'"
 change '$a road: {type: sine, amplitude: 1}' 9:7 "needs the key 'wavelength'"
 change '$a road: {type: table, x: [0, 0], height: [0, 1]}' 9:28 'must rise'

@@ -1,155 +1,15 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-# browser.py PROFILE RUN.html RUN.csv SPIN.html SPIN.csv ODD.html: opens pages of `gicrun --animate` in chromium without a screen, uses
-# them by mouse and keys, and looks at pictures of them. Prints `good NAME` or `bad NAME: why` for each check. It talks
-# the browser's DevTools protocol through a pipe: messages are JSON, ended by a zero byte.
-import base64
+# browser.py PROFILE RUN.html RUN.csv SPIN.html SPIN.csv ODD.html LANES.html: opens pages of `gicrun --animate` in chromium, uses
+# them by mouse and keys, and looks at pictures of them. Prints `good NAME` or `bad NAME: why` for each check.
 import json
 import math
 import os
-import struct
-import subprocess
 import sys
 import time
-import zlib
 
+from chromium import TALL, WIDTH, Browser, note, read_png
 from page import read_csv
-
-WIDTH, TALL = 640, 480
-
-
-class Browser:
-    """One page. The sandbox can't be had as root; the processor draws in place of a graphics card."""
-
-    def __init__(self, profile, *options):
-        down, self.to = os.pipe()
-        self.back, up = os.pipe()
-        command = ['chromium', '--headless', '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-                   '--user-data-dir=' + profile, '--no-first-run', '--disable-background-networking',
-                   '--force-device-scale-factor=1', '--window-size=%d,%d' % (WIDTH, TALL), '--remote-debugging-pipe',
-                   *options, 'about:blank']
-        self.process = subprocess.Popen(['sh', '-c', 'exec "$@" 3<&%d 4>&%d' % (down, up), 'sh'] + command,
-                                        pass_fds=(down, up), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        os.close(down)
-        os.close(up)
-        self.rest, self.number, self.session, self.complaints = b'', 0, None, []
-        target = next(t for t in self.call('Target.getTargets')['targetInfos'] if t['type'] == 'page')['targetId']
-        self.session = self.call('Target.attachToTarget', targetId=target, flatten=True)['sessionId']
-        for domain in ('Page', 'Runtime', 'Log', 'Network'):
-            self.call(domain + '.enable')
-        self.call('Emulation.setDeviceMetricsOverride', width=WIDTH, height=TALL, deviceScaleFactor=1, mobile=False)
-
-    def call(self, method, **params):
-        self.number += 1
-        message = {'id': self.number, 'method': method, 'params': params}
-        if self.session:
-            message['sessionId'] = self.session
-        os.write(self.to, json.dumps(message).encode() + b'\0')
-        while True:
-            while b'\0' not in self.rest:
-                more = os.read(self.back, 1 << 20)
-                if not more:
-                    sys.exit('the browser has ended')
-                self.rest += more
-            one, self.rest = self.rest.split(b'\0', 1)
-            answer = json.loads(one)
-            self.hear(answer)
-            if answer.get('id') == self.number:
-                if 'error' in answer:
-                    sys.exit('%s: %s' % (method, answer['error']))
-                return answer['result']
-
-    def hear(self, event):
-        """What the browser complains about, and what pages ask the network for."""
-        method, params = event.get('method'), event.get('params', {})
-        if method in ('Runtime.exceptionThrown', 'Log.entryAdded'):
-            self.complaints.append(json.dumps(params)[:400])
-        if method == 'Network.requestWillBeSent':
-            url = params['request']['url']
-            if not url.startswith(('file:', 'data:', 'about:')):
-                self.complaints.append('asks for ' + url)
-
-    def open(self, path, address=''):
-        self.call('Page.navigate', url='about:blank')
-        self.call('Page.navigate', url='file://' + path + ('#' + address if address else ''))
-        self.wait('document.readyState === "complete" && document.getElementById("clock") !== null && '
-                  'document.getElementById("clock").textContent !== ""')
-
-    def ask(self, expression):
-        result = self.call('Runtime.evaluate', expression=expression, returnByValue=True, awaitPromise=True)
-        return result['result'].get('value')
-
-    def wait(self, condition, seconds=20):
-        """Until it holds; True: it does."""
-        end = time.time() + seconds
-        while self.ask(condition) is not True:
-            if time.time() > end:
-                return False
-            time.sleep(0.02)
-        return True
-
-    def text(self, name):
-        return self.ask('document.getElementById("%s").textContent' % name)
-
-    def picture(self):
-        # twice, for the first may show the frame before
-        self.ask('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))')
-        return base64.b64decode(self.call('Page.captureScreenshot', format='png')['data'])
-
-    def press(self, key, text=None, modifiers=0):
-        self.call('Input.dispatchKeyEvent', type='keyDown', key=key, modifiers=modifiers,
-                  **({'text': text} if text else {}))
-        self.call('Input.dispatchKeyEvent', type='keyUp', key=key, modifiers=modifiers)
-
-    def mouse(self, kind, x, y, **more):
-        self.call('Input.dispatchMouseEvent', type=kind, x=x, y=y, **more)
-
-    def drag(self, path, **more):
-        self.mouse('mousePressed', *path[0], button='left', buttons=1, clickCount=1, **more)
-        for x, y in path[1:]:
-            self.mouse('mouseMoved', x, y, button='left', buttons=1, **more)
-        self.mouse('mouseReleased', *path[-1], button='left', clickCount=1, **more)
-
-    def click(self, selector, share=0.5):
-        x, y = self.ask('(() => {const r = document.querySelector(%s).getBoundingClientRect();'
-                        'return [r.left + %g * r.width, r.top + r.height / 2]})()' % (json.dumps(selector), share))
-        self.drag([(x, y)])
-
-    def close(self):
-        self.session = None
-        self.call('Browser.close')
-        self.process.wait(20)
-
-
-def read_png(data):
-    """Rows of (r, g, b)."""
-    at, body = 8, b''
-    while at < len(data):
-        size, kind = struct.unpack('>I4s', data[at:at + 8])
-        if kind == b'IHDR':
-            width, tall, depth, colour = struct.unpack('>IIBB', data[at + 8:at + 18])
-        if kind == b'IDAT':
-            body += data[at + 8:at + 8 + size]
-        at += 12 + size
-    n = {2: 3, 6: 4}[colour]
-    raw, rows, before = zlib.decompress(body), [], bytearray(width * n)
-    for y in range(tall):
-        start = y * (width * n + 1)
-        kind, line = raw[start], bytearray(raw[start + 1:start + 1 + width * n])
-        if kind == 1:
-            for x in range(n, width * n):
-                line[x] = (line[x] + line[x - n]) & 255
-        elif kind:
-            for x in range(width * n):
-                a, b, c = line[x - n] if x >= n else 0, before[x], before[x - n] if x >= n else 0
-                near = b if kind == 2 else (a + b) // 2
-                if kind == 4:
-                    p = a + b - c
-                    near = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
-                line[x] = (line[x] + near) & 255
-        rows.append([tuple(line[x:x + 3]) for x in range(0, width * n, n)])
-        before = line
-    return rows
 
 
 def tires(rows):
@@ -157,16 +17,12 @@ def tires(rows):
     return [x for row in rows[TALL // 6:TALL * 6 // 10] for x, p in enumerate(row) if max(p) < 60]
 
 
-def note(name, good, why=''):
-    print('good %s' % name if good else 'bad %s: %s' % (name, why), flush=True)
-
-
 def look(browser, path, results):
     """The vehicle is there and moves as it should in a picture that opens 30 degrees over the window's height, seen
     from 30 m. Of 8 %: the tires are up to 1 m nearer or farther than the middle of the vehicle."""
     rows, distance, seen = read_csv(results), 30, []
     for moment in (0, 1.2):
-        browser.open(path, 't=%g&view=side&camera=fixed&distance=%g' % (moment, distance))
+        browser.open(path, 't=%g&view=side&camera=fixed&distance=%g&toggle=curves' % (moment, distance))
         note('the clock at %g s' % moment, browser.text('clock') == '%.2f s' % moment, browser.text('clock'))
         seen.append(read_png(browser.picture()))
     colours = len({p for row in seen[0] for p in row})
@@ -216,7 +72,7 @@ def use(browser, path):
     shows('End', '%s === 4 && document.getElementById("scrub").value === "4"' % clock)
     browser.click('#scrub')
     shows('the bar', 'Math.abs(%s - 2) < 0.1' % clock)
-    browser.click('#plot', 0.25)
+    browser.click('figure > canvas', 0.55)
     shows('the curves', 'Math.abs(%s - 2) < 0.3' % clock)
     before = browser.ask('state.time')
     began = time.time()
@@ -261,12 +117,108 @@ def use(browser, path):
     note('no trouble', browser.text('trouble') == '', browser.text('trouble'))
 
 
+# Visible things that hold text or are used, as they are seen: [what, left, top, right, bottom].
+SEEN = """[...document.querySelectorAll(`h1, #subtitle, #clock, #facts, .quantity, .curve, figure > canvas, #controls button,
+    #controls select, #controls input`)].flatMap((e) => {
+    const r = e.getBoundingClientRect(), c = e.closest('#plots'), p = c ? c.getBoundingClientRect() :
+        {left: -1e9, top: -1e9, right: 1e9, bottom: 1e9};
+    const box = [Math.max(r.left, p.left), Math.max(r.top, p.top), Math.min(r.right, p.right), Math.min(r.bottom, p.bottom)];
+    return r.width && box[0] < box[2] && box[1] < box[3] ? [[e.id || e.className || e.textContent, ...box]] : [];
+})"""
+
+
+def narrow(browser, path):
+    """Nothing overlaps or leaves the screen, from a telephone's to a desktop's; all legends are there."""
+    for width, tall in ((390, 844), (1280, 800), (844, 390)):
+        browser.call('Emulation.setDeviceMetricsOverride', width=width, height=tall, deviceScaleFactor=1, mobile=False)
+        browser.open(path, 't=5')
+        size = '%d by %d' % (width, tall)
+        seen, bad = browser.ask(SEEN), []
+        for i, (what, left, top, right, bottom) in enumerate(seen):
+            if left < -0.5 or top < -0.5 or right > width + 0.5 or bottom > tall + 0.5:
+                bad.append('%s leaves the screen' % what)
+            for other, x0, y0, x1, y1 in seen[:i]:
+                if min(right, x1) - max(left, x0) > 1 and min(bottom, y1) - max(top, y0) > 1:
+                    bad.append('%s on %s' % (what, other))
+        note('%s: nothing overlaps' % size, len(seen) > 20 and not bad, '%d things; %s' % (len(seen), '; '.join(bad[:4])))
+        wide = browser.ask('[document.documentElement.scrollWidth, document.querySelector("#plots").scrollWidth - '
+                           'document.querySelector("#plots").clientWidth]')
+        note('%s: no sideways scrolling' % size, wide[0] <= width and wide[1] <= 0, str(wide))
+        legends = browser.ask('[...document.querySelectorAll("figure")].map((f) => f.querySelector("figcaption").innerText)')
+        units = {'speed of chassis': 'm/s', 'wheel_f_l.y': 'm', 'wheel_r_r.y': 'm', 'chassis_attitude.roll': 'rad'}
+        for name, unit in units.items():
+            of = [' '.join(text.split()) for text in legends if name in text]
+            note('%s: legend of %s' % (size, name),
+                 len(of) == 1 and '[%s]' % unit in of[0] and of[0].split(name)[1].split()[1] == unit, str(legends))
+        note('%s: panels of one unit each' % size, len(legends) == 3, str(legends))
+    browser.call('Emulation.setDeviceMetricsOverride', width=WIDTH, height=TALL, deviceScaleFactor=1, mobile=False)
+
+
+def course(browser, path):
+    """Cones, edges of lanes and the driver's path are seen from above, and nothing of them in a run without."""
+    browser.open(path, 't=0&view=top&distance=60&toggle=body,curves')
+    rows = read_png(browser.picture())
+    # the vehicle covers 3 by 5 of 20 by 30 m; the lane begins 30 m ahead
+    browser.ask('camera.shift = [28, 0, 0]; state.changed = true; 1')
+    ahead = read_png(browser.picture())
+
+    def count(rows, is_of):
+        return sum(1 for row in rows for p in row if is_of(*p))
+    orange = count(ahead, lambda r, g, b: r > 180 and 60 < g < 140 and b < 90)
+    note('cones are seen', orange > 40, '%d orange pixels' % orange)
+    green = count(rows, lambda r, g, b: g > r + 30 and g > b + 10)
+    note("the driver's path is seen", green > 100, '%d green pixels' % green)
+    white = count(ahead, lambda r, g, b: min(r, g, b) > 245) - count(rows, lambda r, g, b: min(r, g, b) > 245)
+    note('lanes are seen', white > 100, '%d white pixels more than before' % white)
+
+
+def save(browser, path, profile):
+    """Picture and video arrive as files of their kind; the loop begins again."""
+    folder = profile + '/saved'
+    os.makedirs(folder)
+    browser.whole('Browser.setDownloadBehavior', behavior='allow', downloadPath=folder)
+
+    def file(name, least):
+        end = time.time() + 60
+        while time.time() < end:
+            browser.ask('1')
+            if os.path.exists(folder + '/' + name) and os.path.getsize(folder + '/' + name) >= least:
+                return open(folder + '/' + name, 'rb').read()
+            time.sleep(0.05)
+        return b''
+    browser.open(path, 't=5')
+    browser.click('#picture')
+    rows = read_png(file('hmmwv_vehicle_lane_change_5.00s.png', 1000))
+    note('the picture has the size of the view', (len(rows[0]), len(rows)) == (WIDTH, TALL),
+         '%d by %d' % (len(rows[0]), len(rows)))
+    rubber = len(tires(rows))
+    note('the vehicle is in it', rubber > 300, '%d dark pixels' % rubber)
+    x, y, wide, tall = browser.ask('(() => {const r = document.querySelector("figcaption").getBoundingClientRect();'
+                                   'return [r.left, r.top, r.width, r.height].map(Math.round)})()')
+    ink = sum(1 for row in rows[y:y + tall] for p in row[x:x + wide] if max(p) < 110)
+    note('legends are in it', ink > 50, '%d dark pixels' % ink)
+    browser.ask('go(duration - 0.15)')
+    browser.press('m', 'm')
+    note('it records', browser.ask('recorder !== null && state.playing') is True, '')
+    video = file('hmmwv_vehicle_lane_change.webm', 1000)
+    note('a video comes', video[:4] == b'\x1a\x45\xdf\xa3' and b'webm' in video[:64] and b'V_VP8' in video,
+         '%d bytes: %r' % (len(video), video[:64]))
+    browser.press('l', 'l')
+    browser.press('End')
+    browser.press(' ', ' ')
+    browser.ask('go(duration - 0.05)')
+    note('the loop begins again', browser.wait('state.playing && state.time < 5', 10), browser.ask('JSON.stringify(state)'))
+
+
 def main():
-    profile, run, results, spin, spin_results, odd = sys.argv[1:]
+    profile, run, results, spin, spin_results, odd, lanes = sys.argv[1:]
     browser = Browser(profile)
     look(browser, run, results)
     compare(browser, spin, spin_results)
     use(browser, run)
+    narrow(browser, lanes)
+    course(browser, lanes)
+    save(browser, lanes, profile)
     note('no complaint, no request', not browser.complaints, '; '.join(browser.complaints))
     browser.close()
 

@@ -201,6 +201,75 @@ def check_same(page, other, units):
             close('channel %d' % k, v, w, (units + 0.1) * a['channels'][k]['unit'])
 
 
+def check_forces(page, results):
+    """Arrows of wheels that no output is about, without slopes, against a model that has such outputs: half a unit."""
+    run, rows = read_run(page), read_csv(results)
+    for wheel in run['wheels']:
+        for i in range(run['frames']):
+            close('force of ' + wheel['name'], run['channel'][wheel['force'][2]][i], rows['load_%s.fz' % wheel['name']][i],
+                  0.51 * run['channels'][wheel['force'][2]]['unit'])
+        if not max(run['channel'][wheel['force'][2]]) > 100:
+            sys.exit('no force at ' + wheel['name'])
+
+
+def check_course(page):
+    """Cones and edges of the double lane change of ISO 3888-2 for a width of 2.2 m, by its formulas."""
+    course, w = read_run(page)['course'], 2.2
+    lanes = [(0, 12, -(1.1 * w + .25) / 2, (1.1 * w + .25) / 2)]
+    low = lanes[0][3] + 1  # the second lane begins 1 m beside the first
+    lanes.append((25.5, 36.5, low, low + w + 1))
+    lanes.append((49, 61, lanes[0][2], lanes[0][2] + 1.3 * w + .25))
+    expected = [(x0 + (x1 - x0) * i / 4, y) for x0, x1, *ys in lanes for y in ys for i in range(5)]
+    if len(course['cones']) != len(expected):
+        sys.exit('%d cones' % len(course['cones']))
+    for x, y in expected:
+        close('cone at %g, %g' % (x, y), min(math.dist((x, y), cone) for cone in course['cones']), 0, 1e-9)
+    edges = [e['points'] for e in course['edges']]
+    for x0, x1, *ys in lanes:
+        for y in ys:
+            close('edge at %g' % y, min(math.dist((x0, y), a) + math.dist((x1, y), b) for a, b in edges), 0, 1e-9)
+    path = course['path']
+    close('first point of the path', math.dist(path[0], (-40, 0)), 0, 1e-9)
+    close('last point of the path', math.dist(path[-1], (95, 0.25)), 0, 1e-9)
+    close('the path through the second lane', min(math.dist(p, (34, 3.7)) for p in path), 0, 0.2)
+
+
+def check_looks(page):
+    """Shapes of tests/animate/shapes.veh, whose inertia is that of the solids that its comments name."""
+    run = read_run(page)
+    body = {b['name']: b for b in run['bodies']}
+
+    def near(name, key, expected):
+        for a, b in zip(body[name][key], expected):
+            close('%s of %s' % (key, name), a, b, 1e-4)
+    for name, look in (('car', 'frame'), ('trailer', 'glass'), ('drum', 'cylinder'), ('crate', 'box'), ('post', 'cylinder'),
+                       ('chest', 'box'), ('wing_l', 'mesh'), ('wing_r', 'mesh'), ('arm', 'hull')):
+        if body[name]['look'] != look:
+            sys.exit('%s is drawn as %s' % (name, body[name]['look']))
+    near('trailer', 'size', (4, 2, 1.2))
+    near('trailer', 'middle', (0, 0, 0.1))
+    near('drum', 'size', (0.3, 1.2))
+    near('drum', 'axis', (0, 1, 0))
+    near('crate', 'size', (1, 0.6, 0.4))
+    near('post', 'size', (0.1, 2))
+    near('post', 'axis', (0, 0, 1))
+    near('post', 'middle', (0, 0, 1))
+    near('chest', 'size', (0.5, 0.4, 0.3))
+    corner = [[body['wing_%s' % side]['corners'][k:k + 3] for k in range(0, 12, 3)] for side in 'lr']
+    for left, right in zip(*corner):
+        near('wing_r', 'com', body['wing_r']['com'])
+        close('corner of the other side', math.dist(left, (right[0], -right[1], right[2])), 0, 1e-9)
+    close('corner in m', math.dist(corner[0][2], (0.2, 0.4, 0)), 0, 1e-9)
+    for side, sign in zip((0, 1), (1, 1)):
+        name = 'wing_' + 'lr'[side]
+        a, b, c = [corner[side][k] for k in body[name]['triangles'][:3]]
+        normal = cross([q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)])
+        if not sign * normal[2] > 0:
+            sys.exit('%s is inside out' % name)
+    if body['wing_l']['triangles'] != [0, 1, 2, 0, 2, 3]:
+        sys.exit('triangles %s' % body['wing_l']['triangles'])
+
+
 def main():
     check, *words = sys.argv[1:]
     if check == 'motion':
@@ -209,6 +278,12 @@ def main():
         check_tires(words[0], words[1], *map(float, words[2:]))
     elif check == 'friction':
         check_friction(*words)
+    elif check == 'forces':
+        check_forces(*words)
+    elif check == 'course':
+        check_course(*words)
+    elif check == 'looks':
+        check_looks(*words)
     elif check == 'road':
         check_road(*words)
     elif check == 'same':
