@@ -3,8 +3,8 @@
 # install.sh [test]: installs the Debian packages that building and the demonstration need, with `test` those of the
 # tests too. Does nothing where all are there; asks for nothing. This is the one list of what the project depends on.
 packages="gcc libc6-dev make libyaml-dev libgsl-dev libmumps-seq-dev libsuitesparse-dev libtcc-dev gnuplot-nox"
-[ "$1" = test ] && packages="$packages g++ clang libclang-rt-dev libcmocka-dev graphviz python3-jsonschema python3-yaml \
-    gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user \
+[ "$1" = test ] && packages="$packages g++ clang libclang-rt-dev libcmocka-dev graphviz python3-jsonschema \
+    python3-numpy python3-yaml gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user \
     mandoc pkgconf tcc chromium libc6-dev-i386 lib32gcc-12-dev"
 
 if ! command -v dpkg-query >/dev/null; then
