@@ -215,7 +215,7 @@ class Judge:
         names = {}
         for pattern, tests in self.lists:
             if fnmatch.fnmatch(file, pattern):
-                names.update({test: "/" in pattern for test in tests if test not in names})
+                names.update({test: "/" in pattern + test for test in tests if test not in names})
         return names
 
     def prepare(self, test):
