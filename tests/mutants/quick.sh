@@ -36,18 +36,18 @@ for model in "$root"/models/*.veh "$root/tests/laws/cart.veh"; do
         verdict $? "$name $solve"
     done
 done
+cp -r "$root/models" "$work" # scenes name files beside them
 for run in hmmwv/rough_road hmmwv/paper_run hmmwv_tires/tires_jump hmmwv_vehicle/full_run quarter_car/quarter_car; do
     model=$root/models/${run%/*}.veh
     sed -E 's/^duration:.*/duration: 0.12/; s/^output_step:.*/output_step: 0.03/' "$root/models/scenes/${run#*/}.scene" \
-        >"$root/models/scenes/quick.scene"
+        >"$work/models/scenes/quick.scene"
     check "$run" "$gicgen" --scene "$root/models/scenes/${run#*/}.scene" "$model" -o "$work/code.c" 2>"$work/err"
     for engine in tape gic; do
-        "$gicrun" -q --engine $engine "$model" "$root/models/scenes/quick.scene" -o "$work/$engine.csv" 2>"$work/err"
+        "$gicrun" -q --engine $engine "$model" "$work/models/scenes/quick.scene" -o "$work/$engine.csv" 2>"$work/err"
         verdict $? "$run, $engine"
     done
     check "$run: engines agree" close "$work/tape.csv" "$work/gic.csv"
 done
-rm -f "$root/models/scenes/quick.scene"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
