@@ -1,8 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_embedding.sh GICGEN: README's example works as it stands there, and emitted code and runtime core compile without
-# a warning in every way that users build them, need nothing, and run the same in all of them. clang is tried where it
-# is installed.
+# a warning in every way that users build them, need nothing, and run the same in all of them.
 gicgen=$(realpath "$1")
 root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=tests/checking.sh
@@ -55,13 +54,11 @@ gcc -std=c99 -DGIC_FLOAT -Wdouble-promotion
 g++ -std=c++11 -x c++
 g++ -std=c++20 -DGIC_FLOAT -Wdouble-promotion -x c++
 END
-if command -v clang >/dev/null; then
-    cat >>compilers <<'END'
+cat >>compilers <<'END'
 clang -std=c99
 clang -std=c99 -DGIC_FLOAT -Wdouble-promotion
 clang++ -std=c++11 -x c++
 END
-fi
 while read -r how; do
     for name in $compiled; do
         # shellcheck disable=SC2086  # lists of words
@@ -166,14 +163,12 @@ verdict $? "two vehicles in C++"
 # shellcheck disable=SC2086  # lists of words
 tcc -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
 verdict $? "two vehicles with tcc"
-if command -v clang >/dev/null; then
-    # shellcheck disable=SC2086  # lists of words
-    clang -std=c99 -O1 -ffp-contract=off -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
-    verdict $? "two vehicles with clang"
-    # shellcheck disable=SC2086  # lists of words
-    clang++ -x c++ -std=c++17 -O1 -ffp-contract=off -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
-    verdict $? "two vehicles with clang++"
-fi
+# shellcheck disable=SC2086  # lists of words
+clang -std=c99 -O1 -ffp-contract=off -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
+verdict $? "two vehicles with clang"
+# shellcheck disable=SC2086  # lists of words
+clang++ -x c++ -std=c++17 -O1 -ffp-contract=off -I. "$program" $parts -lm -o ride && ./ride | cmp - ride.double
+verdict $? "two vehicles with clang++"
 cc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror -DGIC_FLOAT -O2 -I. "$program" hmmwv.float.o \
     pendulum.float.o gic_runtime.float.o gic_road.float.o -no-pie -lm -o ride && ./ride >ride.float
 verdict $? "two vehicles in single precision"

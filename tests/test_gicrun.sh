@@ -77,29 +77,27 @@ check '--quiet is quiet' [ ! -s "$work/err" ]
 check 'outputs leave no trace in the computation' [ "$(tail -n 1 "$work/out")" = "$(tail -n 1 "$work/a.csv")" ]
 
 # a picture, or why not
-if command -v gnuplot >/dev/null; then
-    run "$work/carts.veh" "$work/swing.scene" --plot "$work/a.svg"
-    check 'a picture is drawn' grep -q '</svg>' "$work/a.svg"
-    check 'curves are named' grep -q 'drive.value' "$work/a.svg"
-    check 'a picture alone writes no results' [ ! -s "$work/out" ]
-    sed '$a plot: [{x: drive.value, y: drive.rate}, input.drive, {x: x.value, y: drive.value}]' \
-        "$work/swing.scene" >"$work/over.scene"
-    run "$work/carts.veh" "$work/over.scene" --plot "$work/over.svg"
-    check 'panels of one output over another have axes' [ 2 -eq \
-        "$(grep -oE '>(drive.value \[m\]|drive.rate \[m/s\]|x.value \[m\])<' "$work/over.svg" | sort | uniq -c |
-            awk '/drive.value/ {n = $1} END {print n}')" ]
-    check 'axes say what is measured, and in what' grep -q '>length \[m\]<' "$work/over.svg"
-    # one scale where both are lengths, and no number upright
-    sed '$a plot: [{x: x.value, y: drive.value}]' "$work/swing.scene" >"$work/equal.scene"
-    run "$work/carts.veh" "$work/equal.scene" --plot "$work/equal.svg"
-    check 'panels over one another have a title' grep -q '>drive.value over x.value<' "$work/equal.svg"
-    check 'ticks of both axes are equally far apart, and numbers do not meet' \
-        /usr/bin/python3 -B "$(dirname "$0")/gicrun_ticks.py" "$work/equal.svg"
-    check 'inputs are curves' grep -q 'input.drive' "$work/over.svg"
-fi
+run "$work/carts.veh" "$work/swing.scene" --plot "$work/a.svg"
+check 'a picture is drawn' grep -q '</svg>' "$work/a.svg"
+check 'curves are named' grep -q 'drive.value' "$work/a.svg"
+check 'a picture alone writes no results' [ ! -s "$work/out" ]
+sed '$a plot: [{x: drive.value, y: drive.rate}, input.drive, {x: x.value, y: drive.value}]' \
+    "$work/swing.scene" >"$work/over.scene"
+run "$work/carts.veh" "$work/over.scene" --plot "$work/over.svg"
+check 'panels of one output over another have axes' [ 2 -eq \
+    "$(grep -oE '>(drive.value \[m\]|drive.rate \[m/s\]|x.value \[m\])<' "$work/over.svg" | sort | uniq -c |
+        awk '/drive.value/ {n = $1} END {print n}')" ]
+check 'axes say what is measured, and in what' grep -q '>length \[m\]<' "$work/over.svg"
+# one scale where both are lengths, and no number upright
+sed '$a plot: [{x: x.value, y: drive.value}]' "$work/swing.scene" >"$work/equal.scene"
+run "$work/carts.veh" "$work/equal.scene" --plot "$work/equal.svg"
+check 'panels over one another have a title' grep -q '>drive.value over x.value<' "$work/equal.svg"
+check 'ticks of both axes are equally far apart, and numbers do not meet' \
+    /usr/bin/python3 -B "$(dirname "$0")/gicrun_ticks.py" "$work/equal.svg"
+check 'inputs are curves' grep -q 'input.drive' "$work/over.svg"
 mkdir "$work/bin"
 for tool in cc gcc as ld; do
-    ! command -v "$tool" >/dev/null || ln -s "$(command -v "$tool")" "$work/bin/$tool"
+    ln -s "$(command -v "$tool")" "$work/bin/$tool"
 done
 PATH=$work/bin "$gicrun" "$work/carts.veh" "$work/swing.scene" -o "$work/b.csv" --plot "$work/b.svg" 2>"$work/err"
 status=$?

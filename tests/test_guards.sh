@@ -151,5 +151,30 @@ lever 1e-4 >lever.veh
 run lever.veh light.scene -o out.csv
 check "2e-8 of it is some" exits 0
 
+# ---- a base that is held elsewhere: its wheels go with it, turned as it is
+
+rig() {
+    cat <<XXX
+gicscene: 1
+duration: 0.02
+step: 0.001
+output_step: 0.01
+base: fixed
+$1
+outputs: [chassis, wheel_f_l]
+XXX
+}
+rig '' >rig.scene
+rig 'initial: {position: [10, 20, 30], orientation: {yaw: 1.5707963267948966}}' >turned.scene
+"$gicrun" -q --engine tape "$root/models/hmmwv.veh" rig.scene -o rig.csv 2>err &&
+    "$gicrun" -q --engine tape "$root/models/hmmwv.veh" turned.scene -o turned.csv 2>>err
+verdict $? "held bases"
+check "held elsewhere" awk -F, 'function off(a, b) { return !((a - b) * (a - b) < 1e-24) }
+    FNR == 1 { for (i = 1; i <= NF; ++i) { name = $i; sub(/ .*/, "", name); at[name] = i }; next }
+    FNR == 2 { x = $at["wheel_f_l.x"] - $at["chassis.x"]; y = $at["wheel_f_l.y"] - $at["chassis.y"]; z = $at["wheel_f_l.z"] - $at["chassis.z"]
+        if (NR == FNR) { x0 = x; y0 = y; z0 = z } else
+        bad = off(x, -y0) || off(y, x0) || off(z, z0) || off($at["chassis.x"], 10) || off($at["chassis.y"], 20) || off($at["chassis.z"], 30) }
+    END { exit bad || NR != 8 || x0 == 0 }' rig.csv turned.csv
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

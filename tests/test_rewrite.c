@@ -59,6 +59,7 @@ static void test_mirror(void **unused)
         {"bar_r + other_l + 1e3", "bar_r + other_l + 1e3"},     /* no bar_l, no other_l */
         {"spring_left + spring_l2", "spring_left + spring_l2"}, /* whole names only */
         {"min(spring_l,-.5)", "min(spring_r,-.5)"},
+        {"rack.brake_l + brake_l", "rack.brake_l + brake_r"}, /* what follows a dot is no name */
     };
     for (size_t i = 0; i < sizeof pair / sizeof *pair; ++i) {
         Pool *pool = pool_new();

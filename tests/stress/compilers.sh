@@ -77,7 +77,8 @@ try() {
 # installed HOW: with its library
 installed() {
     $1 -I. gic_runtime.c -shared -o empty.so 2>/dev/null && return
-    echo "compilers | $1 | 1 | 0 | 1 | not installed, or without its library | ok: not tried"
+    found=1
+    echo "compilers | $1 | 1 | 0 | 1 | not installed, or without its library | sh tests/install.sh test installs it"
     return 1
 }
 
