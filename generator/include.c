@@ -162,7 +162,9 @@ const char *path_check(Pool *pool, const Item *item, const char *file, const cha
     if (name[0] != '/' && slash)
         path = pool_print(pool, "%.*s%s", (int)(slash + 1 - file), file, name);
     if (stat(path, identity) || access(path, R_OK))
-        diag_fail(item->at, "paths start in the folder of the file that they stand in", "can't %s '%s': %s", use, path,
+        diag_fail(item->at,
+                  errno == EACCES ? file_remedy(errno) : "paths start in the folder of the file that they stand in",
+                  "can't %s '%s': %s", use, path,
                   strerror(errno));
     if (S_ISDIR(identity->st_mode))
         diag_fail(item->at, "name a file in it", "can't %s '%s': it is a folder", use, path);

@@ -228,6 +228,8 @@ typedef struct Plot {
 
 /* Picture by gnuplot, SVG or PNG by the ending of `path`; curves of the same unit share a panel. */
 void plot_write(Pool *pool, const Plot *plot, const char *path);
+/* Ends with a message where there is no gnuplot: before the run whose picture it should draw. */
+void plot_check(Pool *pool);
 /* For scripts of gnuplot: a text in quotes, with a blank in front of a `>` behind `]]`. */
 void plot_text(Text *text, const char *s);
 
