@@ -53,10 +53,10 @@ static void version_check(const Item *file)
     if (!item)
         diag_fail(file->at, "begin the file with `gicgen: 1`", "the model lacks the key 'gicgen'");
     double version = doc_number(item, "the format version");
-    if (version > FORMAT_VERSION)
+    if (version > (int)FORMAT_VERSION)
         diag_fail(item->at, "get a newer gicgen, or write `gicgen: 1` and what models/FORMAT.md describes",
                   "format version %s is too new: this gicgen reads version %d", item->text, FORMAT_VERSION);
-    if (version != FORMAT_VERSION)
+    if (version != (int)FORMAT_VERSION)
         diag_fail(item->at, "write `gicgen: 1`", "there is no format version %s", item->text);
 }
 
