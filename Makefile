@@ -68,9 +68,9 @@ $(BUILD)/gicsweep: $(sweep:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_obje
 $(BUILD)/gicbench: $(BUILD)/runtime/gicbench.o $(benchmark:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
-$(BUILD)/runtime/plugin/mumps.o: COMPILE += -fPIC
+$(BUILD)/runtime/plugin/mumps_plugin.o: COMPILE += -fPIC
 
-$(BUILD)/lib/gicgen/mumps.so: $(BUILD)/runtime/plugin/mumps.o
+$(BUILD)/lib/gicgen/mumps.so: $(BUILD)/runtime/plugin/mumps_plugin.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -shared -o $@ $^ $(MUMPS)
 
@@ -135,7 +135,7 @@ $(BUILD)/check/test_%: $(BUILD)/tests/test_%.o $(tested)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBRARIES)
 
 # it counts allocations and calls of MUMPS, so that the plug-in is a part of it
-$(BUILD)/check/test_topology: $(BUILD)/runtime/plugin/mumps.o
+$(BUILD)/check/test_topology: $(BUILD)/runtime/plugin/mumps_plugin.o
 $(BUILD)/check/test_topology: LIBRARIES += $(MUMPS)
 $(BUILD)/check/test_topology: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=dmumps_c
 
