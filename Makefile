@@ -110,7 +110,12 @@ $(BUILD)/runtime/gic_runtime.o $(BUILD)/runtime/gic_road.o: STANDARD := -std=c99
 
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
-	$(COMPILE) -c -o $@ $<
+	$(COMPILE) -c -o $@ $< 2>$@.warned; status=$$?; cat $@.warned >&2; [ -s $@.warned ] || rm -f $@.warned; exit $$status
+
+# an object that was compiled with a warning is made again where warnings are errors
+ifneq ($(WERROR),)
+$(shell find $(BUILD) -name '*.o.warned' 2>/dev/null | while read -r file; do rm -f "$$file" "$${file%.warned}"; done)
+endif
 
 # ---- tests: each tests/test_*.c is a program of its own, the other tests/*.c are tools of tests/test_*.sh
 

@@ -155,6 +155,31 @@ check 'nothing is left there' [ -z "$(find "$home" -type f)" ]
 relative() { ! mine PREFIX=local install && grep -q 'PREFIX is not a whole path: local' "$work/said" && [ ! -e "$root/local" ]; }
 check 'a relative prefix is refused' relative
 
+# ---- README's examples write into one folder ---------------------------------------------------------------
+
+mkdir "$work/clone"
+ln -s "$build" "$work/clone/build"
+ln -s "$root/models" "$work/clone/models"
+sed -n '/^    mkdir -p out/,/^$/p' "$root/README.md" | sed 's/:1000 /:4 /' >"$work/clone.sh"
+check 'there are examples' [ "$(grep -c 'build/gic' "$work/clone.sh")" -ge 10 ]
+examples() { (cd "$work/clone" && sh -e "$work/clone.sh") >"$work/said" 2>&1; }
+check 'they work' examples
+check 'and write into one folder alone' [ "$(echo $(ls "$work/clone"))" = 'build models out' ]
+check 'which git ignores' grep -qx /out/ "$root/.gitignore"
+
+# ---- an object that was compiled with a warning is no way around -Werror -----------------------------------
+
+cat >"$work/warning" <<'XXX'
+#!/bin/sh
+case " $* " in *" -Werror "*) echo 'error: y [-Werror]' >&2; exit 1 ;; *' -c '*) echo 'warning: y' >&2 ;; esac
+exec cc "$@"
+XXX
+chmod +x "$work/warning"
+object() { make -s -C "$root" BUILD="$work/warned" CC="$work/warning" "$@" "$work/warned/generator/diag.o" >"$work/said" 2>&1; }
+check 'a warning is no error' object
+check 'and is shown' grep -q 'warning: y' "$work/said"
+check 'but it is one with -Werror, though the object is there' eval '! object WERROR=-Werror'
+
 # ---- packages: tests/install.sh, demo.sh and run.sh before they install, with an apt-get that only writes down ----
 
 mkdir "$work/apt"
