@@ -77,9 +77,9 @@ $(BUILD)/gicsweep: $(sweep:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_obje
 $(BUILD)/gicbench: $(BUILD)/runtime/gicbench.o $(benchmark:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_objects)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
-$(BUILD)/runtime/plugin/mumps.o: COMPILE += -fPIC
+$(BUILD)/runtime/plugin/mumps_plugin.o: COMPILE += -fPIC
 
-$(BUILD)/lib/gicgen/mumps.so: $(BUILD)/runtime/plugin/mumps.o
+$(BUILD)/lib/gicgen/mumps.so: $(BUILD)/runtime/plugin/mumps_plugin.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -shared -o $@ $^ $(MUMPS)
 
@@ -119,7 +119,12 @@ $(BUILD)/runtime/gic_runtime.o $(BUILD)/runtime/gic_road.o: STANDARD := -std=c99
 
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
-	$(COMPILE) -c -o $@ $<
+	$(COMPILE) -c -o $@ $< 2>$@.warned; status=$$?; cat $@.warned >&2; [ -s $@.warned ] || rm -f $@.warned; exit $$status
+
+# an object that was compiled with a warning is made again where warnings are errors
+ifneq ($(WERROR),)
+$(shell find $(BUILD) -name '*.o.warned' 2>/dev/null | while read -r file; do rm -f "$$file" "$${file%.warned}"; done)
+endif
 
 # ---- tests: each tests/test_*.c is a program of its own, the other tests/*.c are tools of tests/test_*.sh
 
@@ -144,7 +149,7 @@ $(BUILD)/check/test_%: $(BUILD)/tests/test_%.o $(tested)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBRARIES)
 
 # it counts allocations and calls of MUMPS, so that the plug-in is a part of it
-$(BUILD)/check/test_topology: $(BUILD)/runtime/plugin/mumps.o
+$(BUILD)/check/test_topology: $(BUILD)/runtime/plugin/mumps_plugin.o
 $(BUILD)/check/test_topology: LIBRARIES += $(MUMPS)
 $(BUILD)/check/test_topology: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=dmumps_c
 

@@ -155,6 +155,35 @@ static int compare_keys(const void *a, const void *b)
     return order;
 }
 
+/* Three digits, perhaps with decimals: what follows a separator of thousands. */
+static bool is_group(const char *s)
+{
+    const size_t digits = strspn(s, "0123456789");
+    return digits == 3 && (!s[3] || (s[3] == '.' && s[4 + strspn(s + 4, "0123456789")] == '\0'));
+}
+
+/* In braces YAML takes `25,000` for the number 25 and a key `000` without a value. */
+static void check_thousands(const Item *map)
+{
+    for (int i = 1; i < map->count; ++i) {
+        const Item *number = map->value[i - 1], *rest = map->value[i];
+        if (number->kind != ITEM_SCALAR || number->quoted || rest->kind != ITEM_SCALAR || rest->quoted ||
+            rest->text[0] || !is_group(map->key[i]->text))
+            continue;
+        const char *digits = number->text + (number->text[0] == '-' || number->text[0] == '+');
+        const size_t length = strspn(digits, "0123456789");
+        if (length < 1 || length > 3 || digits[length])
+            continue;
+        char whole[64], remedy[128];
+        int n = snprintf(whole, sizeof whole, "%s", number->text);
+        for (int k = i; k < map->count && is_group(map->key[k]->text) && n < (int)sizeof whole; ++k)
+            n += snprintf(whole + n, sizeof whole - (size_t)n, "%s", map->key[k]->text);
+        snprintf(remedy, sizeof remedy, "write %s, without a separator of thousands", whole);
+        diag_fail(number->at, remedy, "the number ends at the comma: %s is %s, and %s would be a key", map->key[i - 1]->text,
+                  number->text, map->key[i]->text);
+    }
+}
+
 static void check_duplicates(Loader *loader, const Item *map)
 {
     if (map->count < 2)
@@ -227,6 +256,7 @@ static Item *map(Loader *loader, const yaml_event_t *start, Place at, int depth,
         if (below + 1 > *height)
             *height = below + 1;
     }
+    check_thousands(item);
     check_duplicates(loader, item);
     anchor_close(loader, anchor, *height);
     return item;
@@ -359,12 +389,38 @@ bool doc_is_decimal(const Item *item)
     return is_decimal(item->text);
 }
 
+/* Is it a number but for commas before groups of three digits? `0,300` is not: its comma is a decimal one. */
+static bool has_thousands(const char *s)
+{
+    const char *digits = s + (s[0] == '-' || s[0] == '+'), *comma = strchr(digits, ',');
+    const size_t first = strspn(digits, "0123456789");
+    if (!comma || comma != digits + first || first < 1 || first > 3 || digits[0] == '0')
+        return false;
+    for (; *comma == ','; comma += 4)
+        if (strspn(comma + 1, "0123456789") != 3)
+            return false;
+    return !*comma || (*comma == '.' && !comma[1 + strspn(comma + 1, "0123456789")]);
+}
+
+static void without_commas(const char *s, char *out)
+{
+    for (; *s; ++s)
+        if (*s != ',')
+            *out++ = *s;
+    *out = '\0';
+}
+
 /* What to write instead of `s`, which is not a number, at least not one of the format. */
 static void number_remedy(const char *s, char remedy[REMEDY])
 {
     char other[64];
     size_t length = strlen(s), n = decimal(s);
-    snprintf(other, sizeof other, "%s", s);
+    if (has_thousands(s) && length < sizeof other) {
+        without_commas(s, other);
+        snprintf(remedy, REMEDY, "write %s, without a separator of thousands", other);
+        return;
+    }
+    snprintf(other, sizeof other, "%.63s", s);
     for (char *c = other; *c; ++c)
         if (*c == ',')
             *c = '.';

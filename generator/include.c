@@ -53,10 +53,10 @@ static void version_check(const Item *file)
     if (!item)
         diag_fail(file->at, "begin the file with `gicgen: 1`", "the model lacks the key 'gicgen'");
     double version = doc_number(item, "the format version");
-    if (version > FORMAT_VERSION)
+    if (version > (int)FORMAT_VERSION)
         diag_fail(item->at, "get a newer gicgen, or write `gicgen: 1` and what models/FORMAT.md describes",
                   "format version %s is too new: this gicgen reads version %d", item->text, FORMAT_VERSION);
-    if (version != FORMAT_VERSION)
+    if (version != (int)FORMAT_VERSION)
         diag_fail(item->at, "write `gicgen: 1`", "there is no format version %s", item->text);
 }
 
@@ -162,7 +162,9 @@ const char *path_check(Pool *pool, const Item *item, const char *file, const cha
     if (name[0] != '/' && slash)
         path = pool_print(pool, "%.*s%s", (int)(slash + 1 - file), file, name);
     if (stat(path, identity) || access(path, R_OK))
-        diag_fail(item->at, "paths start in the folder of the file that they stand in", "can't %s '%s': %s", use, path,
+        diag_fail(item->at,
+                  errno == EACCES ? file_remedy(errno) : "paths start in the folder of the file that they stand in",
+                  "can't %s '%s': %s", use, path,
                   strerror(errno));
     if (S_ISDIR(identity->st_mode))
         diag_fail(item->at, "name a file in it", "can't %s '%s': it is a folder", use, path);

@@ -100,7 +100,7 @@ static const Law *number(Parser *p, double value)
 
 static const Law *call(Parser *p, Op op, const char *name, const Law *a, const Law *b, const Law *c)
 {
-    return node(p, (Law){.op = LAW_CALL, .call = op, .arg = {a, b, c}, .name = name});
+    return node(p, (Law){.op = LAW_CALL, .call = (int)op, .arg = {a, b, c}, .name = name});
 }
 
 static const Law *parse_or(Parser *p);

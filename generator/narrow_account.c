@@ -32,7 +32,7 @@ static void learn(Accounting *a, const char *what, const char *why)
 static void learn_massless(Accounting *a, const Model *drawn)
 {
     const char *names;
-    if (!a->all->massless)
+    if (a->all->massless == 0)
         return;
     const Model *light = model_lighten(a->pool, drawn, a->all->massless, &names);
     const Sequence *first = sequence_find(a->pool, light);

@@ -249,7 +249,7 @@ static Form least(Normal *normal, Op op, Form a, Form b)
         if (shape_of(normal, high)->op == OP_LITERAL && bottom <= top)
             return least(normal, OP_MIN, least(normal, OP_MAX, x, b), high);
     }
-    return operation(normal, op, 2, (const int[]){a, b});
+    return operation(normal, (int)op, 2, (const int[]){a, b});
 }
 
 static Form conditional(Normal *normal, Form condition, Form yes, Form no)
@@ -312,7 +312,7 @@ static Form place(Normal *normal, Op op, Form x, Form y)
 {
     if (normal->even)
         y = abs(normal_sum(normal, y, -normal_middle(normal)));
-    return operation(normal, op, 2, (const int[]){x, y});
+    return operation(normal, (int)op, 2, (const int[]){x, y});
 }
 
 static Form function(Normal *normal, const Node *node, const Form arg[3])

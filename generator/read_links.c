@@ -92,8 +92,8 @@ static const char *const coordinate_about[DUAL_KEYS] = {
     [DUAL_POINTS] = "the point of a and the point of b at design, m; default, where optional: origin of the frame of b",
     [DUAL_AXIS] = "direction fixed in a, along which or about which b moves",
     [DUAL_DESIGN] = "value at design, m or rad; default 0",
-    [DUAL_RANGE] = "values that the mechanism is meant to reach, m or rad; default: design length -10% and +10%, "
-                   "design value -0.05 m and +0.05 m, -0.5 rad and +0.5 rad",
+    [DUAL_RANGE] = ("values that the mechanism is meant to reach, m or rad; default: design length -10% and +10%, "
+                    "design value -0.05 m and +0.05 m, -0.5 rad and +0.5 rad"),
     [DUAL_INITIAL] = "value that set-up starts from, m or rad; default: the value at design",
     [DUAL_DRIVEN] = "true: prescribed by inputs for value, rate and acceleration",
 };

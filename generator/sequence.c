@@ -240,7 +240,7 @@ static void edge_rank(const Finder *finder, Vertex *vertex, Vertex *edge)
 {
     const int *body = edge_bodies(finder->model, edge->kind, edge->index);
     bool joint = edge->kind == VERTEX_JOINT;
-    edge->rank = (int)(joint ? finder->model->joint[edge->index].type : finder->model->coordinate[edge->index].type);
+    edge->rank = joint ? (int)finder->model->joint[edge->index].type : (int)finder->model->coordinate[edge->index].type;
     bool inner = true;
     for (int k = 0; k < 2; ++k) {
         edge->end[k] = body[k] > BODY_BASE ? finder->place[body[k]] : -1;

@@ -68,6 +68,10 @@ void mat_apply_transposed(const double A[9], const double x[3], double out[3]); 
 void file_write(const char *path, const char *bytes, size_t size);
 /* The same with two files that belong together: neither is replaced where one can't be written. */
 void file_write_both(const char *path, const Text *text, const char *other_path, const Text *other);
+/* Before long work whose result file_write will write: ends with a message where no file can be made at `path`. */
+void file_check(const char *path);
+/* What to do about an errno of opening, reading or writing a file. */
+const char *file_remedy(int reason);
 /* Is there something at `path` that is no file, a device or pipe? It is written to as it is: a rename would replace it.
  */
 bool file_is_special(const char *path);

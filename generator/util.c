@@ -217,9 +217,24 @@ void mat_apply_transposed(const double A[9], const double x[3], double out[3])
         out[i] = A[i] * x[0] + A[3 + i] * x[1] + A[6 + i] * x[2];
 }
 
+const char *file_remedy(int reason)
+{
+    switch (reason) {
+    case EACCES:
+    case EPERM: return "`ls -ld` on it and its folder shows who may: get the right (chmod, chown), or name another place";
+    case ENOENT: return "check the path; folders on the way to a file must exist";
+    case ENOTDIR: return "check the path: one of the folders on the way is a file";
+    case EISDIR: return "that is a folder: name a file in it";
+    case EROFS: return "that file system is read-only: name another place";
+    case ENOSPC:
+    case EDQUOT: return "make room on the disk, or name another place";
+    default: return "name another place";
+    }
+}
+
 static _Noreturn void file_fail(const char *path, const char *what)
 {
-    fprintf(stderr, "%s: error: %s: %s\n", path, what, strerror(errno));
+    fprintf(stderr, "%s: error: %s: %s\n  remedy: %s\n", path, what, strerror(errno), file_remedy(errno));
     exit(1);
 }
 
@@ -291,6 +306,31 @@ static void move_in(Moving *first, const char *bytes, size_t size, const char *o
         temporary_move(&second);
     pool_free(pool);
     sigprocmask(SIG_SETMASK, &before, NULL);
+}
+
+void file_check(const char *path)
+{
+    struct stat is;
+    if (!strcmp(path, "-"))
+        return;
+    if (file_is_special(path)) {
+        if (access(path, W_OK))
+            file_fail(path, "can't open");
+        return;
+    }
+    if (!stat(path, &is) && S_ISDIR(is.st_mode)) {
+        errno = EISDIR;
+        file_fail(path, "can't create");
+    }
+    Pool *pool = pool_new();
+    Moving moving = {.path = path};
+    const sigset_t stop = stop_signals();
+    sigset_t before;
+    sigprocmask(SIG_BLOCK, &stop, &before);
+    temporary_write(pool, &moving, "", 0);
+    remove(moving.name);
+    sigprocmask(SIG_SETMASK, &before, NULL);
+    pool_free(pool);
 }
 
 void file_write(const char *path, const char *bytes, size_t size)

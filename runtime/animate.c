@@ -393,8 +393,8 @@ static void json_run(const Animation *a, Text *out)
     json_course(out, a->scene);
     text_print(out, ",\n");
     text_print(out, "\"road\":");
-    const gic_road_plane below = {.head = {gic_plane_height}, .z0 = lowest - 0.05 * size};
-    const gic_road_plane level = {.head = {gic_plane_height}};
+    const gic_road_plane below = {.head = {.height = gic_plane_height}, .z0 = lowest - 0.05 * size};
+    const gic_road_plane level = {.head = {.height = gic_plane_height}};
     road_tiles(out,
                !a->model->wheels ? &below.head
                : a->scene->road  ? a->scene->road

@@ -54,8 +54,8 @@ static bool sample(const gic_road *road, Tile tile, double size, double unit, do
     for (int b = 0, k = 0; b <= CELLS; ++b)
         for (int a = 0; a <= CELLS; ++a, ++k) {
             double h[3];
-            road->height(road, 0, 0, ((double)tile.i + (double)a / CELLS) * size,
-                         ((double)tile.j + (double)b / CELLS) * size, h);
+            road->height(road, 0, 0, ((double)tile.i + (double)a / (int)CELLS) * size,
+                         ((double)tile.j + (double)b / (int)CELLS) * size, h);
             if (!gic_finite(h, 1))
                 return false;
             z[k] = round(h[0] / unit);
@@ -68,7 +68,7 @@ static bool is_plain(const double z[CORNERS])
 {
     const double *far = z + CORNERS - 1 - CELLS;
     for (int k = 0; k < CORNERS; ++k) {
-        const double u = (double)(k % (CELLS + 1)) / CELLS, v = (double)(k / (CELLS + 1)) / CELLS;
+        const double u = (double)(k % (CELLS + 1)) / (int)CELLS, v = (double)(k / (CELLS + 1)) / (int)CELLS;
         const double plain = (1 - v) * ((1 - u) * z[0] + u * z[CELLS]) + v * ((1 - u) * far[0] + u * far[CELLS]);
         if (fabs(plain - z[k]) > 1)
             return false;
@@ -83,8 +83,8 @@ static bool sample_friction(const gic_road *road, Tile tile, double size, double
     for (int k = 0; k < CORNERS; ++k) {
         f[k] = 100;
         if (road->friction)
-            f[k] = round(100 * road->friction(road, 0, 0, ((double)tile.i + (double)(k % (CELLS + 1)) / CELLS) * size,
-                                              ((double)tile.j + (double)(k / (CELLS + 1)) / CELLS) * size));
+            f[k] = round(100 * road->friction(road, 0, 0, ((double)tile.i + (double)(k % (CELLS + 1)) / (int)CELLS) * size,
+                                              ((double)tile.j + (double)(k / (CELLS + 1)) / (int)CELLS) * size));
         same = same && f[k] == f[0];
     }
     return same;

@@ -143,7 +143,7 @@ void bench_batch(const Bench *bench)
     for (int w = 0; w < WAYS; ++w)
         if (all[w].engine) {
             table_cell(bench->pool, table, "%s", way[w].name);
-            table_cell(bench->pool, table, "%.3f", 1e6 * all[w].best / vehicles / STEPS);
+            table_cell(bench->pool, table, "%.3f", 1e6 * all[w].best / vehicles / (int)STEPS);
             table_cell(bench->pool, table, "%.2f", compared->best / all[w].best);
             table_cell(bench->pool, table, "%.2g", difference(vehicles, compared, &all[w]));
         }

@@ -52,7 +52,7 @@ static double rate_of(void (*kernel)(void))
         kernel();
         best = fmin(best, clock_seconds(CLOCK_MONOTONIC) - before);
     }
-    return UNDER_WAY * (double)ROUNDS / best;
+    return (int)UNDER_WAY * (double)ROUNDS / best;
 }
 
 Limit limit_measure(void)

@@ -301,7 +301,7 @@ static void write_file(Pool *pool, const char *folder, const char *name, const T
     interrupt_release();
     if (good)
         return;
-    diag_fail(program_place(), "choose another folder with -o", "can't write %s: %s", path, strerror(error));
+    diag_fail(program_place(), file_remedy(error), "can't write %s: %s", path, strerror(error));
 }
 
 void report_tell(const Report *report, FILE *file)

@@ -313,10 +313,10 @@ static void time_subject(const Course *course, Subject *subject, int repetition)
         }
         solved += after[0] - before[0];
         corrected += after[1] - before[1];
-        rhs[i] = seconds / CALLS;
+        rhs[i] = seconds / (int)CALLS;
         if (subject->status == GIC_OK && code->link_count)
             subject->status = calls->fast(code, subject->self, end, subject->room, CALLS, &seconds);
-        fast[i] = seconds / CALLS;
+        fast[i] = seconds / (int)CALLS;
     }
     subject->rhs[repetition] = spread_of(pool, rhs, course->stretches).median;
     subject->fast[repetition] = spread_of(pool, fast, course->stretches).median;

@@ -36,12 +36,12 @@ int step_parts(Pool *pool, const gic_model *code, gic_head *self, const double *
         double from = clock_seconds(CLOCK_MONOTONIC);
         for (int i = 0; i < STEPS && status == GIC_OK; ++i)
             status = gic_step(code, self, length, GIC_AB3);
-        seconds[0] = fmin(seconds[0], (clock_seconds(CLOCK_MONOTONIC) - from) / STEPS);
+        seconds[0] = fmin(seconds[0], (clock_seconds(CLOCK_MONOTONIC) - from) / (int)STEPS);
         memcpy(self, begin, code->size);
         from = clock_seconds(CLOCK_MONOTONIC);
         for (int i = 0; i < STEPS && status == GIC_OK; ++i)
             status = code->rhs(self, time[i], before + (size_t)i * states, rate);
-        seconds[1] = fmin(seconds[1], (clock_seconds(CLOCK_MONOTONIC) - from) / STEPS);
+        seconds[1] = fmin(seconds[1], (clock_seconds(CLOCK_MONOTONIC) - from) / (int)STEPS);
     }
     memcpy(self, kept, code->size);
     return status;

@@ -49,7 +49,7 @@ static _Noreturn void write_fail(const Csv *csv, const char *what)
         remove(csv->temporary);
     if (reason == EPIPE)
         interrupt_release(); /* nobody reads: end as any program would, without a word */
-    diag_fail(program_place(), "make room, or choose another place with -o", "can't %s %s: %s", what,
+    diag_fail(program_place(), file_remedy(reason), "can't %s %s: %s", what,
               strcmp(csv->path, "-") ? csv->path : "to standard output", strerror(reason));
 }
 
@@ -59,7 +59,7 @@ Csv csv_open(Pool *pool, const char *path)
     if (file_is_special(path)) {
         csv.file = fopen(path, "w");
         if (!csv.file)
-            diag_fail(program_place(), "choose another place with -o", "can't open %s: %s", path, strerror(errno));
+            diag_fail(program_place(), file_remedy(errno), "can't open %s: %s", path, strerror(errno));
     } else if (strcmp(path, "-")) {
         Unfinished *unfinished = watch();
         csv.file = temporary_open(unfinished->pool, path, &unfinished->path);

@@ -308,10 +308,10 @@ static int recover(const Interpreted *context, Instance *self, bool cold)
         last[c] = world->x[c];
         way[c] = last[c] - from[c];
         /* whole turns out of an angle that is out of reach with them */
-        if (world->model->coordinate[c].type == COORDINATE_ANGLE && !(fabs(way[c]) < PIECES * gic->piece[c]))
+        if (world->model->coordinate[c].type == COORDINATE_ANGLE && !(fabs(way[c]) < (int)PIECES * gic->piece[c]))
             way[c] = gic_unwound(way[c]);
         const double parts = fabs(way[c]) / gic->piece[c];
-        if (!(parts < PIECES))
+        if (!(parts < (int)PIECES))
             return GIC_ERROR_REACH;
         pieces = (int)parts + 1 > pieces ? (int)parts + 1 : pieces;
     }

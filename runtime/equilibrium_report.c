@@ -2,6 +2,7 @@
  * What people and programs are told about a static equilibrium. */
 #include "linearize.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -50,6 +51,32 @@ static double shown(double value)
     return round(value * 1e9) / 1e9 + 0.0; /* no -0 */
 }
 
+/* A number of the equilibrium beside others of that size: a rounding of them is noise. */
+static double told(double value, double size)
+{
+    return fabs(value) <= DBL_EPSILON * size ? 0 : value;
+}
+
+static bool is_angle(const Equilibrium *found, int coordinate)
+{
+    return found->model->coordinate[coordinate].type == COORDINATE_ANGLE;
+}
+
+/* The largest of the positions and lengths, or 1 for angles and for what has no other like it. */
+static double size_of(const Equilibrium *found, const double *state, bool angle)
+{
+    const gic_model *code = found->engine->code;
+    double size = 0;
+    if (angle)
+        return 1;
+    for (int i = 0; code->free_base && i < 3; ++i)
+        size = fmax(size, fabs(state[i]));
+    for (int c = 0; c < code->coordinate_count; ++c)
+        if (code->coordinate_state[c] >= 0 && !is_angle(found, c))
+            size = fmax(size, fabs(state[code->coordinate_state[c]]));
+    return size;
+}
+
 /* ---- tables --------------------------------------------------------------------------------------------- */
 
 /* Yaw, pitch and roll of A = Rz(yaw) Ry(pitch) Rx(roll). */
@@ -71,7 +98,9 @@ static void print_coordinates(const Equilibrium *found, const double *state, con
         printf("\n%-24s  %16s\n", "coordinate", "value");
     for (int c = 0; c < code->coordinate_count; ++c) {
         const int at = code->coordinate_state[c];
-        printf("%-24s  %16.9g %s%s\n", code->coordinate[c].name, at < 0 ? input[code->coordinate_input[c]] : state[at],
+        const double value = at < 0 ? input[code->coordinate_input[c]]
+                                    : told(state[at], size_of(found, state, is_angle(found, c)));
+        printf("%-24s  %16.9g %s%s\n", code->coordinate[c].name, value,
                code->coordinate[c].unit, at < 0 ? ", driven" : "");
     }
 }
@@ -153,11 +182,11 @@ static const Scene *start_at(Pool *pool, const Equilibrium *found, const double 
     start->rate = pool_alloc(pool, sizeof(double) * (size_t)(code->coordinate_count + 1));
     for (int c = 0; c < code->coordinate_count; ++c)
         if (code->coordinate_state[c] >= 0)
-            start->value[c] = state[code->coordinate_state[c]];
-    if (code->free_base) {
-        memcpy(start->position, state, sizeof start->position);
-        memcpy(start->euler, state + 3, sizeof start->euler);
-    }
+            start->value[c] = told(state[code->coordinate_state[c]], size_of(found, state, is_angle(found, c)));
+    for (int i = 0; code->free_base && i < 3; ++i)
+        start->position[i] = told(state[i], size_of(found, state, false));
+    for (int i = 0; code->free_base && i < 4; ++i)
+        start->euler[i] = told(state[3 + i], 1);
     return scene_even(pool, found->model, start);
 }
 
@@ -184,7 +213,7 @@ static void print_initial(Pool *pool, const Equilibrium *found, const double *st
         printf("  gear: %d\n", discrete_states(&found->self->head, code)[code->free_base]);
     for (int i = 0; i < code->fast_count && !found->locked; ++i) /* else they roll with the scene's velocities */
         printf("%s    %s: %.17g\n", i ? "" : "  states:\n", code->state[code->slow_count + i].name,
-               state[code->slow_count + i]);
+               told(state[code->slow_count + i], 1));
 }
 
 /* ---- for programs --------------------------------------------------------------------------------------- */

@@ -149,7 +149,7 @@ static void make_folder(const char *folder)
 {
     struct stat there;
     if (mkdir(folder, 0777) && !(errno == EEXIST && !stat(folder, &there) && S_ISDIR(there.st_mode)))
-        diag_fail(program_place(), "choose another place with -o", "can't make the folder %s: %s", folder,
+        diag_fail(program_place(), file_remedy(errno), "can't make the folder %s: %s", folder,
                   strerror(errno));
 }
 

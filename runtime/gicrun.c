@@ -205,6 +205,7 @@ static void check_outputs(const Request *request, const Model *model, const Scen
     for (size_t i = 0; i < sizeof output / sizeof *output; ++i) {
         if (!output[i])
             continue;
+        file_check(output[i]);
         source_keep(model->source, output[i]);
         source_keep(&states, output[i]);
         if (scene)
@@ -222,6 +223,8 @@ int main(int count, char **word)
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
     check_outputs(&request, model, scene);
+    if (request.picture)
+        plot_check(pool);
     model = scene_rig(pool, model, &scene);
     const bool runs = !request.states && !request.rests && !request.modes;
     if (runs)

@@ -250,6 +250,8 @@ void plot_write(Pool *pool, const Plot *plot, const char *path);
 const char *unit_quantity(const char *unit);
 /* "force [N]"; of numbers without a unit "no unit" */
 const char *quantity_text(Pool *pool, const char *unit);
+/* Ends with a message where there is no gnuplot: before the run whose picture it should draw. */
+void plot_check(Pool *pool);
 /* For scripts of gnuplot: a text in quotes, with a blank in front of a `>` behind `]]`. */
 void plot_text(Text *text, const char *s);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * The plug-in that calls MUMPS. MUMPS brings a Fortran library of its own, and one engine for comparison needs it: so
- * gicrun is built without it, and loads plugin/mumps.c as a shared object when that engine is asked for. The plug-in
+ * gicrun is built without it, and loads plugin/mumps_plugin.c as a shared object when that engine is asked for. The plug-in
  * uses nothing of gicrun. */
 #ifndef MUMPS_H
 #define MUMPS_H

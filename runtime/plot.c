@@ -293,15 +293,31 @@ int gnuplot_run(Pool *pool, const char *script, const char *path, const char **s
     return status;
 }
 
+static _Noreturn void gnuplot_missing(const char *said)
+{
+    diag_fail(program_place(), "install it (Debian: apt-get install gnuplot-nox), or run without --plot",
+              "no picture: gnuplot can't be started: %s", said);
+}
+
+void plot_check(Pool *pool)
+{
+    char *const argv[] = {"gnuplot", "--version", NULL};
+    const char *said = "";
+    interrupt_hold();
+    const int status = process_run(pool, argv, "", &said);
+    interrupt_release();
+    if (status == PROCESS_NOT_STARTED)
+        gnuplot_missing(said);
+}
+
 void plot_write(Pool *pool, const Plot *plot, const char *path)
 {
     const char *said = "";
     const int status = gnuplot_run(pool, plot_script(pool, plot, path), path, &said);
     if (status == PLOT_NO_FILE)
-        diag_fail(program_place(), "choose another place with --plot", "can't create %s: %s", path, said);
+        diag_fail(program_place(), "is the folder still there?", "can't create %s: %s", path, said);
     if (status == PROCESS_NOT_STARTED)
-        diag_fail(program_place(), "install it (Debian: apt-get install gnuplot-nox), or run without --plot",
-                  "no picture: gnuplot can't be started: %s", said);
+        gnuplot_missing(said);
     if (status) {
         fputs(said, stderr);
         diag_fail(program_place(), "gnuplot's messages are above; is there room on the disk?",

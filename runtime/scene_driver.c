@@ -16,8 +16,8 @@ enum { MOST_POINTS = 1000000 };
 static void path_room(Pool *pool, Path *path, double length, Place at)
 {
     const double pieces = ceil(length / spacing);
-    if (!(pieces + 1 <= MOST_POINTS))
-        diag_fail(at, "a shorter one", "the path is longer than %g m", MOST_POINTS * spacing);
+    if (!(pieces + 1 <= (int)MOST_POINTS))
+        diag_fail(at, "a shorter one", "the path is longer than %g m", (int)MOST_POINTS * spacing);
     path->count = (int)fmax(pieces, 1) + 1;
     path->step = length / (path->count - 1);
     path->point = pool_alloc(pool, sizeof *path->point * (size_t)path->count);

@@ -83,14 +83,14 @@ static const Model *lighten(Pool *pool, const Model *model, Scene *scene)
 
 const Model *scene_rig(Pool *pool, const Model *model, const Scene **scene)
 {
-    if (!*scene || (!(*scene)->held && !(*scene)->driven && !(*scene)->massless))
+    if (!*scene || (!(*scene)->held && !(*scene)->driven && (*scene)->massless == 0))
         return model;
     Scene *own = pool_alloc(pool, sizeof *own);
     *own = **scene;
     if (own->held)
         model = model_hold(pool, model, own->position, own->euler);
     model = model_drive(pool, model, own->drive, own->driven);
-    if (own->massless)
+    if (own->massless != 0)
         model = lighten(pool, model, own);
     own->signal = scene_signals(pool, model); /* the new inputs stand behind the others */
     *scene = own;
@@ -101,6 +101,6 @@ void scene_no_rig(const Scene *scene)
 {
     if (scene->held || scene->driven)
         diag_fail((Place){scene->source, 0, 0}, "run it with gicrun", "the scene is one of a rig (`base`, `driven`)");
-    if (scene->massless)
+    if (scene->massless != 0)
         diag_fail(scene->massless_at, "run it with gicrun", "the scene leaves out the mass of light bodies");
 }

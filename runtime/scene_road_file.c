@@ -21,7 +21,8 @@ const CsvTable *scene_file(Pool *pool, const Item *item, const char *what, const
         diag_fail(item->at, "name a file; paths start in the folder of the scene", "'%s' is no file of a %s", name,
                   what);
     if (stat(path, &about) || access(path, R_OK))
-        diag_fail(item->at, "paths start in the folder of the scene", "can't read the %s '%s': %s", what, path,
+        diag_fail(item->at, errno == EACCES ? file_remedy(errno) : "paths start in the folder of the scene",
+                  "can't read the %s '%s': %s", what, path,
                   strerror(errno));
     if (S_ISDIR(about.st_mode))
         diag_fail(item->at, "name a file in it", "can't read the %s '%s': it is a folder", what, path);

@@ -13,7 +13,7 @@
 
 static _Noreturn void journal_fail(const Journal *journal, const char *what)
 {
-    diag_fail(program_place(), "make room, or choose another place with -o", "can't %s %s: %s", what, journal->path,
+    diag_fail(program_place(), file_remedy(errno), "can't %s %s: %s", what, journal->path,
               strerror(errno));
 }
 

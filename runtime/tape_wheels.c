@@ -109,7 +109,7 @@ static int grip(Instance *self, double time, const double *link, const double *f
     const TapeEngine *engine = tape_of(self);
     const Turning all = {
         .engine = engine,
-        .world = {engine->table, self->head.road, self->head.lane, time, NULL},
+        .world = {.table = engine->table, .road = self->head.road, .lane = self->head.lane, .time = time},
         .in_air = &self->head.air_count,
         .array = {{
             [WHOLE_time] = &time,

@@ -4,6 +4,8 @@
 # check() and verdict(); and conditions for check() about a run of $gicrun.
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
+PYTHONDONTWRITEBYTECODE=1 # the sources stay as they are
+export PYTHONDONTWRITEBYTECODE
 passed=0
 failed=0
 # what a failure shows, whether or not anything was written there

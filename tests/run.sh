@@ -37,7 +37,8 @@ run() {
 log=$(mktemp) || exit 1
 # compiled models are kept for the tests alone
 GICGEN_CACHE=$(mktemp -d) || exit 1
-export GICGEN_CACHE
+PYTHONDONTWRITEBYTECODE=1
+export GICGEN_CACHE PYTHONDONTWRITEBYTECODE
 trap 'rm -rf "$log" "$GICGEN_CACHE"' EXIT
 trap 'exit 130' INT TERM
 passed=0

@@ -140,7 +140,7 @@ check 'not with --eval' exits 2
 run "$model" "$scene" -o "$work/kept.csv" --animate "$work/nowhere/page.html"
 check 'a place that is not there' exits 1
 check 'a place that is not there: why' says "nowhere/page.html: error: can't create"
-check 'a place that is not there: the results stay' cmp "$work/run.csv" "$work/kept.csv"
+check 'a place that is not there: noticed before the run' [ ! -e "$work/kept.csv" ]
 # the wheels drop into a hole and the springs go beyond reach
 sed 's/height: 0.08, tracks: both/height: -80, tracks: both/' "$scene" >"$work/hole.scene"
 run "$model" "$work/hole.scene" -o "$work/hole.csv" --animate "$work/hole.html"

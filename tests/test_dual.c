@@ -206,7 +206,7 @@ static void exact_rates(long double t, const long double *y, long double *rate)
 static void exact_end(double *out)
 {
     enum { STEPS = 20000 };
-    const long double h = end / STEPS;
+    const long double h = end / (int)STEPS;
     long double y[N], stage[N], k[4][N];
     for (int i = 0; i < N; ++i)
         y[i] = initial[i];

@@ -103,7 +103,23 @@ PATH=$work/bin "$gicrun" "$work/carts.veh" "$work/swing.scene" -o "$work/b.csv" 
 status=$?
 check 'no gnuplot: an error' exits 1
 check 'no gnuplot: a remedy' says 'remedy: .*gnuplot'
-check 'no gnuplot: the results stay' cmp -s "$work/a.csv" "$work/b.csv"
+check 'no gnuplot: noticed before the run' [ ! -e "$work/b.csv" ]
+# what can't be written is noticed before anything is compiled or run
+for option in --plot:svg --animate:html -o:csv; do
+    for place in nowhere/x folder; do
+        mkdir -p "$work/folder.${option#*:}"
+        PATH=$work/bin "$gicrun" "$work/carts.veh" "$work/swing.scene" --engine cc --cc "$work/nothing" -o "$work/b.csv" \
+            "${option%:*}" "$work/$place.${option#*:}" 2>"$work/err"
+        check "$option at $place is noticed first" says "$place.${option#*:}: error: can't create"
+    done
+done
+check 'a folder of that name: a remedy' says 'remedy: that is a folder'
+if [ "$(id -u)" -eq 0 ] && command -v setpriv >/dev/null; then
+    chmod 755 "$work"
+    setpriv --reuid 65534 --clear-groups "$gicrun" "$work/carts.veh" "$work/swing.scene" -o "$work/c.csv" 2>"$work/err"
+    check 'a folder of others: the reason' says "c.csv: error: can't create: Permission denied"
+    check 'a folder of others: the remedy' says 'remedy: .*who may'
+fi
 run "$work/carts.veh" "$work/swing.scene" --engine cc --cc "$work/nothing"
 check 'no compiler: an error' exits 1
 check 'no compiler: a remedy' says 'remedy: .*--cc'

@@ -155,5 +155,70 @@ check 'nothing is left there' [ -z "$(find "$home" -type f)" ]
 relative() { ! mine PREFIX=local install && grep -q 'PREFIX is not a whole path: local' "$work/said" && [ ! -e "$root/local" ]; }
 check 'a relative prefix is refused' relative
 
+# ---- README's examples write into one folder ---------------------------------------------------------------
+
+mkdir "$work/clone"
+ln -s "$build" "$work/clone/build"
+ln -s "$root/models" "$work/clone/models"
+sed -n '/^    mkdir -p out/,/^$/p' "$root/README.md" | sed 's/:1000 /:4 /' >"$work/clone.sh"
+check 'there are examples' [ "$(grep -c 'build/gic' "$work/clone.sh")" -ge 10 ]
+examples() { (cd "$work/clone" && sh -e "$work/clone.sh") >"$work/said" 2>&1; }
+check 'they work' examples
+check 'and write into one folder alone' [ "$(echo $(ls "$work/clone"))" = 'build models out' ]
+check 'which git ignores' grep -qx /out/ "$root/.gitignore"
+
+# ---- an object that was compiled with a warning is no way around -Werror -----------------------------------
+
+cat >"$work/warning" <<'XXX'
+#!/bin/sh
+case " $* " in *" -Werror "*) echo 'error: y [-Werror]' >&2; exit 1 ;; *' -c '*) echo 'warning: y' >&2 ;; esac
+exec cc "$@"
+XXX
+chmod +x "$work/warning"
+object() { make -s -C "$root" BUILD="$work/warned" CC="$work/warning" "$@" "$work/warned/generator/diag.o" >"$work/said" 2>&1; }
+check 'a warning is no error' object
+check 'and is shown' grep -q 'warning: y' "$work/said"
+check 'but it is one with -Werror, though the object is there' eval '! object WERROR=-Werror'
+
+# ---- packages: tests/install.sh, demo.sh and run.sh before they install, with an apt-get that only writes down ----
+
+mkdir "$work/apt"
+tool() { cat >"$work/apt/$1" && chmod +x "$work/apt/$1"; }
+printf '#!/bin/sh\nexit 1\n' | tool dpkg-query # nothing is installed
+printf '#!/bin/sh\nexec "$@"\n' | tool sudo
+tool apt-get <<XXX
+#!/bin/sh
+echo "\$*" >>"$work/calls"
+case "\$*" in
+*--assume-no*)
+    echo '0 upgraded, 124 newly installed, 0 to remove and 0 not upgraded.'
+    echo 'Need to get 1,091 kB/91.2 MB of archives.'
+    echo 'After this operation, 1,342 MB of additional disk space will be used.'
+    ;;
+*) echo 'lines of apt-get' ;;
+esac
+XXX
+packages() { PATH=$work/apt:$PATH BUILD=$work/log sh "$@" >"$work/out" 2>"$work/err"; }
+size='They take 92 MB to fetch, 1342 MB on the disk, and about 3 min'
+for script in install demo run; do
+    rm -f "$work/calls"
+    check "$script.sh --dry-run" packages "$root/tests/$script.sh" --dry-run
+    check "$script.sh --dry-run says how much" grep -q "$size" "$work/out"
+    check "$script.sh --dry-run says what" grep -q 'libtcc-dev' "$work/out"
+    check "$script.sh --dry-run installs nothing" sh -c "! grep -v -e --assume-no -e Dir::State '$work/calls'"
+    check "$script.sh --dry-run builds nothing" [ ! -e "$work/log" ]
+done
+rm -f "$work/calls"
+check 'install.sh installs' packages "$root/tests/install.sh"
+check 'it says how much before' grep -q "$size" "$work/err"
+check 'by one command' [ "$(grep -c 'install -y' "$work/calls")" = 1 ]
+check 'what the demonstration needs, and neither MPI nor Fortran' \
+    sh -c "grep -q gnuplot-nox '$work/calls' && ! grep -qi -e mumps -e mpi -e fortran '$work/calls'"
+check 'the lines of apt-get are in its log' grep -q 'lines of apt-get' "$work/log/install.log"
+check 'and not on the screen' sh -c "! grep -q 'lines of apt-get' '$work/out' '$work/err'"
+printf '#!/bin/sh\necho "E: no such package" && exit 100\n' | tool apt-get
+check 'where it fails the script does' sh -c "! PATH='$work/apt:$PATH' BUILD='$work/log' sh '$root/tests/install.sh' >'$work/out' 2>'$work/err'"
+check 'and shows why, and where the rest is' sh -c "grep -q 'E: no such package' '$work/err' && grep -q 'install.log' '$work/err'"
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

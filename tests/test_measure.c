@@ -56,6 +56,8 @@ static void sizes_are_the_compilers(void **state)
     assert_int_equal(measure_constants(m, "words"), sizeof words);
     assert_int_equal(measure_constants(m, ""), sizeof numbers_a + sizeof numbers_b + sizeof words);
     assert_int_equal(measure_number(m, "STATES"), STATES);
+    /* the arrays have the numbers that the text gives them */
+    assert_true(numbers_a[1][2] > 5 && numbers_b[2].place == 3 && words[0][0] == 'a');
     pool_free(pool);
 }
 

@@ -35,7 +35,7 @@ rows() { grep '^| `' "$root/tests/proofs.md"; }
     pattern="$values|$tolerance"
     deciding "$root"/generator/*.c
     pattern="const double.*$tolerance"
-    deciding "$root"/runtime/*.c
+    deciding "$root"/runtime/*.c "$root"/runtime/plugin/*.c
 } >"$work/decisions"
 rows >"$work/rows"
 check "decisions are found" test "$(wc -l <"$work/decisions")" -gt 100
@@ -51,6 +51,7 @@ sed 's/^| `\([a-z0-9_]*\.c\)` | \([^|]*\) |.*/\1 \2/' "$work/rows" | tr -d '`,' 
     for function in $functions; do
         path=$root/generator/$file
         [ -f "$path" ] || path=$root/runtime/$file
+        [ -f "$path" ] || path=$root/runtime/plugin/$file
         grep -qw "$function" "$path" || echo "proofs.md has a row for $function, which $file does not have"
     done
 done >"$work/out"

@@ -372,7 +372,7 @@ static void measure_spectrum(const gic_road_grid *road, double gd, double track,
     for (int m = 0; m < SAMPLES; ++m) {
         /* 400 m on: the common part starts at 0, and this is where it begins to forget that */
         const gic_real x = (gic_real)(400 + spacing * m);
-        const double window = 1 - cos(2 * (double)pi * m / SAMPLES);
+        const double window = 1 - cos(2 * (double)pi * m / (int)SAMPLES);
         gic_real l[3], r[3];
         road->head.height(&road->head, 0, 0, x, (gic_real)(0.6 * track), l);
         road->head.height(&road->head, 0, 0, x, (gic_real)(-0.6 * track), r);
@@ -382,7 +382,7 @@ static void measure_spectrum(const gic_road_grid *road, double gd, double track,
     transform(left, SAMPLES);
     transform(right, SAMPLES);
     for (int k = 1; k < SAMPLES / 2; ++k) {
-        const double n = k / (spacing * SAMPLES), scale = 2 * spacing / SAMPLES / 1.5; /* 1.5: mean of window^2 */
+        const double n = k / (spacing * (int)SAMPLES), scale = 2 * spacing / (int)SAMPLES / 1.5; /* 1.5: mean of window^2 */
         const int octave = (int)floor(log2(n / 2.83)) + OCTAVES;
         if (n > 2.83 || octave < 0)
             continue;

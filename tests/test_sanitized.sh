@@ -137,7 +137,7 @@ fails() {
 }
 fails 1 "error: the C compiler '/nonexistent' can't be started" --engine cc --cc /nonexistent "$pendulum" pendulum.scene
 fails 1 "error: the C compiler 'false' failed" --engine cc --cc false "$pendulum" pendulum.scene
-fails 1 "error: can't create " -q "$pendulum" pendulum.scene -o nowhere/results.csv
+fails 1 "results.csv: error: can't create" -q "$pendulum" pendulum.scene -o nowhere/results.csv
 fails 2 "error: no scene given" "$pendulum"
 for scene in "$models/pendulum.veh" /nonexistent; do
     fails 1 'error: ' "$pendulum" "$scene"

@@ -114,7 +114,7 @@ static void test_gaps_are_filled(void **state)
             before[steps++] = (Step){e, -1};
     memcpy(after, before, sizeof before);
     schedule_steps(pool, dag, after, steps);
-    const double alone = LINKS * (20 + 13), apart = SUMS / 2.0;
+    const double alone = LINKS * (20 + 13), apart = (int)SUMS / 2.0;
     assert_true(time_of(dag, before, steps) >= alone + apart);
     /* at most a tenth above the chain alone */
     assert_true(time_of(dag, after, steps) < 1.1 * alone);

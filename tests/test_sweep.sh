@@ -61,6 +61,13 @@ done
     -o "$work/plain.csv" 2>"$work/err"
 check "without a compiler the same bytes" cmp -s "$work/grid.csv" "$work/plain.csv"
 check "which it says" grep -q "note: each run by itself instead of lanes: .*/nonexistent" "$work/err"
+# a compiler that takes 2 s longer: the time that is said has them
+printf '#!/bin/sh\nsleep 2\nexec cc "$@"\n' >"$work/late"
+chmod +x "$work/late"
+GICGEN_CACHE= "$gicsweep" --cc "$work/late" "$car" "$work/s.scene" --vary speed=4:20:3 -o "$work/late.csv" 2>"$work/err"
+check "the time includes compiling" awk '/ runs in / {
+    match($0, /[0-9.]+ s: [0-9.]+ s to read and compile, [0-9.]+ s of runs/); split(substr($0, RSTART), t, " ")
+    good = t[1] >= 2 && t[3] >= 2 && t[1] >= t[3] } END { exit !good }' "$work/err"
 check "numbers alone" [ "$(sed 1d "$work/grid.csv" | tr -d '0-9.,e+\n-' | wc -c)" -eq 0 ]
 check "numpy reads it" /usr/bin/python3 - "$work/grid.csv" <<'XXX'
 import sys
