@@ -420,18 +420,20 @@ static Dense dense_make(const Articulation *a)
     return d;
 }
 
+/* A pivot is compared with the inertia that was there before the coordinates of the next subset behind it were free. What
+ * several light bodies one behind the other lose together is felt by no pivot. */
+const double articulated_most_mass = 1e4;
+
 const char *articulated_missing(const Model *model)
 {
-    /* A pivot sees the inertia that the last subset behind it had before its coordinates were free. What light bodies one
-     * after the other lose together stays below 1e-8 with masses as near to each other as this. */
-    const double most = 1e4;
+    const int first = model->free_base ? BODY_BASE : BODY_BASE + 1;
     double light = 0, heavy = 0;
-    for (int b = model->free_base ? 0 : 1; b < model->bodies; ++b) {
+    for (int b = first; b < model->bodies; ++b) {
         const double mass = model->body[b].mass;
-        light = b == !model->free_base || mass < light ? mass : light;
-        heavy = mass > heavy ? mass : heavy;
+        light = b == first || mass < light ? mass : light;
+        heavy = b == first || mass > heavy ? mass : heavy;
     }
-    return heavy > most * light ? "account of digits where a body has more than 10000 times the mass of another" : NULL;
+    return heavy > articulated_most_mass * light ? "a body has more than 10000 times the mass of another" : NULL;
 }
 
 Block *articulated_block(Whole *whole)

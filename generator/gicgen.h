@@ -327,7 +327,8 @@ int wheel_rolling(const Model *model, int wheel);
 Block *dynamics_block(Whole *whole);
 /* articulated.c: the same of a chained sequence, coordinates of carried subsets eliminated from the tips. */
 Block *articulated_block(Whole *whole);
-/* What the model has that the articulated form is not for, NULL: nothing. */
+/* Why the articulated form is not for a model, NULL: it is. Masses may differ by this factor, tuned ones too. */
+extern const double articulated_most_mass;
 const char *articulated_missing(const Model *model);
 /* Accelerations of the driven coordinates, as inputs give them; 0 for the others [coordinates]. */
 Ex *whole_driven_accelerations(Whole *whole);
@@ -410,6 +411,9 @@ typedef struct Formulation {
 /* From an assembled model. The sequence of the articulated form is chained. Models that can't be formulated end in
  * diag_fail. */
 const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery);
+
+/* How many numbers its subsets' motions and inertias are, FORMAT.md section 14: what work and memory grow with. */
+double formulation_numbers(Pool *pool, const Model *model, const Sequence *sequence, Solve solve);
 
 /* The blocks of a formulation, from its plan. */
 void formulation_blocks(Pool *pool, Formulation *f);

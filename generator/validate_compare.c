@@ -167,19 +167,6 @@ static void add_unit_motions(const Comparison *c, int b, double own[6])
             add_unit_motion(c, b, body, j, c->world->xdd[subset_of(c, body)->dep[j]], own);
 }
 
-/* S of one coordinate; false: the body does not move with it. */
-static bool find_unit_motion(const Comparison *c, int b, int coordinate, double S[6])
-{
-    bool found = false;
-    for (int body = b; body != BODY_BASE; body = subset_of(c, body)->carrier)
-        for (int j = 0; j < subset_of(c, body)->deps; ++j)
-            if (subset_of(c, body)->dep[j] == coordinate) {
-                found = true;
-                add_unit_motion(c, b, body, j, 1, S);
-            }
-    return found;
-}
-
 static void accelerate_body(Comparison *c, int b, const double base_a[3], const double base_alpha[3])
 {
     World *world = c->world;
@@ -286,19 +273,35 @@ static void unit_rates(Comparison *c, int coordinate)
 {
     World *world = c->world;
     const Run *run = c->v.run;
+    const Sequence *sequence = run->plan->sequence;
     const double *B = world->A[BODY_BASE];
+    double S[world->bodies][6]; /* of reference points, base frame */
+    memset(S, 0, sizeof S);
     memset(c->twist, 0, sizeof *c->twist * (size_t)world->bodies);
-    for (int b = 1; b < world->bodies; ++b) {
-        double S[6] = {0}, arm[3], to_mass[3], t[3], *twist = c->twist[b];
-        if (!find_unit_motion(c, b, coordinate, S))
-            continue;
-        apply3(B, S, twist + 3);
-        apply3(B, S + 3, twist);
-        sub3(c->v.model->body[b].com, run->plan->origin[b], arm);
-        apply3(world->A[b], arm, to_mass);
-        cross3(twist + 3, to_mass, t);
-        add3(twist, t, twist);
-    }
+    for (int s = 0; s < sequence->subsets; ++s)
+        for (int i = 0; sequence->subset[s].class >= 0 && i < sequence->subset[s].bodies; ++i) {
+            const Subset *subset = &sequence->subset[s];
+            const int b = subset->body[i];
+            double arm[3], to_mass[3], t[3], *twist = c->twist[b];
+            if (subset->carrier != BODY_BASE) { /* before it in the sequence */
+                double at[3], from[3];
+                motion3(c, b, MOTION_C, at);
+                motion3(c, subset->carrier, MOTION_C, from);
+                sub3(at, from, arm);
+                memcpy(S[b], S[subset->carrier], sizeof S[b]);
+                cross3(S[b], arm, t);
+                add3(S[b] + 3, t, S[b] + 3);
+            }
+            for (int j = 0; j < subset->deps; ++j)
+                if (subset->dep[j] == coordinate)
+                    add_unit_motion(c, b, b, j, 1, S[b]);
+            apply3(B, S[b], twist + 3);
+            apply3(B, S[b] + 3, twist);
+            sub3(c->v.model->body[b].com, run->plan->origin[b], arm);
+            apply3(world->A[b], arm, to_mass);
+            cross3(twist + 3, to_mass, t);
+            add3(twist, t, twist);
+        }
 }
 
 /* Bodies at a unit rate of the base: about (0 to 2) or along (3 to 5) an axis of its frame. */
