@@ -12,9 +12,9 @@ static const char *model_hash(Pool *pool, const Model *model, const Sequence *se
 }
 
 const char *const solve_name[SOLVES] = {[SOLVE_AUTO] = "auto",
-                                         [SOLVE_REDUCED] = "reduced",
-                                         [SOLVE_ARTICULATED] = "articulated",
-                                         [SOLVE_AUGMENTED] = "augmented"};
+                                        [SOLVE_REDUCED] = "reduced",
+                                        [SOLVE_ARTICULATED] = "articulated",
+                                        [SOLVE_AUGMENTED] = "augmented"};
 
 Solve solve_of(const char *name)
 {
@@ -38,9 +38,8 @@ Recovery recovery_of(const char *name)
 void formulation_blocks(Pool *pool, Formulation *f)
 {
     const Plan *plan = f->plan;
-    Block *(*const dynamics[SOLVES])(Whole *) = {[SOLVE_REDUCED] = dynamics_block,
-                                                 [SOLVE_ARTICULATED] = articulated_block,
-                                                 [SOLVE_AUGMENTED] = augmented_block};
+    Block *(*const dynamics[SOLVES])(Whole *) = {
+        [SOLVE_REDUCED] = dynamics_block, [SOLVE_ARTICULATED] = articulated_block, [SOLVE_AUGMENTED] = augmented_block};
     f->dynamics = dynamics[plan->solve](whole_open(pool, plan, plan->pack));
     f->outputs = outputs_block(whole_new(pool, plan));
     f->poses = poses_block(whole_new(pool, plan));
@@ -101,17 +100,23 @@ static const Sequence *chain_for(Pool *pool, const Model *model, const Sequence 
                   "the articulated form of the equations of motion would lose digits: %s", missing);
     const Sequence *chained = sequence_chain(pool, model, sequence);
     if (!chained && solve == SOLVE_ARTICULATED)
-        diag_fail((Place){model->source, 0, 0}, "use the reduced form, which takes the same operations then",
-                  "the articulated form needs a chain: every subset of this model hangs on the base or on several bodies");
+        diag_fail(
+            (Place){model->source, 0, 0}, "use the reduced form, which takes the same operations then",
+            "the articulated form needs a chain: every subset of this model hangs on the base or on several bodies");
     return chained;
 }
 
-/* Work in the reduced form grows with the cube of the coordinates that a subset depends on: beyond so many the articulated
- * form is taken without counting. */
+/* Work in the reduced form grows with the cube of the coordinates that a subset depends on: beyond so many the
+ * articulated form is taken without counting. */
 static bool is_long(const Sequence *sequence, Solve solve)
 {
     const int most = 12;
     return solve == SOLVE_ARTICULATED || deepest(sequence) > most;
+}
+
+bool formulation_chains(Pool *pool, const Model *model, const Sequence *sequence, Solve solve)
+{
+    return is_long(sequence, solve) && chain_for(pool, model, sequence, solve);
 }
 
 const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery)

@@ -174,7 +174,7 @@ typedef struct Setting {
 static const Formulation *formulation_of(Pool *pool, const Model *model, const Sequence *sequence,
                                          const Options *options, const Setting *setting)
 {
-    if (!setting->facts)
+    if (!setting->facts || formulation_chains(pool, model, sequence, options->solve))
         return formulate(pool, model, sequence, options->solve, options->recovery);
     return formulate_explained(pool, setting->drawn, model, sequence, options->solve, options->recovery,
                                setting->facts);
@@ -191,9 +191,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         usage_error("the generated file must end in .c", path);
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
-    /* code for one scene is made in the reduced form where it could be articulated */
-    const Solve form = setting->facts && options->solve != SOLVE_AUGMENTED ? SOLVE_REDUCED : options->solve;
-    const bool told = effort_tell(pool, model, sequence, form);
+    const bool told = effort_tell(pool, model, sequence, options->solve);
     const Formulation *formulation = formulation_of(pool, model, sequence, options, setting);
     if (!batch && options->batch.lanes)
         formulation = formulation_lanes(pool, formulation, options->batch.lanes);
