@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * Equations of motion of a chained sequence, in work that grows as the number of its subsets (articulated bodies). They
- * are those of the reduced form, but every carried subset eliminates its own coordinates before its carrier's subset does.
- * With T = (alpha, a) at the carrier's reference point,
+ * are those of the reduced form, but every carried subset eliminates its own coordinates before its carrier's subset
+ * does. With T = (alpha, a) at the carrier's reference point,
  *
  *     [ Phi  C^T ] [ T   ]   [ r ]          Phi' = Phi - C^T M^-1 C
  *     [ C    M   ] [ w'' ] = [ f ] ,        r'   = r - C^T M^-1 f ,        w'' = M^-1 f - M^-1 C T ,
  *
  * and Phi', r' join the carrier as inertia and load. Moments are about reference points nearby, components in the base
- * frame: no digits are lost to the length of a chain. The subsets that the base carries end in the equations of dynamics.c.
+ * frame: no digits are lost to the length of a chain. The subsets that the base carries end in the equations of
+ * dynamics.c.
  */
 #include "dynamics.h"
 
@@ -346,7 +347,8 @@ static void solve_dense(const Articulation *a, const Dense *d, Ex *z)
     Pool *pool = dag->pool;
     int *unknown = pool_alloc(pool, ((size_t)d->n + 1) * sizeof *unknown);
     const int m = dense_unknowns(a->whole, unknown);
-    Ex *M = pool_alloc(pool, ((size_t)m * (size_t)m + 1) * sizeof *M), *x = pool_alloc(pool, ((size_t)m + 1) * sizeof *x);
+    Ex *M = pool_alloc(pool, ((size_t)m * (size_t)m + 1) * sizeof *M),
+       *x = pool_alloc(pool, ((size_t)m + 1) * sizeof *x);
     for (int i = 0; i < m; ++i) {
         x[i] = d->z[unknown[i]];
         for (int j = i; j < m; ++j) {
@@ -364,7 +366,8 @@ static void solve_dense(const Articulation *a, const Dense *d, Ex *z)
         z[unknown[i]] = x[i];
 }
 
-/* Accelerations of what is carried, from the base to the tips. w2 [coordinates]: those of the base's subsets are there. */
+/* Accelerations of what is carried, from the base to the tips. w2 [coordinates]: those of the base's subsets are there.
+ */
 static void spread(const Articulation *a, const Ex base[6], Ex *w2)
 {
     Whole *whole = a->whole;
@@ -420,18 +423,20 @@ static Dense dense_make(const Articulation *a)
     return d;
 }
 
+/* A pivot is compared with the inertia that was there before the coordinates of the next subset behind it were free.
+ * What several light bodies one behind the other lose together is felt by no pivot. */
+const double articulated_most_mass = 1e4;
+
 const char *articulated_missing(const Model *model)
 {
-    /* A pivot sees the inertia that the last subset behind it had before its coordinates were free. What light bodies one
-     * after the other lose together stays below 1e-8 with masses as near to each other as this. */
-    const double most = 1e4;
+    const int first = model->free_base ? BODY_BASE : BODY_BASE + 1;
     double light = 0, heavy = 0;
-    for (int b = model->free_base ? 0 : 1; b < model->bodies; ++b) {
+    for (int b = first; b < model->bodies; ++b) {
         const double mass = model->body[b].mass;
-        light = b == !model->free_base || mass < light ? mass : light;
-        heavy = mass > heavy ? mass : heavy;
+        light = b == first || mass < light ? mass : light;
+        heavy = b == first || mass > heavy ? mass : heavy;
     }
-    return heavy > most * light ? "account of digits where a body has more than 10000 times the mass of another" : NULL;
+    return heavy > articulated_most_mass * light ? "a body has more than 10000 times the mass of another" : NULL;
 }
 
 Block *articulated_block(Whole *whole)

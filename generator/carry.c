@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Chained sequences: a subset that hangs on one body knows its motion relative to that body alone, by its own coordinates.
- * What it feels of all others comes from its carrier, and what it weighs goes there, body by body. */
+ * Chained sequences: a subset that hangs on one body knows its motion relative to that body alone, by its own
+ * coordinates. What it feels of all others comes from its carrier, and what it weighs goes there, body by body. */
 #include "gicgen.h"
 
 static Ex magnitude(Dag *dag, Ex e)
@@ -30,8 +30,8 @@ static void carry_body(Whole *whole, int b, const Ex *w2)
         for (int i = 0; i < 6; ++i)
             out[i] = ex_add(dag, out[i], ex_mul(dag, rate, S[i]));
         for (int part = 0; whole->sized && part < 2; ++part)
-            size[part] = ex_add(dag, size[part],
-                                ex_mul(dag, magnitude(dag, rate), whole_magnitude3(whole, S + 3 * part)));
+            size[part] =
+                ex_add(dag, size[part], ex_mul(dag, magnitude(dag, rate), whole_magnitude3(whole, S + 3 * part)));
     }
     whole_carry(whole, b, w2, whole->motion[b].c, out, out + 3);
     if (whole->sized)

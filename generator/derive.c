@@ -17,10 +17,11 @@ static void require(Block *block, const Plan *plan, Ex value, double least, int 
         block_check(block, value, false, least, refusal);
 }
 
-/* What augmented_block() demands of the masses in the file. */
+/* What augmented_block() and articulated_missing() demand of the masses in the file. */
 static void require_like_masses(Block *block, const Plan *plan)
 {
     const Model *model = plan->model;
+    const double factor = plan->solve == SOLVE_AUGMENTED ? augmented_most_mass : articulated_most_mass;
     const int first = model->free_base ? BODY_BASE : BODY_BASE + 1;
     Dag *dag = block->dag;
     Ex light = 0, heavy = 0;
@@ -29,7 +30,7 @@ static void require_like_masses(Block *block, const Plan *plan)
         light = b == first ? mass : ex_op(dag, OP_MIN, light, mass, 0);
         heavy = b == first ? mass : ex_op(dag, OP_MAX, heavy, mass, 0);
     }
-    const Ex most = ex_mul(dag, ex_literal(dag, augmented_most_mass), light);
+    const Ex most = ex_mul(dag, ex_literal(dag, factor), light);
     require(block, plan, ex_sub(dag, most, heavy), not_negative, model->tuning->late + LATE_MASSES);
 }
 
@@ -40,7 +41,7 @@ const Block *derive_block(Pool *pool, const Plan *plan)
     block->dag = tuning->dag;
     for (int i = 0; i < tuning->late; ++i)
         require(block, plan, tuning->condition[i].value, tuning->condition[i].zero ? not_negative : 0, i);
-    if (plan->solve == SOLVE_AUGMENTED)
+    if (plan->solve != SOLVE_REDUCED)
         require_like_masses(block, plan);
     for (int i = 0; i < plan->derived->count; ++i)
         block_store(block, plan->derived->formula[i], "self->derived[%d]", i);

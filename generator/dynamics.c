@@ -309,7 +309,7 @@ static void check_pivots(Whole *whole, Block *block, int n, const Ex *M, const F
         for (int own = end - 1; own >= k; --own) { /* of two that lose as much the later one, as without blocks */
             const Ex entry = M[n * f->row[own] + f->row[own]];
             dynamics_check(whole, block, first_unknown(whole->plan, f->row[own]), f->determinant[k],
-                       end - k > 1 ? ex_mul(dag, entry, f->entry[n * own + own]) : entry);
+                           end - k > 1 ? ex_mul(dag, entry, f->entry[n * own + own]) : entry);
         }
         if (end - k > 2)
             dynamics_check(whole, block, first_unknown(whole->plan, f->row[k]), f->determinant[k], product);
@@ -483,7 +483,8 @@ static Ex acceleration_size(Whole *whole, int b, const Vector *point, const Ex a
 {
     Dag *dag = whole->dag;
     const Motion *motion = &whole->motion[b];
-    Ex turn = whole_magnitude3(whole, whole->turn), own = whole_magnitude3(whole, motion->omega), all = ex_add(dag, turn, own);
+    Ex turn = whole_magnitude3(whole, whole->turn), own = whole_magnitude3(whole, motion->omega),
+       all = ex_add(dag, turn, own);
     Ex linear = ex_add(dag, whole_magnitude3(whole, a), whole_magnitude3(whole, whole->gravity));
     *angular = ex_add(dag, whole_magnitude3(whole, alpha), ex_mul(dag, all, all));
     linear = ex_add(dag, linear, ex_mul(dag, *angular, whole_magnitude3(whole, point->v)));
@@ -492,7 +493,8 @@ static Ex acceleration_size(Whole *whole, int b, const Vector *point, const Ex a
     *angular = ex_add(dag, *angular, whole_magnitude3(whole, motion->alpha));
     for (int j = 0; b != BODY_BASE && j < whole_subset(whole, b)->deps; ++j) {
         const Ex *S = motion->S + 6 * j;
-        Ex rate = magnitude(dag, w2[whole_subset(whole, b)->dep[j]]), turning = ex_mul(dag, rate, whole_magnitude3(whole, S));
+        Ex rate = magnitude(dag, w2[whole_subset(whole, b)->dep[j]]),
+           turning = ex_mul(dag, rate, whole_magnitude3(whole, S));
         *angular = ex_add(dag, *angular, turning);
         linear = ex_add(dag, linear, ex_mul(dag, turning, whole_magnitude3(whole, point->arm)));
         linear = ex_add(dag, linear, ex_mul(dag, rate, whole_magnitude3(whole, S + 3)));
@@ -551,7 +553,8 @@ Block *check_block(Whole *whole)
     for (int b = model->free_base ? 0 : 1; b < model->bodies; ++b) {
         Ex *size = sizes[b];
         wrench_size(whole, loads, b, alpha, a, w2, size);
-        moment = ex_add(dag, moment, ex_add(dag, size[0], ex_mul(dag, size[1], whole_magnitude3(whole, whole->motion[b].c))));
+        moment = ex_add(dag, moment,
+                        ex_add(dag, size[0], ex_mul(dag, size[1], whole_magnitude3(whole, whole->motion[b].c))));
         force = ex_add(dag, force, size[1]);
         for (int j = 0; b != BODY_BASE && j < whole_subset(whole, b)->deps; ++j) {
             const Ex *S = whole->motion[b].S + 6 * j;

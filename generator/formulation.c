@@ -12,9 +12,9 @@ static const char *model_hash(Pool *pool, const Model *model, const Sequence *se
 }
 
 const char *const solve_name[SOLVES] = {[SOLVE_AUTO] = "auto",
-                                         [SOLVE_REDUCED] = "reduced",
-                                         [SOLVE_ARTICULATED] = "articulated",
-                                         [SOLVE_AUGMENTED] = "augmented"};
+                                        [SOLVE_REDUCED] = "reduced",
+                                        [SOLVE_ARTICULATED] = "articulated",
+                                        [SOLVE_AUGMENTED] = "augmented"};
 
 Solve solve_of(const char *name)
 {
@@ -38,9 +38,8 @@ Recovery recovery_of(const char *name)
 void formulation_blocks(Pool *pool, Formulation *f)
 {
     const Plan *plan = f->plan;
-    Block *(*const dynamics[SOLVES])(Whole *) = {[SOLVE_REDUCED] = dynamics_block,
-                                                 [SOLVE_ARTICULATED] = articulated_block,
-                                                 [SOLVE_AUGMENTED] = augmented_block};
+    Block *(*const dynamics[SOLVES])(Whole *) = {
+        [SOLVE_REDUCED] = dynamics_block, [SOLVE_ARTICULATED] = articulated_block, [SOLVE_AUGMENTED] = augmented_block};
     f->dynamics = dynamics[plan->solve](whole_open(pool, plan, plan->pack));
     f->outputs = outputs_block(whole_new(pool, plan));
     f->poses = poses_block(whole_new(pool, plan));
@@ -90,26 +89,59 @@ static int deepest(const Sequence *sequence)
     return most;
 }
 
+/* The chained sequence that the articulated form would have; NULL: the form is not for this model, or not asked for. */
+static const Sequence *chain_for(Pool *pool, const Model *model, const Sequence *sequence, Solve solve)
+{
+    const char *missing = articulated_missing(model);
+    if (solve != SOLVE_ARTICULATED && (solve != SOLVE_AUTO || missing))
+        return NULL;
+    if (missing)
+        diag_fail((Place){model->source, 0, 0}, "use the reduced form, which looks at what is left of every inertia",
+                  "the articulated form of the equations of motion would lose digits: %s", missing);
+    const Sequence *chained = sequence_chain(pool, model, sequence);
+    if (!chained && solve == SOLVE_ARTICULATED)
+        diag_fail(
+            (Place){model->source, 0, 0}, "use the reduced form, which takes the same operations then",
+            "the articulated form needs a chain: every subset of this model hangs on the base or on several bodies");
+    return chained;
+}
+
+/* Work in the reduced form grows with the cube of the coordinates that a subset depends on: beyond so many the
+ * articulated form is taken without counting. */
+static bool is_long(const Sequence *sequence, Solve solve)
+{
+    const int most = 12;
+    return solve == SOLVE_ARTICULATED || deepest(sequence) > most;
+}
+
+bool formulation_chains(Pool *pool, const Model *model, const Sequence *sequence, Solve solve)
+{
+    return is_long(sequence, solve) && chain_for(pool, model, sequence, solve);
+}
+
 const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery)
 {
-    /* work in the reduced form grows with the cube of this: beyond, the other form is not compared but taken */
-    const int compared = 12;
-    const bool chains = solve == SOLVE_ARTICULATED || (solve == SOLVE_AUTO && !articulated_missing(model));
-    const Sequence *chained = chains ? sequence_chain(pool, model, sequence) : NULL;
-    if (solve == SOLVE_ARTICULATED && articulated_missing(model))
-        diag_fail((Place){model->source, 0, 0}, "use the reduced form", "the articulated form has no %s",
-                  articulated_missing(model));
-    if (solve == SOLVE_ARTICULATED && !chained)
-        diag_fail((Place){model->source, 0, 0}, "use the reduced form, which is the same then",
-                  "the articulated form is for chains: every subset of this model hangs on the base or on several bodies");
+    const Sequence *chained = chain_for(pool, model, sequence, solve);
     if (!chained)
         return formulate_as(pool, model, sequence, solve == SOLVE_AUGMENTED ? solve : SOLVE_REDUCED, recovery);
-    const bool only = solve == SOLVE_ARTICULATED || deepest(sequence) > compared;
     const Formulation *articulated = formulate_as(pool, model, chained, SOLVE_ARTICULATED, recovery);
-    if (only)
+    if (is_long(sequence, solve))
         return articulated;
     const Formulation *reduced = formulate_as(pool, model, sequence, SOLVE_REDUCED, recovery);
     return operations(pool, articulated) < operations(pool, reduced) ? articulated : reduced;
+}
+
+double formulation_numbers(Pool *pool, const Model *model, const Sequence *sequence, Solve solve)
+{
+    const Sequence *chained = chain_for(pool, model, sequence, solve);
+    const Sequence *used = chained && is_long(sequence, solve) ? chained : sequence;
+    double numbers = 0;
+    for (int s = 0; s < used->subsets; ++s) {
+        const Subset *subset = &used->subset[s];
+        numbers += (double)subset->bodies * (MOTION_S + 6.0 * subset->deps);
+        numbers += subset->class < 0 ? 0 : inertia_mass(subset->deps, subset->deps, subset->deps);
+    }
+    return numbers;
 }
 
 bool formulation_reacts(const Formulation *f)

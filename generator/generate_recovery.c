@@ -54,17 +54,35 @@ static const char *start_text(const Generation *g, int s)
                       g->plan->start_offset[s], g->plan->stride[s], layout->start_size);
 }
 
+/* The condition that all numbers are the same as before: of the subset and of what carries it, which has a variable for
+ * it unless it is solved in lanes. */
+static void write_same(const Generation *g, Text *out, const Subset *subset)
+{
+    Text own = {.pool = g->pool};
+    const char *all = "links->again";
+    for (const Subset *at = subset;;) {
+        for (int j = 0; j < at->deps; ++j)
+            text_print(&own, " && links->same[%d]", at->dep[j]);
+        if (at->carrier == BODY_BASE)
+            break;
+        const int carrier = g->sequence->body_subset[at->carrier];
+        at = &g->sequence->subset[carrier];
+        if (!class_in_lanes(g, at->class)) {
+            all = pool_print(g->pool, "kept_%d", carrier);
+            break;
+        }
+    }
+    text_print(out, "%s%s", all, own.size ? own.s : "");
+}
+
 /* The solution of a subset is kept where it is for the same numbers; what the start has of it moves on. Returns the
  * indent of the other branch. */
 static int open_kept(Generation *g, Text *out, int indent, const Subset *subset, int s)
 {
     const int offset = g->plan->start_offset[s], numbers = g->plan->formula[subset->class]->layout.start_size;
-    const int carrier = subset->carrier == BODY_BASE ? -1 : g->sequence->body_subset[subset->carrier];
-    const char *before = carrier < 0 ? "links->again" : pool_print(g->pool, "kept_%d", carrier);
     const bool carries = sequence_carries(g->sequence, s);
-    text_print(out, "%*s%s%s", indent, "", carries ? pool_print(g->pool, "const int kept_%d = ", s) : "if (", before);
-    for (int j = 0; j < subset->deps; ++j)
-        text_print(out, " && links->same[%d]", subset->dep[j]);
+    text_print(out, "%*s%s", indent, "", carries ? pool_print(g->pool, "const int kept_%d = ", s) : "if (");
+    write_same(g, out, subset);
     text_print(out, carries ? ";\n" : ") {\n");
     if (carries)
         line(out, indent, "if (kept_%d) {", s);

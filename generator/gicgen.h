@@ -46,9 +46,9 @@ typedef struct Layout {
     int inertia_size;
 } Layout;
 
-/* inertia: first and second moments about the base origin (the carrier's reference point) in the base frame, force and moment of the quadratic-velocity
- * terms, then 7 numbers a coordinate (force and moment of its unit acceleration, quadratic-velocity force along it),
- * then the upper triangle of the coordinates' mass matrix. */
+/* inertia: first and second moments about the base origin (the carrier's reference point) in the base frame, force and
+ * moment of the quadratic-velocity terms, then 7 numbers a coordinate (force and moment of its unit acceleration,
+ * quadratic-velocity force along it), then the upper triangle of the coordinates' mass matrix. */
 enum { INERTIA_FIRST = 0, INERTIA_SECOND = 3, INERTIA_FORCE = 9, INERTIA_MOMENT = 12, INERTIA_COORDINATE = 15 };
 
 int inertia_mass(int deps, int j, int k); /* place of M_jk, j <= k */
@@ -187,9 +187,9 @@ typedef struct Whole {
     Ex *x, *xd;                /* [coordinates] */
     bool open;                 /* numbers that are known stay inputs, for block_pack to compare */
     bool sized;                /* loads know the magnitudes of their terms */
-    const Ex *carried_by;      /* carry.c: the accelerations of coordinates that these belong to; NULL: there are none */
-    Ex (*carried)[6];          /* [bodies] what they give: angular, that of the reference point */
-    Ex (*carried_size)[2];     /* [bodies] sums of magnitudes of the terms */
+    const Ex *carried_by;  /* carry.c: the accelerations of coordinates that these belong to; NULL: there are none */
+    Ex (*carried)[6];      /* [bodies] what they give: angular, that of the reference point */
+    Ex (*carried_size)[2]; /* [bodies] sums of magnitudes of the terms */
 } Whole;
 
 Whole *whole_new(Pool *pool, const Plan *plan);
@@ -224,8 +224,9 @@ const Subset *whole_subset(const Whole *whole, int body);
 
 /* The body that carries this one, or BODY_BASE. */
 int whole_carrier(const Whole *whole, int body);
-/* Add to the angular acceleration of a body, and to the acceleration of a point of it at `at` relative to the base, what
- * the accelerations w2 [coordinates] of others than its own coordinates give them. Nothing where the base carries it. */
+/* Add to the angular acceleration of a body, and to the acceleration of a point of it at `at` relative to the base,
+ * what the accelerations w2 [coordinates] of others than its own coordinates give them. Nothing where the base carries
+ * it. */
 void whole_carry(Whole *whole, int body, const Ex *w2, const Ex at[3], Ex angular[3], Ex linear[3]);
 /* The same for sums of magnitudes of their terms. */
 void whole_carry_size(Whole *whole, int body, const Ex *w2, const Ex at[3], Ex *angular, Ex *linear);
@@ -327,7 +328,8 @@ int wheel_rolling(const Model *model, int wheel);
 Block *dynamics_block(Whole *whole);
 /* articulated.c: the same of a chained sequence, coordinates of carried subsets eliminated from the tips. */
 Block *articulated_block(Whole *whole);
-/* What the model has that the articulated form is not for, NULL: nothing. */
+/* Why the articulated form is not for a model, NULL: it is. Masses may differ by this factor, tuned ones too. */
+extern const double articulated_most_mass;
 const char *articulated_missing(const Model *model);
 /* Accelerations of the driven coordinates, as inputs give them; 0 for the others [coordinates]. */
 Ex *whole_driven_accelerations(Whole *whole);
@@ -400,16 +402,22 @@ typedef struct Formulation {
     const Plan *plan;
     const char *hash; /* of the model, in hexadecimal digits */
     const Block *dynamics, *outputs, *poses, *inverse, *energy, *check;
-    const Block *wrenches;           /* of the reduced form */
-    const Wheels *wheels;            /* NULL: none has a tire */
-    int known_most, dependence_most; /* knowns and deps of a subset, at most */
-    const Narrowing *narrowing;      /* for one scene; NULL: for all */
+    const Block *wrenches;             /* of the reduced form */
+    const Wheels *wheels;              /* NULL: none has a tire */
+    int known_most, dependence_most;   /* knowns and deps of a subset, at most */
+    const Narrowing *narrowing;        /* for one scene; NULL: for all */
     const struct Formulation *general; /* for one scene: the same model's for all; NULL: for all */
 } Formulation;
 
 /* From an assembled model. The sequence of the articulated form is chained. Models that can't be formulated end in
  * diag_fail. */
 const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery);
+
+/* Is it a long chain, or is the articulated form asked for? Then the form is taken without counting, and code for one
+ * scene is that for any. */
+bool formulation_chains(Pool *pool, const Model *model, const Sequence *sequence, Solve solve);
+/* How many numbers its subsets' motions and inertias are, FORMAT.md section 14: what work and memory grow with. */
+double formulation_numbers(Pool *pool, const Model *model, const Sequence *sequence, Solve solve);
 
 /* The blocks of a formulation, from its plan. */
 void formulation_blocks(Pool *pool, Formulation *f);

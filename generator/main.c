@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * gicgen: the command line. */
 #include "../runtime/gicrun.h"
+#include "effort.h"
 #include "validate.h"
 
 #include <stdlib.h>
@@ -173,7 +174,7 @@ typedef struct Setting {
 static const Formulation *formulation_of(Pool *pool, const Model *model, const Sequence *sequence,
                                          const Options *options, const Setting *setting)
 {
-    if (!setting->facts)
+    if (!setting->facts || formulation_chains(pool, model, sequence, options->solve))
         return formulate(pool, model, sequence, options->solve, options->recovery);
     return formulate_explained(pool, setting->drawn, model, sequence, options->solve, options->recovery,
                                setting->facts);
@@ -190,10 +191,13 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         usage_error("the generated file must end in .c", path);
     const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
+    const bool told = effort_tell(pool, model, sequence, options->solve);
     const Formulation *formulation = formulation_of(pool, model, sequence, options, setting);
     if (!batch && options->batch.lanes)
         formulation = formulation_lanes(pool, formulation, options->batch.lanes);
+    effort_step(told, "its formulas are made; they are compared with an independent solution next");
     formulation_validate(pool, formulation, setting->validation);
+    effort_step(told, "they agree; the C is written next");
     name = strcmp(path, "-") ? name : NULL;
     if (batch && batch_missing(formulation))
         diag_fail((Place){model->source, 0, 0}, "simulate such a model vehicle by vehicle, in threads of your own",

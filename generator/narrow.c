@@ -636,8 +636,8 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
     n->whole = givens_new(n->pool);
     n->fast = givens_new(n->pool);
     /* what a scene holds still is told by the coordinates that a body depends on, all the way to the base */
-    n->general = formulate(n->pool, n->model, split_classes(n, sequence), solve == SOLVE_AUGMENTED ? solve : SOLVE_REDUCED,
-                           recovery);
+    n->general = formulate(n->pool, n->model, split_classes(n, sequence),
+                           solve == SOLVE_AUGMENTED ? solve : SOLVE_REDUCED, recovery);
     const Plan *plan = n->general->plan;
     n->plan = narrow_copy(n->pool, plan, 1, sizeof *n->plan);
     n->plan->formula =
@@ -668,7 +668,8 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
 const Formulation *formulate_narrow(Pool *pool, const Model *model, const Sequence *sequence, Solve solve,
                                     Recovery recovery, const Facts *facts)
 {
-    if (!facts)
+    /* what a scene saves is nothing against what a chain does */
+    if (!facts || formulation_chains(pool, model, sequence, solve))
         return formulate(pool, model, sequence, solve, recovery);
     Narrower n = {.pool = pool, .facts = facts, .model = narrow_model(pool, model, facts)};
     n.narrowing = pool_alloc(pool, sizeof *n.narrowing);

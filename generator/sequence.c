@@ -273,7 +273,8 @@ static void vertices_paint(Finder *finder, Vertex *vertex, int count, int carrie
     knowns_share(finder, vertex, count, -1);
 }
 
-/* Own coordinates, then those of the knowns but for a carrier, each once. Leaves their positions in finder->position. */
+/* Own coordinates, then those of the knowns but for a carrier, each once. Leaves their positions in finder->position.
+ */
 static void deps_fill(Finder *finder, Subset *subset)
 {
     int most = subset->coordinates;

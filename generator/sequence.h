@@ -16,7 +16,7 @@ typedef struct Subset {
     int joints, *joint;           /* their joints, canonical order */
     int coordinates, *coordinate; /* dual coordinates whose definition is among the equations, canonical order */
     int knowns, *known;           /* bodies other than the base, solved before, that a joint or coordinate refers to */
-    int carrier;    /* BODY_BASE; of a chained sequence also the one body that the subset hangs on */
+    int carrier;                  /* BODY_BASE; of a chained sequence also the one body that the subset hangs on */
     int deps, *dep; /* coordinates that its bodies' motion relative to the carrier depends on: own ones first */
     int class;      /* isomorphism class, index into Sequence.class; -1 for the base */
 } Subset;

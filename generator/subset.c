@@ -522,7 +522,8 @@ static void finish(Work *w, Formula *formula, Solve solve, const Factors *factor
     if (solve != SOLVE_AUGMENTED)
         formula->inertia = subset_inertia(w, layout, motion);
     /* a fixed base has no equations of its own */
-    for (int i = w->model->free_base || w->first->carrier != BODY_BASE ? 0 : INERTIA_COORDINATE; i < layout->inertia_size; ++i)
+    for (int i = w->model->free_base || w->first->carrier != BODY_BASE ? 0 : INERTIA_COORDINATE;
+         i < layout->inertia_size; ++i)
         block_store(&formula->solve, formula->inertia[i], "inertia[%d]", i);
     if (!formula->closed)
         make_step(w, remembered, &formula->chord, pool_alloc(w->pool, (size_t)(7 * layout->bodies) * sizeof(Ex)));

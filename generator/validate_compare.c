@@ -139,7 +139,8 @@ static void accelerate_base(Comparison *c, const double a[3], const double alpha
     set_rate(world, BODY_BASE, out, alpha, world->qdd);
 }
 
-/* Add S of a body, of its reference point, times a rate, for the j-th coordinate of a body that carries it or of itself. */
+/* Add S of a body, of its reference point, times a rate, for the j-th coordinate of a body that carries it or of
+ * itself. */
 static void add_unit_motion(const Comparison *c, int b, int from, int j, double rate, double out[6])
 {
     double at[3], origin[3], arm[3], swing[3], S[6];
@@ -153,31 +154,16 @@ static void add_unit_motion(const Comparison *c, int b, int from, int j, double 
         out[i] += S[i] + (i < 3 || from == b ? 0 : swing[i - 3]);
 }
 
-static const Subset *subset_of(const Comparison *c, int body)
-{
-    const Sequence *sequence = c->v.run->plan->sequence;
-    return &sequence->subset[sequence->body_subset[body]];
-}
-
 /* What the accelerations of all coordinates give a body. */
 static void add_unit_motions(const Comparison *c, int b, double own[6])
 {
-    for (int body = b; body != BODY_BASE; body = subset_of(c, body)->carrier)
-        for (int j = 0; j < subset_of(c, body)->deps; ++j)
-            add_unit_motion(c, b, body, j, c->world->xdd[subset_of(c, body)->dep[j]], own);
-}
-
-/* S of one coordinate; false: the body does not move with it. */
-static bool find_unit_motion(const Comparison *c, int b, int coordinate, double S[6])
-{
-    bool found = false;
-    for (int body = b; body != BODY_BASE; body = subset_of(c, body)->carrier)
-        for (int j = 0; j < subset_of(c, body)->deps; ++j)
-            if (subset_of(c, body)->dep[j] == coordinate) {
-                found = true;
-                add_unit_motion(c, b, body, j, 1, S);
-            }
-    return found;
+    const Sequence *sequence = c->v.run->plan->sequence;
+    for (int body = b; body != BODY_BASE;) {
+        const Subset *subset = &sequence->subset[sequence->body_subset[body]];
+        for (int j = 0; j < subset->deps; ++j)
+            add_unit_motion(c, b, body, j, c->world->xdd[subset->dep[j]], own);
+        body = subset->carrier;
+    }
 }
 
 static void accelerate_body(Comparison *c, int b, const double base_a[3], const double base_alpha[3])
@@ -285,19 +271,33 @@ static void compare_rows(Comparison *c, Kind which, const double (*x)[BODY_Q], c
 static void unit_rates(Comparison *c, int coordinate)
 {
     World *world = c->world;
-    const Run *run = c->v.run;
+    const Plan *plan = c->v.run->plan;
     const double *B = world->A[BODY_BASE];
-    memset(c->twist, 0, sizeof *c->twist * (size_t)world->bodies);
-    for (int b = 1; b < world->bodies; ++b) {
-        double S[6] = {0}, arm[3], to_mass[3], t[3], *twist = c->twist[b];
-        if (!find_unit_motion(c, b, coordinate, S))
-            continue;
-        apply3(B, S, twist + 3);
-        apply3(B, S + 3, twist);
-        sub3(c->v.model->body[b].com, run->plan->origin[b], arm);
-        apply3(world->A[b], arm, to_mass);
-        cross3(twist + 3, to_mass, t);
-        add3(twist, t, twist);
+    double S[world->bodies][6], at[3], from[3], arm[3], t[3]; /* S: of reference points, base frame */
+    memset(S, 0, sizeof S);
+    for (int s = 0; s < plan->sequence->subsets; ++s)
+        for (int i = 0; plan->sequence->subset[s].class >= 0 && i < plan->sequence->subset[s].bodies; ++i) {
+            const Subset *subset = &plan->sequence->subset[s];
+            const int b = subset->body[i];
+            if (subset->carrier != BODY_BASE) { /* found before */
+                motion3(c, b, MOTION_C, at);
+                motion3(c, subset->carrier, MOTION_C, from);
+                sub3(at, from, arm);
+                memcpy(S[b], S[subset->carrier], sizeof S[b]);
+                cross3(S[b], arm, t);
+                add3(S[b] + 3, t, S[b] + 3);
+            }
+            for (int j = 0; j < subset->deps; ++j)
+                if (subset->dep[j] == coordinate)
+                    add_unit_motion(c, b, b, j, 1, S[b]);
+        }
+    for (int b = 0; b < world->bodies; ++b) {
+        apply3(B, S[b], c->twist[b] + 3);
+        apply3(B, S[b] + 3, c->twist[b]);
+        sub3(c->v.model->body[b].com, plan->origin[b], at);
+        apply3(world->A[b], at, arm);
+        cross3(c->twist[b] + 3, arm, t);
+        add3(c->twist[b], t, c->twist[b]);
     }
 }
 
@@ -747,8 +747,9 @@ static void compare_inverse(Comparison *c)
         compare(c, KIND_INVERSE, unknown_name(c, i), run->tau[i][c->k] - tau[i], scale[i] + 1e-3 * c->push);
 }
 
-/* Are forces and rates of fast states numbers? Some formulas have none beyond what they are meant for; a wheel that lies
- * flat on the road has no direction in which it would roll, and an element whose points meet none in which it pulls. */
+/* Are forces and rates of fast states numbers? Some formulas have none beyond what they are meant for; a wheel that
+ * lies flat on the road has no direction in which it would roll, and an element whose points meet none in which it
+ * pulls. */
 static bool forces_exist(Comparison *c)
 {
     const double flat = 1.57, meeting = 1e-6;

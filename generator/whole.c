@@ -22,7 +22,8 @@ static void add_derived(Plan *plan, Pool *pool, int subset)
 int plan_layout(Pool *pool, const Plan *plan)
 {
     Text text = {.pool = pool};
-    text_print(&text, "%d %d %d %d", plan->solve, plan->start_size, plan->motion_size, plan->inertia_size);
+    static const int form[SOLVES] = {[SOLVE_AUGMENTED] = 1, [SOLVE_ARTICULATED] = 2};
+    text_print(&text, "%d %d %d %d", form[plan->solve], plan->start_size, plan->motion_size, plan->inertia_size);
     for (int s = 0; s < plan->sequence->subsets; ++s) {
         const int class = plan->sequence->subset[s].class;
         text_print(&text, " %d %d", plan->start_offset[s], plan->stride[s]);

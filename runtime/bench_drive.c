@@ -272,11 +272,11 @@ static void drive_headline(const Bench *bench, const Driven *driven)
 {
     Pool *pool = bench->pool;
     const double time = (double)steps_of(bench->scene) * bench->scene->step;
-    const double seconds = spread_of(pool, driven->second[STEP], bench->repetitions).median;
+    const double seconds = spread_of(pool, driven->measured[STEP], bench->repetitions).median;
     Text others = {.pool = pool};
     for (const Driven *d = driven + 1; d < driven + bench->engines; ++d)
         text_print(&others, d > driven + 1 ? ", %s %.3g times" : "; %s takes %.3g times as long", d->name,
-                   spread_of_ratio(pool, d->second[STEP], driven->second[STEP], bench->repetitions).median);
+                   spread_of_ratio(pool, d->measured[STEP], driven->measured[STEP], bench->repetitions).median);
     text_print(&others, ".");
     report_headline(bench->report, "%s computes %.4g s of the scene in %.3g s, %.3g times faster than real time%s",
                     driven->name, time, seconds, time / seconds, others.s);

@@ -49,7 +49,7 @@ says err "must end in .svg or .dot"
 run 2 "$model" --solve
 says err "an argument is missing after: --solve"
 run 2 "$model" --solve quickly
-says err "--solve takes reduced or augmented, not: quickly"
+says err "--solve takes auto, reduced, articulated or augmented, not: quickly"
 run 2 "$model" --recovery quickly
 says err "--recovery takes auto, newton or closed, not: quickly"
 run 2 --report page.html -o page.c "$model"
