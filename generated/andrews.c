@@ -51,7 +51,7 @@
  */
 #include "andrews.h"
 
-#if ANDREWS_H != 0xc1ca3949
+#if ANDREWS_H != 0x57ae4b93
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -50,7 +50,7 @@
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #ifndef ANDREWS_H
-#define ANDREWS_H 0xc1ca3949
+#define ANDREWS_H 0x57ae4b93
 
 #include "gic_runtime.h"
 
@@ -93,7 +93,7 @@ enum {
     ANDREWS_MOTION_ROOM = 210,
     ANDREWS_INERTIA_ROOM = 92,
     ANDREWS_MULTIPLIER_ROOM = 1,
-    ANDREWS_LAYOUT = 730367152,
+    ANDREWS_LAYOUT = 779386221,
     ANDREWS_CONDITIONS = 0,
     ANDREWS_DERIVED = 0,
     ANDREWS_PIECES = 1,

@@ -72,7 +72,7 @@
  */
 #include "five_link.h"
 
-#if FIVE_LINK_H != 0x2e481d15
+#if FIVE_LINK_H != 0x3f5b3067
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

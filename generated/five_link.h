@@ -71,7 +71,7 @@
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
-#define FIVE_LINK_H 0x2e481d15
+#define FIVE_LINK_H 0x3f5b3067
 
 #include "gic_runtime.h"
 
@@ -114,7 +114,7 @@ enum {
     FIVE_LINK_MOTION_ROOM = 222,
     FIVE_LINK_INERTIA_ROOM = 179,
     FIVE_LINK_MULTIPLIER_ROOM = 1,
-    FIVE_LINK_LAYOUT = 1183823963,
+    FIVE_LINK_LAYOUT = 454520678,
     FIVE_LINK_CONDITIONS = 0,
     FIVE_LINK_DERIVED = 0,
     FIVE_LINK_PIECES = 1,

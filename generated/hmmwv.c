@@ -78,7 +78,7 @@
  */
 #include "hmmwv.h"
 
-#if HMMWV_H != 0x8352f091
+#if HMMWV_H != 0x56fef7d9
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -77,7 +77,7 @@
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #ifndef HMMWV_H
-#define HMMWV_H 0x8352f091
+#define HMMWV_H 0x56fef7d9
 
 #include "gic_runtime.h"
 
@@ -120,7 +120,7 @@ enum {
     HMMWV_MOTION_ROOM = 282,
     HMMWV_INERTIA_ROOM = 225,
     HMMWV_MULTIPLIER_ROOM = 1,
-    HMMWV_LAYOUT = 140958427,
+    HMMWV_LAYOUT = 277266900,
     HMMWV_CONDITIONS = 0,
     HMMWV_DERIVED = 0,
     HMMWV_PIECES = 1,

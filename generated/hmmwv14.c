@@ -80,7 +80,7 @@
  */
 #include "hmmwv14.h"
 
-#if HMMWV14_H != 0x0ec333bd
+#if HMMWV14_H != 0x2658322d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

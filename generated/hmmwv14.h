@@ -79,7 +79,7 @@
  *   outputs, when asked for                                  933      1137       4      4        19
  */
 #ifndef HMMWV14_H
-#define HMMWV14_H 0x0ec333bd
+#define HMMWV14_H 0x2658322d
 
 #include "gic_runtime.h"
 
@@ -122,7 +122,7 @@ enum {
     HMMWV14_MOTION_ROOM = 414,
     HMMWV14_INERTIA_ROOM = 225,
     HMMWV14_MULTIPLIER_ROOM = 1,
-    HMMWV14_LAYOUT = 1681974382,
+    HMMWV14_LAYOUT = 1310339137,
     HMMWV14_CONDITIONS = 0,
     HMMWV14_DERIVED = 0,
     HMMWV14_PIECES = 1,

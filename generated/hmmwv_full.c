@@ -78,7 +78,7 @@
  */
 #include "hmmwv_full.h"
 
-#if HMMWV_FULL_H != 0xe018440d
+#if HMMWV_FULL_H != 0x7d47e46f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -77,7 +77,7 @@
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H
-#define HMMWV_FULL_H 0xe018440d
+#define HMMWV_FULL_H 0x7d47e46f
 
 #include "gic_runtime.h"
 
@@ -120,7 +120,7 @@ enum {
     HMMWV_FULL_MOTION_ROOM = 282,
     HMMWV_FULL_INERTIA_ROOM = 225,
     HMMWV_FULL_MULTIPLIER_ROOM = 1,
-    HMMWV_FULL_LAYOUT = 140958427,
+    HMMWV_FULL_LAYOUT = 277266900,
     HMMWV_FULL_CONDITIONS = 0,
     HMMWV_FULL_DERIVED = 0,
     HMMWV_FULL_PIECES = 1,

@@ -82,7 +82,7 @@
  */
 #include "hmmwv_tires.h"
 
-#if HMMWV_TIRES_H != 0xd7a27933
+#if HMMWV_TIRES_H != 0x72b432a7
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -81,7 +81,7 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H 0xd7a27933
+#define HMMWV_TIRES_H 0x72b432a7
 
 #include "gic_runtime.h"
 
@@ -127,7 +127,7 @@ enum {
     HMMWV_TIRES_MOTION_ROOM = 282,
     HMMWV_TIRES_INERTIA_ROOM = 225,
     HMMWV_TIRES_MULTIPLIER_ROOM = 1,
-    HMMWV_TIRES_LAYOUT = 140958427,
+    HMMWV_TIRES_LAYOUT = 277266900,
     HMMWV_TIRES_CONDITIONS = 0,
     HMMWV_TIRES_DERIVED = 0,
     HMMWV_TIRES_PIECES = 1,

@@ -82,7 +82,7 @@
  */
 #include "hmmwv_tmeasy.h"
 
-#if HMMWV_TMEASY_H != 0xc5ae78f1
+#if HMMWV_TMEASY_H != 0xb0a95025
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -81,7 +81,7 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TMEASY_H
-#define HMMWV_TMEASY_H 0xc5ae78f1
+#define HMMWV_TMEASY_H 0xb0a95025
 
 #include "gic_runtime.h"
 
@@ -127,7 +127,7 @@ enum {
     HMMWV_TMEASY_MOTION_ROOM = 282,
     HMMWV_TMEASY_INERTIA_ROOM = 225,
     HMMWV_TMEASY_MULTIPLIER_ROOM = 1,
-    HMMWV_TMEASY_LAYOUT = 140958427,
+    HMMWV_TMEASY_LAYOUT = 277266900,
     HMMWV_TMEASY_CONDITIONS = 0,
     HMMWV_TMEASY_DERIVED = 0,
     HMMWV_TMEASY_PIECES = 1,

@@ -83,7 +83,7 @@
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0xc08da6d9
+#if HMMWV_VEHICLE_H != 0x3fb15107
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

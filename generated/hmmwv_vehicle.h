@@ -82,7 +82,7 @@
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0xc08da6d9
+#define HMMWV_VEHICLE_H 0x3fb15107
 
 #include "gic_runtime.h"
 
@@ -132,7 +132,7 @@ enum {
     HMMWV_VEHICLE_MOTION_ROOM = 282,
     HMMWV_VEHICLE_INERTIA_ROOM = 225,
     HMMWV_VEHICLE_MULTIPLIER_ROOM = 1,
-    HMMWV_VEHICLE_LAYOUT = 140958427,
+    HMMWV_VEHICLE_LAYOUT = 277266900,
     HMMWV_VEHICLE_CONDITIONS = 0,
     HMMWV_VEHICLE_DERIVED = 0,
     HMMWV_VEHICLE_PIECES = 1,

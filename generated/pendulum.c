@@ -29,7 +29,7 @@
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0xd56a0efb
+#if PENDULUM_H != 0x49b44f77
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

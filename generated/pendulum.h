@@ -28,7 +28,7 @@
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #ifndef PENDULUM_H
-#define PENDULUM_H 0xd56a0efb
+#define PENDULUM_H 0x49b44f77
 
 #include "gic_runtime.h"
 
@@ -71,7 +71,7 @@ enum {
     PENDULUM_MOTION_ROOM = 30,
     PENDULUM_INERTIA_ROOM = 23,
     PENDULUM_MULTIPLIER_ROOM = 1,
-    PENDULUM_LAYOUT = 1858043342,
+    PENDULUM_LAYOUT = 1003961757,
     PENDULUM_CONDITIONS = 0,
     PENDULUM_DERIVED = 0,
     PENDULUM_PIECES = 1,

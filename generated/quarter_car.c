@@ -48,7 +48,7 @@
  */
 #include "quarter_car.h"
 
-#if QUARTER_CAR_H != 0x73658ef3
+#if QUARTER_CAR_H != 0x70e2d357
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -47,7 +47,7 @@
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #ifndef QUARTER_CAR_H
-#define QUARTER_CAR_H 0x73658ef3
+#define QUARTER_CAR_H 0x70e2d357
 
 #include "gic_runtime.h"
 
@@ -90,7 +90,7 @@ enum {
     QUARTER_CAR_MOTION_ROOM = 102,
     QUARTER_CAR_INERTIA_ROOM = 87,
     QUARTER_CAR_MULTIPLIER_ROOM = 1,
-    QUARTER_CAR_LAYOUT = 1295454334,
+    QUARTER_CAR_LAYOUT = 309939699,
     QUARTER_CAR_CONDITIONS = 0,
     QUARTER_CAR_DERIVED = 0,
     QUARTER_CAR_PIECES = 1,

@@ -67,7 +67,7 @@
  */
 #include "solid_axle.h"
 
-#if SOLID_AXLE_H != 0xe57edea1
+#if SOLID_AXLE_H != 0x633cbac1
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -66,7 +66,7 @@
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H 0xe57edea1
+#define SOLID_AXLE_H 0x633cbac1
 
 #include "gic_runtime.h"
 
@@ -109,7 +109,7 @@ enum {
     SOLID_AXLE_MOTION_ROOM = 198,
     SOLID_AXLE_INERTIA_ROOM = 165,
     SOLID_AXLE_MULTIPLIER_ROOM = 1,
-    SOLID_AXLE_LAYOUT = 254983630,
+    SOLID_AXLE_LAYOUT = 2082726047,
     SOLID_AXLE_CONDITIONS = 0,
     SOLID_AXLE_DERIVED = 0,
     SOLID_AXLE_PIECES = 1,

@@ -70,7 +70,7 @@
  */
 #include "trailing_arm.h"
 
-#if TRAILING_ARM_H != 0xddb0b3c3
+#if TRAILING_ARM_H != 0xa580b6d5
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

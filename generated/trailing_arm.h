@@ -69,7 +69,7 @@
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H
-#define TRAILING_ARM_H 0xddb0b3c3
+#define TRAILING_ARM_H 0xa580b6d5
 
 #include "gic_runtime.h"
 
@@ -112,7 +112,7 @@ enum {
     TRAILING_ARM_MOTION_ROOM = 222,
     TRAILING_ARM_INERTIA_ROOM = 179,
     TRAILING_ARM_MULTIPLIER_ROOM = 1,
-    TRAILING_ARM_LAYOUT = 372168317,
+    TRAILING_ARM_LAYOUT = 942354134,
     TRAILING_ARM_CONDITIONS = 0,
     TRAILING_ARM_DERIVED = 0,
     TRAILING_ARM_PIECES = 1,
