@@ -369,5 +369,6 @@ void whole_angular_acceleration(Whole *whole, int body, const Ex alpha[3], const
         ex_scale3(dag, w2[subset->dep[j]], m->S + 6 * j, t);
         ex_add3(dag, out, t, out);
     }
+    ex_zero3(dag, t); /* the acceleration of the point is not asked for */
     whole_carry(whole, body, w2, m->c, out, t);
 }
