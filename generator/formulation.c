@@ -119,10 +119,19 @@ bool formulation_chains(Pool *pool, const Model *model, const Sequence *sequence
     return is_long(sequence, solve) && chain_for(pool, model, sequence, solve);
 }
 
+/* Can set-up make masses as unequal as the reduced form alone stands them? */
+static bool masses_tuned(const Model *model)
+{
+    for (int b = 0; model->tuning && b < model->bodies; ++b)
+        if (tuned_number(model, &model->body[b].mass))
+            return true;
+    return false;
+}
+
 const Formulation *formulate(Pool *pool, const Model *model, const Sequence *sequence, Solve solve, Recovery recovery)
 {
     const Sequence *chained = chain_for(pool, model, sequence, solve);
-    if (!chained)
+    if (!chained || (!is_long(sequence, solve) && masses_tuned(model)))
         return formulate_as(pool, model, sequence, solve == SOLVE_AUGMENTED ? solve : SOLVE_REDUCED, recovery);
     const Formulation *articulated = formulate_as(pool, model, chained, SOLVE_ARTICULATED, recovery);
     if (is_long(sequence, solve))

@@ -15,7 +15,7 @@ done
 
 pages() { (cd "$root" && echo README.md ./*/README.md tests/bench/README.md); }
 # commands PAGE: outside of fences
-commands() { sed -n '/^```/,/^```/d; s/^ \{4,\}\([a-z].*\)/\1/p' "$root/$1" | grep -E '^(build/|sh |make |cc |gcc |clang )'; }
+commands() { sed -n '/^```/,/^```/d; s/^ \{4,\}\([a-z].*\)/\1/p' "$root/$1" | grep -E '^(build/|mkdir |sh |make |cc |gcc |clang )'; }
 
 # execute COMMAND: in the present folder
 execute() {
